@@ -1,0 +1,168 @@
+//! What turns: a rigid set of point masses with one point pinned at the origin.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// Smallest principal moment over the largest at or below which the inertia counts as singular: Ω = I⁻¹L would
+/// then be rounding, not motion.
+const SINGULAR_BELOW: f64 = 1e-12;
+
+/// One mass point in the upright pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointMass {
+    /// Position in the body frame, m; the pivot is the origin.
+    pub at: Vector3<f64>,
+    /// Mass, kg, not negative.
+    pub mass: f64,
+}
+
+/// A rigid body of point masses, with the sums over its points that do not change as it turns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    points: Vec<PointMass>,
+    mass: f64,
+    first_moment: Vector3<f64>,
+    inertia: Matrix3<f64>,
+    inverse_inertia: Matrix3<f64>,
+}
+
+/// Why a set of points cannot turn as a rigid body.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum BodyError {
+    /// All the mass lies on one line through the pivot (or there is none).
+    #[error(
+        "singular inertia: about the pivot the smallest principal moment is {smallest:e} kg m^2, the largest {largest:e}; put mass off the axle"
+    )]
+    Singular {
+        /// Smallest principal moment, kg m².
+        smallest: f64,
+        /// Largest principal moment, kg m².
+        largest: f64,
+    },
+    /// Masses or distances so large or small that the inverse inertia leaves the range of floating-point numbers.
+    #[error(
+        "the inertia about the pivot leaves the range of numbers: use masses and distances nearer to 1"
+    )]
+    OutOfRange,
+}
+
+impl Body {
+    /// The body made of `points` (body frame, upright pose).
+    ///
+    /// # Errors
+    /// When the inertia about the pivot is singular or out of the range of numbers.
+    pub fn new(points: Vec<PointMass>) -> Result<Self, BodyError> {
+        let mass = points.iter().map(|p| p.mass).sum();
+        let first_moment = points
+            .iter()
+            .fold(Vector3::zeros(), |sum, p| sum + p.mass * p.at);
+        let inertia = points
+            .iter()
+            .fold(Matrix3::zeros(), |sum, p| sum + point_inertia(p));
+        let inverse_inertia = invert(&inertia)?;
+        Ok(Self {
+            points,
+            mass,
+            first_moment,
+            inertia,
+            inverse_inertia,
+        })
+    }
+
+    /// The points, in the order in which the scenario lists them.
+    pub fn points(&self) -> &[PointMass] {
+        &self.points
+    }
+
+    /// Total mass M, kg.
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
+
+    /// Σ m x, kg m, body frame: mass times the centre of mass.
+    pub fn first_moment(&self) -> Vector3<f64> {
+        self.first_moment
+    }
+
+    /// Inertia about the pivot, kg m², body frame (equation (2) of the report, with E).
+    pub fn inertia(&self) -> Matrix3<f64> {
+        self.inertia
+    }
+
+    /// Inverse of the inertia about the pivot, 1/(kg m²), body frame.
+    pub fn inverse_inertia(&self) -> Matrix3<f64> {
+        self.inverse_inertia
+    }
+}
+
+/// m(|x|²E − xxᵀ), kg m²: the inertia of one point about the pivot (report, equation (2)).
+fn point_inertia(point: &PointMass) -> Matrix3<f64> {
+    let x = point.at;
+    point.mass * (Matrix3::identity() * x.norm_squared() - x * x.transpose())
+}
+
+fn invert(inertia: &Matrix3<f64>) -> Result<Matrix3<f64>, BodyError> {
+    if !inertia.iter().all(|m| m.is_finite()) {
+        return Err(BodyError::OutOfRange);
+    }
+    let moments = inertia.symmetric_eigenvalues();
+    let (smallest, largest) = (moments.min(), moments.max());
+    if largest <= 0.0 || smallest <= SINGULAR_BELOW * largest {
+        return Err(BodyError::Singular { smallest, largest });
+    }
+    inertia
+        .try_inverse()
+        .filter(|inverse| inverse.iter().all(|m| m.is_finite()))
+        .ok_or(BodyError::OutOfRange)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ring(points: usize, radius: f64, height: f64) -> Vec<PointMass> {
+        (0..points)
+            .map(|j| {
+                let angle = std::f64::consts::TAU * j as f64 / points as f64;
+                let at = Vector3::new(radius * libm::cos(angle), radius * libm::sin(angle), height);
+                PointMass { at, mass: 0.5 }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_textbook_wheel_has_its_moments() {
+        // Ring of 5 kg at R = 0.8, h = 1: I1 = M(R²/2 + h²) = 6.6, I3 = M R² = 3.2, M h = 5.
+        let body = Body::new(ring(10, 0.8, 1.0)).unwrap();
+        let expected = Matrix3::from_diagonal(&Vector3::new(6.6, 6.6, 3.2));
+        assert!(
+            (body.inertia() - expected).amax() < 1e-14,
+            "{}",
+            body.inertia()
+        );
+        assert!((body.inertia() * body.inverse_inertia() - Matrix3::identity()).amax() < 1e-15);
+        assert!((body.first_moment() - Vector3::new(0.0, 0.0, 5.0)).amax() < 1e-15);
+    }
+
+    #[test]
+    fn mass_on_one_line_through_the_pivot_is_singular() {
+        let along = Vector3::new(0.3, -0.2, 0.9);
+        let line = [0.5, 1.0, 1.5].map(|s| PointMass {
+            at: along * s,
+            mass: 1.0,
+        });
+        assert!(matches!(
+            Body::new(line.to_vec()),
+            Err(BodyError::Singular { .. })
+        ));
+        assert!(matches!(
+            Body::new(Vec::new()),
+            Err(BodyError::Singular { .. })
+        ));
+    }
+
+    #[test]
+    fn masses_beyond_the_range_of_numbers_are_refused() {
+        let huge = ring(3, 1e200, 0.0);
+        assert_eq!(Body::new(huge), Err(BodyError::OutOfRange));
+    }
+}

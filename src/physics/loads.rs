@@ -1,0 +1,82 @@
+//! What pulls at the body: gravity on every point, and pushes on single ones.
+
+use super::Body;
+use nalgebra::{Matrix3, Vector3};
+
+/// A force on one point of the body, constant in the world frame while the loads hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointForce {
+    /// Index of the point in the body.
+    pub point: usize,
+    /// The force, world frame, N.
+    pub force: Vector3<f64>,
+}
+
+/// All forces during a stretch of time in which none of them changes.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Loads {
+    /// Acceleration of gravity along −z, m/s².
+    pub gravity: f64,
+    /// Forces beside gravity.
+    pub pushes: Vec<PointForce>,
+}
+
+impl Loads {
+    /// Σ x Fᵀ over all points, N m: x in the body frame, F in the world frame. With it the torque on the whole body
+    /// follows from the orientation alone, see [`torque`].
+    pub fn moment(&self, body: &Body) -> Matrix3<f64> {
+        let weight = Vector3::new(0.0, 0.0, -self.gravity);
+        let gravity = body.first_moment() * weight.transpose();
+        self.pushes.iter().fold(gravity, |sum, push| {
+            sum + body.points()[push.point].at * push.force.transpose()
+        })
+    }
+}
+
+/// Torque about the pivot, world frame, N m, of forces whose `moment` is Σ x Fᵀ: τᵢ = εᵢⱼₖ (Q Σ x Fᵀ)ⱼₖ.
+///
+/// Under vertical forces the first two columns are zeros, so that τ_z is zero to the bit and L_z is conserved.
+pub fn torque(orientation: &Matrix3<f64>, moment: &Matrix3<f64>) -> Vector3<f64> {
+    let turned = orientation * moment;
+    Vector3::new(
+        turned[(1, 2)] - turned[(2, 1)],
+        turned[(2, 0)] - turned[(0, 2)],
+        turned[(0, 1)] - turned[(1, 0)],
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::{PointMass, rotation};
+
+    #[test]
+    fn the_torque_is_the_sum_of_cross_products() {
+        let at = [[0.8, 0.1, 0.5], [-0.3, 0.7, 0.6], [0.0, 0.0, 1.1]];
+        let points: Vec<_> = at
+            .iter()
+            .map(|&a| PointMass {
+                at: Vector3::from(a),
+                mass: 0.5,
+            })
+            .collect();
+        let body = Body::new(points).unwrap();
+        let push = PointForce {
+            point: 2,
+            force: Vector3::new(3.0, -4.0, 5.0),
+        };
+        let loads = Loads {
+            gravity: 9.8,
+            pushes: vec![push],
+        };
+        let turn = rotation::about(&Vector3::new(0.3, -1.0, 0.4), 0.7);
+        let weight = Vector3::new(0.0, 0.0, -0.5 * 9.8);
+        let direct = body
+            .points()
+            .iter()
+            .fold((turn * body.points()[2].at).cross(&push.force), |sum, p| {
+                sum + (turn * p.at).cross(&weight)
+            });
+        assert!((torque(&turn, &loads.moment(&body)) - direct).amax() < 1e-14);
+    }
+}

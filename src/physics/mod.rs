@@ -1,0 +1,20 @@
+//! The mechanics: a rigid body of point masses that turns about a fixed pivot.
+//!
+//! [`body`] says what turns, [`state`] how it stands and moves, [`loads`] what pulls at it, [`scheme`] how a time
+//! step is taken (one file per scheme), and [`observables`] what is read off a state. Nothing here knows where the
+//! numbers come from or who looks at them, and nothing here depends on the processor or on the C library: sine,
+//! cosine and arc tangent are compiled in, sums have a fixed order, and no multiply-add is fused.
+
+pub mod body;
+pub mod loads;
+pub mod observables;
+pub mod report;
+pub mod rk4;
+pub mod rotation;
+pub mod scheme;
+pub mod state;
+
+pub use body::{Body, BodyError, PointMass};
+pub use loads::{Loads, PointForce};
+pub use scheme::{Scheme, SchemeInfo};
+pub use state::{State, StepRecord, Workings};

@@ -1,0 +1,158 @@
+//! What is read off a state: positions, angles, energy.
+
+use super::{Body, State};
+use nalgebra::Vector3;
+
+/// Horizontal length of the axle's unit vector at or below which it counts as vertical and has no azimuth.
+pub const VERTICAL_WITHIN: f64 = 1e-12;
+
+/// Position of point `index` of the body, world frame, m.
+pub fn position(body: &Body, state: &State, index: usize) -> Vector3<f64> {
+    state.orientation * body.points()[index].at
+}
+
+/// ω = I⁻¹L at this state, world frame, rad/s.
+pub fn angular_velocity(body: &Body, state: &State) -> Vector3<f64> {
+    state.orientation * (body.inverse_inertia() * state.orientation.tr_mul(&state.momentum))
+}
+
+/// ½ L·ω, J.
+pub fn kinetic_energy(body: &Body, state: &State) -> f64 {
+    0.5 * state.momentum.dot(&angular_velocity(body, state))
+}
+
+/// Σ m z, kg m, from the pivot: times g it is the potential energy of gravity.
+pub fn weight_height(body: &Body, state: &State) -> f64 {
+    state
+        .orientation
+        .row(2)
+        .transpose()
+        .dot(&body.first_moment())
+}
+
+/// Angle of the axle from +z, degrees, 0 to 180.
+pub fn tilt_deg(state: &State) -> f64 {
+    let axle = state.axle();
+    libm::atan2(libm::hypot(axle.x, axle.y), axle.z).to_degrees()
+}
+
+/// The axle's azimuth, counted on through full turns.
+///
+/// Kept as the last direction off the vertical and a whole number of turns, so that it neither drifts nor needs an
+/// arc tangent until it is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Azimuth {
+    x: f64,
+    y: f64,
+    turns: i64,
+}
+
+impl Azimuth {
+    /// The azimuth of `axle` (unit vector, world frame): atan2(y, x), or 0 where it is vertical.
+    pub fn start(axle: &Vector3<f64>) -> Self {
+        let mut azimuth = Self {
+            x: 1.0,
+            y: 0.0,
+            turns: 0,
+        };
+        if !is_vertical(axle) {
+            (azimuth.x, azimuth.y) = (axle.x, axle.y + 0.0);
+        }
+        azimuth
+    }
+
+    /// Follows the axle to its next direction, by the change wrapped to (−180, 180] degrees; a vertical one changes
+    /// nothing.
+    pub fn follow(&mut self, axle: &Vector3<f64>) {
+        if is_vertical(axle) {
+            return;
+        }
+        let (x, y) = (axle.x, axle.y + 0.0); // + 0.0 makes of −0.0 a 0.0, whose atan2 is +180, not −180
+        let cross = self.x * y - self.y * x;
+        let opposite = cross == 0.0 && self.x * x + self.y * y < 0.0;
+        // atan2 jumps by a turn where the direction crosses the negative x axis: there, and only there, y changes
+        // sign on a way that does not lead past the positive x axis.
+        match (self.y >= 0.0, y >= 0.0) {
+            (true, false) if cross > 0.0 || opposite => self.turns += 1,
+            (true, true) if opposite && self.x < 0.0 => self.turns += 1, // from 180 to 0 degrees
+            (false, true) if cross < 0.0 => self.turns -= 1,
+            _ => {}
+        }
+        (self.x, self.y) = (x, y);
+    }
+
+    /// Degrees, full turns included.
+    pub fn degrees(&self) -> f64 {
+        libm::atan2(self.y, self.x).to_degrees() + 360.0 * self.turns as f64
+    }
+}
+
+fn is_vertical(axle: &Vector3<f64>) -> bool {
+    libm::hypot(axle.x, axle.y) <= VERTICAL_WITHIN
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The contract's words, taken literally.
+    fn by_arc_tangents(axles: &[Vector3<f64>]) -> f64 {
+        let mut sum = axles[0].y.atan2(axles[0].x).to_degrees();
+        for pair in axles.windows(2) {
+            let change = (pair[1].y.atan2(pair[1].x) - pair[0].y.atan2(pair[0].x)).to_degrees();
+            let wrapped = if change > 180.0 {
+                change - 360.0
+            } else if change <= -180.0 {
+                change + 360.0
+            } else {
+                change
+            };
+            sum += wrapped;
+        }
+        sum
+    }
+
+    proptest! {
+        #[test]
+        fn the_azimuth_counts_turns_as_summed_arc_tangents_do(
+            directions in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64), 1..60)
+        ) {
+            let axles: Vec<_> = directions.iter().map(|&(x, y)| Vector3::new(x, y, 0.5)).collect();
+            prop_assume!(axles.iter().all(|a| !is_vertical(a)));
+            let mut azimuth = Azimuth::start(&axles[0]);
+            axles[1..].iter().for_each(|axle| azimuth.follow(axle));
+            prop_assert!((azimuth.degrees() - by_arc_tangents(&axles)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn half_turns_count_as_plus_180() {
+        let mut azimuth = Azimuth::start(&Vector3::new(1.0, 0.0, 0.0));
+        for x in [-1.0, 1.0, -1.0, 1.0] {
+            azimuth.follow(&Vector3::new(x, -0.0, 0.0));
+        }
+        assert_eq!(azimuth.degrees(), 720.0);
+    }
+
+    #[test]
+    fn a_vertical_axle_has_azimuth_0_and_keeps_what_it_had() {
+        let mut azimuth = Azimuth::start(&Vector3::new(1e-13, 0.0, 1.0));
+        assert_eq!(azimuth.degrees(), 0.0);
+        azimuth.follow(&Vector3::new(0.0, 1.0, 0.0));
+        azimuth.follow(&Vector3::new(0.0, 0.0, -1.0));
+        assert_eq!(azimuth.degrees(), 90.0);
+    }
+
+    #[test]
+    fn tilt_is_exact_near_the_vertical() {
+        let tilted = |radians: f64| State {
+            time_s: 0.0,
+            orientation: crate::physics::rotation::about(&Vector3::x(), radians),
+            momentum: Vector3::zeros(),
+        };
+        for radians in [1e-9f64, 0.5, 3.0] {
+            assert!((tilt_deg(&tilted(radians)) / radians.to_degrees() - 1.0).abs() < 1e-15);
+        }
+    }
+}

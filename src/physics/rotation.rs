@@ -1,0 +1,64 @@
+//! Rotation matrices, in the report's formula, with the sine and cosine compiled in.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// The matrix [v]× with [v]× w = v × w.
+pub fn cross_matrix(v: &Vector3<f64>) -> Matrix3<f64> {
+    Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
+}
+
+/// The rotation about `vector` by the angle |`vector`| · `time`: R = P + cos(E − P) + sin [u]×, P = uuᵀ, u the
+/// vector's direction (report, section 3). The zero vector turns nothing.
+pub fn about(vector: &Vector3<f64>, time: f64) -> Matrix3<f64> {
+    let length = vector.norm();
+    if length == 0.0 {
+        return Matrix3::identity();
+    }
+    let (sin, cos) = libm::sincos(length * time);
+    let u = vector * (1.0 / length);
+    let (xx, yy, zz) = (u.x * u.x, u.y * u.y, u.z * u.z);
+    let (xy, xz, yz) = (u.x * u.y, u.x * u.z, u.y * u.z);
+    let (bxy, bxz, byz) = (xy - cos * xy, xz - cos * xz, yz - cos * yz);
+    Matrix3::new(
+        xx + cos * (1.0 - xx),
+        bxy - sin * u.z,
+        bxz + sin * u.y,
+        bxy + sin * u.z,
+        yy + cos * (1.0 - yy),
+        byz - sin * u.x,
+        bxz - sin * u.y,
+        byz + sin * u.x,
+        zz + cos * (1.0 - zz),
+    )
+}
+
+/// `matrix` brought back to the nearest rotation by one Newton step of the polar decomposition, Q(3E − QᵀQ)/2:
+/// enough for matrices that are off by the error of one time step.
+pub fn straightened(matrix: &Matrix3<f64>) -> Matrix3<f64> {
+    matrix * (Matrix3::identity() * 1.5 - (matrix.transpose() * matrix) * 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quarter_turn_about_z_takes_x_to_y() {
+        let turn = about(&Vector3::new(0.0, 0.0, 2.0), std::f64::consts::FRAC_PI_4);
+        assert!((turn * Vector3::x() - Vector3::y()).amax() < 1e-16);
+        assert!((turn * Vector3::z() - Vector3::z()).amax() == 0.0);
+    }
+
+    #[test]
+    fn no_rotation_without_a_vector() {
+        assert_eq!(about(&Vector3::zeros(), 1.0), Matrix3::identity());
+    }
+
+    #[test]
+    fn straightening_restores_a_rotation_to_second_order() {
+        let turn = about(&Vector3::new(1.0, -2.0, 0.5), 0.9);
+        let bent = turn + Matrix3::new(1.0, -2.0, 3.0, 0.5, 1.0, -1.0, 2.0, 0.0, 1.0) * 1e-6;
+        let q = straightened(&bent);
+        assert!((q.transpose() * q - Matrix3::identity()).amax() < 1e-10);
+    }
+}

@@ -1,0 +1,85 @@
+//! The numerical schemes: what each must do, and the table of those there are.
+
+use super::{Body, Loads, State, Workings, report::Report, rk4::Rk4};
+
+/// A way to take the body one time step further.
+///
+/// Orientation, L and t are all that passes from one scheme to another; whatever else a scheme keeps (the report's
+/// carries the points themselves) it makes anew in [`start`](Scheme::start).
+pub trait Scheme: Send {
+    /// Takes the run over at `state`: at its beginning, or from another scheme.
+    fn start(&mut self, state: &State);
+
+    /// From now on these are the forces.
+    fn load(&mut self, loads: &Loads);
+
+    /// Takes `state` `dt` seconds further, its time left as it is: time is the run's, which counts steps.
+    fn step(&mut self, dt: f64, state: &mut State);
+
+    /// What the scheme computed on the way from `before` to `after`, the step it took last.
+    fn workings(&self, before: &State, after: &State, dt: f64) -> Workings;
+
+    /// A copy that goes its own way from here.
+    fn boxed(&self) -> Box<dyn Scheme>;
+}
+
+impl Clone for Box<dyn Scheme> {
+    fn clone(&self) -> Self {
+        self.as_ref().boxed()
+    }
+}
+
+/// One row of the table of schemes.
+#[derive(Debug)]
+pub struct SchemeInfo {
+    /// The name in scenarios and on the command line.
+    pub name: &'static str,
+    /// Order of convergence in dt.
+    pub order: u32,
+    /// One line on what it does.
+    pub about: &'static str,
+    /// Where it comes from.
+    pub source: &'static str,
+    /// Whether it follows time between steps, so that a force which begins in mid-step is met where it begins. One
+    /// that does not feels such a force's mean over the step.
+    pub continuous: bool,
+    make: fn(&Body) -> Box<dyn Scheme>,
+}
+
+/// Every scheme, the report's first.
+pub static SCHEMES: [SchemeInfo; 2] = [
+    SchemeInfo {
+        name: "report",
+        order: 1,
+        about: "the report's: rotate every point by Omega dt, then add dt times the torque at the new positions to L",
+        source: "report, section 3",
+        continuous: false,
+        make: |body| Box::new(Report::new(body)),
+    },
+    SchemeInfo {
+        name: "rk4",
+        order: 4,
+        about: "classical Runge-Kutta on orientation and L, the orientation made orthogonal after each step",
+        source: "Kutta 1901; Hairer, Norsett, Wanner, Solving ODEs I, section II.1",
+        continuous: true,
+        make: |body| Box::new(Rk4::new(body)),
+    },
+];
+
+impl SchemeInfo {
+    /// The scheme of that name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        SCHEMES.iter().find(|scheme| scheme.name == name)
+    }
+
+    /// A scheme for `body`, to be started and loaded before its first step.
+    pub fn make(&self, body: &Body) -> Box<dyn Scheme> {
+        (self.make)(body)
+    }
+}
+
+impl PartialEq for SchemeInfo {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
