@@ -20,5 +20,5 @@
 //pub mod cli;
 //pub mod export;
 pub mod physics;
-//pub mod run;
-//pub mod scenario;
+pub mod run;
+pub mod scenario;

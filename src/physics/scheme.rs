@@ -47,7 +47,7 @@ pub struct SchemeInfo {
 }
 
 /// Every scheme, the report's first.
-pub static SCHEMES: [SchemeInfo; 2] = [
+pub const SCHEMES: &[SchemeInfo] = &[
     SchemeInfo {
         name: "report",
         order: 1,
@@ -65,6 +65,17 @@ pub static SCHEMES: [SchemeInfo; 2] = [
         make: |body| Box::new(Rk4::new(body)),
     },
 ];
+
+/// The names of all schemes, in the table's order.
+pub const fn names() -> [&'static str; SCHEMES.len()] {
+    let mut names = [""; SCHEMES.len()];
+    let mut row = 0;
+    while row < SCHEMES.len() {
+        names[row] = SCHEMES[row].name;
+        row += 1;
+    }
+    names
+}
 
 impl SchemeInfo {
     /// The scheme of that name.

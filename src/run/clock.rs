@@ -1,0 +1,54 @@
+//! What time it is at a step.
+
+/// Time as a function of the step, t = t_a + (step − a) dt, with a the step of the last edit of dt: never a running
+/// sum, whose rounding would grow with the run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clock {
+    anchor_step: u64,
+    anchor_s: f64,
+    time_step_s: f64,
+}
+
+impl Clock {
+    /// A clock that shows 0 at step 0.
+    pub fn new(time_step_s: f64) -> Self {
+        Self { anchor_step: 0, anchor_s: 0.0, time_step_s }
+    }
+
+    /// Time at `step`, s; the step must not lie before the last edit of dt.
+    pub fn time_s(&self, step: u64) -> f64 {
+        self.anchor_s + (step - self.anchor_step) as f64 * self.time_step_s
+    }
+
+    /// The time step in force, s.
+    pub fn time_step_s(&self) -> f64 {
+        self.time_step_s
+    }
+
+    /// From `step` on, the time step is `time_step_s`.
+    pub fn change(&mut self, step: u64, time_step_s: f64) {
+        *self = Self { anchor_step: step, anchor_s: self.time_s(step), time_step_s };
+    }
+
+    /// The first step at or after `time_s`, within a billionth of a time step.
+    pub fn step_at(&self, time_s: f64) -> u64 {
+        let steps = ((time_s - self.anchor_s) / self.time_step_s - 1e-9).ceil();
+        self.anchor_step.saturating_add(steps.max(0.0) as u64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_is_counted_from_the_last_edit_of_the_time_step() {
+        let mut clock = Clock::new(0.1);
+        assert_eq!(clock.time_s(3), 3.0 * 0.1);
+        clock.change(40, 0.05);
+        assert_eq!(clock.time_s(40), 4.0);
+        assert_eq!(clock.time_s(42), 4.1);
+        assert_eq!(clock.step_at(4.1), 42);
+        assert_eq!(clock.step_at(4.11), 43);
+    }
+}

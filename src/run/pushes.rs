@@ -1,0 +1,175 @@
+//! Which pushes act on a step, and how hard.
+//!
+//! A push that counts steps acts on whole steps, as the report's does. One that is given in seconds, or that has
+//! outlived an edit of the time step (which holds its seconds), may begin or end in mid-step: a scheme that follows
+//! time between steps then meets the force where it begins, and one that does not feels the force's mean over the
+//! step, so that the impulse is right at every time step.
+
+use super::Clock;
+use crate::physics::PointForce;
+use crate::scenario::{Push, Window};
+
+/// Parts of a step smaller than this are rounding, not time.
+const ROUNDING: f64 = 1e-9;
+
+/// How pushes that count steps are understood: as they stand, or as the seconds they stood for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Counting {
+    /// Steps are steps.
+    Steps,
+    /// The time step has been edited: steps stand for seconds at the time step the scenario was written for.
+    Seconds {
+        /// That time step, s.
+        written_for_s: f64,
+    },
+}
+
+/// A stretch of time from `begin` to `end`, s, on the way of one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// The step it belongs to: step 1 leads from the start to t = dt.
+    pub step: u64,
+    /// Its beginning, s.
+    pub begin: f64,
+    /// Its end, s.
+    pub end: f64,
+}
+
+impl Stretch {
+    /// The whole of `step`.
+    pub fn step(step: u64, clock: &Clock) -> Self {
+        Self { step, begin: clock.time_s(step - 1), end: clock.time_s(step) }
+    }
+}
+
+/// Writes into `forces` what acts during `stretch`: each push's mean force over it.
+pub fn acting(pushes: &[Push], counting: Counting, stretch: &Stretch, forces: &mut Vec<PointForce>) {
+    forces.clear();
+    for push in pushes {
+        let factor = factor(push, counting, stretch);
+        if factor != 0.0 {
+            forces.push(PointForce { point: push.point, force: push.force * factor });
+        }
+    }
+}
+
+/// How many times its force a push has, on the mean, during `stretch`.
+fn factor(push: &Push, counting: Counting, stretch: &Stretch) -> f64 {
+    match (push.window, counting) {
+        (Window::Steps { first, count }, Counting::Steps) => {
+            let nth = (stretch.step + 1).saturating_sub(first); // 1 on its first step, 0 before
+            match push.accumulates {
+                true => nth.min(count) as f64,
+                false => f64::from(nth >= 1 && nth <= count),
+            }
+        }
+        (Window::Steps { first, count }, Counting::Seconds { written_for_s }) if push.accumulates => {
+            let nth = (stretch.end / written_for_s - (first - 1) as f64 - ROUNDING).ceil();
+            nth.clamp(0.0, count as f64)
+        }
+        (window, counting) => {
+            let (from, to) = seconds(window, counting);
+            share(from, to, stretch)
+        }
+    }
+}
+
+/// A window in seconds, from and to.
+fn seconds(window: Window, counting: Counting) -> (f64, f64) {
+    match (window, counting) {
+        (Window::Time { from_s, for_s }, _) => (from_s, from_s + for_s),
+        (Window::Steps { first, count }, Counting::Seconds { written_for_s: dt }) => {
+            ((first - 1) as f64 * dt, (first - 1 + count) as f64 * dt)
+        }
+        // Whole steps have no seconds of their own: they never begin in mid-step.
+        (Window::Steps { .. }, Counting::Steps) => (f64::INFINITY, f64::INFINITY),
+    }
+}
+
+/// The share of `stretch` that lies between `from` and `to`, 0 to 1, free of rounding at both ends.
+fn share(from: f64, to: f64, stretch: &Stretch) -> f64 {
+    let length = stretch.end - stretch.begin;
+    let share = (to.min(stretch.end) - from.max(stretch.begin)) / length;
+    if share <= ROUNDING {
+        0.0
+    } else if share >= 1.0 - ROUNDING {
+        1.0
+    } else {
+        share
+    }
+}
+
+/// The first moment strictly inside `stretch` at which a push given in seconds begins or ends.
+pub fn next_change(pushes: &[Push], counting: Counting, stretch: &Stretch) -> Option<f64> {
+    let margin = ROUNDING * (stretch.end - stretch.begin);
+    pushes
+        .iter()
+        .flat_map(|push| <[f64; 2]>::from(seconds(push.window, counting)))
+        .filter(|&moment| moment > stretch.begin + margin && moment < stretch.end - margin)
+        .min_by(f64::total_cmp)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    fn push(window: Window, accumulates: bool) -> Push {
+        Push { point: 0, force: Vector3::new(0.0, 0.0, -100.0), window, accumulates }
+    }
+
+    fn factors(push: Push, counting: Counting, clock: &Clock, steps: u64) -> Vec<f64> {
+        (1..=steps).map(|step| factor(&push, counting, &Stretch::step(step, clock))).collect()
+    }
+
+    #[test]
+    fn a_push_of_200_steps_acts_on_steps_1_to_200() {
+        let factors = factors(
+            push(Window::Steps { first: 1, count: 200 }, false),
+            Counting::Steps,
+            &Clock::new(0.1),
+            202,
+        );
+        assert!(factors[..200].iter().all(|&factor| factor == 1.0));
+        assert_eq!(factors[200..], [0.0, 0.0]);
+    }
+
+    #[test]
+    fn an_accumulating_push_grows_and_stays() {
+        let window = Window::Steps { first: 2, count: 3 };
+        let factors = factors(push(window, true), Counting::Steps, &Clock::new(0.1), 6);
+        assert_eq!(factors, [0.0, 1.0, 2.0, 3.0, 3.0, 3.0]);
+    }
+
+    #[test]
+    fn seconds_on_the_steps_give_the_same_factors_as_steps() {
+        for dt in [0.1, 0.001, 1.0 / 3.0, 0.7e-3] {
+            let clock = Clock::new(dt);
+            let steps = push(Window::Steps { first: 4, count: 7 }, false);
+            let time = push(Window::Time { from_s: 3.0 * dt, for_s: 7.0 * dt }, false);
+            let by_steps = factors(steps, Counting::Steps, &clock, 20);
+            assert_eq!(by_steps, factors(time, Counting::Steps, &clock, 20), "dt {dt}");
+            let seconds = Counting::Seconds { written_for_s: dt };
+            assert_eq!(by_steps, factors(steps, seconds, &clock, 20), "dt {dt}");
+        }
+    }
+
+    #[test]
+    fn the_impulse_is_right_at_every_time_step() {
+        for dt in [0.001, 0.01, 0.03, 0.1, 0.7] {
+            let time = push(Window::Time { from_s: 0.02, for_s: 0.05 }, false);
+            let impulse: f64 = factors(time, Counting::Steps, &Clock::new(dt), 200).iter().map(|f| f * dt).sum();
+            assert!((impulse - 0.05).abs() < 1e-12, "dt {dt}: {impulse}");
+        }
+    }
+
+    #[test]
+    fn the_next_change_is_inside_the_step_only() {
+        let pushes = [push(Window::Time { from_s: 0.02, for_s: 0.05 }, false)];
+        let change = |begin, end| next_change(&pushes, Counting::Steps, &Stretch { step: 1, begin, end });
+        assert_eq!(change(0.0, 0.1), Some(0.02));
+        assert_eq!(change(0.02, 0.1), Some(0.02 + 0.05));
+        assert_eq!(change(0.07, 0.1), None);
+        assert_eq!(change(0.0, 0.02), None);
+    }
+}

@@ -1,0 +1,263 @@
+//! A scenario's text, where it came from, and what `--set` changed in it.
+
+use super::checks::{self, Scenario};
+use super::problem::{Problem, Problems, nearest, printable};
+use super::{file::ScenarioFile, keys, presets};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use toml::Value;
+use toml::de::{DeTable, DeValue};
+
+/// The longest file that is read as a scenario, bytes: 100 000 points take about 8 MB.
+const LONGEST: u64 = 64 << 20;
+
+/// How the header of every CSV begins that gyrolab writes, below the run file.
+const CSV_HEADER: &str = "step,t_s,";
+
+/// A scenario or run file on its way to a [`Scenario`].
+#[derive(Clone, Debug)]
+pub struct Document {
+    origin: String,
+    text: String,
+    table: toml::Table,
+    /// Keys that `--set` wrote, with the argument as it was given.
+    set: Vec<(String, String)>,
+}
+
+impl Document {
+    /// Opens what SCENARIO names: a shipped preset, or else a file (scenario, run file, or CSV with its run file in
+    /// the header).
+    ///
+    /// # Errors
+    /// When there is no such preset, or the file cannot be read or is not TOML.
+    pub fn open(scenario: &str) -> Result<Self, Problems> {
+        if scenario.contains('/') || scenario.contains(".toml") || scenario.contains(".csv") {
+            return Self::read(Path::new(scenario));
+        }
+        match presets::find(scenario) {
+            Some(preset) => Self::parse(&format!("presets/{scenario}.toml"), preset.text),
+            None => Err(no_preset(scenario)),
+        }
+    }
+
+    /// Reads a scenario or run file, or the header of a CSV.
+    ///
+    /// # Errors
+    /// When the file cannot be read or is not TOML.
+    pub fn read(path: &Path) -> Result<Self, Problems> {
+        let origin = path.display().to_string();
+        match read_text(path) {
+            Ok(text) => Self::parse(&origin, &text),
+            Err(rule) => Err(Problems { origin, list: vec![Problem::at("", rule)] }),
+        }
+    }
+
+    /// Takes `text` as the scenario that `origin` holds.
+    ///
+    /// # Errors
+    /// When it is not TOML.
+    pub fn parse(origin: &str, text: &str) -> Result<Self, Problems> {
+        let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
+        match text.parse() {
+            Ok(table) => Ok(Self { origin: origin.to_owned(), text, table, set: Vec::new() }),
+            Err(error) => {
+                let problem = syntax_problem(&text, &error);
+                Err(Problems { origin: origin.to_owned(), list: vec![problem] })
+            }
+        }
+    }
+
+    /// The document that `file` would be written as.
+    ///
+    /// # Errors
+    /// Never for a file that came from a checked scenario.
+    pub fn from_file(origin: &str, file: &ScenarioFile) -> Result<Self, Problems> {
+        let table = toml::Table::try_from(file).map_err(|error| Problems {
+            origin: origin.to_owned(),
+            list: vec![Problem::at("", error.to_string())],
+        })?;
+        Ok(Self { origin: origin.to_owned(), text: String::new(), table, set: Vec::new() })
+    }
+
+    /// Carries out one `--set KEY=VALUE`: the value is TOML, or else text.
+    ///
+    /// # Errors
+    /// When there is no `=`, or the key leads nowhere. Whether key and value are allowed shows in
+    /// [`scenario`](Self::scenario).
+    pub fn set(&mut self, argument: &str) -> Result<(), Problems> {
+        let place = format!("--set {}", printable(argument));
+        let fail = |mut problem: Problem| {
+            problem.place = Some(place.clone());
+            Problems { origin: self.origin.clone(), list: vec![problem] }
+        };
+        let Some((key, value)) = argument.split_once('=') else {
+            return Err(fail(Problem::at("", "must be KEY=VALUE, such as motion.time_step_s=0.05")));
+        };
+        let value = value.parse().unwrap_or_else(|_| Value::String(value.to_owned()));
+        if let Err(problem) = set_key(&mut self.table, key.trim(), value) {
+            return Err(fail(problem));
+        }
+        self.set.push((key.trim().to_owned(), argument.to_owned()));
+        Ok(())
+    }
+
+    /// The scenario, checked.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, each with its place.
+    pub fn scenario(&self) -> Result<Scenario, Problems> {
+        let problems = keys::check(&self.table);
+        if !problems.is_empty() {
+            return Err(self.placed(problems));
+        }
+        let file: ScenarioFile = self.table.clone().try_into().map_err(|error: toml::de::Error| {
+            self.placed(vec![Problem::at("", error.message().to_owned())])
+        })?;
+        checks::scenario(file).map_err(|problems| self.placed(problems))
+    }
+
+    /// Problems with the places at which the user wrote their keys, in the order of the file.
+    fn placed(&self, mut list: Vec<Problem>) -> Problems {
+        let spans = DeTable::parse(&self.text).ok();
+        let mut lines: Vec<(usize, Problem)> = Vec::with_capacity(list.len());
+        for mut problem in list.drain(..) {
+            let touches = |key: &str| problem.key == key || problem.key.starts_with(&format!("{key}."));
+            if let Some((_, argument)) = self.set.iter().rev().find(|(key, _)| touches(key)) {
+                problem.place = Some(format!("--set {}", printable(argument)));
+                lines.push((usize::MAX, problem));
+                continue;
+            }
+            let offset = spans.as_ref().and_then(|table| offset_of(table.get_ref(), &problem.key));
+            let line = offset.map(|offset| line_at(&self.text, offset));
+            problem.place = line.map(|line| format!("line {line}"));
+            lines.push((line.unwrap_or(0), problem));
+        }
+        lines.sort_by_key(|(line, _)| *line);
+        Problems { origin: self.origin.clone(), list: lines.into_iter().map(|(_, problem)| problem).collect() }
+    }
+}
+
+/// Writes `value` at the dotted `key`; numbers lead into arrays, and the one past the end adds an element.
+///
+/// # Errors
+/// When the key leads into something that is neither table nor array, or past an array's end.
+pub fn set_key(table: &mut toml::Table, key: &str, value: Value) -> Result<(), Problem> {
+    let names: Vec<&str> = key.split('.').collect();
+    let (last, way) = match names.split_last() {
+        Some((last, way)) if names.iter().all(|name| !name.is_empty()) => (*last, way),
+        _ => return Err(Problem::at(key, "is not a dotted key such as motion.time_step_s")),
+    };
+    let mut path = String::new();
+    let mut inside = Place::Table(table);
+    for (index, name) in way.iter().enumerate() {
+        path = keys::join(&path, name);
+        let next_is_number = names[index + 1].parse::<usize>().is_ok();
+        let empty = if next_is_number { Value::Array(Vec::new()) } else { Value::Table(toml::Table::new()) };
+        inside = match inside.entry(name, &path, empty)? {
+            Value::Table(table) => Place::Table(table),
+            Value::Array(array) => Place::Array(array),
+            other => {
+                let rule = format!("holds no {}", keys::join("", names[index + 1]));
+                return Err(Problem::with_value(path, other, rule));
+            }
+        };
+    }
+    let place = inside.entry(last, key, Value::Boolean(false))?;
+    *place = value;
+    Ok(())
+}
+
+enum Place<'a> {
+    Table(&'a mut toml::Table),
+    Array(&'a mut Vec<Value>),
+}
+
+impl<'a> Place<'a> {
+    /// What stands at `name` in here, `empty` put there first where nothing does.
+    fn entry(self, name: &str, path: &str, empty: Value) -> Result<&'a mut Value, Problem> {
+        match self {
+            Self::Table(table) => Ok(table.entry(name).or_insert(empty)),
+            Self::Array(array) => {
+                let Ok(index) = name.parse::<usize>() else {
+                    return Err(Problem::at(path, "must lead to a place in an array: a number from 0"));
+                };
+                let length = array.len();
+                if index == length {
+                    array.push(empty);
+                }
+                let rule = format!("leads past the end: the array has {length} elements, numbered from 0");
+                array.get_mut(index).ok_or_else(|| Problem::at(path, rule))
+            }
+        }
+    }
+}
+
+fn no_preset(name: &str) -> Problems {
+    let near = nearest(name, presets::PRESETS.iter().map(|preset| preset.name));
+    let hint = match Path::new(name).exists() {
+        true => format!("; for the file of that name write ./{}", printable(name)),
+        false => "; a file's name holds a / or ends in .toml or .csv".to_owned(),
+    };
+    let rule = format!("no preset of that name: {near}{hint}");
+    Problems { origin: name.to_owned(), list: vec![Problem::at("", rule)] }
+}
+
+/// The text of a scenario, or the run file in the header of a CSV, of which no more is read.
+fn read_text(path: &Path) -> Result<String, String> {
+    let cannot = |error: std::io::Error| format!("cannot be read: {error}");
+    let mut reader = BufReader::new(File::open(path).map_err(cannot)?.take(LONGEST + 1));
+    let (mut text, mut header) = (Vec::new(), String::new());
+    loop {
+        let begin = text.len();
+        reader.read_until(b'\n', &mut text).map_err(cannot)?;
+        let line = String::from_utf8_lossy(&text[begin..]);
+        match line.strip_prefix('#') {
+            Some(rest) => header.push_str(rest.strip_prefix(' ').unwrap_or(rest)),
+            None if line.starts_with(CSV_HEADER) => return Ok(header),
+            None => break,
+        }
+    }
+    if path.extension().is_some_and(|extension| extension == "csv") {
+        return Err(format!("is not a CSV that gyrolab wrote: no line \"{CSV_HEADER}...\" below its run file"));
+    }
+    reader.read_to_end(&mut text).map_err(cannot)?;
+    if text.len() as u64 > LONGEST {
+        return Err(format!("is longer than {} MiB: not a scenario", LONGEST >> 20));
+    }
+    String::from_utf8(text).map_err(|error| {
+        let good = error.utf8_error().valid_up_to();
+        let line = error.as_bytes()[..good].iter().filter(|&&byte| byte == b'\n').count() + 1;
+        format!("is not text in UTF-8 (line {line})")
+    })
+}
+
+fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
+    let picture: Vec<_> = error.to_string().trim_end().lines().map(printable).collect();
+    let mut problem = Problem::at("", picture.join("\n"));
+    problem.place = error.span().map(|span| format!("line {}", line_at(text, span.start)));
+    problem
+}
+
+fn line_at(text: &str, offset: usize) -> usize {
+    text.as_bytes()[..offset.min(text.len())].iter().filter(|&&byte| byte == b'\n').count() + 1
+}
+
+/// Where the dotted `key`, or as much of it as there is, stands in the text: a value's key, a table's head.
+fn offset_of(table: &DeTable<'_>, key: &str) -> Option<usize> {
+    let (name, rest) = key.split_once('.').unwrap_or((key, ""));
+    let (found, value) = table.iter().find(|(found, _)| found.get_ref() == name)?;
+    Some(offset_inside(value.get_ref(), rest).unwrap_or(found.span().start))
+}
+
+fn offset_inside(value: &DeValue<'_>, key: &str) -> Option<usize> {
+    match value {
+        DeValue::Table(table) => offset_of(table, key),
+        DeValue::Array(array) => {
+            let (place, rest) = key.split_once('.').unwrap_or((key, ""));
+            let item = array.get(place.parse::<usize>().ok()?)?;
+            Some(offset_inside(item.get_ref(), rest).unwrap_or(item.span().start))
+        }
+        _ => None,
+    }
+}

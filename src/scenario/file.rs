@@ -1,0 +1,152 @@
+//! The shape of scenario and run files, as serde reads and writes them. What each key means is in [`super::keys`].
+
+use serde::{Deserialize, Serialize};
+
+/// A scenario file; with `gyrolab` and any number of edits, a run file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs, reason = "the table of keys says what each key means")]
+pub struct ScenarioFile {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gyrolab: Option<String>,
+    pub title: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub about: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trace: Option<String>,
+    #[serde(default)]
+    pub body: BodyFile,
+    pub start: StartFile,
+    pub motion: MotionFile,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub push: Vec<PushFile>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub view: Option<ViewFile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub expected: Vec<ExpectedFile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub edit: Vec<EditFile>,
+}
+
+/// `[body]`
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs, reason = "the table of keys says what each key means")]
+pub struct BodyFile {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rim: Option<RimFile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub point: Vec<PointFile>,
+}
+
+/// `[body.rim]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs, reason = "the table of keys says what each key means")]
+pub struct RimFile {
+    pub points: usize,
+    pub radius_m: f64,
+    pub height_m: f64,
+    pub point_mass_kg: f64,
+}
+
+/// `[[body.point]]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs, reason = "the table of keys says what each key means")]
+pub struct PointFile {
+    pub name: String,
+    pub at_m: [f64; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mass_kg: Option<f64>,
+}
+
+/// `[start]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case, reason = "keys carry their unit as it is written")]
+#[allow(missing_docs, reason = "the table of keys says what each key means")]
+pub struct StartFile {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tilt_deg: Option<f64>,
+    pub momentum_Js: [f64; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub momentum_frame: Option<Frame>,
+}
+
+/// The frame in which the start's momentum is given.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Frame {
+    /// As it is: the report's Method 1.
+    #[default]
+    World,
+    /// Turned with the body: the report's Method 2.
+    Body,
+}
+
+/// `[motion]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs, reason = "the table of keys says what each key means")]
+pub struct MotionFile {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gravity_m_per_s2: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scheme: Option<String>,
+    pub time_step_s: f64,
+    pub steps: u64,
+}
+
+/// `[[push]]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case, reason = "keys carry their unit as it is written")]
+#[allow(missing_docs, reason = "the table of keys says what each key means")]
+pub struct PushFile {
+    pub point: String,
+    pub force_N: [f64; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub first_step: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steps: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub for_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub accumulates: Option<bool>,
+}
+
+/// `[view]`
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs, reason = "the table of keys says what each key means")]
+pub struct ViewFile {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub look_at: Option<String>,
+}
+
+/// `[[expected]]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs, reason = "the table of keys says what each key means")]
+pub struct ExpectedFile {
+    pub readout: String,
+    pub at_step: u64,
+    pub value: f64,
+    pub tolerance: f64,
+}
+
+/// `[[edit]]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs, reason = "the table of keys says what each key means")]
+pub struct EditFile {
+    pub step: u64,
+    pub set: toml::Table,
+}

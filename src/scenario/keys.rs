@@ -1,0 +1,336 @@
+//! The one table of keys: what each is called, what it may hold, in which unit, and what it means.
+//!
+//! Every file and every `--set` is held against it, so that a wrong name or value is refused in the same words
+//! wherever it comes from. Rules that need more than one value are in [`super::checks`].
+
+use super::problem::{Problem, is_steering, nearest};
+use crate::physics::scheme;
+use toml::Value;
+
+/// One key a scenario or run file may hold.
+#[derive(Debug)]
+pub struct Key {
+    /// Dotted path; `*` stands for any place in an array.
+    pub path: &'static str,
+    /// What it holds.
+    pub kind: Kind,
+    /// Whether its table is incomplete without it.
+    pub required: bool,
+    /// Meaning, unit and default, in one line.
+    pub about: &'static str,
+}
+
+/// What a key may hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// Text on one line, not empty.
+    Line,
+    /// Text that may have several lines.
+    Paragraph,
+    /// A finite number.
+    Number(Range),
+    /// A whole number, from the least to the most.
+    Whole(i64, i64),
+    /// Three finite numbers.
+    Vector,
+    /// true or false.
+    Flag,
+    /// One of these words.
+    OneOf(&'static [&'static str]),
+    /// A table of dotted keys and their new values (run files).
+    Settings,
+}
+
+/// The range of a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Range {
+    /// Any finite number.
+    Any,
+    /// Greater than zero.
+    Positive,
+    /// Zero or greater.
+    NotNegative,
+}
+
+use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole};
+use Range::{Any, NotNegative, Positive};
+
+const fn must(path: &'static str, kind: Kind, about: &'static str) -> Key {
+    Key { path, kind, required: true, about }
+}
+
+const fn may(path: &'static str, kind: Kind, about: &'static str) -> Key {
+    Key { path, kind, required: false, about }
+}
+
+/// The most points a body may have.
+pub const MOST_POINTS: i64 = 100_000;
+
+/// Every key there is, in the order in which files are written.
+#[rustfmt::skip]
+pub static KEYS: &[Key] = &[
+    may("gyrolab", Line, "version of gyrolab that wrote the run file"),
+    must("title", Line, "name of the scenario"),
+    may("about", Paragraph, "one paragraph for the list of presets"),
+    may("source", Paragraph, "where the set-up comes from"),
+    may("trace", Line, "name of the point whose path is shown (default: top)"),
+    must("body.rim.points", Whole(1, MOST_POINTS), "equal masses on a circle across the axle; point j at angle 2 pi j/n from +x towards +y"),
+    must("body.rim.radius_m", Number(Positive), "radius of the circle, m"),
+    must("body.rim.height_m", Number(Any), "height of the circle above the pivot, m"),
+    must("body.rim.point_mass_kg", Number(Positive), "mass of each point, kg"),
+    must("body.point.*.name", Line, "the point's name, its own"),
+    must("body.point.*.at_m", Vector, "position in the upright pose, m, pivot at the origin"),
+    may("body.point.*.mass_kg", Number(NotNegative), "mass, kg (default: 0)"),
+    may("start.tilt_deg", Number(Any), "turns the upright body about +x, degrees (default: 0)"),
+    must("start.momentum_Js", Vector, "angular momentum L about the pivot, J s"),
+    may("start.momentum_frame", OneOf(&["world", "body"]), "\"body\": L is turned with the body (default: world)"),
+    may("motion.gravity_m_per_s2", Number(Any), "acceleration of gravity along -z, m/s^2 (default: 9.8)"),
+    may("motion.scheme", OneOf(&SCHEME_NAMES), "the numerical scheme (default: report)"),
+    must("motion.time_step_s", Number(Positive), "time step dt, s"),
+    must("motion.steps", Whole(1, i64::MAX), "length of the run in steps"),
+    must("push.*.point", Line, "name of the pushed point"),
+    must("push.*.force_N", Vector, "force, world frame, N"),
+    may("push.*.first_step", Whole(1, i64::MAX), "first step on which it acts; step 1 ends at t = dt"),
+    may("push.*.steps", Whole(1, i64::MAX), "on how many steps it acts"),
+    may("push.*.from_s", Number(NotNegative), "or, instead: from this time, s"),
+    may("push.*.for_s", Number(Positive), "for so long, s"),
+    may("push.*.accumulates", Flag, "true: j times the force on its j-th step, then steps times it to the end (default: false)"),
+    may("view.speed", Number(Positive), "what the workbench starts with: simulated seconds a second"),
+    may("view.look_at", Line, "one line: what there is to see"),
+    must("expected.*.readout", Line, "a column of the CSV that the preset's test checks"),
+    must("expected.*.at_step", Whole(0, i64::MAX), "at which step"),
+    must("expected.*.value", Number(Any), "its value there"),
+    must("expected.*.tolerance", Number(NotNegative), "how far off it may be"),
+    must("edit.*.step", Whole(0, i64::MAX), "the step at which the edit was made; it acts from the next one on"),
+    must("edit.*.set", Settings, "dotted keys of motion or push and their new values"),
+];
+
+const SCHEME_NAMES: [&str; scheme::SCHEMES.len()] = scheme::names();
+
+/// Tables that a file may leave out, or must not.
+const REQUIRED_TABLES: [&str; 2] = ["start", "motion"];
+
+/// Holds the whole of `table` against the keys: unknown names, wrong types, numbers out of range, what is missing.
+pub fn check(table: &toml::Table) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    check_table(table, "", "", &mut problems);
+    problems
+}
+
+/// Walks a table whose keys are all those of the pattern `under` and a further name.
+fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Vec<Problem>) {
+    for (name, value) in table {
+        let (pattern, key) = (join(under, name), join(path, name));
+        if name.contains(['.', '*']) || !is_known(&pattern) {
+            let near = nearest(name, names_under(under));
+            problems.push(Problem::at(key, format!("unknown key: {near}")));
+        } else {
+            check_value(value, &pattern, &key, problems);
+        }
+    }
+    for missing in required_under(under).filter(|name| !table.contains_key(*name)) {
+        let about = KEYS.iter().find(|key| key.path == join(under, missing)).map_or("a table", |key| key.about);
+        problems.push(Problem::at(join(path, missing), format!("is missing ({about})")));
+    }
+}
+
+fn check_value(value: &Value, pattern: &str, path: &str, problems: &mut Vec<Problem>) {
+    if let Some(key) = KEYS.iter().find(|key| key.path == pattern) {
+        if let Err(rule) = key.kind.check(value) {
+            problems.push(Problem::with_value(path, value, rule));
+        }
+        return;
+    }
+    let element = format!("{pattern}.*");
+    match value {
+        Value::Array(items) if is_known(&element) => {
+            for (index, item) in items.iter().enumerate() {
+                let path = join(path, &index.to_string());
+                match item {
+                    Value::Table(table) => check_table(table, &element, &path, problems),
+                    other => problems.push(Problem::with_value(path, other, "must be a table")),
+                }
+            }
+        }
+        Value::Table(table) if !is_known(&element) => check_table(table, pattern, path, problems),
+        other if is_known(&element) => {
+            let rule = format!("must be an array of tables: write [[{pattern}]]");
+            problems.push(Problem::with_value(path, other, rule));
+        }
+        other => {
+            let rule = format!("must be a table: write [{pattern}]");
+            problems.push(Problem::with_value(path, other, rule));
+        }
+    }
+}
+
+/// Whether `pattern` is a key, or a table that holds some.
+fn is_known(pattern: &str) -> bool {
+    KEYS.iter().any(|key| key.path == pattern || is_under(key.path, pattern))
+}
+
+fn is_under(path: &str, table: &str) -> bool {
+    path.strip_prefix(table).is_some_and(|rest| rest.starts_with('.'))
+}
+
+/// The names that may stand in the table of the pattern `under`, each once.
+fn names_under(under: &str) -> impl Iterator<Item = &'static str> + Clone {
+    let mut names: Vec<&'static str> = Vec::new();
+    for key in KEYS {
+        let rest = if under.is_empty() { Some(key.path) } else { key.path.strip_prefix(under) };
+        let name = rest.and_then(|rest| rest.trim_start_matches('.').split('.').next());
+        let inside = under.is_empty() || is_under(key.path, under);
+        if let Some(name) = name.filter(|name| inside && !names.contains(name)) {
+            names.push(name);
+        }
+    }
+    names.into_iter()
+}
+
+fn required_under(under: &str) -> impl Iterator<Item = &'static str> {
+    names_under(under).filter(move |name| {
+        let path = join(under, name);
+        REQUIRED_TABLES.contains(&path.as_str()) || KEYS.iter().any(|key| key.path == path && key.required)
+    })
+}
+
+/// `name` below the dotted path `under`.
+pub fn join(under: &str, name: &str) -> String {
+    if under.is_empty() { name.to_owned() } else { format!("{under}.{name}") }
+}
+
+impl Kind {
+    /// Whether `value` is of this kind and in its range.
+    ///
+    /// # Errors
+    /// The rule that it breaks.
+    pub fn check(self, value: &Value) -> Result<(), String> {
+        match self {
+            Line => text(value).and_then(check_line),
+            Paragraph => text(value).and_then(|text| check_characters(text, "\n")),
+            Number(range) => number(value).and_then(|number| range.check(number)),
+            Whole(least, most) => check_whole(value, least, most),
+            Vector => check_vector(value),
+            Flag => value.as_bool().map(|_| ()).ok_or_else(|| not("true or false", value)),
+            OneOf(words) => text(value).and_then(|text| check_word(text, words)),
+            Settings => value.as_table().map(|_| ()).ok_or_else(|| not("a table of keys and values", value)),
+        }
+    }
+}
+
+impl Range {
+    fn check(self, number: f64) -> Result<(), String> {
+        match self {
+            Positive if number <= 0.0 => Err("must be greater than zero".to_owned()),
+            NotNegative if number < 0.0 => Err("must not be negative".to_owned()),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn not(wanted: &str, value: &Value) -> String {
+    let found = match value {
+        Value::String(_) => "text",
+        Value::Integer(_) | Value::Float(_) => "a number",
+        Value::Boolean(_) => "true or false",
+        Value::Datetime(_) => "a date",
+        Value::Array(_) => "an array",
+        Value::Table(_) => "a table",
+    };
+    format!("must be {wanted}, not {found}")
+}
+
+fn text(value: &Value) -> Result<&str, String> {
+    value.as_str().ok_or_else(|| not("text", value))
+}
+
+fn number(value: &Value) -> Result<f64, String> {
+    let number = match value {
+        Value::Integer(whole) => *whole as f64,
+        Value::Float(number) => *number,
+        other => return Err(not("a number", other)),
+    };
+    if number.is_finite() { Ok(number) } else { Err("must be a finite number".to_owned()) }
+}
+
+fn check_line(text: &str) -> Result<(), String> {
+    if text.trim().is_empty() {
+        return Err("must not be empty".to_owned());
+    }
+    check_characters(text, "")
+}
+
+fn check_characters(text: &str, allowed: &str) -> Result<(), String> {
+    match text.chars().find(|&c| is_steering(c) && !allowed.contains(c)) {
+        Some(c) => Err(format!("must hold no control or direction characters (here U+{:04X})", c as u32)),
+        None => Ok(()),
+    }
+}
+
+fn check_whole(value: &Value, least: i64, most: i64) -> Result<(), String> {
+    let whole = value.as_integer().ok_or_else(|| match value {
+        Value::Float(_) => "must be a whole number".to_owned(),
+        other => not("a whole number", other),
+    })?;
+    if whole < least {
+        return Err(format!("must be {least} or more"));
+    }
+    if whole > most {
+        return Err(format!("must be at most {most}"));
+    }
+    Ok(())
+}
+
+fn check_vector(value: &Value) -> Result<(), String> {
+    let items = value.as_array().ok_or_else(|| not("three numbers in brackets", value))?;
+    if items.len() != 3 {
+        return Err(format!("must be three numbers, not {}", items.len()));
+    }
+    items.iter().try_for_each(|item| number(item).map(|_| ()).map_err(|rule| format!("each {rule}")))
+}
+
+fn check_word(word: &str, words: &[&str]) -> Result<(), String> {
+    if words.contains(&word) {
+        return Ok(());
+    }
+    Err(format!("must be one of {}; {}", words.join(", "), nearest(word, words.iter().copied())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problems(text: &str) -> Vec<String> {
+        check(&text.parse().unwrap()).iter().map(ToString::to_string).collect()
+    }
+
+    const WHOLE: &str = "title = 'x'\n[start]\nmomentum_Js = [0, 0, 1]\n[motion]\ntime_step_s = 0.1\nsteps = 3\n";
+
+    #[test]
+    fn a_whole_file_passes() {
+        assert_eq!(problems(WHOLE), Vec::<String>::new());
+    }
+
+    #[test]
+    fn every_table_and_key_that_is_missing_is_named() {
+        let found = problems("[motion]\nsteps = 3\n").join("\n");
+        for name in ["title: is missing", "start: is missing", "motion.time_step_s: is missing"] {
+            assert!(found.contains(name), "{found}");
+        }
+    }
+
+    #[test]
+    fn a_dot_in_a_quoted_name_is_no_path() {
+        let found = problems(&format!("'motion.steps' = 3\n{WHOLE}"));
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].contains("unknown key"), "{found:?}");
+    }
+
+    #[test]
+    fn no_path_stands_twice_in_the_table() {
+        let mut paths: Vec<_> = KEYS.iter().map(|key| key.path).collect();
+        paths.sort_unstable();
+        paths.dedup();
+        assert_eq!(paths.len(), KEYS.len());
+    }
+}

@@ -1,0 +1,142 @@
+//! What is wrong with a scenario, in words that one who has never seen the code can act on.
+
+use std::fmt;
+
+/// One thing refused: where, which key, what it holds, and the rule it breaks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// Dotted key, numbers for places in arrays (`push.0.force_N`); empty where the whole file is meant.
+    pub key: String,
+    /// The value as the file writes it, shortened; empty where there is none.
+    pub value: String,
+    /// The rule, and the remedy where there is one ("must be greater than zero").
+    pub rule: String,
+    /// Where it stands, once known: `line 12` or `--set KEY=VALUE`.
+    pub place: Option<String>,
+}
+
+impl Problem {
+    /// A problem with the value found at `key`.
+    pub fn with_value(key: impl Into<String>, value: &toml::Value, rule: impl Into<String>) -> Self {
+        Self { key: key.into(), value: shown(value), rule: rule.into(), place: None }
+    }
+
+    /// A problem with `key` that no single value tells.
+    pub fn at(key: impl Into<String>, rule: impl Into<String>) -> Self {
+        Self { key: key.into(), value: String::new(), rule: rule.into(), place: None }
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(place) = &self.place {
+            write!(f, "{place}: ")?;
+        }
+        match (self.key.is_empty(), self.value.is_empty()) {
+            (true, _) => write!(f, "{}", self.rule),
+            (false, true) => write!(f, "{}: {}", printable(&self.key), self.rule),
+            (false, false) => write!(f, "{} ({}) {}", printable(&self.key), self.value, self.rule),
+        }
+    }
+}
+
+/// Everything found wrong with one file; never empty.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problems {
+    /// The file, as the user named it.
+    pub origin: String,
+    /// What was found, in the order of the file.
+    pub list: Vec<Problem>,
+}
+
+/// How many problems are printed before the rest is only counted.
+const SHOWN: usize = 12;
+
+impl fmt::Display for Problems {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, problem) in self.list.iter().take(SHOWN).enumerate() {
+            let newline = if index == 0 { "" } else { "\n" };
+            // A line's number belongs to the file's name (`file.toml:12: ...`), as editors and compilers write it.
+            match problem.place.as_deref().and_then(|place| place.strip_prefix("line ")) {
+                Some(line) => {
+                    let bare = Problem { place: None, ..problem.clone() };
+                    write!(f, "{newline}{}:{line}: {bare}", printable(&self.origin))?;
+                }
+                None => write!(f, "{newline}{}: {problem}", printable(&self.origin))?,
+            }
+        }
+        match self.list.len().saturating_sub(SHOWN) {
+            0 => Ok(()),
+            more => write!(f, "\n{}: and {more} more", printable(&self.origin)),
+        }
+    }
+}
+
+impl std::error::Error for Problems {}
+
+/// `text` without anything that could steer the terminal it is printed on.
+pub fn printable(text: &str) -> String {
+    text.chars().flat_map(|c| if is_steering(c) { c.escape_default().collect() } else { vec![c] }).collect()
+}
+
+/// Control characters, and those that turn the direction of text: a name must look as it is.
+pub fn is_steering(c: char) -> bool {
+    let bidirectional = matches!(c,
+        '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    c.is_control() || bidirectional
+}
+
+/// A value on one line, at most 40 characters of it.
+fn shown(value: &toml::Value) -> String {
+    const MOST: usize = 40;
+    let text = match value {
+        toml::Value::Table(_) => "a table".to_owned(),
+        toml::Value::Array(items) if items.first().is_some_and(toml::Value::is_table) => {
+            format!("{} tables", items.len())
+        }
+        other => printable(&other.to_string()),
+    };
+    if text.chars().count() <= MOST {
+        return text;
+    }
+    text.chars().take(MOST).chain("...".chars()).collect()
+}
+
+/// "did you mean ...?" for a name that is not in `known`, or the list of them where none is near.
+pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+    let lower = wrong.to_lowercase();
+    let near = known
+        .clone()
+        .map(|name| (strsim::damerau_levenshtein(&lower, &name.to_lowercase()), name))
+        .min_by_key(|(distance, _)| *distance);
+    // A name that lacks its unit ("radius" for "radius_m") is near however long the unit.
+    let begins = known.clone().find(|name| !lower.is_empty() && name.to_lowercase().starts_with(&lower));
+    match (begins, near) {
+        (Some(name), _) => format!("did you mean {name}?"),
+        (None, Some((distance, name))) if distance <= 2.max(name.len() / 3) => format!("did you mean {name}?"),
+        _ => {
+            let all: Vec<_> = known.collect();
+            format!("there is {}", if all.is_empty() { "none".to_owned() } else { all.join(", ") })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_name_is_offered() {
+        let known = ["radius_m", "height_m", "points"];
+        assert_eq!(nearest("raduis_m", known.into_iter()), "did you mean radius_m?");
+        assert_eq!(nearest("radius", known.into_iter()), "did you mean radius_m?");
+        assert_eq!(nearest("colour", known.into_iter()), "there is radius_m, height_m, points");
+    }
+
+    #[test]
+    fn nothing_printed_steers_the_terminal() {
+        let nasty = "a\u{1b}[2Jb\u{202e}c\rd";
+        assert!(!printable(nasty).chars().any(is_steering), "{}", printable(nasty));
+        assert!(!Problem::at(nasty, "x").to_string().chars().any(is_steering));
+    }
+}
