@@ -17,8 +17,8 @@
 //! in the upright pose. Units are SI throughout: metres, kilograms, seconds, newtons, J s; angles are radians
 //! inside and degrees in names that end in `_deg`.
 
-//pub mod cli;
-//pub mod export;
+pub mod cli;
+pub mod export;
 pub mod physics;
 pub mod run;
 pub mod scenario;

@@ -1,1 +1,5 @@
-fn main() {}
+//! The program `gyrolab`; all of it is in the library.
+
+fn main() -> std::process::ExitCode {
+    gyrolab::cli::main()
+}

@@ -12,7 +12,11 @@ pub struct Clock {
 impl Clock {
     /// A clock that shows 0 at step 0.
     pub fn new(time_step_s: f64) -> Self {
-        Self { anchor_step: 0, anchor_s: 0.0, time_step_s }
+        Self {
+            anchor_step: 0,
+            anchor_s: 0.0,
+            time_step_s,
+        }
     }
 
     /// Time at `step`, s; the step must not lie before the last edit of dt.
@@ -27,7 +31,11 @@ impl Clock {
 
     /// From `step` on, the time step is `time_step_s`.
     pub fn change(&mut self, step: u64, time_step_s: f64) {
-        *self = Self { anchor_step: step, anchor_s: self.time_s(step), time_step_s };
+        *self = Self {
+            anchor_step: step,
+            anchor_s: self.time_s(step),
+            time_step_s,
+        };
     }
 
     /// The first step at or after `time_s`, within a billionth of a time step.

@@ -38,17 +38,29 @@ pub struct Stretch {
 impl Stretch {
     /// The whole of `step`.
     pub fn step(step: u64, clock: &Clock) -> Self {
-        Self { step, begin: clock.time_s(step - 1), end: clock.time_s(step) }
+        Self {
+            step,
+            begin: clock.time_s(step - 1),
+            end: clock.time_s(step),
+        }
     }
 }
 
 /// Writes into `forces` what acts during `stretch`: each push's mean force over it.
-pub fn acting(pushes: &[Push], counting: Counting, stretch: &Stretch, forces: &mut Vec<PointForce>) {
+pub fn acting(
+    pushes: &[Push],
+    counting: Counting,
+    stretch: &Stretch,
+    forces: &mut Vec<PointForce>,
+) {
     forces.clear();
     for push in pushes {
         let factor = factor(push, counting, stretch);
         if factor != 0.0 {
-            forces.push(PointForce { point: push.point, force: push.force * factor });
+            forces.push(PointForce {
+                point: push.point,
+                force: push.force * factor,
+            });
         }
     }
 }
@@ -63,7 +75,9 @@ fn factor(push: &Push, counting: Counting, stretch: &Stretch) -> f64 {
                 false => f64::from(nth >= 1 && nth <= count),
             }
         }
-        (Window::Steps { first, count }, Counting::Seconds { written_for_s }) if push.accumulates => {
+        (Window::Steps { first, count }, Counting::Seconds { written_for_s })
+            if push.accumulates =>
+        {
             let nth = (stretch.end / written_for_s - (first - 1) as f64 - ROUNDING).ceil();
             nth.clamp(0.0, count as f64)
         }
@@ -115,17 +129,30 @@ mod tests {
     use nalgebra::Vector3;
 
     fn push(window: Window, accumulates: bool) -> Push {
-        Push { point: 0, force: Vector3::new(0.0, 0.0, -100.0), window, accumulates }
+        Push {
+            point: 0,
+            force: Vector3::new(0.0, 0.0, -100.0),
+            window,
+            accumulates,
+        }
     }
 
     fn factors(push: Push, counting: Counting, clock: &Clock, steps: u64) -> Vec<f64> {
-        (1..=steps).map(|step| factor(&push, counting, &Stretch::step(step, clock))).collect()
+        (1..=steps)
+            .map(|step| factor(&push, counting, &Stretch::step(step, clock)))
+            .collect()
     }
 
     #[test]
     fn a_push_of_200_steps_acts_on_steps_1_to_200() {
         let factors = factors(
-            push(Window::Steps { first: 1, count: 200 }, false),
+            push(
+                Window::Steps {
+                    first: 1,
+                    count: 200,
+                },
+                false,
+            ),
             Counting::Steps,
             &Clock::new(0.1),
             202,
@@ -146,9 +173,19 @@ mod tests {
         for dt in [0.1, 0.001, 1.0 / 3.0, 0.7e-3] {
             let clock = Clock::new(dt);
             let steps = push(Window::Steps { first: 4, count: 7 }, false);
-            let time = push(Window::Time { from_s: 3.0 * dt, for_s: 7.0 * dt }, false);
+            let time = push(
+                Window::Time {
+                    from_s: 3.0 * dt,
+                    for_s: 7.0 * dt,
+                },
+                false,
+            );
             let by_steps = factors(steps, Counting::Steps, &clock, 20);
-            assert_eq!(by_steps, factors(time, Counting::Steps, &clock, 20), "dt {dt}");
+            assert_eq!(
+                by_steps,
+                factors(time, Counting::Steps, &clock, 20),
+                "dt {dt}"
+            );
             let seconds = Counting::Seconds { written_for_s: dt };
             assert_eq!(by_steps, factors(steps, seconds, &clock, 20), "dt {dt}");
         }
@@ -157,16 +194,41 @@ mod tests {
     #[test]
     fn the_impulse_is_right_at_every_time_step() {
         for dt in [0.001, 0.01, 0.03, 0.1, 0.7] {
-            let time = push(Window::Time { from_s: 0.02, for_s: 0.05 }, false);
-            let impulse: f64 = factors(time, Counting::Steps, &Clock::new(dt), 200).iter().map(|f| f * dt).sum();
+            let time = push(
+                Window::Time {
+                    from_s: 0.02,
+                    for_s: 0.05,
+                },
+                false,
+            );
+            let impulse: f64 = factors(time, Counting::Steps, &Clock::new(dt), 200)
+                .iter()
+                .map(|f| f * dt)
+                .sum();
             assert!((impulse - 0.05).abs() < 1e-12, "dt {dt}: {impulse}");
         }
     }
 
     #[test]
     fn the_next_change_is_inside_the_step_only() {
-        let pushes = [push(Window::Time { from_s: 0.02, for_s: 0.05 }, false)];
-        let change = |begin, end| next_change(&pushes, Counting::Steps, &Stretch { step: 1, begin, end });
+        let pushes = [push(
+            Window::Time {
+                from_s: 0.02,
+                for_s: 0.05,
+            },
+            false,
+        )];
+        let change = |begin, end| {
+            next_change(
+                &pushes,
+                Counting::Steps,
+                &Stretch {
+                    step: 1,
+                    begin,
+                    end,
+                },
+            )
+        };
         assert_eq!(change(0.0, 0.1), Some(0.02));
         assert_eq!(change(0.02, 0.1), Some(0.02 + 0.05));
         assert_eq!(change(0.07, 0.1), None);

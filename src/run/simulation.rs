@@ -53,7 +53,10 @@ impl Simulation {
     pub fn new(scenario: Arc<Scenario>) -> Self {
         let body = &scenario.body.mechanics;
         let (motion, state) = (scenario.motion, scenario.start);
-        let loads = Loads { gravity: motion.gravity, pushes: Vec::with_capacity(scenario.pushes.len()) };
+        let loads = Loads {
+            gravity: motion.gravity,
+            pushes: Vec::with_capacity(scenario.pushes.len()),
+        };
         let mut scheme = motion.scheme.make(body);
         scheme.load(&loads);
         scheme.start(&state);
@@ -95,7 +98,9 @@ impl Simulation {
         next.time_s = self.clock.time_s(self.step + 1);
         if !next.is_finite() {
             self.scheme.start(&self.state);
-            return Err(NotFinite { step: self.step + 1 });
+            return Err(NotFinite {
+                step: self.step + 1,
+            });
         }
         self.segment += resume;
         self.energy.work += work;
@@ -133,7 +138,11 @@ impl Simulation {
             }
         }
         let whole = stretch.begin == self.clock.time_s(self.step);
-        let length = if whole { self.motion.time_step_s } else { end - stretch.begin };
+        let length = if whole {
+            self.motion.time_step_s
+        } else {
+            end - stretch.begin
+        };
         work + self.advance_under_push(&stretch, length, state)
     }
 
@@ -148,7 +157,8 @@ impl Simulation {
         let body = &self.scenario.body.mechanics;
         let moved = |push: &PointForce| {
             let at = body.points()[push.point].at;
-            push.force.dot(&(state.orientation * at - before.orientation * at))
+            push.force
+                .dot(&(state.orientation * at - before.orientation * at))
         };
         self.loads.pushes.iter().map(moved).sum()
     }
@@ -157,7 +167,11 @@ impl Simulation {
     fn make_due_edits(&mut self) -> u64 {
         let scenario = Arc::clone(&self.scenario);
         let mut segments = 0;
-        while let Some(edit) = scenario.edits.get(self.edits_made).filter(|edit| edit.step == self.step) {
+        while let Some(edit) = scenario
+            .edits
+            .get(self.edits_made)
+            .filter(|edit| edit.step == self.step)
+        {
             self.make_edit(edit);
             segments += u64::from(edit.touches.segment);
             self.edits_made += 1;
@@ -169,7 +183,9 @@ impl Simulation {
         let body = &self.scenario.body.mechanics;
         if edit.touches.time_step {
             self.clock.change(self.step, edit.motion.time_step_s);
-            self.counting = Counting::Seconds { written_for_s: self.scenario.motion.time_step_s };
+            self.counting = Counting::Seconds {
+                written_for_s: self.scenario.motion.time_step_s,
+            };
         }
         let lift = edit.motion.gravity - self.motion.gravity;
         self.energy.work += lift * observables::weight_height(body, &self.state);
@@ -210,7 +226,9 @@ impl Simulation {
             step: self.step,
             time_step_s: self.motion.time_step_s,
             before: self.before,
-            workings: self.scheme.workings(&self.before, &self.state, self.motion.time_step_s),
+            workings: self
+                .scheme
+                .workings(&self.before, &self.state, self.motion.time_step_s),
             after: self.state,
         })
     }
@@ -219,7 +237,14 @@ impl Simulation {
     pub fn sample(&self) -> Sample {
         let body = &self.scenario.body.mechanics;
         let counters = (self.step, self.segment);
-        Sample::new(body, self.scenario.trace, self.motion.gravity, counters, &self.state, &self.azimuth)
+        Sample::new(
+            body,
+            self.scenario.trace,
+            self.motion.gravity,
+            counters,
+            &self.state,
+            &self.azimuth,
+        )
     }
 
     /// (E − E₀ − W)/S: the energy that only the scheme's error can have made, W the work of pushes and of edits of

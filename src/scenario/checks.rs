@@ -117,7 +117,11 @@ impl Body {
 
     /// The names of the points that have one, in the order in which the body lists them.
     pub fn names(&self) -> Vec<&str> {
-        let mut names: Vec<_> = self.names.iter().map(|(name, index)| (*index, name.as_str())).collect();
+        let mut names: Vec<_> = self
+            .names
+            .iter()
+            .map(|(name, index)| (*index, name.as_str()))
+            .collect();
         names.sort_unstable();
         names.into_iter().map(|(_, name)| name).collect()
     }
@@ -126,7 +130,11 @@ impl Body {
         self.point(name).ok_or_else(|| {
             let near = nearest(name, self.names().into_iter());
             let value = toml::Value::String(name.to_owned());
-            vec![Problem::with_value(key, &value, format!("is no point of this body: {near}"))]
+            vec![Problem::with_value(
+                key,
+                &value,
+                format!("is no point of this body: {near}"),
+            )]
         })
     }
 }
@@ -135,7 +143,10 @@ impl Scenario {
     /// The run file: the scenario with its edits, and the version that wrote it. Reading it gives this scenario again.
     pub fn to_toml(&self) -> String {
         let version = Some(env!("CARGO_PKG_VERSION").to_owned());
-        let file = ScenarioFile { gyrolab: version, ..self.file.clone() };
+        let file = ScenarioFile {
+            gyrolab: version,
+            ..self.file.clone()
+        };
         // A checked file holds nothing that TOML cannot write.
         toml::to_string(&file).unwrap_or_default()
     }
@@ -155,23 +166,41 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Vec<Problem>> {
     let motion = motion(&file.motion);
     let pushes = pushes(&file.push, &body, "push")?;
     let edits = edits(&file, &body)?;
-    Ok(Scenario { body, trace, start, motion, steps: file.motion.steps, pushes, edits, file })
+    Ok(Scenario {
+        body,
+        trace,
+        start,
+        motion,
+        steps: file.motion.steps,
+        pushes,
+        edits,
+        file,
+    })
 }
 
 fn no_top(body: &Body) -> Vec<Problem> {
     let names = body.names();
     let known = match names.len() {
         0 => "it has no named point: add a [[body.point]]".to_owned(),
-        _ => format!("name one of its points with trace = \"...\": {}", names.join(", ")),
+        _ => format!(
+            "name one of its points with trace = \"...\": {}",
+            names.join(", ")
+        ),
     };
-    vec![Problem::at("trace", format!("the body has no point \"{TOP}\" whose path could be shown; {known}"))]
+    vec![Problem::at(
+        "trace",
+        format!("the body has no point \"{TOP}\" whose path could be shown; {known}"),
+    )]
 }
 
 fn body(file: &BodyFile) -> Result<Body, Vec<Problem>> {
     let rim = file.rim.as_ref().map_or(0, |rim| rim.points);
     let count = rim + file.point.len();
     if count > usize::try_from(MOST_POINTS).unwrap_or(usize::MAX) {
-        return Err(vec![Problem::at("body", format!("has {count} points; at most {MOST_POINTS} are allowed"))]);
+        return Err(vec![Problem::at(
+            "body",
+            format!("has {count} points; at most {MOST_POINTS} are allowed"),
+        )]);
     }
     let mut points = rim_points(file);
     let mut names = HashMap::with_capacity(file.point.len());
@@ -180,23 +209,36 @@ fn body(file: &BodyFile) -> Result<Body, Vec<Problem>> {
         if names.insert(point.name.clone(), points.len()).is_some() {
             let value = toml::Value::String(point.name.clone());
             let key = format!("body.point.{index}.name");
-            problems.push(Problem::with_value(key, &value, "is the name of another point too: each needs its own"));
+            problems.push(Problem::with_value(
+                key,
+                &value,
+                "is the name of another point too: each needs its own",
+            ));
         }
-        points.push(PointMass { at: Vector3::from(point.at_m), mass: point.mass_kg.unwrap_or(0.0) });
+        points.push(PointMass {
+            at: Vector3::from(point.at_m),
+            mass: point.mass_kg.unwrap_or(0.0),
+        });
     }
     if !problems.is_empty() {
         return Err(problems);
     }
-    let mechanics = physics::Body::new(points).map_err(|error| vec![Problem::at("body", error.to_string())])?;
+    let mechanics =
+        physics::Body::new(points).map_err(|error| vec![Problem::at("body", error.to_string())])?;
     Ok(Body { mechanics, names })
 }
 
 fn rim_points(file: &BodyFile) -> Vec<PointMass> {
-    let Some(rim) = &file.rim else { return Vec::new() };
+    let Some(rim) = &file.rim else {
+        return Vec::new();
+    };
     let point = |j: usize| {
         let (sin, cos) = libm::sincos(TAU * j as f64 / rim.points as f64);
         let at = Vector3::new(rim.radius_m * cos, rim.radius_m * sin, rim.height_m);
-        PointMass { at, mass: rim.point_mass_kg }
+        PointMass {
+            at,
+            mass: rim.point_mass_kg,
+        }
     };
     (0..rim.points).map(point).collect()
 }
@@ -209,7 +251,11 @@ fn start(file: &StartFile) -> State {
         Frame::World => momentum,
         Frame::Body => orientation * momentum,
     };
-    State { time_s: 0.0, orientation, momentum }
+    State {
+        time_s: 0.0,
+        orientation,
+        momentum,
+    }
 }
 
 fn motion(file: &MotionFile) -> Motion {
@@ -222,26 +268,45 @@ fn motion(file: &MotionFile) -> Motion {
 }
 
 fn pushes(files: &[PushFile], body: &Body, key: &str) -> Result<Vec<Push>, Vec<Problem>> {
-    files.iter().enumerate().map(|(index, file)| push(file, body, &format!("{key}.{index}"))).collect()
+    files
+        .iter()
+        .enumerate()
+        .map(|(index, file)| push(file, body, &format!("{key}.{index}")))
+        .collect()
 }
 
 fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Vec<Problem>> {
     let wrong = |rule: &str| Err(vec![Problem::at(key, rule)]);
     let window = match (file.first_step, file.steps, file.from_s, file.for_s) {
-        (first, Some(count), None, None) => Window::Steps { first: first.unwrap_or(1), count },
-        (None, None, from, Some(for_s)) => Window::Time { from_s: from.unwrap_or(0.0), for_s },
+        (first, Some(count), None, None) => Window::Steps {
+            first: first.unwrap_or(1),
+            count,
+        },
+        (None, None, from, Some(for_s)) => Window::Time {
+            from_s: from.unwrap_or(0.0),
+            for_s,
+        },
         (first, steps, None, None) if first.is_some() || steps.is_some() => {
             return wrong("does not say for how long: add steps");
         }
         (None, None, _, None) => return wrong("does not say for how long: add steps, or for_s"),
-        _ => return wrong("counts in steps and in seconds: keep first_step and steps, or from_s and for_s"),
+        _ => {
+            return wrong(
+                "counts in steps and in seconds: keep first_step and steps, or from_s and for_s",
+            );
+        }
     };
     let accumulates = file.accumulates.unwrap_or(false);
     if accumulates && matches!(window, Window::Time { .. }) {
         return wrong("accumulates step by step: give first_step and steps instead of seconds");
     }
     let point = body.find(&format!("{key}.point"), &file.point)?;
-    Ok(Push { point, force: Vector3::from(file.force_N), window, accumulates })
+    Ok(Push {
+        point,
+        force: Vector3::from(file.force_N),
+        window,
+        accumulates,
+    })
 }
 
 /// The part of a file that edits may change.
@@ -257,10 +322,17 @@ fn edits(file: &ScenarioFile, body: &Body) -> Result<Vec<Edit>, Vec<Problem>> {
         return Ok(Vec::new());
     }
     let unwritable = |error: toml::ser::Error| vec![Problem::at("motion", error.to_string())];
-    let editable = Editable { motion: file.motion.clone(), push: file.push.clone() };
+    let editable = Editable {
+        motion: file.motion.clone(),
+        push: file.push.clone(),
+    };
     let mut table = toml::Table::try_from(&editable).map_err(unwritable)?;
     let mut last = 0;
-    file.edit.iter().enumerate().map(|(index, entry)| edit(entry, index, &mut table, &mut last, body)).collect()
+    file.edit
+        .iter()
+        .enumerate()
+        .map(|(index, entry)| edit(entry, index, &mut table, &mut last, body))
+        .collect()
 }
 
 /// One edit, on top of those before it in `table`; `last` is the step of the one before.
@@ -273,11 +345,17 @@ fn edit(
 ) -> Result<Edit, Vec<Problem>> {
     let here = format!("edit.{index}");
     if entry.step < *last {
-        let rule = format!("({}) comes before the edit above it: edits stand in the order of their steps", entry.step);
+        let rule = format!(
+            "({}) comes before the edit above it: edits stand in the order of their steps",
+            entry.step
+        );
         return Err(vec![Problem::at(format!("{here}.step"), rule)]);
     }
     *last = entry.step;
-    let mut touches = Touches { time_step: false, segment: false };
+    let mut touches = Touches {
+        time_step: false,
+        segment: false,
+    };
     for (key, value) in &entry.set {
         let inside = |problem: Problem| vec![moved(problem, &here, key)];
         may_edit(key).map_err(inside)?;
@@ -298,21 +376,39 @@ fn edit(
         .clone()
         .try_into()
         .map_err(|error: toml::de::Error| vec![Problem::at(&here, error.message().to_owned())])?;
-    let pushes = pushes(&editable.push, body, "push")
-        .map_err(|list| list.into_iter().map(|p| moved(p.clone(), &here, &p.key)).collect::<Vec<_>>())?;
-    Ok(Edit { step: entry.step, motion: motion(&editable.motion), pushes, touches })
+    let pushes = pushes(&editable.push, body, "push").map_err(|list| {
+        list.into_iter()
+            .map(|p| moved(p.clone(), &here, &p.key))
+            .collect::<Vec<_>>()
+    })?;
+    Ok(Edit {
+        step: entry.step,
+        motion: motion(&editable.motion),
+        pushes,
+        touches,
+    })
 }
 
 /// `problem` at the edit that caused it.
 fn moved(problem: Problem, here: &str, key: &str) -> Problem {
-    Problem { key: format!("{here}.set.{key}"), ..problem }
+    Problem {
+        key: format!("{here}.set.{key}"),
+        ..problem
+    }
 }
 
 fn may_edit(key: &str) -> Result<(), Problem> {
-    const MOTION: [&str; 3] = ["motion.gravity_m_per_s2", "motion.scheme", "motion.time_step_s"];
+    const MOTION: [&str; 3] = [
+        "motion.gravity_m_per_s2",
+        "motion.scheme",
+        "motion.time_step_s",
+    ];
     if MOTION.contains(&key) || key.starts_with("push.") {
         return Ok(());
     }
-    let rule = format!("cannot be edited during a run (only {} and push.N can): set it in the scenario", MOTION.join(", "));
+    let rule = format!(
+        "cannot be edited during a run (only {} and push.N can): set it in the scenario",
+        MOTION.join(", ")
+    );
     Err(Problem::at(key, rule))
 }

@@ -49,7 +49,10 @@ impl Document {
         let origin = path.display().to_string();
         match read_text(path) {
             Ok(text) => Self::parse(&origin, &text),
-            Err(rule) => Err(Problems { origin, list: vec![Problem::at("", rule)] }),
+            Err(rule) => Err(Problems {
+                origin,
+                list: vec![Problem::at("", rule)],
+            }),
         }
     }
 
@@ -60,10 +63,18 @@ impl Document {
     pub fn parse(origin: &str, text: &str) -> Result<Self, Problems> {
         let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
         match text.parse() {
-            Ok(table) => Ok(Self { origin: origin.to_owned(), text, table, set: Vec::new() }),
+            Ok(table) => Ok(Self {
+                origin: origin.to_owned(),
+                text,
+                table,
+                set: Vec::new(),
+            }),
             Err(error) => {
                 let problem = syntax_problem(&text, &error);
-                Err(Problems { origin: origin.to_owned(), list: vec![problem] })
+                Err(Problems {
+                    origin: origin.to_owned(),
+                    list: vec![problem],
+                })
             }
         }
     }
@@ -77,7 +88,12 @@ impl Document {
             origin: origin.to_owned(),
             list: vec![Problem::at("", error.to_string())],
         })?;
-        Ok(Self { origin: origin.to_owned(), text: String::new(), table, set: Vec::new() })
+        Ok(Self {
+            origin: origin.to_owned(),
+            text: String::new(),
+            table,
+            set: Vec::new(),
+        })
     }
 
     /// Carries out one `--set KEY=VALUE`: the value is TOML, or else text.
@@ -89,12 +105,20 @@ impl Document {
         let place = format!("--set {}", printable(argument));
         let fail = |mut problem: Problem| {
             problem.place = Some(place.clone());
-            Problems { origin: self.origin.clone(), list: vec![problem] }
+            Problems {
+                origin: self.origin.clone(),
+                list: vec![problem],
+            }
         };
         let Some((key, value)) = argument.split_once('=') else {
-            return Err(fail(Problem::at("", "must be KEY=VALUE, such as motion.time_step_s=0.05")));
+            return Err(fail(Problem::at(
+                "",
+                "must be KEY=VALUE, such as motion.time_step_s=0.05",
+            )));
         };
-        let value = value.parse().unwrap_or_else(|_| Value::String(value.to_owned()));
+        let value = value
+            .parse()
+            .unwrap_or_else(|_| Value::String(value.to_owned()));
         if let Err(problem) = set_key(&mut self.table, key.trim(), value) {
             return Err(fail(problem));
         }
@@ -111,9 +135,13 @@ impl Document {
         if !problems.is_empty() {
             return Err(self.placed(problems));
         }
-        let file: ScenarioFile = self.table.clone().try_into().map_err(|error: toml::de::Error| {
-            self.placed(vec![Problem::at("", error.message().to_owned())])
-        })?;
+        let file: ScenarioFile =
+            self.table
+                .clone()
+                .try_into()
+                .map_err(|error: toml::de::Error| {
+                    self.placed(vec![Problem::at("", error.message().to_owned())])
+                })?;
         checks::scenario(file).map_err(|problems| self.placed(problems))
     }
 
@@ -122,19 +150,25 @@ impl Document {
         let spans = DeTable::parse(&self.text).ok();
         let mut lines: Vec<(usize, Problem)> = Vec::with_capacity(list.len());
         for mut problem in list.drain(..) {
-            let touches = |key: &str| problem.key == key || problem.key.starts_with(&format!("{key}."));
+            let touches =
+                |key: &str| problem.key == key || problem.key.starts_with(&format!("{key}."));
             if let Some((_, argument)) = self.set.iter().rev().find(|(key, _)| touches(key)) {
                 problem.place = Some(format!("--set {}", printable(argument)));
                 lines.push((usize::MAX, problem));
                 continue;
             }
-            let offset = spans.as_ref().and_then(|table| offset_of(table.get_ref(), &problem.key));
+            let offset = spans
+                .as_ref()
+                .and_then(|table| offset_of(table.get_ref(), &problem.key));
             let line = offset.map(|offset| line_at(&self.text, offset));
             problem.place = line.map(|line| format!("line {line}"));
             lines.push((line.unwrap_or(0), problem));
         }
         lines.sort_by_key(|(line, _)| *line);
-        Problems { origin: self.origin.clone(), list: lines.into_iter().map(|(_, problem)| problem).collect() }
+        Problems {
+            origin: self.origin.clone(),
+            list: lines.into_iter().map(|(_, problem)| problem).collect(),
+        }
     }
 }
 
@@ -146,14 +180,23 @@ pub fn set_key(table: &mut toml::Table, key: &str, value: Value) -> Result<(), P
     let names: Vec<&str> = key.split('.').collect();
     let (last, way) = match names.split_last() {
         Some((last, way)) if names.iter().all(|name| !name.is_empty()) => (*last, way),
-        _ => return Err(Problem::at(key, "is not a dotted key such as motion.time_step_s")),
+        _ => {
+            return Err(Problem::at(
+                key,
+                "is not a dotted key such as motion.time_step_s",
+            ));
+        }
     };
     let mut path = String::new();
     let mut inside = Place::Table(table);
     for (index, name) in way.iter().enumerate() {
         path = keys::join(&path, name);
         let next_is_number = names[index + 1].parse::<usize>().is_ok();
-        let empty = if next_is_number { Value::Array(Vec::new()) } else { Value::Table(toml::Table::new()) };
+        let empty = if next_is_number {
+            Value::Array(Vec::new())
+        } else {
+            Value::Table(toml::Table::new())
+        };
         inside = match inside.entry(name, &path, empty)? {
             Value::Table(table) => Place::Table(table),
             Value::Array(array) => Place::Array(array),
@@ -180,13 +223,17 @@ impl<'a> Place<'a> {
             Self::Table(table) => Ok(table.entry(name).or_insert(empty)),
             Self::Array(array) => {
                 let Ok(index) = name.parse::<usize>() else {
-                    return Err(Problem::at(path, "must lead to a place in an array: a number from 0"));
+                    return Err(Problem::at(
+                        path,
+                        "must lead to a place in an array: a number from 0",
+                    ));
                 };
                 let length = array.len();
                 if index == length {
                     array.push(empty);
                 }
-                let rule = format!("leads past the end: the array has {length} elements, numbered from 0");
+                let rule =
+                    format!("leads past the end: the array has {length} elements, numbered from 0");
                 array.get_mut(index).ok_or_else(|| Problem::at(path, rule))
             }
         }
@@ -200,7 +247,10 @@ fn no_preset(name: &str) -> Problems {
         false => "; a file's name holds a / or ends in .toml or .csv".to_owned(),
     };
     let rule = format!("no preset of that name: {near}{hint}");
-    Problems { origin: name.to_owned(), list: vec![Problem::at("", rule)] }
+    Problems {
+        origin: name.to_owned(),
+        list: vec![Problem::at("", rule)],
+    }
 }
 
 /// The text of a scenario, or the run file in the header of a CSV, of which no more is read.
@@ -219,28 +269,48 @@ fn read_text(path: &Path) -> Result<String, String> {
         }
     }
     if path.extension().is_some_and(|extension| extension == "csv") {
-        return Err(format!("is not a CSV that gyrolab wrote: no line \"{CSV_HEADER}...\" below its run file"));
+        return Err(format!(
+            "is not a CSV that gyrolab wrote: no line \"{CSV_HEADER}...\" below its run file"
+        ));
     }
     reader.read_to_end(&mut text).map_err(cannot)?;
     if text.len() as u64 > LONGEST {
-        return Err(format!("is longer than {} MiB: not a scenario", LONGEST >> 20));
+        return Err(format!(
+            "is longer than {} MiB: not a scenario",
+            LONGEST >> 20
+        ));
     }
     String::from_utf8(text).map_err(|error| {
         let good = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..good].iter().filter(|&&byte| byte == b'\n').count() + 1;
+        let line = error.as_bytes()[..good]
+            .iter()
+            .filter(|&&byte| byte == b'\n')
+            .count()
+            + 1;
         format!("is not text in UTF-8 (line {line})")
     })
 }
 
 fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
-    let picture: Vec<_> = error.to_string().trim_end().lines().map(printable).collect();
+    let picture: Vec<_> = error
+        .to_string()
+        .trim_end()
+        .lines()
+        .map(printable)
+        .collect();
     let mut problem = Problem::at("", picture.join("\n"));
-    problem.place = error.span().map(|span| format!("line {}", line_at(text, span.start)));
+    problem.place = error
+        .span()
+        .map(|span| format!("line {}", line_at(text, span.start)));
     problem
 }
 
 fn line_at(text: &str, offset: usize) -> usize {
-    text.as_bytes()[..offset.min(text.len())].iter().filter(|&&byte| byte == b'\n').count() + 1
+    text.as_bytes()[..offset.min(text.len())]
+        .iter()
+        .filter(|&&byte| byte == b'\n')
+        .count()
+        + 1
 }
 
 /// Where the dotted `key`, or as much of it as there is, stands in the text: a value's key, a table's head.

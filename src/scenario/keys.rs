@@ -56,11 +56,21 @@ use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole};
 use Range::{Any, NotNegative, Positive};
 
 const fn must(path: &'static str, kind: Kind, about: &'static str) -> Key {
-    Key { path, kind, required: true, about }
+    Key {
+        path,
+        kind,
+        required: true,
+        about,
+    }
 }
 
 const fn may(path: &'static str, kind: Kind, about: &'static str) -> Key {
-    Key { path, kind, required: false, about }
+    Key {
+        path,
+        kind,
+        required: false,
+        about,
+    }
 }
 
 /// The most points a body may have.
@@ -129,8 +139,14 @@ fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Vec<
         }
     }
     for missing in required_under(under).filter(|name| !table.contains_key(*name)) {
-        let about = KEYS.iter().find(|key| key.path == join(under, missing)).map_or("a table", |key| key.about);
-        problems.push(Problem::at(join(path, missing), format!("is missing ({about})")));
+        let about = KEYS
+            .iter()
+            .find(|key| key.path == join(under, missing))
+            .map_or("a table", |key| key.about);
+        problems.push(Problem::at(
+            join(path, missing),
+            format!("is missing ({about})"),
+        ));
     }
 }
 
@@ -166,18 +182,24 @@ fn check_value(value: &Value, pattern: &str, path: &str, problems: &mut Vec<Prob
 
 /// Whether `pattern` is a key, or a table that holds some.
 fn is_known(pattern: &str) -> bool {
-    KEYS.iter().any(|key| key.path == pattern || is_under(key.path, pattern))
+    KEYS.iter()
+        .any(|key| key.path == pattern || is_under(key.path, pattern))
 }
 
 fn is_under(path: &str, table: &str) -> bool {
-    path.strip_prefix(table).is_some_and(|rest| rest.starts_with('.'))
+    path.strip_prefix(table)
+        .is_some_and(|rest| rest.starts_with('.'))
 }
 
 /// The names that may stand in the table of the pattern `under`, each once.
 fn names_under(under: &str) -> impl Iterator<Item = &'static str> + Clone {
     let mut names: Vec<&'static str> = Vec::new();
     for key in KEYS {
-        let rest = if under.is_empty() { Some(key.path) } else { key.path.strip_prefix(under) };
+        let rest = if under.is_empty() {
+            Some(key.path)
+        } else {
+            key.path.strip_prefix(under)
+        };
         let name = rest.and_then(|rest| rest.trim_start_matches('.').split('.').next());
         let inside = under.is_empty() || is_under(key.path, under);
         if let Some(name) = name.filter(|name| inside && !names.contains(name)) {
@@ -190,13 +212,18 @@ fn names_under(under: &str) -> impl Iterator<Item = &'static str> + Clone {
 fn required_under(under: &str) -> impl Iterator<Item = &'static str> {
     names_under(under).filter(move |name| {
         let path = join(under, name);
-        REQUIRED_TABLES.contains(&path.as_str()) || KEYS.iter().any(|key| key.path == path && key.required)
+        REQUIRED_TABLES.contains(&path.as_str())
+            || KEYS.iter().any(|key| key.path == path && key.required)
     })
 }
 
 /// `name` below the dotted path `under`.
 pub fn join(under: &str, name: &str) -> String {
-    if under.is_empty() { name.to_owned() } else { format!("{under}.{name}") }
+    if under.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{under}.{name}")
+    }
 }
 
 impl Kind {
@@ -211,9 +238,15 @@ impl Kind {
             Number(range) => number(value).and_then(|number| range.check(number)),
             Whole(least, most) => check_whole(value, least, most),
             Vector => check_vector(value),
-            Flag => value.as_bool().map(|_| ()).ok_or_else(|| not("true or false", value)),
+            Flag => value
+                .as_bool()
+                .map(|_| ())
+                .ok_or_else(|| not("true or false", value)),
             OneOf(words) => text(value).and_then(|text| check_word(text, words)),
-            Settings => value.as_table().map(|_| ()).ok_or_else(|| not("a table of keys and values", value)),
+            Settings => value
+                .as_table()
+                .map(|_| ())
+                .ok_or_else(|| not("a table of keys and values", value)),
         }
     }
 }
@@ -250,7 +283,11 @@ fn number(value: &Value) -> Result<f64, String> {
         Value::Float(number) => *number,
         other => return Err(not("a number", other)),
     };
-    if number.is_finite() { Ok(number) } else { Err("must be a finite number".to_owned()) }
+    if number.is_finite() {
+        Ok(number)
+    } else {
+        Err("must be a finite number".to_owned())
+    }
 }
 
 fn check_line(text: &str) -> Result<(), String> {
@@ -261,8 +298,14 @@ fn check_line(text: &str) -> Result<(), String> {
 }
 
 fn check_characters(text: &str, allowed: &str) -> Result<(), String> {
-    match text.chars().find(|&c| is_steering(c) && !allowed.contains(c)) {
-        Some(c) => Err(format!("must hold no control or direction characters (here U+{:04X})", c as u32)),
+    match text
+        .chars()
+        .find(|&c| is_steering(c) && !allowed.contains(c))
+    {
+        Some(c) => Err(format!(
+            "must hold no control or direction characters (here U+{:04X})",
+            c as u32
+        )),
         None => Ok(()),
     }
 }
@@ -282,18 +325,28 @@ fn check_whole(value: &Value, least: i64, most: i64) -> Result<(), String> {
 }
 
 fn check_vector(value: &Value) -> Result<(), String> {
-    let items = value.as_array().ok_or_else(|| not("three numbers in brackets", value))?;
+    let items = value
+        .as_array()
+        .ok_or_else(|| not("three numbers in brackets", value))?;
     if items.len() != 3 {
         return Err(format!("must be three numbers, not {}", items.len()));
     }
-    items.iter().try_for_each(|item| number(item).map(|_| ()).map_err(|rule| format!("each {rule}")))
+    items.iter().try_for_each(|item| {
+        number(item)
+            .map(|_| ())
+            .map_err(|rule| format!("each {rule}"))
+    })
 }
 
 fn check_word(word: &str, words: &[&str]) -> Result<(), String> {
     if words.contains(&word) {
         return Ok(());
     }
-    Err(format!("must be one of {}; {}", words.join(", "), nearest(word, words.iter().copied())))
+    Err(format!(
+        "must be one of {}; {}",
+        words.join(", "),
+        nearest(word, words.iter().copied())
+    ))
 }
 
 #[cfg(test)]
@@ -301,10 +354,14 @@ mod tests {
     use super::*;
 
     fn problems(text: &str) -> Vec<String> {
-        check(&text.parse().unwrap()).iter().map(ToString::to_string).collect()
+        check(&text.parse().unwrap())
+            .iter()
+            .map(ToString::to_string)
+            .collect()
     }
 
-    const WHOLE: &str = "title = 'x'\n[start]\nmomentum_Js = [0, 0, 1]\n[motion]\ntime_step_s = 0.1\nsteps = 3\n";
+    const WHOLE: &str =
+        "title = 'x'\n[start]\nmomentum_Js = [0, 0, 1]\n[motion]\ntime_step_s = 0.1\nsteps = 3\n";
 
     #[test]
     fn a_whole_file_passes() {
@@ -314,7 +371,11 @@ mod tests {
     #[test]
     fn every_table_and_key_that_is_missing_is_named() {
         let found = problems("[motion]\nsteps = 3\n").join("\n");
-        for name in ["title: is missing", "start: is missing", "motion.time_step_s: is missing"] {
+        for name in [
+            "title: is missing",
+            "start: is missing",
+            "motion.time_step_s: is missing",
+        ] {
             assert!(found.contains(name), "{found}");
         }
     }

@@ -17,13 +17,27 @@ pub struct Problem {
 
 impl Problem {
     /// A problem with the value found at `key`.
-    pub fn with_value(key: impl Into<String>, value: &toml::Value, rule: impl Into<String>) -> Self {
-        Self { key: key.into(), value: shown(value), rule: rule.into(), place: None }
+    pub fn with_value(
+        key: impl Into<String>,
+        value: &toml::Value,
+        rule: impl Into<String>,
+    ) -> Self {
+        Self {
+            key: key.into(),
+            value: shown(value),
+            rule: rule.into(),
+            place: None,
+        }
     }
 
     /// A problem with `key` that no single value tells.
     pub fn at(key: impl Into<String>, rule: impl Into<String>) -> Self {
-        Self { key: key.into(), value: String::new(), rule: rule.into(), place: None }
+        Self {
+            key: key.into(),
+            value: String::new(),
+            rule: rule.into(),
+            place: None,
+        }
     }
 }
 
@@ -57,9 +71,16 @@ impl fmt::Display for Problems {
         for (index, problem) in self.list.iter().take(SHOWN).enumerate() {
             let newline = if index == 0 { "" } else { "\n" };
             // A line's number belongs to the file's name (`file.toml:12: ...`), as editors and compilers write it.
-            match problem.place.as_deref().and_then(|place| place.strip_prefix("line ")) {
+            match problem
+                .place
+                .as_deref()
+                .and_then(|place| place.strip_prefix("line "))
+            {
                 Some(line) => {
-                    let bare = Problem { place: None, ..problem.clone() };
+                    let bare = Problem {
+                        place: None,
+                        ..problem.clone()
+                    };
                     write!(f, "{newline}{}:{line}: {bare}", printable(&self.origin))?;
                 }
                 None => write!(f, "{newline}{}: {problem}", printable(&self.origin))?,
@@ -76,7 +97,15 @@ impl std::error::Error for Problems {}
 
 /// `text` without anything that could steer the terminal it is printed on.
 pub fn printable(text: &str) -> String {
-    text.chars().flat_map(|c| if is_steering(c) { c.escape_default().collect() } else { vec![c] }).collect()
+    text.chars()
+        .flat_map(|c| {
+            if is_steering(c) {
+                c.escape_default().collect()
+            } else {
+                vec![c]
+            }
+        })
+        .collect()
 }
 
 /// Control characters, and those that turn the direction of text: a name must look as it is.
@@ -107,16 +136,32 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
     let lower = wrong.to_lowercase();
     let near = known
         .clone()
-        .map(|name| (strsim::damerau_levenshtein(&lower, &name.to_lowercase()), name))
+        .map(|name| {
+            (
+                strsim::damerau_levenshtein(&lower, &name.to_lowercase()),
+                name,
+            )
+        })
         .min_by_key(|(distance, _)| *distance);
     // A name that lacks its unit ("radius" for "radius_m") is near however long the unit.
-    let begins = known.clone().find(|name| !lower.is_empty() && name.to_lowercase().starts_with(&lower));
+    let begins = known
+        .clone()
+        .find(|name| !lower.is_empty() && name.to_lowercase().starts_with(&lower));
     match (begins, near) {
         (Some(name), _) => format!("did you mean {name}?"),
-        (None, Some((distance, name))) if distance <= 2.max(name.len() / 3) => format!("did you mean {name}?"),
+        (None, Some((distance, name))) if distance <= 2.max(name.len() / 3) => {
+            format!("did you mean {name}?")
+        }
         _ => {
             let all: Vec<_> = known.collect();
-            format!("there is {}", if all.is_empty() { "none".to_owned() } else { all.join(", ") })
+            format!(
+                "there is {}",
+                if all.is_empty() {
+                    "none".to_owned()
+                } else {
+                    all.join(", ")
+                }
+            )
         }
     }
 }
@@ -128,15 +173,28 @@ mod tests {
     #[test]
     fn the_nearest_name_is_offered() {
         let known = ["radius_m", "height_m", "points"];
-        assert_eq!(nearest("raduis_m", known.into_iter()), "did you mean radius_m?");
-        assert_eq!(nearest("radius", known.into_iter()), "did you mean radius_m?");
-        assert_eq!(nearest("colour", known.into_iter()), "there is radius_m, height_m, points");
+        assert_eq!(
+            nearest("raduis_m", known.into_iter()),
+            "did you mean radius_m?"
+        );
+        assert_eq!(
+            nearest("radius", known.into_iter()),
+            "did you mean radius_m?"
+        );
+        assert_eq!(
+            nearest("colour", known.into_iter()),
+            "there is radius_m, height_m, points"
+        );
     }
 
     #[test]
     fn nothing_printed_steers_the_terminal() {
         let nasty = "a\u{1b}[2Jb\u{202e}c\rd";
-        assert!(!printable(nasty).chars().any(is_steering), "{}", printable(nasty));
+        assert!(
+            !printable(nasty).chars().any(is_steering),
+            "{}",
+            printable(nasty)
+        );
         assert!(!Problem::at(nasty, "x").to_string().chars().any(is_steering));
     }
 }

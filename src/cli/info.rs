@@ -1,0 +1,127 @@
+//! The commands that tell: presets, schemes, check, completions, man.
+
+use super::args::Cli;
+use crate::physics::scheme::SCHEMES;
+use crate::scenario::presets::{self, PRESETS, Preset};
+use crate::scenario::problem::{nearest, printable};
+use crate::scenario::{Document, Problems, Scenario};
+use anyhow::{Context, bail};
+use clap::CommandFactory;
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Prints `text` on stdout; a reader that has gone is the caller's to forgive.
+fn print(text: &str) -> anyhow::Result<ExitCode> {
+    let mut stdout = io::stdout().lock();
+    stdout.write_all(text.as_bytes())?;
+    stdout.flush()?;
+    Ok(ExitCode::SUCCESS)
+}
+
+pub(super) fn presets(name: Option<&str>) -> anyhow::Result<ExitCode> {
+    let Some(name) = name else {
+        return print(&preset_list()?);
+    };
+    match presets::find(name) {
+        Some(preset) => print(preset.text),
+        None => {
+            let near = nearest(name, PRESETS.iter().map(|preset| preset.name));
+            bail!("no preset named {}: {near}", printable(name))
+        }
+    }
+}
+
+fn preset_list() -> anyhow::Result<String> {
+    let mut text = String::new();
+    for Preset { name, .. } in PRESETS {
+        let file = Document::open(name)?.scenario()?.file;
+        writeln!(text, "{name}: {}", file.title)?;
+        for line in file.about.unwrap_or_default().lines() {
+            writeln!(text, "    {line}")?;
+        }
+        text.push('\n');
+    }
+    text.push_str("gyrolab run NAME runs one; gyrolab presets NAME prints it as TOML.\n");
+    Ok(text)
+}
+
+pub(super) fn schemes() -> anyhow::Result<ExitCode> {
+    let mut text = String::new();
+    for scheme in SCHEMES {
+        writeln!(
+            text,
+            "{:<8} order {}  {}",
+            scheme.name, scheme.order, scheme.about
+        )?;
+        writeln!(text, "{:<17} {}", "", scheme.source)?;
+    }
+    print(&text)
+}
+
+pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
+    let mut code = ExitCode::SUCCESS;
+    for file in files {
+        match Document::read(file).and_then(|document| document.scenario()) {
+            Ok(scenario) => {
+                print(&format!(
+                    "{}: {}\n",
+                    printable(&file.display().to_string()),
+                    described(&scenario)
+                ))?;
+            }
+            Err(problems) => {
+                refuse(&problems)?;
+                code = ExitCode::FAILURE;
+            }
+        }
+    }
+    Ok(code)
+}
+
+fn described(scenario: &Scenario) -> String {
+    let edits = match scenario.edits.len() {
+        0 => String::new(),
+        1 => ", 1 edit".to_owned(),
+        more => format!(", {more} edits"),
+    };
+    format!(
+        "good: \"{}\", {} points, scheme {}, {} steps of {} s{edits}",
+        scenario.file.title,
+        scenario.body.mechanics.points().len(),
+        scenario.motion.scheme.name,
+        scenario.steps,
+        scenario.motion.time_step_s,
+    )
+}
+
+fn refuse(problems: &Problems) -> io::Result<()> {
+    writeln!(io::stderr(), "{problems}")
+}
+
+pub(super) fn completions(shell: clap_complete::Shell) -> anyhow::Result<ExitCode> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "gyrolab", &mut script);
+    print(&String::from_utf8(script).context("the completion script is not text")?)
+}
+
+/// The manual: the page of the program, then one section for each command.
+pub(super) fn man() -> anyhow::Result<ExitCode> {
+    let mut command = Cli::command();
+    command.build();
+    let mut page = Vec::new();
+    clap_mangen::Man::new(command.clone()).render(&mut page)?;
+    for sub in command
+        .get_subcommands()
+        .filter(|sub| !sub.is_hide_set() && sub.get_name() != "help")
+    {
+        let title = format!("gyrolab {}", sub.get_name());
+        let man = clap_mangen::Man::new(sub.clone());
+        writeln!(page, ".SH \"{}\"", title.to_uppercase())?;
+        man.render_description_section(&mut page)?;
+        man.render_synopsis_section(&mut page)?;
+        man.render_options_section(&mut page)?;
+    }
+    print(&String::from_utf8(page).context("the manual is not text")?)
+}

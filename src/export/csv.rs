@@ -1,0 +1,53 @@
+//! A run as CSV: the run file in `# ` lines, one header line, then rows as they come. Nothing is kept, so that memory
+//! does not grow with the run.
+
+use super::columns::{COLUMNS, Row};
+use crate::run::Sample;
+use crate::scenario::Scenario;
+use std::io::{self, Write};
+
+/// Writes a run's CSV row by row.
+#[derive(Debug)]
+pub struct CsvWriter<W: Write> {
+    rows: csv::Writer<W>,
+}
+
+impl<W: Write> CsvWriter<W> {
+    /// Begins a CSV on `out` with the run file of `scenario` and the header line.
+    ///
+    /// # Errors
+    /// When `out` cannot be written.
+    pub fn new(mut out: W, scenario: &Scenario) -> io::Result<Self> {
+        let mut header = String::new();
+        for line in scenario.to_toml().lines() {
+            header.push_str("# ");
+            header.push_str(line);
+            header.push('\n');
+        }
+        out.write_all(header.as_bytes())?;
+        let mut rows = csv::WriterBuilder::new()
+            .has_headers(false)
+            .from_writer(out);
+        rows.write_record(COLUMNS.iter().map(|column| column.name))?;
+        Ok(Self { rows })
+    }
+
+    /// Adds a row.
+    ///
+    /// # Errors
+    /// When the row cannot be written.
+    pub fn write(&mut self, sample: &Sample) -> io::Result<()> {
+        Ok(self.rows.serialize(Row(sample))?)
+    }
+
+    /// Writes what is still held back, and gives the place it was written to.
+    ///
+    /// # Errors
+    /// When that cannot be written.
+    pub fn finish(mut self) -> io::Result<W> {
+        self.rows.flush()?;
+        self.rows
+            .into_inner()
+            .map_err(csv::IntoInnerError::into_error)
+    }
+}

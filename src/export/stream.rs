@@ -1,0 +1,116 @@
+//! A run played forward to its end, its rows written as they come.
+
+use super::CsvWriter;
+use crate::run::{NotFinite, Sample, Simulation};
+use std::io::{self, Write};
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+/// Between two looks at the clock and the signals a body of one point takes this many steps; one of n points an n-th
+/// of it, within reason.
+const BLOCK: usize = 1 << 18;
+
+/// How far a stream has come.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// The step it stands at.
+    pub step: u64,
+    /// The step at which it ends.
+    pub steps: u64,
+    /// Time spent on stepping alone.
+    pub stepping: Duration,
+}
+
+/// How a stream ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// At its last step.
+    Done,
+    /// Because the watcher said so.
+    Stopped,
+    /// At numbers that are not finite; the rows before them are written.
+    NotFinite(NotFinite),
+}
+
+/// Plays `simulation` on to the step `steps`, writing row 0 and every `every`-th row and the last one to `csv` if there is one.
+/// `watch` is asked after each block of steps whether to go on.
+///
+/// Gives how it ended and the time spent on stepping alone.
+///
+/// # Errors
+/// When a row cannot be written.
+pub fn play<W: Write>(
+    simulation: &mut Simulation,
+    steps: u64,
+    every: u64,
+    mut csv: Option<&mut CsvWriter<W>>,
+    mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
+) -> io::Result<(Ended, Duration)> {
+    let points = simulation.scenario().body.mechanics.points().len();
+    let block = (BLOCK / points).clamp(16, 4096);
+    let mut rows = Vec::with_capacity(if csv.is_some() { block } else { 0 });
+    if let Some(csv) = csv.as_deref_mut() {
+        csv.write(&simulation.sample())?;
+    }
+    let mut stepping = Duration::ZERO;
+    let mut ended = None;
+    while ended.is_none() {
+        let begin = Instant::now();
+        let result = take_block(simulation, steps, block, |simulation| {
+            let step = simulation.step_number();
+            if csv.is_some() && (step.is_multiple_of(every) || step == steps) {
+                rows.push(simulation.sample());
+            }
+        });
+        stepping += begin.elapsed();
+        if let Some(csv) = csv.as_deref_mut() {
+            rows.iter().try_for_each(|row| csv.write(row))?;
+        }
+        ended = match result {
+            Err(error) => {
+                keep_last(simulation, every, rows.last(), csv.as_deref_mut())?;
+                Some(Ended::NotFinite(error))
+            }
+            Ok(()) if simulation.step_number() >= steps => Some(Ended::Done),
+            Ok(()) => {
+                let progress = Progress {
+                    step: simulation.step_number(),
+                    steps,
+                    stepping,
+                };
+                watch(&progress).is_break().then_some(Ended::Stopped)
+            }
+        };
+        rows.clear();
+    }
+    Ok((ended.unwrap_or(Ended::Done), stepping))
+}
+
+fn take_block(
+    simulation: &mut Simulation,
+    steps: u64,
+    block: usize,
+    mut after_each: impl FnMut(&Simulation),
+) -> Result<(), NotFinite> {
+    let end = steps.min(simulation.step_number() + block as u64);
+    while simulation.step_number() < end {
+        simulation.step()?;
+        after_each(simulation);
+    }
+    Ok(())
+}
+
+/// The step before the numbers broke is the run's last: it has its row even where `every` would pass it over.
+fn keep_last<W: Write>(
+    simulation: &Simulation,
+    every: u64,
+    written: Option<&Sample>,
+    csv: Option<&mut CsvWriter<W>>,
+) -> io::Result<()> {
+    let step = simulation.step_number();
+    let is_written = written.is_some_and(|row| row.step == step) || step.is_multiple_of(every);
+    match csv {
+        Some(csv) if !is_written => csv.write(&simulation.sample()),
+        _ => Ok(()),
+    }
+}
