@@ -17,6 +17,8 @@
 //! in the upright pose. Units are SI throughout: metres, kilograms, seconds, newtons, J s; angles are radians
 //! inside and degrees in names that end in `_deg`.
 
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
 pub mod cli;
 pub mod export;
 pub mod physics;

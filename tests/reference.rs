@@ -3,6 +3,8 @@
 //! `tests/reference/*.csv` are that program's trajectories: step, t, the axle's top, L. Two right implementations
 //! differ by rounding alone, which these motions carry to 6e-10 m at most.
 
+#![allow(clippy::expect_used)]
+
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Document;
 use std::path::Path;
