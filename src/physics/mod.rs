@@ -13,6 +13,7 @@ pub mod rk4;
 pub mod rotation;
 pub mod scheme;
 pub mod state;
+pub mod trig;
 
 pub use body::{Body, BodyError, PointMass};
 pub use loads::{Loads, PointForce};

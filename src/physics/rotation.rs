@@ -1,5 +1,6 @@
 //! Rotation matrices, in the report's formula, with the sine and cosine compiled in.
 
+use super::trig;
 use nalgebra::{Matrix3, Vector3};
 
 /// The matrix [v]× with [v]× w = v × w.
@@ -14,7 +15,7 @@ pub fn about(vector: &Vector3<f64>, time: f64) -> Matrix3<f64> {
     if length == 0.0 {
         return Matrix3::identity();
     }
-    let (sin, cos) = libm::sincos(length * time);
+    let (sin, cos) = trig::sin_cos(length * time);
     let u = vector * (1.0 / length);
     let (xx, yy, zz) = (u.x * u.x, u.y * u.y, u.z * u.z);
     let (xy, xz, yz) = (u.x * u.y, u.x * u.z, u.y * u.z);

@@ -23,6 +23,8 @@ pub struct Simulation {
     step: u64,
     segment: u64,
     edits_made: usize,
+    /// The step of the next edit; the last step there could be where there is none.
+    next_edit: u64,
     before: State,
     state: State,
     azimuth: Azimuth,
@@ -78,6 +80,7 @@ impl Simulation {
             step: 0,
             segment: 0,
             edits_made: 0,
+            next_edit: step_of_edit(&scenario, 0),
             before: state,
             state,
             azimuth: Azimuth::start(&state.axle()),
@@ -92,19 +95,20 @@ impl Simulation {
     /// When the numbers stop being finite. The run then stays at the step before, and so it does at every further
     /// call.
     pub fn step(&mut self) -> Result<(), NotFinite> {
-        let resume = self.make_due_edits();
-        let mut next = self.state;
-        let work = self.advance(&mut next);
-        next.time_s = self.clock.time_s(self.step + 1);
-        if !next.is_finite() {
+        if self.next_edit == self.step {
+            self.make_due_edits();
+        }
+        self.before = self.state;
+        let work = self.advance();
+        self.state.time_s = self.clock.time_s(self.step + 1);
+        if !self.state.is_finite() {
+            self.state = self.before;
             self.scheme.start(&self.state);
             return Err(NotFinite {
                 step: self.step + 1,
             });
         }
-        self.segment += resume;
         self.energy.work += work;
-        self.before = std::mem::replace(&mut self.state, next);
         self.step += 1;
         self.azimuth.follow(&self.state.axle());
         Ok(())
@@ -121,19 +125,19 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes `state` through the coming step and returns the work the pushes did on the way, J.
-    fn advance(&mut self, state: &mut State) -> f64 {
-        let mut stretch = Stretch::step(self.step + 1, &self.clock);
+    /// Takes the state through the coming step and returns the work the pushes did on the way, J.
+    fn advance(&mut self) -> f64 {
         if self.pushes.is_empty() {
-            self.scheme.step(self.motion.time_step_s, state);
+            self.scheme.step(self.motion.time_step_s, &mut self.state);
             return 0.0;
         }
+        let mut stretch = Stretch::step(self.step + 1, &self.clock);
         let mut work = 0.0;
         let end = stretch.end;
         if self.motion.scheme.continuous {
             while let Some(change) = pushes::next_change(&self.pushes, self.counting, &stretch) {
                 stretch.end = change;
-                work += self.advance_under_push(&stretch, change - stretch.begin, state);
+                work += self.advance_under_push(&stretch, change - stretch.begin);
                 (stretch.begin, stretch.end) = (change, end);
             }
         }
@@ -143,40 +147,37 @@ impl Simulation {
         } else {
             end - stretch.begin
         };
-        work + self.advance_under_push(&stretch, length, state)
+        work + self.advance_under_push(&stretch, length)
     }
 
-    fn advance_under_push(&mut self, stretch: &Stretch, length: f64, state: &mut State) -> f64 {
+    fn advance_under_push(&mut self, stretch: &Stretch, length: f64) -> f64 {
         pushes::acting(&self.pushes, self.counting, stretch, &mut self.acting);
         if self.acting != self.loads.pushes {
             self.loads.pushes.clone_from(&self.acting);
             self.scheme.load(&self.loads);
         }
-        let before = *state;
-        self.scheme.step(length, state);
+        let before = self.state;
+        self.scheme.step(length, &mut self.state);
         let body = &self.scenario.body.mechanics;
-        let moved = |push: &PointForce| {
-            let at = body.points()[push.point].at;
-            push.force
-                .dot(&(state.orientation * at - before.orientation * at))
-        };
+        let at = |state: &State, push: &PointForce| observables::position(body, state, push.point);
+        let moved =
+            |push: &PointForce| push.force.dot(&(at(&self.state, push) - at(&before, push)));
         self.loads.pushes.iter().map(moved).sum()
     }
 
-    /// Carries out the edits made at this step, and says how many segments they begin.
-    fn make_due_edits(&mut self) -> u64 {
+    /// Carries out the edits made at this step.
+    fn make_due_edits(&mut self) {
         let scenario = Arc::clone(&self.scenario);
-        let mut segments = 0;
         while let Some(edit) = scenario
             .edits
             .get(self.edits_made)
             .filter(|edit| edit.step == self.step)
         {
             self.make_edit(edit);
-            segments += u64::from(edit.touches.segment);
+            self.segment += u64::from(edit.touches.segment);
             self.edits_made += 1;
         }
-        segments
+        self.next_edit = step_of_edit(&scenario, self.edits_made);
     }
 
     fn make_edit(&mut self, edit: &Edit) {
@@ -265,4 +266,8 @@ impl Simulation {
         }
         clock.step_at(time_s)
     }
+}
+
+fn step_of_edit(scenario: &Scenario, index: usize) -> u64 {
+    scenario.edits.get(index).map_or(u64::MAX, |edit| edit.step)
 }
