@@ -84,7 +84,7 @@ impl Destination {
         if let Some(permissions) = permissions(&path) {
             builder.permissions(permissions);
         }
-        let temporary = builder.tempfile_in(folder).map_err(plain)?;
+        let temporary = builder.tempfile_in(folder).map_err(|error| plain(&error))?;
         Ok(Self::File {
             temporary,
             path,
@@ -154,8 +154,8 @@ fn permissions(_: &Path) -> Option<fs::Permissions> {
 }
 
 /// The system's words without the temporary name, which means nothing to the user.
-fn plain(error: io::Error) -> io::Error {
-    match error.raw_os_error().or_else(|| inner_code(&error)) {
+fn plain(error: &io::Error) -> io::Error {
+    match error.raw_os_error().or_else(|| inner_code(error)) {
         Some(code) => io::Error::from_raw_os_error(code),
         None => io::Error::from(error.kind()),
     }

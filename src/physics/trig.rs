@@ -147,6 +147,7 @@ mod tests {
             );
         }
     }
+    #[allow(clippy::approx_constant, reason = "some of the digits are famous")]
     const KNOWN: [(f64, f64, f64); 30] = [
         (45.553093477052, 1.0, -6.189806365883577e-19),
         (91.106186954104, -1.2379612731767154e-18, -1.0),
