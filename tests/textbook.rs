@@ -34,11 +34,7 @@ fn turns(samples: &[Sample], lowest: bool) -> Vec<Turn> {
         let [a, b, c] = [0, 1, 2].map(|i| sign * w[i].tilt_deg);
         b < a && b <= c
     };
-    samples
-        .windows(3)
-        .filter(is_turn)
-        .map(|w| turn(w))
-        .collect()
+    samples.windows(3).filter(is_turn).map(turn).collect()
 }
 
 fn turn(w: &[Sample]) -> Turn {
