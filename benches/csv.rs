@@ -81,7 +81,7 @@ fn rows(criterion: &mut Criterion) {
         bencher.iter(|| {
             samples
                 .iter()
-                .for_each(|sample| writer.write(sample).unwrap())
+                .for_each(|sample| writer.write(sample).unwrap());
         });
     });
 }

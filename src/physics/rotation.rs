@@ -3,12 +3,12 @@
 use super::trig;
 use nalgebra::{Matrix3, Vector3};
 
-/// The matrix [v]× with [v]× w = v × w.
+/// The matrix \[v\]× with \[v\]× w = v × w.
 pub fn cross_matrix(v: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
 }
 
-/// The rotation about `vector` by the angle |`vector`| · `time`: R = P + cos(E − P) + sin [u]×, P = uuᵀ, u the
+/// The rotation about `vector` by the angle |`vector`| · `time`: R = P + cos(E − P) + sin \[u\]×, P = uuᵀ, u the
 /// vector's direction (report, section 3). The zero vector turns nothing.
 pub fn about(vector: &Vector3<f64>, time: f64) -> Matrix3<f64> {
     let length = vector.norm();
