@@ -76,7 +76,7 @@ impl Simulation {
             acting: Vec::with_capacity(scenario.pushes.len()),
             loads,
             clock: Clock::new(motion.time_step_s),
-            counting: Counting::Steps,
+            counting: counting(&scenario),
             step: 0,
             segment: 0,
             edits_made: 0,
@@ -221,6 +221,11 @@ impl Simulation {
         &self.motion
     }
 
+    /// What the scheme has to say of how the run was computed, beyond its name.
+    pub fn remark(&self) -> Option<String> {
+        self.scheme.remark()
+    }
+
     /// The whole of the step taken last; `None` at step 0.
     pub fn record(&self) -> Option<StepRecord> {
         (self.step > 0).then(|| StepRecord {
@@ -270,4 +275,14 @@ impl Simulation {
 
 fn step_of_edit(scenario: &Scenario, index: usize) -> u64 {
     scenario.edits.get(index).map_or(u64::MAX, |edit| edit.step)
+}
+
+/// Step counts are steps, unless they were written for another time step.
+fn counting(scenario: &Scenario) -> Counting {
+    match scenario.written_for_s == scenario.motion.time_step_s {
+        true => Counting::Steps,
+        false => Counting::Seconds {
+            written_for_s: scenario.written_for_s,
+        },
+    }
 }
