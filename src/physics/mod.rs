@@ -19,7 +19,7 @@ pub mod symmetry;
 pub mod trig;
 
 pub use body::{Body, BodyError, PointMass};
-pub use exact::ExactMotion;
+pub use exact::{ExactMotion, LagrangeTop};
 pub use loads::{Loads, PointForce};
 pub use scheme::{Scheme, SchemeInfo};
 pub use state::{State, StepRecord, Workings};

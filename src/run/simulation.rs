@@ -216,6 +216,16 @@ impl Simulation {
         &self.state
     }
 
+    /// The axle's azimuth, counted on through full turns.
+    pub fn azimuth(&self) -> &Azimuth {
+        &self.azimuth
+    }
+
+    /// The forces of the step taken last (at step 0: gravity alone).
+    pub fn loads(&self) -> &Loads {
+        &self.loads
+    }
+
     /// Gravity, scheme and time step of the step taken last (at step 0: of the first).
     pub fn motion(&self) -> &Motion {
         &self.motion

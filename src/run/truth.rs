@@ -59,6 +59,11 @@ impl Truth {
         self.piece.at(time_s)
     }
 
+    /// The scenario whose exact motion it is.
+    pub fn scenario(&self) -> &Arc<Scenario> {
+        &self.scenario
+    }
+
     /// The exact motion under the forces of the time asked for last.
     pub fn motion(&self) -> &ExactMotion {
         &self.piece

@@ -17,7 +17,9 @@ use crate::physics::trig::sin_cos;
 /// A rigid body that turns about a fixed point without torque.
 #[derive(Clone, Debug)]
 pub enum FreeBody {
+    /// Two principal moments are equal.
     Symmetric(SymmetricBody),
+    /// All three differ.
     Lopsided(LopsidedBody),
 }
 

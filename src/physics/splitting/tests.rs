@@ -50,11 +50,19 @@ fn symmetric_with_side_load() -> Body {
     )
 }
 
-fn tops() -> [(&'static str, Body); 3] {
+/// The symmetric body rolled over, its axis along x, with the load where it was, on z.
+fn symmetric_across_its_load() -> Body {
+    let (inertia, moment) = heavy_top();
+    let roll = Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+    (roll * inertia * roll.transpose(), moment)
+}
+
+fn tops() -> [(&'static str, Body); 4] {
     [
         ("heavy", heavy_top()),
         ("lopsided", lopsided_top()),
         ("side load", symmetric_with_side_load()),
+        ("load across the axis", symmetric_across_its_load()),
     ]
 }
 
@@ -160,31 +168,40 @@ fn the_order_is_as_named() {
     }
 }
 
+/// The largest relative change of the energy in the first part of a run, and in the rest.
+fn energy_changes(scheme: &Splitting, body: &Body, h: f64, [first, rest]: [u32; 2]) -> [f64; 2] {
+    let mut state = tilted([2.0, -5.0, 30.0]);
+    let start = energy(body, &state);
+    let changes = [first, rest].map(|steps| {
+        (0..steps).fold(0.0_f64, |most, _| {
+            scheme.step(&mut state, h);
+            most.max((energy(body, &state) - start).abs() / start.abs())
+        })
+    });
+    assert!(orthonormality(&state.orientation) < 4e-15, "{state:?}");
+    changes
+}
+
+/// A scheme that is not symplectic adds a little at every turn; here the swing of the first seconds is never left.
 #[test]
 fn energy_does_not_drift_over_a_million_steps() {
-    for ((name, top), steps) in tops().into_iter().zip([1_000_000, 1_000_000, 50_000]) {
+    let (first, rest) = (
+        20_000,
+        if cfg!(debug_assertions) {
+            30_000
+        } else {
+            980_000
+        },
+    );
+    for (name, body) in tops() {
         for (kind, h, tolerance) in [(Kind::Strang, 0.005, 1e-2), (Kind::Srkn11b, 0.02, 1e-7)] {
-            let scheme = Splitting::new(kind, &top.0, &top.1);
-            let mut state = tilted([2.0, -5.0, 30.0]);
-            let start = energy(&top, &state);
-            // The swing of the first hundredth bounds what follows, but for rounding (1e-16 a step at the most).
-            let (mut early, mut late) = (0.0_f64, 0.0_f64);
-            for i in 0..steps {
-                scheme.step(&mut state, h);
-                let change = (energy(&top, &state) - start).abs() / start.abs();
-                if i < steps / 100 {
-                    early = early.max(change)
-                } else {
-                    late = late.max(change)
-                }
-            }
+            let scheme = Splitting::new(kind, &body.0, &body.1);
+            let [early, late] = energy_changes(&scheme, &body, h, [first, rest]);
+            // Rounding, where it does not cancel: 1e-16 a step.
+            let rounding = 1e-16 * f64::from(first + rest);
             assert!(
-                early < tolerance && late < 1.2 * early + 1e-10,
+                early < tolerance && late < 1.2 * early + rounding,
                 "{name}, {kind:?}: {early:e}, then {late:e}"
-            );
-            assert!(
-                orthonormality(&state.orientation) < 4e-15,
-                "{name}, {kind:?}"
             );
         }
     }
@@ -206,18 +223,16 @@ fn vertical_momentum_keeps_every_bit() {
     }
 }
 
+/// Over 5 s, in which neighbouring motions part by less than 200 times: later the load across the axis is chaotic.
 #[test]
 fn backwards_undoes_forwards() {
     for (name, top) in tops() {
         for kind in [Kind::Strang, Kind::Srkn6b, Kind::Srkn11b] {
             let start = tilted([2.0, -5.0, 30.0]);
-            let there = run(kind, top, start, 10.0, 500);
-            let back = run(kind, top, there, -10.0, 500);
-            assert!(
-                distance(&back, &start) < 1e-11,
-                "{name}, {kind:?}: {:e}",
-                distance(&back, &start)
-            );
+            let there = run(kind, top, start, 5.0, 250);
+            let back = run(kind, top, there, -5.0, 250);
+            let error = distance(&back, &start);
+            assert!(error < 3e-12, "{name}, {kind:?}: {error:e}");
             assert!(distance(&there, &start) > 0.1);
         }
     }
