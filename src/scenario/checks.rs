@@ -4,7 +4,7 @@
 use super::document::set_key;
 use super::file::{BodyFile, EditFile, Frame, MotionFile, PushFile, ScenarioFile, StartFile};
 use super::keys::{self, MOST_POINTS};
-use super::problem::{Problem, nearest};
+use super::problem::{Problem, listed, nearest};
 use crate::physics::{self, PointMass, SchemeInfo, State, rotation};
 use nalgebra::Vector3;
 use std::collections::HashMap;
@@ -184,7 +184,7 @@ fn no_top(body: &Body) -> Vec<Problem> {
         0 => "it has no named point: add a [[body.point]]".to_owned(),
         _ => format!(
             "name one of its points with trace = \"...\": {}",
-            names.join(", ")
+            listed(names.into_iter())
         ),
     };
     vec![Problem::at(
@@ -358,7 +358,7 @@ fn edit(
     };
     for (key, value) in &entry.set {
         let inside = |problem: Problem| vec![moved(problem, &here, key)];
-        may_edit(key).map_err(inside)?;
+        may_edit(key, value).map_err(inside)?;
         set_key(table, key, value.clone()).map_err(inside)?;
         touches.time_step |= key == "motion.time_step_s";
         touches.segment |= key.starts_with("motion.");
@@ -397,7 +397,7 @@ fn moved(problem: Problem, here: &str, key: &str) -> Problem {
     }
 }
 
-fn may_edit(key: &str) -> Result<(), Problem> {
+fn may_edit(key: &str, value: &toml::Value) -> Result<(), Problem> {
     const MOTION: [&str; 3] = [
         "motion.gravity_m_per_s2",
         "motion.scheme",
@@ -405,6 +405,10 @@ fn may_edit(key: &str) -> Result<(), Problem> {
     ];
     if MOTION.contains(&key) || key.starts_with("push.") {
         return Ok(());
+    }
+    if value.is_table() {
+        let rule = "must be a dotted key in quotes, such as \"motion.time_step_s\" = 0.05";
+        return Err(Problem::at(key, rule));
     }
     let rule = format!(
         "cannot be edited during a run (only {} and push.N can): set it in the scenario",

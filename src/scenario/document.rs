@@ -1,7 +1,7 @@
 //! A scenario's text, where it came from, and what `--set` changed in it.
 
 use super::checks::{self, Scenario};
-use super::problem::{Problem, Problems, nearest, printable};
+use super::problem::{Problem, Problems, brief, nearest, printable};
 use super::{file::ScenarioFile, keys, presets};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -102,7 +102,7 @@ impl Document {
     /// When there is no `=`, or the key leads nowhere. Whether key and value are allowed shows in
     /// [`scenario`](Self::scenario).
     pub fn set(&mut self, argument: &str) -> Result<(), Problems> {
-        let place = format!("--set {}", printable(argument));
+        let place = set_place(argument);
         let fail = |mut problem: Problem| {
             problem.place = Some(place.clone());
             Problems {
@@ -148,19 +148,20 @@ impl Document {
     /// Problems with the places at which the user wrote their keys, in the order of the file.
     fn placed(&self, mut list: Vec<Problem>) -> Problems {
         let spans = DeTable::parse(&self.text).ok();
+        let line_ends: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
         let mut lines: Vec<(usize, Problem)> = Vec::with_capacity(list.len());
         for mut problem in list.drain(..) {
             let touches =
                 |key: &str| problem.key == key || problem.key.starts_with(&format!("{key}."));
             if let Some((_, argument)) = self.set.iter().rev().find(|(key, _)| touches(key)) {
-                problem.place = Some(format!("--set {}", printable(argument)));
+                problem.place = Some(set_place(argument));
                 lines.push((usize::MAX, problem));
                 continue;
             }
             let offset = spans
                 .as_ref()
                 .and_then(|table| offset_of(table.get_ref(), &problem.key));
-            let line = offset.map(|offset| line_at(&self.text, offset));
+            let line = offset.map(|offset| line_ends.partition_point(|&end| end < offset) + 1);
             problem.place = line.map(|line| format!("line {line}"));
             lines.push((line.unwrap_or(0), problem));
         }
@@ -172,12 +173,22 @@ impl Document {
     }
 }
 
+fn set_place(argument: &str) -> String {
+    format!("--set {}", brief(argument, 80))
+}
+
 /// Writes `value` at the dotted `key`; numbers lead into arrays, and the one past the end adds an element.
 ///
 /// # Errors
 /// When the key leads into something that is neither table nor array, or past an array's end.
 pub fn set_key(table: &mut toml::Table, key: &str, value: Value) -> Result<(), Problem> {
+    // The deepest key is body.point.N.at_m.N. Tables nested without bound would exhaust the stack.
+    const DEEPEST: usize = 5;
     let names: Vec<&str> = key.split('.').collect();
+    if names.len() > DEEPEST {
+        let rule = format!("leads deeper than any key: at most {DEEPEST} names and numbers");
+        return Err(Problem::at(key, rule));
+    }
     let (last, way) = match names.split_last() {
         Some((last, way)) if names.iter().all(|name| !name.is_empty()) => (*last, way),
         _ => {
@@ -262,6 +273,7 @@ fn read_text(path: &Path) -> Result<String, String> {
         let begin = text.len();
         reader.read_until(b'\n', &mut text).map_err(cannot)?;
         let line = String::from_utf8_lossy(&text[begin..]);
+        let line = line.trim_start_matches('\u{feff}'); // some programs put it before the first line of a CSV
         match line.strip_prefix('#') {
             Some(rest) => header.push_str(rest.strip_prefix(' ').unwrap_or(rest)),
             None if line.starts_with(CSV_HEADER) => return Ok(header),
@@ -292,13 +304,17 @@ fn read_text(path: &Path) -> Result<String, String> {
 }
 
 fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
-    let picture: Vec<_> = error
-        .to_string()
-        .trim_end()
-        .lines()
-        .map(printable)
-        .collect();
-    let mut problem = Problem::at("", picture.join("\n"));
+    const WIDEST: usize = 160;
+    let picture = error.to_string();
+    let mut lines = picture.trim_end().lines();
+    let rule = if lines.clone().all(|line| line.len() <= WIDEST) {
+        lines.map(printable).collect::<Vec<_>>().join("\n")
+    } else {
+        // A picture of a line that fills the screen shows nothing.
+        let place = brief(lines.next().unwrap_or_default(), WIDEST);
+        format!("{place}: {}", brief(error.message(), WIDEST))
+    };
+    let mut problem = Problem::at("", rule);
     problem.place = error
         .span()
         .map(|span| format!("line {}", line_at(text, span.start)));
