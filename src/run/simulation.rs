@@ -27,6 +27,7 @@ pub struct Simulation {
     state: State,
     azimuth: Azimuth,
     energy: EnergyAccount,
+    ended: Option<NotFinite>,
 }
 
 /// What the energy would be if the scheme made no error.
@@ -82,6 +83,7 @@ impl Simulation {
             state,
             azimuth: Azimuth::start(&state.axle()),
             energy,
+            ended: None,
             scenario,
         }
     }
@@ -92,15 +94,22 @@ impl Simulation {
     /// When the numbers stop being finite. The run then stays at the step before, and so it does at every further
     /// call.
     pub fn step(&mut self) -> Result<(), NotFinite> {
+        if let Some(end) = self.ended {
+            return Err(end);
+        }
+        let (motion, energy) = (self.motion, self.energy);
         let resume = self.make_due_edits();
         let mut next = self.state;
         let work = self.advance(&mut next);
         next.time_s = self.clock.time_s(self.step + 1);
-        if !next.is_finite() {
-            self.scheme.start(&self.state);
-            return Err(NotFinite {
+        if !self.can_be_read(&next) {
+            // This step's edits have led nowhere: the run is read as it stood before them.
+            (self.motion, self.energy) = (motion, energy);
+            let end = NotFinite {
                 step: self.step + 1,
-            });
+            };
+            self.ended = Some(end);
+            return Err(end);
         }
         self.segment += resume;
         self.energy.work += work;
@@ -119,6 +128,16 @@ impl Simulation {
             self.step()?;
         }
         Ok(())
+    }
+
+    /// Whether every number read off `state` is finite: squares leave the range of numbers before L itself does. A
+    /// finite energy means a finite Omega too.
+    fn can_be_read(&self, state: &State) -> bool {
+        let body = &self.scenario.body.mechanics;
+        let potential = self.motion.gravity * observables::weight_height(body, state);
+        let energy = observables::kinetic_energy(body, state) + potential;
+        let traced = observables::position(body, state, self.scenario.trace);
+        state.is_finite() && energy.is_finite() && traced.iter().all(|c| c.is_finite())
     }
 
     /// Takes `state` through the coming step and returns the work the pushes did on the way, J.

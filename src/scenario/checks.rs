@@ -5,7 +5,7 @@ use super::document::set_key;
 use super::file::{BodyFile, EditFile, Frame, MotionFile, PushFile, ScenarioFile, StartFile};
 use super::keys::{self, MOST_POINTS};
 use super::problem::{Problem, listed, nearest};
-use crate::physics::{self, PointMass, SchemeInfo, State, rotation};
+use crate::physics::{self, PointMass, SchemeInfo, State, observables, rotation};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -166,6 +166,10 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Vec<Problem>> {
     let motion = motion(&file.motion);
     let pushes = pushes(&file.push, &body, "push")?;
     let edits = edits(&file, &body)?;
+    if !is_readable(&body, trace, &start, motion.gravity) {
+        let rule = "energy or traced point leave the range of floating-point numbers: use momentum, gravity and distances nearer to 1";
+        return Err(vec![Problem::at("start", rule)]);
+    }
     Ok(Scenario {
         body,
         trace,
@@ -176,6 +180,15 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Vec<Problem>> {
         edits,
         file,
     })
+}
+
+/// Whether the first row of the run's CSV is made of finite numbers.
+fn is_readable(body: &Body, trace: usize, start: &State, gravity: f64) -> bool {
+    let body = &body.mechanics;
+    let energy = observables::kinetic_energy(body, start)
+        + gravity * observables::weight_height(body, start);
+    let traced = observables::position(body, start, trace);
+    energy.is_finite() && traced.iter().all(|c| c.is_finite())
 }
 
 fn no_top(body: &Body) -> Vec<Problem> {

@@ -314,6 +314,10 @@ fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
         let place = brief(lines.next().unwrap_or_default(), WIDEST);
         format!("{place}: {}", brief(error.message(), WIDEST))
     };
+    let rule = match error.span() {
+        Some(_) => rule,
+        None => format!("cannot be read as TOML: {rule}"),
+    };
     let mut problem = Problem::at("", rule);
     problem.place = error
         .span()
