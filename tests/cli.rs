@@ -685,7 +685,7 @@ fn numbers_that_stop_being_finite_end_the_run_and_keep_its_rows() {
             ("12", vec![0.0, 12.0, 24.0]),
         ] {
             let args = [
-                "run", "method-2", "--scheme", scheme, "--every", every, "-o", "a.csv", "--force",
+                "run", preset, "--scheme", scheme, "--every", every, "-o", "a.csv", "--force",
             ];
             failed(
                 &lab.run(&[&args[..], &push].concat()),

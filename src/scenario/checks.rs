@@ -3,7 +3,7 @@
 
 use super::document::set_key;
 use super::file::{BodyFile, EditFile, Frame, MotionFile, PushFile, ScenarioFile, StartFile};
-use super::keys::{self, MOST_POINTS};
+use super::keys::{self, KEYS, MOST_POINTS};
 use super::problem::{Problem, listed, nearest};
 use crate::physics::{self, PointMass, SchemeInfo, State, observables, rotation};
 use nalgebra::Vector3;
@@ -299,10 +299,11 @@ fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Vec<Problem>> {
             from_s: from.unwrap_or(0.0),
             for_s,
         },
+        (None, None, Some(_), None) => return wrong("does not say for how long: add for_s"),
         (first, steps, None, None) if first.is_some() || steps.is_some() => {
             return wrong("does not say for how long: add steps");
         }
-        (None, None, _, None) => return wrong("does not say for how long: add steps, or for_s"),
+        (None, None, None, None) => return wrong("does not say for how long: add steps, or for_s"),
         _ => {
             return wrong(
                 "counts in steps and in seconds: keep first_step and steps, or from_s and for_s",
@@ -359,10 +360,14 @@ fn edit(
     let here = format!("edit.{index}");
     if entry.step < *last {
         let rule = format!(
-            "({}) comes before the edit above it: edits stand in the order of their steps",
-            entry.step
+            "comes before the edit above it (step {last}): edits stand in the order of their steps"
         );
-        return Err(vec![Problem::at(format!("{here}.step"), rule)]);
+        let step = toml::Value::Integer(i64::try_from(entry.step).unwrap_or(i64::MAX));
+        return Err(vec![Problem::with_value(
+            format!("{here}.step"),
+            &step,
+            rule,
+        )]);
     }
     *last = entry.step;
     let mut touches = Touches {
@@ -423,9 +428,14 @@ fn may_edit(key: &str, value: &toml::Value) -> Result<(), Problem> {
         let rule = "must be a dotted key in quotes, such as \"motion.time_step_s\" = 0.05";
         return Err(Problem::at(key, rule));
     }
-    let rule = format!(
-        "cannot be edited during a run (only {} and push.N can): set it in the scenario",
-        MOTION.join(", ")
-    );
+    let rule = match nearest(key, MOTION.into_iter()) {
+        near if near.starts_with("did") && !KEYS.iter().any(|known| known.path == key) => {
+            format!("unknown key: {near}")
+        }
+        _ => format!(
+            "cannot be edited during a run (only {} and push.N can): set it in the scenario",
+            MOTION.join(", ")
+        ),
+    };
     Err(Problem::at(key, rule))
 }
