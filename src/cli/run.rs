@@ -29,6 +29,10 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
             .exit();
     }
     let scenario = Arc::new(scenario_of(args)?);
+    // The signals must have their handlers before there is a temporary file that one of them could leave behind. But
+    // a FIFO is opened first: that may wait for ever, and a signal shall end the wait.
+    let waits = args.output.as_deref().is_some_and(Destination::may_wait);
+    let early = if waits { None } else { Some(interruption()?) };
     let mut output = match &args.output {
         Some(path) => {
             let destination = Destination::open(path, args.force)?;
@@ -36,8 +40,13 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         }
         None => None,
     };
+    let interrupted = match early {
+        Some(flag) => flag,
+        None => interruption()?,
+    };
     let mut simulation = Simulation::new(Arc::clone(&scenario));
-    let (ended, wall) = play(&mut simulation, args.every.get(), output.as_mut())
+    let every = args.every.get();
+    let (ended, wall) = play(&mut simulation, every, output.as_mut(), &interrupted)
         .with_context(|| cannot_write(args.output.as_deref().unwrap_or(Path::new("the output"))))?;
     if ended == Ended::Stopped {
         return Ok(ExitCode::from(INTERRUPTED)); // what was written so far goes with its temporary name
@@ -93,9 +102,9 @@ fn play(
     simulation: &mut Simulation,
     every: u64,
     output: Option<&mut CsvWriter<Destination>>,
+    interrupted: &AtomicBool,
 ) -> io::Result<(Ended, Duration)> {
     let steps = simulation.scenario().steps;
-    let interrupted = interruption()?;
     let mut meter = Meter::new();
     let ended = stream::play(simulation, steps, every, output, |progress| {
         meter.show(progress);
@@ -109,6 +118,9 @@ fn play(
 }
 
 /// A flag that the first signal to end raises; a second one ends the process on the spot, should it be stuck.
+///
+/// A write past the limit on a file's size (`ulimit -f`) fails like one to a full disk: its signal, left to itself,
+/// would end the process with the temporary file still there.
 fn interruption() -> io::Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
     for &signal in TERM_SIGNALS {
@@ -119,6 +131,8 @@ fn interruption() -> io::Result<Arc<AtomicBool>> {
         )?;
         signal_hook::flag::register(signal, Arc::clone(&flag))?;
     }
+    #[cfg(unix)]
+    signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
     Ok(flag)
 }
 

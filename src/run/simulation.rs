@@ -29,6 +29,9 @@ pub struct Simulation {
     state: State,
     azimuth: Azimuth,
     energy: EnergyAccount,
+    ended: Option<NotFinite>,
+    /// While |L|² is below this, every number read off a finite state is finite too.
+    safe_below: f64,
 }
 
 /// What the energy would be if the scheme made no error.
@@ -85,6 +88,8 @@ impl Simulation {
             state,
             azimuth: Azimuth::start(&state.axle()),
             energy,
+            ended: None,
+            safe_below: safe_below(&scenario, motion.gravity),
             scenario,
         }
     }
@@ -95,18 +100,25 @@ impl Simulation {
     /// When the numbers stop being finite. The run then stays at the step before, and so it does at every further
     /// call.
     pub fn step(&mut self) -> Result<(), NotFinite> {
+        if let Some(end) = self.ended {
+            return Err(end);
+        }
+        let undo = (self.motion, self.energy, self.segment);
         if self.next_edit == self.step {
             self.make_due_edits();
         }
         self.before = self.state;
         let work = self.advance();
         self.state.time_s = self.clock.time_s(self.step + 1);
-        if !self.state.is_finite() {
+        if !self.can_be_read() {
+            // This step's edits have led nowhere: the run is read as it stood before them.
+            (self.motion, self.energy, self.segment) = undo;
             self.state = self.before;
-            self.scheme.start(&self.state);
-            return Err(NotFinite {
+            let end = NotFinite {
                 step: self.step + 1,
-            });
+            };
+            self.ended = Some(end);
+            return Err(end);
         }
         self.energy.work += work;
         self.step += 1;
@@ -123,6 +135,23 @@ impl Simulation {
             self.step()?;
         }
         Ok(())
+    }
+
+    /// Whether every number read off the state is finite: squares leave the range of numbers before L itself does. A
+    /// finite energy means a finite Omega too.
+    fn can_be_read(&self) -> bool {
+        let body = &self.scenario.body.mechanics;
+        if !self.state.is_finite() {
+            return false;
+        }
+        // Far inside the range nothing can leave it: only what comes near the edge is looked at number by number.
+        if self.state.momentum.norm_squared() < self.safe_below {
+            return true;
+        }
+        let potential = self.motion.gravity * observables::weight_height(body, &self.state);
+        let energy = observables::kinetic_energy(body, &self.state) + potential;
+        let traced = observables::position(body, &self.state, self.scenario.trace);
+        energy.is_finite() && traced.iter().all(|c| c.is_finite())
     }
 
     /// Takes the state through the coming step and returns the work the pushes did on the way, J.
@@ -197,6 +226,7 @@ impl Simulation {
         self.motion = edit.motion;
         self.pushes = edit.pushes.as_slice().into();
         self.loads.gravity = self.motion.gravity;
+        self.safe_below = safe_below(&self.scenario, self.motion.gravity);
         self.loads.pushes.clear();
         self.scheme.load(&self.loads);
     }
@@ -294,5 +324,16 @@ fn counting(scenario: &Scenario) -> Counting {
         false => Counting::Seconds {
             written_for_s: scenario.written_for_s,
         },
+    }
+}
+
+/// |L|² (J² s²) below which energy and traced point cannot leave the range of numbers; 0 where they could at any L.
+fn safe_below(scenario: &Scenario, gravity: f64) -> f64 {
+    const EDGE: f64 = 1e300;
+    let body = &scenario.body.mechanics;
+    let weight = gravity.abs() * body.first_moment().norm();
+    match weight < EDGE && scenario.arm_m() < EDGE {
+        true => EDGE / body.inverse_inertia().trace().max(1.0),
+        false => 0.0,
     }
 }

@@ -3,9 +3,9 @@
 
 use super::document::set_key;
 use super::file::{BodyFile, EditFile, Frame, MotionFile, PushFile, ScenarioFile, StartFile};
-use super::keys::{self, MOST_POINTS};
-use super::problem::{Problem, nearest};
-use crate::physics::{self, PointMass, SchemeInfo, State, rotation};
+use super::keys::{self, KEYS, MOST_POINTS};
+use super::problem::{Problem, listed, nearest};
+use crate::physics::{self, PointMass, SchemeInfo, State, observables, rotation};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -173,6 +173,10 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Vec<Problem>> {
     let motion = motion(&file.motion);
     let pushes = pushes(&file.push, &body, "push")?;
     let edits = edits(&file, &body)?;
+    if !is_readable(&body, trace, &start, motion.gravity) {
+        let rule = "energy or traced point leave the range of floating-point numbers: use momentum, gravity and distances nearer to 1";
+        return Err(vec![Problem::at("start", rule)]);
+    }
     Ok(Scenario {
         body,
         trace,
@@ -186,13 +190,22 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Vec<Problem>> {
     })
 }
 
+/// Whether the first row of the run's CSV is made of finite numbers.
+fn is_readable(body: &Body, trace: usize, start: &State, gravity: f64) -> bool {
+    let body = &body.mechanics;
+    let energy = observables::kinetic_energy(body, start)
+        + gravity * observables::weight_height(body, start);
+    let traced = observables::position(body, start, trace);
+    energy.is_finite() && traced.iter().all(|c| c.is_finite())
+}
+
 fn no_top(body: &Body) -> Vec<Problem> {
     let names = body.names();
     let known = match names.len() {
         0 => "it has no named point: add a [[body.point]]".to_owned(),
         _ => format!(
             "name one of its points with trace = \"...\": {}",
-            names.join(", ")
+            listed(names.into_iter())
         ),
     };
     vec![Problem::at(
@@ -294,10 +307,11 @@ fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Vec<Problem>> {
             from_s: from.unwrap_or(0.0),
             for_s,
         },
+        (None, None, Some(_), None) => return wrong("does not say for how long: add for_s"),
         (first, steps, None, None) if first.is_some() || steps.is_some() => {
             return wrong("does not say for how long: add steps");
         }
-        (None, None, _, None) => return wrong("does not say for how long: add steps, or for_s"),
+        (None, None, None, None) => return wrong("does not say for how long: add steps, or for_s"),
         _ => {
             return wrong(
                 "counts in steps and in seconds: keep first_step and steps, or from_s and for_s",
@@ -354,10 +368,14 @@ fn edit(
     let here = format!("edit.{index}");
     if entry.step < *last {
         let rule = format!(
-            "({}) comes before the edit above it: edits stand in the order of their steps",
-            entry.step
+            "comes before the edit above it (step {last}): edits stand in the order of their steps"
         );
-        return Err(vec![Problem::at(format!("{here}.step"), rule)]);
+        let step = toml::Value::Integer(i64::try_from(entry.step).unwrap_or(i64::MAX));
+        return Err(vec![Problem::with_value(
+            format!("{here}.step"),
+            &step,
+            rule,
+        )]);
     }
     *last = entry.step;
     let mut touches = Touches {
@@ -366,7 +384,7 @@ fn edit(
     };
     for (key, value) in &entry.set {
         let inside = |problem: Problem| vec![moved(problem, &here, key)];
-        may_edit(key).map_err(inside)?;
+        may_edit(key, value).map_err(inside)?;
         set_key(table, key, value.clone()).map_err(inside)?;
         touches.time_step |= key == "motion.time_step_s";
         touches.segment |= key.starts_with("motion.");
@@ -405,7 +423,7 @@ fn moved(problem: Problem, here: &str, key: &str) -> Problem {
     }
 }
 
-fn may_edit(key: &str) -> Result<(), Problem> {
+fn may_edit(key: &str, value: &toml::Value) -> Result<(), Problem> {
     const MOTION: [&str; 3] = [
         "motion.gravity_m_per_s2",
         "motion.scheme",
@@ -414,9 +432,18 @@ fn may_edit(key: &str) -> Result<(), Problem> {
     if MOTION.contains(&key) || key.starts_with("push.") {
         return Ok(());
     }
-    let rule = format!(
-        "cannot be edited during a run (only {} and push.N can): set it in the scenario",
-        MOTION.join(", ")
-    );
+    if value.is_table() {
+        let rule = "must be a dotted key in quotes, such as \"motion.time_step_s\" = 0.05";
+        return Err(Problem::at(key, rule));
+    }
+    let rule = match nearest(key, MOTION.into_iter()) {
+        near if near.starts_with("did") && !KEYS.iter().any(|known| known.path == key) => {
+            format!("unknown key: {near}")
+        }
+        _ => format!(
+            "cannot be edited during a run (only {} and push.N can): set it in the scenario",
+            MOTION.join(", ")
+        ),
+    };
     Err(Problem::at(key, rule))
 }
