@@ -3,6 +3,7 @@
 //! Source: H. Goldstein, Classical Mechanics, section 5.7 (the heavy symmetrical top with one point fixed).
 
 use crate::physics::{LagrangeTop, State, SymmetricTop};
+use std::f64::consts::PI;
 use std::fmt;
 
 /// The theory of one heavy symmetric top under its present loads, of which only gravity is vertical by right: under a
@@ -21,8 +22,8 @@ pub struct Theory {
     pub slow_precession: Option<f64>,
     /// The fast root, rad/s; `None` too for a level axle.
     pub fast_precession: Option<f64>,
-    /// Mean precession of this very motion, rad/s.
-    pub precession: f64,
+    /// Mean precession of this very motion, rad/s; `None` where the axle passes through the vertical, and has no azimuth.
+    pub precession: Option<f64>,
     /// The fast top's nutation L3/I1, rad/s.
     pub fast_top_nutation: f64,
     /// Nutation period of this very motion, s; `None` where nothing returns.
@@ -64,6 +65,9 @@ impl fmt::Display for Path {
 /// A swing of the tilt below this (degrees) is rounding, and so is a difference between two tilts.
 const SAME_DEG: f64 = 1e-6;
 
+/// An axle that comes so near to the vertical (rad) passes through it but for rounding.
+const PASSES_RAD: f64 = 1e-7;
+
 impl Theory {
     /// The theory of `top` whose exact motion is `motion`, as it is in `state`; `load` is the moment of the load, N m,
     /// world frame, as [`Loads::on_axle`](crate::physics::Loads::on_axle) gives it.
@@ -89,7 +93,8 @@ impl Theory {
             fast_top_precession: (spin != 0.0).then(|| size / spin),
             slow_precession: slow,
             fast_precession: fast,
-            precession: motion.mean_precession(),
+            precession: (low > PASSES_RAD && high < PI - PASSES_RAD)
+                .then(|| motion.mean_precession()),
             fast_top_nutation: spin / top.across,
             nutation_period_s: motion.nutation_period(),
             tilt_range_deg,

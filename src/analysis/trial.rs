@@ -1,8 +1,10 @@
 //! A run played through beside the exact motion: how far it strays, and what of the constants of the motion it loses.
 
+use crate::physics::observables;
 use crate::run::{NotFinite, Simulation, Truth};
 use crate::scenario::Scenario;
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -25,6 +27,8 @@ pub struct Trial {
     pub spin_drift: f64,
     /// Largest deviation of L_z, likewise.
     pub lz_drift: f64,
+    /// Most turns of the body in one time step.
+    pub most_turns: f64,
     /// Time spent on stepping alone.
     pub stepping: Duration,
     /// Where the numbers stopped being finite, if they did.
@@ -95,6 +99,7 @@ impl Trial {
             energy_drift: None,
             spin_drift: 0.0,
             lz_drift: 0.0,
+            most_turns: 0.0,
             stepping: Duration::ZERO,
             broke: None,
         }
@@ -106,6 +111,11 @@ impl Trial {
         self.most_distance_m = self.most_distance_m.max(off.distance_m);
         self.spin_drift = self.spin_drift.max((off.spin / scale).abs());
         self.lz_drift = self.lz_drift.max((off.lz / scale).abs());
+        let body = &simulation.scenario().body.mechanics;
+        let omega = observables::angular_velocity(body, simulation.state()).norm();
+        self.most_turns = self
+            .most_turns
+            .max(omega * simulation.motion().time_step_s / TAU);
         let drift = simulation.energy_drift().map(f64::abs);
         self.energy_drift = drift.map(|drift| drift.max(self.energy_drift.unwrap_or(0.0)));
     }

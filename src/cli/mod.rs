@@ -3,8 +3,11 @@
 //! Data goes to stdout, talk to stderr. Exit codes: 0 done (a closed pipe too), 1 failed, 2 wrong usage, 130 Ctrl-C.
 
 mod args;
+mod compare;
 mod info;
+mod progress;
 mod run;
+mod scenario;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -29,6 +32,7 @@ pub fn main() -> ExitCode {
 fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
     match cli.command {
         Command::Run(args) => run::run(&args),
+        Command::Compare(args) => compare::compare(&args),
         Command::Presets { name } => info::presets(name.as_deref()),
         Command::Schemes => info::schemes(),
         Command::Check { files } => info::check(&files),

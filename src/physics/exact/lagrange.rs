@@ -39,7 +39,9 @@ use nalgebra::{Complex, Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3}
 
 /// Closed-form motion of a heavy symmetric top about a fixed point, under a constant load on its axle.
 ///
-/// Errors: a few units of rounding in the state, plus t times a few units of rounding of the frequencies.
+/// Errors: a few units of rounding in the state, plus t times a few units of rounding of the frequencies. A top that comes
+/// from afar within an angle d of the upright rest lingers there for a time that its start decides: rounding of the start
+/// then counts 1/d^2 times. (A start near that rest is held to rounding.)
 #[derive(Clone, Debug)]
 pub struct LagrangeTop {
     across: f64,
@@ -310,7 +312,7 @@ fn start(
 fn origin(turning: &Turning, lattice: &Lattice, start: &Start, one_minus_m: f64) -> (f64, bool) {
     let (above, below) = (turning.start_above, turning.start_below);
     let direction = if start.climb() < 0.0 { -1.0 } else { 1.0 };
-    if !(turning.swing > 0.0) {
+    if turning.swing <= 0.0 {
         return (0.0, true);
     }
     let low = above * one_minus_m.sqrt() <= below && below > 0.0;
@@ -371,10 +373,10 @@ fn cayley_klein(start: &Start, turn: UnitQuaternion<f64>) -> (Complex<f64>, Comp
     let (alpha, beta) = (Complex::new(turn.w, turn.k), Complex::new(turn.i, turn.j));
     let half_i_axle = start.axle * Complex::new(0.0, 0.5);
     if start.height > 0.0 {
-        let alpha = alpha * ((1.0 - 0.5 * start.below_top()).sqrt() / alpha.norm());
+        let alpha = alpha * ((1.0 - 0.5 * start.below_top()).sqrt() / alpha.norm_sqr().sqrt());
         (alpha, half_i_axle / alpha)
     } else {
-        let beta = beta * ((1.0 - 0.5 * start.above_bottom()).sqrt() / beta.norm());
+        let beta = beta * ((1.0 - 0.5 * start.above_bottom()).sqrt() / beta.norm_sqr().sqrt());
         (half_i_axle / beta, beta)
     }
 }
@@ -386,15 +388,11 @@ fn rotation_matrix(q: &Quaternion<f64>, scale: f64) -> Matrix3<f64> {
     let (xx, yy, zz) = (s * x * x, s * y * y, s * z * z);
     let (xy, xz, yz) = (s * x * y, s * x * z, s * y * z);
     let (wx, wy, wz) = (s * w * x, s * w * y, s * w * z);
-    Matrix3::new(
-        1.0 - (yy + zz),
-        xy - wz,
-        xz + wy,
-        xy + wz,
-        1.0 - (xx + zz),
-        yz - wx,
-        xz - wy,
-        yz + wx,
-        1.0 - (xx + yy),
-    )
+    #[rustfmt::skip]
+    let matrix = Matrix3::new(
+        1.0 - (yy + zz), xy - wz, xz + wy,
+        xy + wz, 1.0 - (xx + zz), yz - wx,
+        xz - wy, yz + wx, 1.0 - (xx + yy),
+    );
+    matrix
 }

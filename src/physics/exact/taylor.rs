@@ -61,7 +61,7 @@ impl AccurateMotion {
         let turn =
             UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(orientation));
         let mut motion = Self {
-            inverse_inertia: inverse(&inertia)?,
+            inverse_inertia: inertia.cholesky()?.inverse(),
             moment,
             momentum_unit: momentum.norm() + (moment.norm() * inertia.norm()).sqrt(),
             time: 0.0,
@@ -148,18 +148,6 @@ impl AccurateMotion {
     }
 }
 
-/// The inverse of a positive definite matrix, to the last bit or so: a fast spin multiplies its error by the angle turned.
-fn inverse(inertia: &Matrix3<f64>) -> Option<Matrix3<f64>> {
-    let rough = inertia.cholesky()?.inverse();
-    let residual = Matrix3::from_fn(|i, j| {
-        let unit = if i == j { 1.0 } else { 0.0 };
-        (0..3).fold(unit, |rest, k| {
-            libm::fma(-inertia[(i, k)], rough[(k, j)], rest)
-        })
-    });
-    Some(rough + rough * residual)
-}
-
 /// The k-th coefficient of a product of two series, from the products of their coefficients.
 fn convolve<T: core::ops::Add<Output = T>>(k: usize, product: impl Fn(usize, usize) -> T) -> T {
     (1..=k).fold(product(0, k), |sum, i| sum + product(i, k - i))
@@ -170,17 +158,13 @@ fn product_matrix(p: &Quaternion<f64>, q: &Quaternion<f64>) -> Matrix3<f64> {
     let (ww, xx, yy, zz) = (p.w * q.w, p.i * q.i, p.j * q.j, p.k * q.k);
     let (xy, xz, yz) = (2.0 * p.i * q.j, 2.0 * p.i * q.k, 2.0 * p.j * q.k);
     let (wx, wy, wz) = (2.0 * p.w * q.i, 2.0 * p.w * q.j, 2.0 * p.w * q.k);
-    Matrix3::new(
-        ww + xx - yy - zz,
-        xy - wz,
-        xz + wy,
-        xy + wz,
-        ww - xx + yy - zz,
-        yz - wx,
-        xz - wy,
-        yz + wx,
-        ww - xx - yy + zz,
-    )
+    #[rustfmt::skip]
+    let matrix = Matrix3::new(
+        ww + xx - yy - zz, xy - wz, xz + wy,
+        xy + wz, ww - xx + yy - zz, yz - wx,
+        xz - wy, yz + wx, ww - xx - yy + zz,
+    );
+    matrix
 }
 
 /// q (0, v), for v in the body frame.
