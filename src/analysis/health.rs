@@ -281,19 +281,18 @@ pub fn advise(scenario: &Scenario) -> Advice {
     if !is_affordable(scenario) {
         return Advice::Nothing;
     }
+    if holds(scenario.motion.time_step_s, scheme) {
+        return Advice::Holds;
+    }
     let mut tried_s = scenario.motion.time_step_s;
-    for step in time_steps(scenario) {
+    for step in finer_time_steps(scenario) {
         if holds(step, scheme) {
-            return if step == scenario.motion.time_step_s {
-                Advice::Holds
-            } else {
-                Advice::TimeStep(step)
-            };
+            return Advice::TimeStep(step);
         }
         tried_s = step;
     }
     let better = SchemeInfo::find(BETTER_SCHEME).unwrap_or(scheme);
-    match time_steps(scenario).find(|&step| holds(step, better)) {
+    match finer_time_steps(scenario).find(|&step| holds(step, better)) {
         Some(time_step_s) => Advice::Scheme {
             time_step_s,
             tried_s,
@@ -302,19 +301,22 @@ pub fn advise(scenario: &Scenario) -> Advice {
     }
 }
 
-/// The scenario's time step, then 5, 2 and 1 of every power of ten below it, while all of them together take no more
-/// steps than the search may.
-fn time_steps(scenario: &Scenario) -> impl Iterator<Item = f64> + use<> {
+/// 5, 2 and 1 of every power of ten below the scenario's time step in which the body turns by less than half a turn,
+/// while all of them together take no more steps than the search may.
+fn finer_time_steps(scenario: &Scenario) -> impl Iterator<Item = f64> + use<> {
     let begin = scenario.motion.time_step_s;
     let duration = scenario.steps as f64 * begin;
-    let most = SEARCH_STEPS as f64 * 14.0 / scenario.body.mechanics.points().len().max(14) as f64;
-    let decade = libm::floor(libm::log10(begin)) as i32;
-    let finer = (0..12).flat_map(move |down| [5, 2, 1].map(|digit| rounded(digit, decade - down)));
+    let body = &scenario.body.mechanics;
+    let most = SEARCH_STEPS as f64 * 14.0 / body.points().len().max(14) as f64;
+    let spin = observables::angular_velocity(body, &scenario.start).norm();
+    let coarsest = begin.min(PI / spin);
+    let decade = libm::floor(libm::log10(coarsest)) as i32;
     // An exact motion that has to be integrated is integrated anew for every trial.
-    let trials = (2.0 * AFFORDABLE_RAD / integration_rad(scenario)).min(64.0) as usize;
+    let trials = (AFFORDABLE_RAD / integration_rad(scenario)).clamp(4.0, 64.0) as usize;
     let mut spent = 0.0;
-    std::iter::once(begin)
-        .chain(finer.filter(move |&step| step < 0.999 * begin))
+    (0..12)
+        .flat_map(move |down| [5, 2, 1].map(|digit| rounded(digit, decade - down)))
+        .filter(move |&step| step < 0.999 * coarsest)
         .take_while(move |step| {
             spent += duration / step;
             spent <= most

@@ -8,7 +8,7 @@ use crate::scenario::Scenario;
 use std::sync::Arc;
 
 /// Radians of rotation through which the exact motion may be integrated on the side: less than a second's work.
-pub const AFFORDABLE_RAD: f64 = 1e6;
+pub const AFFORDABLE_RAD: f64 = 5e5;
 
 /// Follows one run from its start.
 #[derive(Clone, Debug)]
