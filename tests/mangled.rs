@@ -265,7 +265,7 @@ fn every_preset_survives_its_round_trip() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_mangled_file_is_refused_or_runs(text in mangled()) {
