@@ -101,7 +101,9 @@ impl Destination {
         if let Some(permissions) = new_permissions() {
             builder.permissions(permissions);
         }
-        let temporary = builder.tempfile_in(folder_of(&path)).map_err(plain)?;
+        let temporary = builder
+            .tempfile_in(folder_of(&path))
+            .map_err(|error| plain(&error))?;
         // A file that is replaced keeps its rights, whatever the umask.
         if let Ok(there) = fs::metadata(&path) {
             temporary.as_file().set_permissions(there.permissions())?;
@@ -187,7 +189,7 @@ fn new_permissions() -> Option<fs::Permissions> {
 }
 
 /// The system's words without the temporary name, which means nothing to the user.
-fn plain(error: io::Error) -> io::Error {
+fn plain(error: &io::Error) -> io::Error {
     let text = error.to_string();
     let words = text.split(" at path ").next().unwrap_or(&text);
     io::Error::new(error.kind(), words.to_owned())
