@@ -52,11 +52,10 @@ fn preset_list() -> anyhow::Result<String> {
 pub(super) fn schemes() -> anyhow::Result<ExitCode> {
     let mut text = String::new();
     for scheme in SCHEMES {
-        writeln!(
-            text,
-            "{:<8} order {}  {}",
-            scheme.name, scheme.order, scheme.about
-        )?;
+        let order = scheme
+            .order
+            .map_or("exact".to_owned(), |order| format!("order {order}"));
+        writeln!(text, "{:<8} {order:<8} {}", scheme.name, scheme.about)?;
         writeln!(text, "{:<17} {}", "", scheme.source)?;
     }
     print(&text)

@@ -12,6 +12,9 @@ use std::time::Duration;
 pub struct Summary {
     pub title: String,
     pub scheme: &'static str,
+    /// How the scheme went about it, where it has more than one way (`exact`).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scheme_kind: Option<String>,
     pub steps: u64,
     pub time_step_s: f64,
     pub t_s: f64,
@@ -51,6 +54,7 @@ impl Summary {
         Self {
             title: simulation.scenario().file.title.clone(),
             scheme: simulation.motion().scheme.name,
+            scheme_kind: simulation.remark(),
             steps: step,
             time_step_s: simulation.motion().time_step_s,
             t_s: time_s,
@@ -84,7 +88,10 @@ impl fmt::Display for Summary {
             None => "n/a".to_owned(),
         };
         writeln!(f, "{}", self.title)?;
-        writeln!(f, "  scheme        {}", self.scheme)?;
+        match &self.scheme_kind {
+            Some(kind) => writeln!(f, "  scheme        {} ({kind})", self.scheme)?,
+            None => writeln!(f, "  scheme        {}", self.scheme)?,
+        }
         writeln!(
             f,
             "  steps         {} of {} s",

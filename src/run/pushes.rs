@@ -88,8 +88,8 @@ fn factor(push: &Push, counting: Counting, stretch: &Stretch) -> f64 {
     }
 }
 
-/// A window in seconds, from and to.
-fn seconds(window: Window, counting: Counting) -> (f64, f64) {
+/// A window in seconds, from and to; infinite where it has none.
+pub fn seconds(window: Window, counting: Counting) -> (f64, f64) {
     match (window, counting) {
         (Window::Time { from_s, for_s }, _) => (from_s, from_s + for_s),
         (Window::Steps { first, count }, Counting::Seconds { written_for_s: dt }) => {

@@ -30,6 +30,8 @@ pub struct Scenario {
     pub motion: Motion,
     /// Length of the run in steps.
     pub steps: u64,
+    /// The time step for which its step counts were written, s.
+    pub written_for_s: f64,
     /// The pushes at the start.
     pub pushes: Vec<Push>,
     /// What the user changed during the run, in the order of the steps.
@@ -140,6 +142,11 @@ impl Body {
 }
 
 impl Scenario {
+    /// Distance of the traced point from the pivot, m: the measure of how far off a run may be.
+    pub fn arm_m(&self) -> f64 {
+        self.body.mechanics.points()[self.trace].at.norm()
+    }
+
     /// The run file: the scenario with its edits, and the version that wrote it. Reading it gives this scenario again.
     pub fn to_toml(&self) -> String {
         let version = Some(env!("CARGO_PKG_VERSION").to_owned());
@@ -176,6 +183,7 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Vec<Problem>> {
         start,
         motion,
         steps: file.motion.steps,
+        written_for_s: motion.time_step_s,
         pushes,
         edits,
         file,
