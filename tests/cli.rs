@@ -597,12 +597,22 @@ fn fifos_and_devices_are_written_directly() {
 fn ctrl_c_ends_a_run_with_130_and_leaves_nothing() {
     let lab = Lab::new();
     lab.write("old.csv", "precious");
-    for args in [&["-o", "new.csv"][..], &["-o", "old.csv", "--force"]] {
-        // The signal comes as soon as there is a temporary file, were it in the midst of its header.
+    // A header that takes its time: the signal comes in the midst of it.
+    let points =
+        (0..50_000).map(|n| format!("[[body.point]]\nname = \"p{n}\"\nat_m = [0, 0, 1]\n"));
+    let method_2 = done(lab.run(&["presets", "method-2"]));
+    let big = stdout(&method_2).to_owned() + &points.collect::<String>();
+    lab.write("big.toml", &big);
+    for (scenario, args) in [
+        ("method-2", &["-o", "new.csv"][..]),
+        ("method-2", &["-o", "old.csv", "--force"]),
+        ("big.toml", &["-o", "new.csv"]),
+    ] {
+        // The signal comes as soon as there is a temporary file.
         let huge = [
             &[
                 "run",
-                "method-2",
+                scenario,
                 "--steps",
                 "9000000000000000000",
                 "--every",
@@ -631,7 +641,7 @@ fn ctrl_c_ends_a_run_with_130_and_leaves_nothing() {
         assert!(killed.success());
         let output = child.wait_with_output().unwrap();
         assert_eq!(code(&output), 130, "{output:?}");
-        assert_eq!(lab.files(), ["old.csv"]);
+        assert_eq!(lab.files(), ["big.toml", "old.csv"]);
         assert_eq!(lab.read("old.csv"), "precious");
     }
 }

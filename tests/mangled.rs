@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use gyrolab::export::COLUMNS;
+use gyrolab::physics::scheme;
 use gyrolab::run::{Sample, Simulation};
 use gyrolab::scenario::presets::PRESETS;
 use gyrolab::scenario::problem::is_steering;
@@ -38,6 +39,7 @@ enum Accident {
     Insert(Index, String),
     Number(Index, String),
     Word(Index, Index),
+    Scheme(&'static str),
 }
 
 fn number() -> impl Strategy<Value = String> {
@@ -88,6 +90,7 @@ fn accident() -> impl Strategy<Value = Accident> {
         1 => (any::<Index>(), any::<String>()).prop_map(|(at, text)| Accident::Insert(at, text)),
         12 => (any::<Index>(), number()).prop_map(|(at, number)| Accident::Number(at, number)),
         1 => any::<(Index, Index)>().prop_map(|(a, b)| Accident::Word(a, b)),
+        4 => prop::sample::select(scheme::names().to_vec()).prop_map(Accident::Scheme),
     ]
 }
 
@@ -160,6 +163,14 @@ fn happen(text: &mut String, accident: &Accident) {
                 let word = text[from.get(&all).0..from.get(&all).1].to_owned();
                 let (begin, end) = *to.get(&all);
                 text.replace_range(begin..end, &word);
+            }
+        }
+        Accident::Scheme(name) => {
+            for known in scheme::names() {
+                *text = text.replace(
+                    &format!("scheme = \"{known}\""),
+                    &format!("scheme = \"{name}\""),
+                );
             }
         }
         Accident::Swap(..) | Accident::Double(_) => {}
@@ -265,7 +276,7 @@ fn every_preset_survives_its_round_trip() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_mangled_file_is_refused_or_runs(text in mangled()) {

@@ -395,7 +395,7 @@ fn hostile_sizes_get_short_answers() {
             .map(|n| format!("[[body.point]]\nname = \"p{n}\"\nat_m = [0, 0, 1]\n"))
             .collect::<String>()
     };
-    let deep = ["a"; 5_000].join(".");
+    let deep = ["a"; 50_000].join(".");
     let texts = [
         format!("{} = 1\n{WHOLE}", "k".repeat(3_000_000)),
         format!("{deep} = 1\n{WHOLE}"),
