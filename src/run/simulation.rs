@@ -47,7 +47,10 @@ struct EnergyAccount {
 
 /// The numbers of a run are no longer finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the numbers are no longer finite at step {step}: the run ends at step {}", step - 1)]
+#[error(
+    "the numbers are no longer finite at step {step}: the run ends at step {}; a shorter time step or another scheme may mend it",
+    step - 1
+)]
 pub struct NotFinite {
     /// The step that would have led to them.
     pub step: u64,

@@ -1,7 +1,7 @@
 //! The one table of keys: what each is called, what it may hold, in which unit, and what it means.
 //!
 //! Every file and every `--set` is held against it, so that a wrong name or value is refused in the same words
-//! wherever it comes from. Rules that need more than one value are in [`super::checks`].
+//! wherever it comes from. Rules that need more than one value are in `checks` and `parts`.
 
 use super::problem::{Problem, is_steering, nearest};
 use crate::physics::scheme;

@@ -86,7 +86,7 @@ impl LagrangeTop {
         let axle: Vector3<f64> = orientation.column(2).into();
         let up = up(load, momentum, axle);
         let vertical = frame_along(up.normalize());
-        let start = start(across, load, InFrame { vertical, up }, axle, momentum);
+        let start = start(across, load, &InFrame { vertical, up }, axle, momentum);
         let turning = Turning::new(&start);
         let (m, one_minus_m) = turning.parameters(&start);
         let lattice = Lattice::new(m, one_minus_m, 0.5 * turning.whole.sqrt());
@@ -287,7 +287,7 @@ fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
 fn start(
     across: f64,
     load: Vector3<f64>,
-    frame: InFrame,
+    frame: &InFrame,
     axle: Vector3<f64>,
     momentum: Vector3<f64>,
 ) -> Start {
