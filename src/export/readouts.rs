@@ -38,6 +38,8 @@ pub struct Readouts {
     pub predicted_nutation_period_s: Option<f64>,
     pub measured_nutation_period_s: Option<f64>,
     pub measured_nutation_uncertainty_s: Option<f64>,
+    /// Whether two time steps are shorter than the nutation: else what is measured is a strobe's picture of it.
+    pub nutation_is_resolved: Option<bool>,
     pub fast_top_nutation_rad_per_s: Option<f64>,
     pub L_axle_Js: Option<f64>,
     pub sleeping_limit_Js: Option<f64>,
@@ -81,6 +83,9 @@ impl Readouts {
             predicted_nutation_period_s: theory.and_then(|theory| theory.nutation_period_s),
             measured_nutation_period_s: nutation.map(|measured| measured.value),
             measured_nutation_uncertainty_s: uncertainty(nutation),
+            nutation_is_resolved: theory
+                .and_then(|theory| theory.nutation_period_s)
+                .map(|period| 2.0 * simulation.motion().time_step_s < period),
             fast_top_nutation_rad_per_s: theory.map(|theory| theory.fast_top_nutation),
             L_axle_Js: theory.map(|theory| theory.spin),
             sleeping_limit_Js: theory.map(|theory| theory.sleeping_limit),
@@ -169,7 +174,7 @@ fn beside(
         (Some(value), Some(uncertainty)) => {
             format!("{value:.6} +- {uncertainty:.1e} {unit} measured")
         }
-        _ => "none measured yet".to_owned(),
+        _ => "none measured".to_owned(),
     };
     match predicted {
         Some(value) => format!("{value:.6} {unit} by theory, {measured}"),
@@ -192,7 +197,11 @@ impl fmt::Display for Readouts {
             self.measured_nutation_uncertainty_s,
         );
         writeln!(f, "  precession    {precession}")?;
-        writeln!(f, "  nutation      {nutation}")?;
+        let strobed = match self.nutation_is_resolved {
+            Some(false) => ": a strobe's picture, the time step is too long to see it",
+            _ => "",
+        };
+        writeln!(f, "  nutation      {nutation}{strobed}")?;
         self.write_theory(f)?;
         self.write_scheme(f)?;
         if let (Some(spin), Some(lz)) = (self.L_axle_drift_Js, self.Lz_drift_Js) {
