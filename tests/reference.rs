@@ -12,14 +12,20 @@ use std::sync::Arc;
 
 /// Rows of step, t, x, y, z, Lx, Ly, Lz.
 fn reference(name: &str) -> Vec<[f64; 8]> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference").join(format!("{name}.csv"));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/reference")
+        .join(format!("{name}.csv"));
     let mut rows = csv::Reader::from_path(path).expect("the reference is there");
-    rows.deserialize().map(|row| row.expect("eight numbers a row")).collect()
+    rows.deserialize()
+        .map(|row| row.expect("eight numbers a row"))
+        .collect()
 }
 
 /// Largest deviations in position (m) and momentum (J s) over all rows of the reference.
 fn deviations(name: &str) -> (f64, f64) {
-    let scenario = Document::open(name).and_then(|document| document.scenario()).expect("a preset");
+    let scenario = Document::open(name)
+        .and_then(|document| document.scenario())
+        .expect("a preset");
     let mut simulation = Simulation::new(Arc::new(scenario));
     let (mut of_position, mut of_momentum) = (0.0f64, 0.0f64);
     let rows = reference(name);
@@ -27,11 +33,20 @@ fn deviations(name: &str) -> (f64, f64) {
     for [step, t, x, y, z, lx, ly, lz] in rows {
         simulation.step_to(step as u64).expect("finite");
         let sample = simulation.sample();
-        assert!((sample.time_s - t).abs() <= 1e-12 * t, "{name}, step {step}: t = {}", sample.time_s);
+        assert!(
+            (sample.time_s - t).abs() <= 1e-12 * t,
+            "{name}, step {step}: t = {}",
+            sample.time_s
+        );
         of_position = of_position.max((sample.position - nalgebra::Vector3::new(x, y, z)).amax());
-        of_momentum = of_momentum.max((sample.momentum - nalgebra::Vector3::new(lx, ly, lz)).amax());
+        of_momentum =
+            of_momentum.max((sample.momentum - nalgebra::Vector3::new(lx, ly, lz)).amax());
     }
-    assert_eq!(simulation.step_number(), simulation.scenario().steps, "{name}: the reference covers the run");
+    assert_eq!(
+        simulation.step_number(),
+        simulation.scenario().steps,
+        "{name}: the reference covers the run"
+    );
     println!("{name}: {of_position:.1e} m, {of_momentum:.1e} J s");
     (of_position, of_momentum)
 }

@@ -1,11 +1,11 @@
 //! `gyrolab run`: a run from its start to its end, without a terminal.
 
-use super::args::{Cli, RunArgs, ScenarioArgs};
-use super::{INTERRUPTED, complain};
+use super::args::{Cli, RunArgs};
+use super::{INTERRUPTED, changed, complain};
 use crate::export::stream::{self, Ended, Progress};
 use crate::export::{CsvWriter, Destination, Summary};
 use crate::run::Simulation;
-use crate::scenario::{Document, Problems, Scenario};
+use crate::scenario::{Problems, Scenario};
 use anyhow::Context;
 use clap::CommandFactory;
 use clap::error::ErrorKind;
@@ -57,7 +57,7 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 
 /// The scenario with all that the command line changes in it, so that its run file tells the whole run.
 fn scenario_of(args: &RunArgs) -> Result<Scenario, Problems> {
-    let mut document = changed_document(&args.scenario)?;
+    let mut document = changed(&args.scenario.scenario, &args.scenario.changes)?;
     if let Some(steps) = args.steps {
         document.set(&format!("motion.steps={steps}"))?;
     }
@@ -68,17 +68,6 @@ fn scenario_of(args: &RunArgs) -> Result<Scenario, Problems> {
     let steps = Simulation::step_at(&scenario, duration).clamp(1, i64::MAX as u64);
     document.set(&format!("motion.steps={steps}"))?;
     document.scenario()
-}
-
-fn changed_document(args: &ScenarioArgs) -> Result<Document, Problems> {
-    let mut document = Document::open(&args.scenario)?;
-    for set in &args.set {
-        document.set(set)?;
-    }
-    if let Some(scheme) = &args.scheme {
-        document.set(&format!("motion.scheme={scheme}"))?;
-    }
-    Ok(document)
 }
 
 fn cannot_write(path: &Path) -> String {

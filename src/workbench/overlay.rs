@@ -1,0 +1,87 @@
+//! The exact motion beside the run: followed in time, recorded as the run is, and how far apart the two are.
+
+use super::path::Path;
+use super::recording::{Moment, Recording};
+use crate::run::Truth;
+use crate::scenario::Scenario;
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+/// The exact motion from the start to (almost) now.
+pub struct Overlay {
+    truth: Truth,
+    traced: Vector3<f64>,
+    /// Time between two looks at it, s.
+    spacing_s: f64,
+    looks: u64,
+    now: Moment,
+    recording: Recording,
+    path: Path,
+}
+
+impl Overlay {
+    /// The exact motion of `scenario`, to be looked at once a time step.
+    pub fn new(scenario: &Arc<Scenario>) -> Self {
+        let traced = scenario.body.mechanics.points()[scenario.trace].at;
+        let now = Moment::new(&scenario.start, &traced);
+        let mut overlay = Self {
+            truth: Truth::new(Arc::clone(scenario)),
+            traced,
+            spacing_s: scenario.motion.time_step_s,
+            looks: 0,
+            now,
+            recording: Recording::default(),
+            path: Path::new(traced.norm()),
+        };
+        overlay.look(now);
+        overlay
+    }
+
+    /// Follows it to `time_s` (s), look by look, until `enough` says that there is no more time for it.
+    pub fn follow(&mut self, time_s: f64, mut enough: impl FnMut() -> bool) {
+        while self.now.time_s < time_s {
+            let next = self.now.time_s + self.spacing_s;
+            // The last look falls on the run's own time, whatever the rounding of the sums on the way.
+            let next = if next > time_s - 0.5 * self.spacing_s {
+                time_s
+            } else {
+                next
+            };
+            let state = self.truth.advance_to(next);
+            self.look(Moment {
+                time_s: next,
+                ..Moment::new(&state, &self.traced)
+            });
+            if enough() {
+                return;
+            }
+        }
+    }
+
+    fn look(&mut self, moment: Moment) {
+        self.recording.push(&moment);
+        self.path.follow(self.looks, &moment.position);
+        self.looks += 1;
+        self.now = moment;
+    }
+
+    /// How far the run's `moment` is from the exact motion at the same time, m; `None` while that is behind.
+    pub fn distance(&self, moment: &Moment) -> Option<f64> {
+        (self.now.time_s >= moment.time_s).then(|| (self.now.position - moment.position).norm())
+    }
+
+    /// Where the exact motion stands.
+    pub fn now(&self) -> &Moment {
+        &self.now
+    }
+
+    /// Its curves over time.
+    pub fn recording(&self) -> &Recording {
+        &self.recording
+    }
+
+    /// Its path from above.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}

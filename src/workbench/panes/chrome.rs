@@ -1,0 +1,143 @@
+//! The lines around the panes: title, health, hint and keys.
+
+use super::{wrapped, write};
+use crate::workbench::keymap::{BINDINGS, Mode};
+use crate::workbench::lab::Lab;
+use crate::workbench::readouts::Readouts;
+use crate::workbench::theme::Role;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+/// Title and scheme on the left; time, step and pace on the right, in fixed columns.
+pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let theme = &lab.view().theme;
+    let scenario = lab.run().scenario();
+    let motion = lab.run().simulation().motion();
+    let right = clock(lab.readouts(), motion.time_step_s);
+    let room = area.width.saturating_sub(right.chars().count() as u16 + 2);
+    let left = Rect {
+        width: if room < 12 { area.width } else { room },
+        ..area
+    };
+    let name = write(
+        left,
+        (1, 0),
+        &scenario.file.title,
+        theme.style(Role::Heading),
+        buf,
+    );
+    let details = format!(
+        " · {} scheme · dt {} s",
+        motion.scheme.name, motion.time_step_s
+    );
+    write(left, (name, 0), &details, theme.style(Role::Quiet), buf);
+    if room >= 12 {
+        write(
+            area,
+            (area.width - right.chars().count() as u16, 0),
+            &right,
+            theme.style(Role::Text),
+            buf,
+        );
+    }
+}
+
+fn clock(readouts: &Readouts, time_step_s: f64) -> String {
+    let digits = (-time_step_s.log10()).ceil().clamp(0.0, 6.0) as usize;
+    let sample = &readouts.sample;
+    format!(
+        "t {:>8.digits$} s  step {:<8}{:<11}",
+        sample.time_s, sample.step, readouts.pace
+    )
+}
+
+/// What is wrong with the numbers, in words.
+pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let theme = &lab.view().theme;
+    let health = &lab.readouts().health;
+    let mut x = 1;
+    for (index, sentence) in health.sentences().iter().enumerate() {
+        let role = if index == 0 && health.warns() {
+            Role::Warning
+        } else {
+            Role::Text
+        };
+        if index > 0 {
+            x = write(area, (x, 0), " · ", theme.style(Role::Quiet), buf);
+        }
+        x = write(area, (x, 0), sentence, theme.style(role), buf);
+    }
+}
+
+/// What is to be said now; else what there is to see; on a small screen, that there would be more.
+pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
+    let look_at = lab
+        .run()
+        .scenario()
+        .file
+        .view
+        .as_ref()
+        .and_then(|view| view.look_at.as_deref());
+    let cramped = format!(
+        "{}x{}: 80x24 shows all panes; Tab goes through them",
+        lab.size().width,
+        lab.size().height
+    );
+    let (text, role) = match (lab.count(), lab.notice(), is_cramped) {
+        (Some(count), ..) => (format!("{count} times: which key?"), Role::Focus),
+        (_, Some(notice), _) => (notice.to_owned(), Role::Focus),
+        (_, _, true) => (cramped, Role::Quiet),
+        (_, _, false) => (
+            look_at
+                .unwrap_or("r begins the run again, o opens another")
+                .to_owned(),
+            Role::Text,
+        ),
+    };
+    let style = lab.view().theme.style(role);
+    for (line, y) in wrapped(&text, area.width.saturating_sub(2) as usize)
+        .iter()
+        .zip(0..area.height)
+    {
+        write(area, (1, y), line, style, buf);
+    }
+}
+
+/// The keys of the mode, as many as fit; help and quit always.
+pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let theme = &lab.view().theme;
+    let mut x = 1;
+    for (key, word) in footer(lab.mode(), lab.is_running(), area.width as usize) {
+        x = write(area, (x, 0), &key, theme.style(Role::Focus), buf);
+        x = write(area, (x + 1, 0), word, theme.style(Role::Quiet), buf) + 2;
+    }
+}
+
+fn footer(mode: Mode, is_running: bool, width: usize) -> Vec<(String, &'static str)> {
+    let rows = BINDINGS
+        .iter()
+        .filter(|row| row.modes.contains(&mode) && !row.footer.is_empty());
+    let mut words: Vec<_> = rows
+        .map(|row| {
+            let word = if row.footer == "pause" && !is_running {
+                "go on"
+            } else {
+                row.footer
+            };
+            (row.keys[0].to_string(), word)
+        })
+        .collect();
+    if mode != Mode::Lab {
+        words.insert(0, ("Esc".to_owned(), "close"));
+    }
+    let length = |words: &[(String, &str)]| {
+        words
+            .iter()
+            .map(|(key, word)| key.len() + word.len() + 3)
+            .sum::<usize>()
+    };
+    while words.len() > 2 && length(&words) > width {
+        words.remove(words.len() - 3); // the last two are help and quit
+    }
+    words
+}

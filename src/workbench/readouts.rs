@@ -1,0 +1,73 @@
+//! The numbers on the screen, read off a few times a second: digits that change in every frame can be read by nobody,
+//! and a slow line has better things to carry.
+
+use super::health::Health;
+use super::live::LiveRun;
+use super::pace::{Pace, Speed};
+use crate::run::Sample;
+use std::time::Duration;
+
+/// Time between two readings while the run goes on.
+pub const EVERY: Duration = Duration::from_millis(250);
+
+/// One reading.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Readouts {
+    /// The run's numbers at its step.
+    pub sample: Sample,
+    /// Mean rate of the axle's azimuth since the start, degrees a second; `None` at the start.
+    pub precession_deg_per_s: Option<f64>,
+    /// How far the numbers can be trusted.
+    pub health: Health,
+    /// Whether the run goes on, and how fast.
+    pub pace: String,
+}
+
+impl Readouts {
+    /// Reads `run`, whose azimuth at the start was `azimuth_at_start_deg`.
+    pub fn new(run: &LiveRun, pace: &Pace, azimuth_at_start_deg: f64) -> Self {
+        let sample = run.simulation().sample();
+        let turned = sample.azimuth_deg - azimuth_at_start_deg;
+        Self {
+            precession_deg_per_s: (sample.time_s > 0.0).then(|| turned / sample.time_s),
+            health: Health::of(run),
+            pace: pace_in_words(pace),
+            sample,
+        }
+    }
+}
+
+fn pace_in_words(pace: &Pace) -> String {
+    match (pace.is_running(), pace.speed()) {
+        (false, Speed::Times(speed)) => format!("paused ×{}", short(speed)),
+        (false, Speed::Top) => "paused, top speed".to_owned(),
+        (true, Speed::Top) => format!("▶ top: ×{}", short(two_digits(pace.achieved()))),
+        (true, Speed::Times(speed)) if pace.falls_behind() => {
+            format!(
+                "▶ ×{} of ×{}",
+                short(two_digits(pace.achieved())),
+                short(speed)
+            )
+        }
+        (true, Speed::Times(speed)) => format!("▶ ×{}", short(speed)),
+    }
+}
+
+/// `number` without the digits that only flicker.
+fn two_digits(number: f64) -> f64 {
+    if !(number > 0.0 && number.is_finite()) {
+        return 0.0;
+    }
+    let unit = libm::exp10(number.log10().floor() - 1.0);
+    (number / unit).round() * unit
+}
+
+/// As few digits as say it: 20, 0.002, 5e5.
+fn short(number: f64) -> String {
+    match number {
+        n if n >= 1e5 => format!("{n:.0e}"),
+        n if n >= 10.0 => format!("{n:.0}"),
+        n if n >= 1e-3 => format!("{}", (n * 1e6).round() / 1e6),
+        n => format!("{n:.0e}"),
+    }
+}
