@@ -24,7 +24,7 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     }
     chrome::title(lab, layout.title, buf);
     chrome::health(lab, layout.health, buf);
-    chrome::hint(lab, layout.is_cramped, layout.hint, buf);
+    chrome::hint(lab, keys && layout.is_cramped, layout.hint, buf);
     chrome::keys(lab, layout.keys, buf);
     draw_on_top(lab, body(&layout), buf);
     if lab.view().marker == Marker::Ascii {

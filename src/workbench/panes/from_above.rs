@@ -120,15 +120,18 @@ impl FromAbove<'_> {
         let cells = (length_m / plan.cell_width_m).round() as usize;
         let bar = format!("├{}┤ {length_m} m", "─".repeat(cells.saturating_sub(2)));
         let end = write(area, (0, 0), &bar, theme.style(Role::Quiet), buf);
-        let legend = if self.run.overlay().is_some() {
-            "o now e exact"
-        } else {
-            "o now"
+        let legends: &[&str] = match self.run.overlay() {
+            Some(_) => &["o now e exact", "e exact"],
+            None => &["o now"],
         };
-        if let Some(x) = area
-            .width
-            .checked_sub(legend.len() as u16)
-            .filter(|&x| x > end)
+        let place = |legend: &&str| {
+            area.width
+                .checked_sub(legend.len() as u16)
+                .filter(|&x| x > end)
+        };
+        if let Some((legend, x)) = legends
+            .iter()
+            .find_map(|legend| Some((legend, place(legend)?)))
         {
             write(area, (x, 0), legend, theme.style(Role::Quiet), buf);
         }

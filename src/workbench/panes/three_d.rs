@@ -71,7 +71,7 @@ impl ThreeD<'_> {
         if let Some(overlay) = self.run.overlay() {
             scene.path(overlay.recording(), Ink::Faint(Role::Exact));
         }
-        scene.path(self.run.recording(), Ink::Strong(Role::Path));
+        scene.path(self.run.recording(), Ink::Faint(Role::Path));
     }
 
     /// The rim as a polygon through its points, one spoke to see it turn, and the axle.
