@@ -11,6 +11,9 @@ use std::sync::Arc;
 /// Between two looks at the clock a body of one point takes this many steps; one of n points an n-th of it.
 const STEPS_PER_LOOK: usize = 4096;
 
+/// Parts of a time step smaller than this are rounding, not time.
+const ROUNDING: f64 = 1e-6;
+
 /// A run under observation.
 pub struct LiveRun {
     simulation: Simulation,
@@ -84,8 +87,8 @@ impl LiveRun {
         let look_every = (STEPS_PER_LOOK / self.scenario().body.mechanics.points().len()).max(1);
         let mut until_look = look_every;
         let end = loop {
-            let next_s = self.now.time_s + self.simulation.motion().time_step_s;
-            if next_s - begin_s > time_s {
+            let time_step_s = self.simulation.motion().time_step_s;
+            if self.now.time_s + time_step_s - begin_s > time_s + ROUNDING * time_step_s {
                 break PlayEnd::InTime;
             }
             if self.simulation.step_number() >= stop {

@@ -1,6 +1,5 @@
 //! The path of the traced point from above, x to the right and y up: a true circle at every size.
 
-use super::traces::nice_above;
 use super::{frame, write};
 use crate::workbench::dots::{Dots, Ink};
 use crate::workbench::live::LiveRun;
@@ -12,6 +11,9 @@ use ratatui::widgets::Widget;
 
 /// The least radius shown, m: a path that never leaves the vertical has none of its own.
 const LEAST: f64 = 1e-6;
+
+/// The radius shown grows by this factor's exponential, or not at all.
+const STEP: f64 = 0.05;
 
 /// The view from above on a run.
 pub struct FromAbove<'a> {
@@ -56,7 +58,9 @@ impl FromAbove<'_> {
             .run
             .overlay()
             .map_or(0.0, |overlay| overlay.path().radius());
-        nice_above(self.run.path().radius().max(exact).max(LEAST) * 1.02)
+        let radius = self.run.path().radius().max(exact).max(LEAST);
+        // In steps of 5 %: the picture shall not breathe with every millimetre.
+        libm::exp((libm::log(radius) / STEP).ceil() * STEP) * 1.02
     }
 
     fn path(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {

@@ -246,7 +246,7 @@ fn draw(dots: &mut Dots, extents: &[Option<Extent>], scale: &Scale, ink: Ink) {
 }
 
 /// The smallest of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value` (> 0).
-pub(super) fn nice_above(value: f64) -> f64 {
+fn nice_above(value: f64) -> f64 {
     const STEPS: [f64; 11] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
     let unit = libm::exp10(value.log10().floor());
     let step = STEPS
