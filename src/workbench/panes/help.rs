@@ -20,11 +20,14 @@ pub struct Help<'a> {
 
 impl Widget for Help<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let inside = frame_on_top("keys: Esc or ? closes, arrows move", area, self.theme, buf);
         let lines = lines();
-        let scroll = self
-            .scroll
-            .min(lines.len().saturating_sub(inside.height as usize));
+        let room = area.height.saturating_sub(2) as usize;
+        let scroll = self.scroll.min(lines.len().saturating_sub(room));
+        let title = match lines.len().saturating_sub(scroll + room) {
+            0 => "keys: Esc closes".to_owned(),
+            more => format!("keys: Esc closes, arrow down shows {more} more"),
+        };
+        let inside = frame_on_top(&title, area, self.theme, buf);
         for (line, y) in lines.iter().skip(scroll).zip(0..inside.height) {
             let row = Rect {
                 y: inside.y + y,

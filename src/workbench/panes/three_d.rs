@@ -3,7 +3,7 @@
 use super::{frame, write};
 use crate::workbench::dots::{Dots, Ink};
 use crate::workbench::live::LiveRun;
-use crate::workbench::recording::Recording;
+use crate::workbench::recording::{Curve, Recording};
 use crate::workbench::theme::Role;
 use crate::workbench::view::{Pane, View};
 use nalgebra::Vector3;
@@ -13,8 +13,10 @@ use ratatui::widgets::Widget;
 
 /// Length of the longer vectors, of the distance between pivot and traced point.
 const VECTOR: f64 = 1.15;
-/// Half the picture's height, of the same.
-const HALF_HEIGHT: f64 = 1.25;
+/// What the picture shows of z, lowest and highest, of the same: for a body that has always stood above the pivot, and
+/// for one that has hung.
+const STANDING: (f64, f64) = (-0.45, 1.25);
+const HANGING: (f64, f64) = (-1.25, 1.25);
 /// Points of the body beyond this many are not drawn as a wheel.
 const MOST_SPOKES: usize = 400;
 
@@ -134,7 +136,8 @@ impl ThreeD<'_> {
 struct Scene<'a> {
     view: &'a View,
     dots: Dots,
-    middle: (f64, f64),
+    /// Where the pivot stands, dots.
+    pivot: (f64, f64),
     /// Dots in a metre, across and down.
     across: f64,
     down: f64,
@@ -148,11 +151,24 @@ impl<'a> Scene<'a> {
             area.height as f64 * in_y as f64,
         );
         let aspect = pane.view.marker.dot_aspect();
-        let down = (0.5 * height).min(0.5 * width * aspect) / (HALF_HEIGHT * pane.reach());
+        let lowest = pane
+            .run
+            .recording()
+            .whole()
+            .map_or(0.0, |whole| whole.extents[Curve::Z as usize].min);
+        let (bottom, top) = if lowest < 0.0 { HANGING } else { STANDING };
+        let (half_height, middle) = (0.5 * (top - bottom), 0.5 * (top + bottom));
+        let reach = pane.reach();
+        let down = (0.5 * height / half_height).min(0.5 * width * aspect / HANGING.1) / reach;
+        let (_, above_pivot) = pane
+            .view
+            .camera
+            .project(&Vector3::new(0.0, 0.0, middle * reach));
+        let pivot = (0.5 * width, 0.5 * height + above_pivot * down);
         Self {
             view: pane.view,
             dots,
-            middle: (0.5 * width, 0.5 * height),
+            pivot,
             across: down / aspect,
             down,
         }
@@ -161,8 +177,8 @@ impl<'a> Scene<'a> {
     fn dot(&self, point: &Vector3<f64>) -> (f64, f64) {
         let (right, up) = self.view.camera.project(point);
         (
-            self.middle.0 + right * self.across,
-            self.middle.1 - up * self.down,
+            self.pivot.0 + right * self.across,
+            self.pivot.1 - up * self.down,
         )
     }
 

@@ -28,7 +28,7 @@ impl Widget for Traces<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
         let inside = frame(
-            "axle top over time",
+            &self.title(),
             area,
             self.view.focus == Pane::Traces,
             theme,
@@ -75,6 +75,10 @@ impl Widget for Traces<'_> {
 }
 
 impl Traces<'_> {
+    fn title(&self) -> String {
+        let named = self.run.scenario().file.trace.as_deref();
+        format!("{} over time", named.unwrap_or("axle top"))
+    }
     fn sweep(&self, inside: Rect) -> Sweep {
         let across = self.view.marker.dots().0;
         let columns = inside.width as usize * across;
