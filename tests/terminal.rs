@@ -167,7 +167,7 @@ fn it_opens_runs_and_leaves() {
     let mut session = Session::open(&[]);
     session.wait_for("q quit");
     session.wait_for("Method 2");
-    session.wait_for("▶ ×20");
+    session.wait_for("► ×20");
     session.press("q");
     assert_eq!(session.wait_for_end().exit_code(), 0);
     session.has_given_the_terminal_back();

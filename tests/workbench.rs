@@ -192,7 +192,7 @@ fn a_teacher_stops_steps_and_goes_on() {
     stage
         .press(" ")
         .wait(1.0)
-        .shows("▶ ×20")
+        .shows("► ×20")
         .shows("space pause");
     assert_eq!(stage.step(), 411);
     stage.press("r").wait(0.0);

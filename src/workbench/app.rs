@@ -42,9 +42,9 @@ pub fn run(mut lab: Lab, frames: u32) -> io::Result<()> {
 
 /// How long there is time for events alone, with `to_frame` to go to the next frame.
 fn wait(lab: &Lab, to_frame: Duration) -> Duration {
-    if lab.is_flat_out() {
+    if lab.playback().is_flat_out() {
         Duration::ZERO
-    } else if lab.is_busy() {
+    } else if lab.playback().is_busy() {
         // At least a little: a run too slow to change anything by the next frame must not spin.
         to_frame.max(Duration::from_millis(1))
     } else {

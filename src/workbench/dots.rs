@@ -77,8 +77,8 @@ impl Dots {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = dx.abs().max(dy.abs()).ceil();
         let longest = 4.0 * (self.width() + self.height()) as f64;
-        if !(length <= longest) {
-            return; // not a number, or nowhere near the sheet
+        if length.is_nan() || length > longest {
+            return; // nowhere near the sheet
         }
         for dot in 0..=length as usize {
             let share = if length > 0.0 {

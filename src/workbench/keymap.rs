@@ -221,7 +221,6 @@ mod tests {
                 | A::PreviousPane
                 | A::FillScreen
                 | A::ThreeD
-                | A::ThreeD
                 | A::Move(_)
                 | A::WiderWindow
                 | A::NarrowerWindow

@@ -4,31 +4,26 @@ use super::action::{Action, Direction};
 use super::browser::Browser;
 use super::keymap::Mode;
 use super::layout::Layout;
-use super::live::{LiveRun, PlayEnd};
-use super::pace::{Pace, Speed};
+use super::live::LiveRun;
+use super::notice::Notice;
+use super::playback::{Halt, Playback};
 use super::readouts::{self, Readouts};
 use super::view::{Pane, View};
 use crate::run::NotFinite;
 use crate::scenario::{Document, Scenario};
 use ratatui::layout::Rect;
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Longest stretch of stepping between two looks at the keyboard.
-const STEPPING: Duration = Duration::from_millis(25);
-/// The exact motion's share of that, and of a frame of 15 a second: a tenth.
-const FOLLOWING: (Duration, Duration) = (Duration::from_micros(2500), Duration::from_millis(6));
-/// How long a notice stands.
-const NOTICE: Duration = Duration::from_secs(5);
-/// Playback speed where the scenario names none, simulated seconds a second.
-const SPEED: f64 = 1.0;
 /// Rows of a page in lists.
 const PAGE: isize = 10;
 /// Degrees the camera turns at a key.
 const TURN_DEG: f64 = 10.0;
 /// The longest count that can be typed.
 const MOST_COUNTED: u64 = 999_999_999;
+/// Repeating something on the screen more often than this shows nothing new.
+const MOST_REPEATED: u64 = 1000;
 
 /// What the loop must do that the lab cannot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,23 +40,16 @@ pub enum Request {
 pub struct Lab {
     /// SCENARIO as it was opened.
     name: String,
-    run: LiveRun,
-    azimuth_at_start_deg: f64,
-    pace: Pace,
-    /// The step at which it pauses by itself: the scenario's end at first, or where an errand of steps leads.
-    stop: u64,
-    /// Whether it is on its way to `stop` as fast as it can.
-    errand: bool,
-    view: View,
+    playback: Playback,
     readouts: Readouts,
     read_at: Duration,
+    view: View,
     mode: Mode,
     /// The mode under the help.
     under_help: Mode,
     browser: Browser,
-    folder: PathBuf,
     count: Option<u64>,
-    notice: Option<(String, Duration)>,
+    notice: Notice,
     now: Duration,
     size: Rect,
     changed: bool,
@@ -70,26 +58,18 @@ pub struct Lab {
 impl Lab {
     /// A lab with the run of `scenario`, opened as `name`, at step 0.
     pub fn new(name: &str, scenario: Arc<Scenario>, view: View, running: bool) -> Self {
-        let pace = Pace::new(speed(&scenario), running);
-        let stop = scenario.steps;
-        let run = LiveRun::new(scenario);
-        let azimuth_at_start_deg = run.simulation().sample().azimuth_deg;
+        let playback = Playback::new(scenario, running);
         Self {
             name: name.to_owned(),
-            readouts: Readouts::new(&run, &pace, azimuth_at_start_deg),
-            run,
-            azimuth_at_start_deg,
-            pace,
-            stop,
-            errand: false,
-            view,
+            readouts: playback.read(),
+            playback,
             read_at: Duration::ZERO,
+            view,
             mode: Mode::Lab,
             under_help: Mode::Lab,
             browser: Browser::default(),
-            folder: PathBuf::from("."),
             count: None,
-            notice: None,
+            notice: Notice::default(),
             now: Duration::ZERO,
             size: Rect::new(0, 0, 80, 24),
             changed: true,
@@ -101,14 +81,9 @@ impl Lab {
     /// # Errors
     /// When the numbers stop being finite on the way.
     pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
-        while self.run.simulation().step_number() < step {
-            self.run.step()?;
-        }
-        if step >= self.stop {
-            self.stop = u64::MAX;
-        }
+        let arrived = self.playback.begin_at(step);
         self.read_now();
-        Ok(())
+        arrived
     }
 
     /// Lets time pass up to now, as `clock` tells it (since the lab was opened): steps, follows the exact motion, reads.
@@ -116,86 +91,54 @@ impl Lab {
         let now = clock();
         let wall = now.saturating_sub(self.now);
         self.now = now;
-        self.expire_notice();
-        let owed_s = if self.errand {
-            f64::INFINITY
-        } else {
-            self.pace.earn(wall)
-        };
-        if owed_s > 0.0 {
-            self.play(owed_s, wall, clock);
+        self.changed |= self.notice.expire(now);
+        let before = self.playback.step_number();
+        if let Some(halt) = self.playback.advance(now, wall, clock) {
+            self.halted(halt);
         }
-        if self.run.overlay_is_behind() {
-            let deadline = clock()
-                + if self.is_flat_out() {
-                    FOLLOWING.0
-                } else {
-                    FOLLOWING.1
-                };
-            self.run.follow_exact(|| clock() >= deadline);
+        self.changed |= self.playback.step_number() != before;
+        if self.run().overlay_is_behind() {
+            self.playback.follow_exact(clock);
             self.changed = true;
         }
-        if self.changed && self.now >= self.read_at + readouts::EVERY {
-            self.read();
+        if self.changed && now >= self.read_at + readouts::EVERY {
+            self.read_now();
         }
     }
 
-    fn play(&mut self, owed_s: f64, wall: Duration, clock: &mut dyn FnMut() -> Duration) {
-        let before = self.run.simulation().step_number();
-        let deadline = self.now + STEPPING;
-        let played = self.run.play(owed_s, self.stop, || clock() >= deadline);
-        self.pace
-            .spend(played.stepped_s, wall, played.end == PlayEnd::CutShort);
-        self.changed |= self.run.simulation().step_number() != before;
-        match played.end {
-            PlayEnd::InTime | PlayEnd::CutShort => {}
-            PlayEnd::AtStop => self.arrive(),
-            PlayEnd::NotFinite(error) => {
-                self.pause();
-                self.say(format!(
+    fn halted(&mut self, halt: Halt) {
+        match halt {
+            Halt::StepsTaken => {}
+            Halt::EndOfRun => self
+                .notice
+                .keep_saying("end of the scenario's run: space goes on, r begins again"),
+            Halt::NotFinite(error) => {
+                let text = format!(
                     "the numbers are no longer finite at step {}: r begins again",
                     error.step
-                ));
+                );
+                self.notice.keep_saying(text);
             }
         }
-    }
-
-    /// The run has come to where it was to stop.
-    fn arrive(&mut self) {
-        if !self.errand {
-            let end = "end of the scenario's run: space goes on, r begins again";
-            self.notice = Some((end.to_owned(), Duration::MAX));
-        }
-        self.pause();
-        self.stop = match self.run.simulation().step_number() < self.run.scenario().steps {
-            true => self.run.scenario().steps,
-            false => u64::MAX,
-        };
-    }
-
-    fn pause(&mut self) {
-        self.errand = false;
-        self.pace.set_running(false);
         self.read_now();
     }
 
     /// Carries out `action`; what only the loop can do comes back.
     pub fn update(&mut self, action: Action) -> Option<Request> {
-        self.changed = true;
         let count = self.count.take();
         match action {
             Action::TogglePause => self.toggle_pause(),
-            Action::Step => self.step(count.unwrap_or(1)),
+            Action::Step => self.playback.take_steps(count.unwrap_or(1)),
             Action::Digit(digit) => self.count = Some(counted(count, digit)),
-            Action::Faster => self.shift_speed(count, 1),
-            Action::Slower => self.shift_speed(count, -1),
-            Action::Restart => self.restart(Arc::clone(self.run.scenario())),
+            Action::Faster => self.playback.shift_speed(repeated(count)),
+            Action::Slower => self.playback.shift_speed(-repeated(count)),
+            Action::Restart => self.restart(),
             Action::ToggleExact => self.toggle_exact(),
             Action::NextPane => self.view.shift_focus(&self.layout().focusable(), true),
             Action::PreviousPane => self.view.shift_focus(&self.layout().focusable(), false),
             Action::FillScreen => self.view.toggle_filled(),
             Action::ThreeD => self.view.toggle_three_d(),
-            Action::Move(direction) => self.shift(direction, count.unwrap_or(1)),
+            Action::Move(direction) => self.shift(direction, repeated(count)),
             Action::WiderWindow => self.zoom(true),
             Action::NarrowerWindow => self.zoom(false),
             Action::NextMarker => self.next_marker(),
@@ -212,66 +155,38 @@ impl Lab {
             Action::Suspend => return Some(Request::Suspend),
             Action::Quit => return Some(Request::Quit),
         }
+        self.read_now();
         None
     }
 
     fn toggle_pause(&mut self) {
-        self.errand = false;
-        self.notice = None;
-        self.pace.set_running(!self.pace.is_running());
-        self.read_now();
+        self.notice.take_back();
+        self.playback.set_running(!self.playback.is_running());
     }
 
-    fn step(&mut self, steps: u64) {
-        self.pause();
-        self.stop = self.run.simulation().step_number().saturating_add(steps);
-        self.errand = true;
-    }
-
-    fn shift_speed(&mut self, count: Option<u64>, notches: i32) {
-        let times = count.unwrap_or(1).min(100) as i32;
-        self.pace.shift(notches * times);
-        self.read_now();
-    }
-
-    /// Begins `scenario` at step 0; running or not stays as it is.
-    fn restart(&mut self, scenario: Arc<Scenario>) {
-        let shows_exact = self.run.overlay().is_some();
-        self.errand = false;
-        self.notice = None;
-        self.stop = scenario.steps;
-        self.run = LiveRun::new(scenario);
-        self.run.set_overlay(shows_exact);
-        self.azimuth_at_start_deg = self.run.simulation().sample().azimuth_deg;
-        self.read_now();
+    fn restart(&mut self) {
+        self.notice.take_back();
+        self.playback.restart();
     }
 
     fn toggle_exact(&mut self) {
-        self.run.set_overlay(self.run.overlay().is_none());
-        let said = match self.run.overlay() {
-            Some(_) => "the exact motion of the same start is drawn faintly; t takes it away",
-            None => "without the exact motion",
-        };
-        self.say(said.to_owned());
-        self.read_now();
+        let shown = self.run().overlay().is_none();
+        self.playback.set_exact(shown);
+        self.say(match shown {
+            true => "the exact motion of the same start is drawn in dashes; t takes it away",
+            false => "without the exact motion",
+        });
     }
 
-    fn shift(&mut self, direction: Direction, count: u64) {
-        let count = count.min(1000);
+    fn shift(&mut self, direction: Direction, times: i32) {
+        let rows = rows(direction) * times as isize;
         match (self.mode, self.view.focus) {
-            (Mode::Browser | Mode::Filter, _) => {
-                self.browser.shift(rows(direction) * count as isize)
-            }
-            (Mode::Lab, Pane::ThreeD) => self.turn_camera(direction, count as f64 * TURN_DEG),
+            (Mode::Browser | Mode::Filter, _) => self.browser.shift(rows),
+            (Mode::Lab, Pane::ThreeD) => self.turn_camera(direction, f64::from(times) * TURN_DEG),
             (Mode::Lab, Pane::Traces | Pane::FromAbove) => {
-                self.say("arrows turn the 3-D view (d) and move in lists".to_owned());
+                self.say("arrows turn the 3-D view (d) and move in lists");
             }
-            _ => {
-                self.view.scroll = self
-                    .view
-                    .scroll
-                    .saturating_add_signed(rows(direction) * count as isize)
-            }
+            _ => self.view.scroll = self.view.scroll.saturating_add_signed(rows),
         }
     }
 
@@ -287,7 +202,7 @@ impl Lab {
 
     fn zoom(&mut self, wider: bool) {
         self.view
-            .zoom(wider, self.run.simulation().motion().time_step_s);
+            .zoom(wider, self.run().simulation().motion().time_step_s);
         self.say(format!("the traces show {} s", self.view.window_s));
     }
 
@@ -298,21 +213,20 @@ impl Lab {
 
     fn toggle_background(&mut self) {
         self.view.toggle_background();
-        let said = match self.view.theme.colour {
+        self.say(match self.view.theme.colour {
             true => format!("colours for a {:?} screen", self.view.theme.background).to_lowercase(),
             false => "there are no colours: c turns them on".to_owned(),
-        };
-        self.say(said);
+        });
     }
 
     fn browse(&mut self) {
-        self.browser = Browser::new(&self.folder, &self.name);
+        self.browser = Browser::new(Path::new("."), &self.name);
         self.mode = Mode::Browser;
     }
 
     fn choose(&mut self) {
         let Some(name) = self.browser.choice().map(|entry| entry.name.clone()) else {
-            return self.say("nothing is selected: Esc clears the filter".to_owned());
+            return self.say("nothing is selected: Esc clears the filter");
         };
         match Document::open(&name).and_then(|document| document.scenario()) {
             Ok(scenario) => self.open(name, Arc::new(scenario)),
@@ -332,12 +246,13 @@ impl Lab {
     }
 
     fn open(&mut self, name: String, scenario: Arc<Scenario>) {
+        let shows_exact = self.run().overlay().is_some();
         self.mode = Mode::Lab;
         self.name = name;
-        self.notice = None;
-        self.pace = Pace::new(speed(&scenario), true);
+        self.notice.take_back();
         self.view.fit(&scenario);
-        self.restart(scenario);
+        self.playback = Playback::new(scenario, true);
+        self.playback.set_exact(shows_exact);
     }
 
     fn toggle_help(&mut self) {
@@ -360,35 +275,19 @@ impl Lab {
             }
             Mode::Browser => self.mode = Mode::Lab,
             Mode::Lab if self.view.filled => self.view.filled = false,
-            Mode::Lab if self.notice.is_some() => self.notice = None,
-            Mode::Lab => self.say("nothing to close; q leaves".to_owned()),
+            Mode::Lab if self.notice.take_back() => {}
+            Mode::Lab => self.say("nothing to close; q leaves"),
         }
     }
 
-    fn say(&mut self, notice: String) {
-        self.notice = Some((notice, self.now + NOTICE));
-        self.changed = true;
-    }
-
-    fn expire_notice(&mut self) {
-        if self
-            .notice
-            .as_ref()
-            .is_some_and(|(_, until)| *until <= self.now)
-        {
-            self.notice = None;
-            self.changed = true;
-        }
+    fn say(&mut self, text: impl Into<String>) {
+        self.notice.say(text, self.now);
     }
 
     fn read_now(&mut self) {
-        self.read();
-        self.changed = true;
-    }
-
-    fn read(&mut self) {
-        self.readouts = Readouts::new(&self.run, &self.pace, self.azimuth_at_start_deg);
+        self.readouts = self.playback.read();
         self.read_at = self.now;
+        self.changed = true;
     }
 
     /// The screen has this size now.
@@ -397,28 +296,14 @@ impl Lab {
         self.changed = true;
     }
 
-    /// Whether the picture has changed since this was asked last; the readouts shown are then up to date if the run
-    /// stands still.
+    /// Whether the picture has changed since this was asked last.
     pub fn take_changed(&mut self) -> bool {
         std::mem::take(&mut self.changed)
     }
 
-    /// Whether time changes anything: the run goes on, or something is being computed.
-    pub fn is_busy(&self) -> bool {
-        self.pace.is_running() || self.errand || self.run.overlay_is_behind()
-    }
-
-    /// Whether it computes all the time there is, rather than at moments that one can wait for.
-    pub fn is_flat_out(&self) -> bool {
-        let catches_up = !self.pace.is_running() && self.run.overlay_is_behind();
-        self.errand || catches_up || (self.pace.is_running() && self.pace.speed() == Speed::Top)
-    }
-
     /// How long until the notice goes away by itself.
     pub fn notice_ends_in(&self) -> Option<Duration> {
-        self.notice
-            .as_ref()
-            .map(|(_, until)| until.saturating_sub(self.now))
+        self.notice.ends_in(self.now)
     }
 
     /// The size of the screen.
@@ -431,9 +316,14 @@ impl Lab {
         Layout::new(self.size, &self.view, true)
     }
 
+    /// The run on its pace.
+    pub fn playback(&self) -> &Playback {
+        &self.playback
+    }
+
     /// The run.
     pub fn run(&self) -> &LiveRun {
-        &self.run
+        self.playback.run()
     }
 
     /// How it is looked at.
@@ -456,11 +346,6 @@ impl Lab {
         &self.browser
     }
 
-    /// Whether the run goes on by itself.
-    pub fn is_running(&self) -> bool {
-        self.pace.is_running()
-    }
-
     /// The count typed so far.
     pub fn count(&self) -> Option<u64> {
         self.count
@@ -468,21 +353,17 @@ impl Lab {
 
     /// What is to be said now, if anything.
     pub fn notice(&self) -> Option<&str> {
-        self.notice.as_ref().map(|(notice, _)| notice.as_str())
+        self.notice.text()
     }
-}
-
-fn speed(scenario: &Scenario) -> f64 {
-    scenario
-        .file
-        .view
-        .as_ref()
-        .and_then(|view| view.speed)
-        .unwrap_or(SPEED)
 }
 
 fn counted(count: Option<u64>, digit: u8) -> u64 {
     (count.unwrap_or(0) * 10 + u64::from(digit)).min(MOST_COUNTED)
+}
+
+/// How often to repeat what needs no more than `MOST_REPEATED` repetitions.
+fn repeated(count: Option<u64>) -> i32 {
+    count.unwrap_or(1).min(MOST_REPEATED) as i32
 }
 
 fn rows(direction: Direction) -> isize {

@@ -10,7 +10,7 @@
 //!   environment says about it.
 //! - [`keymap`] is the one table of keys, [`action`] what they can mean, [`lab`] the state that actions change.
 //! - [`live`] plays a run; [`recording`] and [`path`] keep what the pictures need of it, [`overlay`] the exact motion
-//!   beside it; [`pace`] says how fast it is played; [`readouts`] and [`health`] read numbers off it.
+//!   beside it; [`pace`] says how fast it is played, [`playback`] plays it as far as its next stop; [`readouts`] and [`health`] read numbers off it.
 //! - [`view`] is how it is looked at, [`layout`] where the panes stand, [`screen`] puts them there, [`panes`] draw.
 //!   [`sweep`] and [`camera`] are their geometry, [`dots`], [`markers`] and [`theme`] their ink.
 
@@ -25,10 +25,12 @@ pub mod lab;
 pub mod layout;
 pub mod live;
 pub mod markers;
+pub mod notice;
 pub mod overlay;
 pub mod pace;
 pub mod panes;
 pub mod path;
+pub mod playback;
 pub mod readouts;
 pub mod recording;
 pub mod screen;

@@ -40,16 +40,16 @@ impl Readouts {
 fn pace_in_words(pace: &Pace) -> String {
     match (pace.is_running(), pace.speed()) {
         (false, Speed::Times(speed)) => format!("paused ×{}", short(speed)),
-        (false, Speed::Top) => "paused, top speed".to_owned(),
-        (true, Speed::Top) => format!("▶ top: ×{}", short(two_digits(pace.achieved()))),
+        (false, Speed::Top) => "paused, top".to_owned(),
+        (true, Speed::Top) => format!("► top: ×{}", short(two_digits(pace.achieved()))),
         (true, Speed::Times(speed)) if pace.falls_behind() => {
             format!(
-                "▶ ×{} of ×{}",
+                "► ×{} of ×{}",
                 short(two_digits(pace.achieved())),
                 short(speed)
             )
         }
-        (true, Speed::Times(speed)) => format!("▶ ×{}", short(speed)),
+        (true, Speed::Times(speed)) => format!("► ×{}", short(speed)),
     }
 }
 

@@ -107,10 +107,10 @@ fn join(columns: &mut [Option<Extent>], from: (usize, Extent), to: (usize, Exten
     let length = (end - begin) as f64;
     let (low, high) = (leave.min(arrive), leave.max(arrive));
     let at = |place: f64| (leave + (arrive - leave) * (place / length)).clamp(low, high);
-    for column in begin..=end {
-        let place = (column - begin) as f64;
+    for (place, slot) in columns[begin..=end].iter_mut().enumerate() {
+        let place = place as f64;
         let way = Extent::of(at(place - 0.5)).and(Extent::of(at(place + 0.5)));
-        columns[column] = Some(columns[column].map_or(way, |old| old.and(way)));
+        *slot = Some(slot.map_or(way, |old| old.and(way)));
     }
 }
 

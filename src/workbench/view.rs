@@ -6,6 +6,9 @@ use super::markers::Marker;
 use super::theme::{Background, Theme};
 use crate::scenario::Scenario;
 
+/// A sweep that takes longer than this to be drawn, s, is no picture of the run.
+const LONGEST_SWEEP_S: f64 = 120.0;
+
 /// The panes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pane {
@@ -49,22 +52,22 @@ pub struct View {
 }
 
 impl View {
-    /// What a lab starts with: the traces show the whole of the run of `scenario`.
+    /// What a lab starts with: the traces show the run of `scenario`.
     pub fn new(scenario: &Scenario, marker: Marker, theme: Theme) -> Self {
         Self {
             focus: Pane::Traces,
             filled: false,
             marker,
             theme,
-            window_s: whole_run_s(scenario),
+            window_s: first_window_s(scenario),
             camera: Camera::default(),
             scroll: 0,
         }
     }
 
-    /// For another scenario: the traces show the whole of its run.
+    /// For another scenario: the traces show its run.
     pub fn fit(&mut self, scenario: &Scenario) {
-        self.window_s = whole_run_s(scenario);
+        self.window_s = first_window_s(scenario);
     }
 
     /// Twice the time on the traces (`wider`), or half of it; at least two steps of `time_step_s` (s) remain.
@@ -120,11 +123,16 @@ impl View {
     }
 }
 
-fn whole_run_s(scenario: &Scenario) -> f64 {
+/// The time the traces show at first, s: the whole run, or as much of it as is played in a while.
+fn first_window_s(scenario: &Scenario) -> f64 {
+    let speed = scenario
+        .file
+        .view
+        .as_ref()
+        .and_then(|view| view.speed)
+        .unwrap_or(1.0);
     let whole = scenario.steps as f64 * scenario.motion.time_step_s;
-    if whole.is_finite() {
-        whole.max(2.0 * scenario.motion.time_step_s)
-    } else {
-        f64::MAX.sqrt()
-    }
+    whole
+        .min(LONGEST_SWEEP_S * speed)
+        .max(2.0 * scenario.motion.time_step_s)
 }

@@ -46,7 +46,7 @@ fn clock(readouts: &Readouts, time_step_s: f64) -> String {
     let digits = (-time_step_s.log10()).ceil().clamp(0.0, 6.0) as usize;
     let sample = &readouts.sample;
     format!(
-        "t {:>8.digits$} s  step {:<8}{:<11}",
+        "t {:>8.digits$} s  step {:<8} {:<11}",
         sample.time_s, sample.step, readouts.pace
     )
 }
@@ -107,7 +107,7 @@ pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
 pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     let mut x = 1;
-    for (key, word) in footer(lab.mode(), lab.is_running(), area.width as usize) {
+    for (key, word) in footer(lab.mode(), lab.playback().is_running(), area.width as usize) {
         x = write(area, (x, 0), &key, theme.style(Role::Focus), buf);
         x = write(area, (x + 1, 0), word, theme.style(Role::Quiet), buf) + 2;
     }

@@ -9,6 +9,9 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 
+/// Dots of the path's raster from one dash of the exact motion to the next: without colours, dashes tell it from the run.
+const DASH: usize = 12;
+
 /// The least radius shown, m: a path that never leaves the vertical has none of its own.
 const LEAST: f64 = 1e-6;
 
@@ -66,7 +69,12 @@ impl FromAbove<'_> {
     fn path(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
         let mut dots = Dots::new(picture, self.view.marker);
         if let Some(overlay) = self.run.overlay() {
-            for (x, y) in overlay.path().dots() {
+            let dashed = overlay
+                .path()
+                .dots()
+                .enumerate()
+                .filter(|(dot, _)| dot % DASH < DASH / 2);
+            for (_, (x, y)) in dashed {
                 let (x, y) = plan.dot(x, y);
                 dots.set(x, y, Ink::Faint(Role::Exact));
             }

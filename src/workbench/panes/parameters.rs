@@ -40,8 +40,9 @@ impl Widget for Parameters<'_> {
         let focus = self.view.focus == Pane::Parameters;
         let inside = frame("parameters", area, focus, &self.view.theme, buf);
         let rows = fitting(self.rows(), inside.height as usize);
+        let below = rows.len().saturating_sub(inside.height as usize);
         let scroll = if focus {
-            self.view.scroll.min(rows.len().saturating_sub(1))
+            self.view.scroll.min(below)
         } else {
             0
         };

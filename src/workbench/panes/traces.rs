@@ -3,6 +3,7 @@
 use super::{frame, write};
 use crate::workbench::dots::{Dots, Ink};
 use crate::workbench::live::LiveRun;
+use crate::workbench::markers::Marker;
 use crate::workbench::recording::{Curve, Extent};
 use crate::workbench::sweep::Sweep;
 use crate::workbench::theme::Role;
@@ -101,7 +102,7 @@ impl Traces<'_> {
         let scale = self.scale(curve);
         let mut dots = Dots::new(area, self.view.marker);
         if let Some(overlay) = self.run.overlay() {
-            let exact = sweep.extents(overlay.recording(), curve);
+            let exact = dashed(sweep.extents(overlay.recording(), curve), self.view.marker);
             draw(&mut dots, &exact, &scale, Ink::Faint(Role::Exact));
         }
         let extents = sweep.extents(self.run.recording(), curve);
@@ -146,7 +147,7 @@ impl Traces<'_> {
         for y in area.top()..area.bottom() {
             let cell = buf.cell_mut((area.x + column, y));
             if let Some(cell) = cell.filter(|cell| cell.symbol() == " ") {
-                cell.set_char('┆')
+                cell.set_char('│')
                     .set_style(self.view.theme.style(Role::Quiet));
             }
         }
@@ -235,6 +236,14 @@ impl Scale {
             .clamp(0.0, 9.0) as usize;
         format!("{:.digits$} .. {:.digits$}", self.low, self.high)
     }
+}
+
+/// Every other cell of `columns`: without colours, dashes tell the exact motion from the run.
+fn dashed(columns: Vec<Option<Extent>>, marker: Marker) -> Vec<Option<Extent>> {
+    let across = marker.dots().0;
+    let dash =
+        |(x, extent): (usize, Option<Extent>)| extent.filter(|_| (x / across).is_multiple_of(2));
+    columns.into_iter().enumerate().map(dash).collect()
 }
 
 fn draw(dots: &mut Dots, extents: &[Option<Extent>], scale: &Scale, ink: Ink) {
