@@ -1,63 +1,53 @@
-use gyrolab::physics::*;
-use nalgebra::*;
-use std::time::Instant;
-fn body(rim: usize) -> Body {
-    let h = 0.8 / 2f64.sqrt();
-    let mut points: Vec<PointMass> = (0..rim)
-        .map(|j| {
-            let a = std::f64::consts::TAU * j as f64 / rim as f64;
-            PointMass {
-                at: Vector3::new(0.8 * a.cos(), 0.8 * a.sin(), h),
-                mass: 5.0 / rim as f64,
-            }
-        })
-        .collect();
-    for z in [h, 2.0 * h, 0.0, h / 2.0] {
-        points.push(PointMass {
-            at: Vector3::new(0., 0., z),
-            mass: 0.0,
+//! Nanoseconds a step, each with its record: the schemes on the report's 14 points, and the report's with more points.
+
+#![allow(missing_docs, clippy::unwrap_used)]
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use gyrolab::physics::scheme::SCHEMES;
+use gyrolab::run::Simulation;
+use gyrolab::scenario::Document;
+use std::hint::black_box;
+use std::sync::Arc;
+
+fn simulation(scheme: &str, rim: usize) -> Simulation {
+    let mut document = Document::open("method-2").unwrap();
+    let mass = 5.0 / rim as f64;
+    for set in [
+        format!("motion.scheme={scheme}"),
+        format!("body.rim.points={rim}"),
+        format!("body.rim.point_mass_kg={mass}"),
+    ] {
+        document.set(&set).unwrap();
+    }
+    Simulation::new(Arc::new(document.scenario().unwrap()))
+}
+
+fn schemes(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("step with record, 14 points");
+    for scheme in SCHEMES {
+        let mut simulation = simulation(scheme.name, 10);
+        group.bench_function(scheme.name, |bencher| {
+            bencher.iter(|| {
+                simulation.step().unwrap();
+                black_box(simulation.record())
+            });
         });
     }
-    Body::new(points).unwrap()
 }
-fn main() {
-    for rim in [10usize, 1000, 100_000] {
-        let body = body(rim);
-        let mut scheme = scheme::SchemeInfo::find("report").unwrap().make(&body);
-        let tilt = rotation::about(&Vector3::x(), std::f64::consts::FRAC_PI_4);
-        let mut state = State {
-            time_s: 0.0,
-            orientation: tilt,
-            momentum: tilt * Vector3::new(0., 0., 1000.),
-        };
-        scheme.load(&Loads {
-            gravity: 9.8,
-            pushes: vec![],
+
+fn points(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("report, a step of many points");
+    for rim in [10, 1_000, 10_000, 99_996] {
+        let mut simulation = simulation("report", rim);
+        group.throughput(Throughput::Elements(rim as u64 + 4));
+        group.bench_function(BenchmarkId::from_parameter(rim + 4), |bencher| {
+            bencher.iter(|| {
+                simulation.step().unwrap();
+                black_box(simulation.record())
+            });
         });
-        scheme.start(&state);
-        let steps = 20_000_000 / rim as u64;
-        let mut sink = 0.0;
-        let mut rec = None;
-        let t = Instant::now();
-        for k in 1..=steps {
-            let before = state;
-            scheme.step(0.1, &mut state);
-            state.time_s = k as f64 * 0.1;
-            let r = StepRecord {
-                step: k,
-                time_step_s: 0.1,
-                before,
-                workings: scheme.workings(&before, &state, 0.1),
-                after: state,
-            };
-            sink += std::hint::black_box(&r).workings.torque.x;
-            rec = Some(r);
-        }
-        let ns = t.elapsed().as_nanos() as f64 / steps as f64;
-        println!(
-            "{rim}: {ns:.1} ns/step, {:.2} ns a point; {sink} {:?}",
-            ns / (rim + 4) as f64,
-            rec.unwrap().after.momentum.x
-        );
     }
 }
+
+criterion_group!(benches, schemes, points);
+criterion_main!(benches);

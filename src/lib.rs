@@ -10,6 +10,7 @@
 //! - [`scenario`]: a TOML file becomes a checked [`Scenario`](scenario::Scenario); every refusal names file,
 //!   line, key, value and rule. The shipped presets live here too.
 //! - [`run`]: a scenario and its journal of edits, played forward step by step. It is the one road forward in time.
+//! - [`analysis`]: what a run's numbers are worth: theory, measurement, health, comparisons.
 //! - [`export`]: what leaves the program: columns, CSV, summaries, and the files they are written to.
 //! - [`workbench`]: the live lab in the terminal; it watches a run and changes nothing in it.
 //! - [`cli`]: the commands, and what each does with the rooms above.
@@ -20,6 +21,7 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod analysis;
 pub mod cli;
 pub mod export;
 pub mod physics;

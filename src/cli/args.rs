@@ -33,6 +33,8 @@ pub(super) enum Command {
     Run(RunArgs),
     /// Print the lab's picture at the end of a run, as plain text
     Show(ShowArgs),
+    /// Hold schemes and time steps against the exact motion: errors, drifts, cost, measured order
+    Compare(CompareArgs),
     /// List the shipped presets, or print one as TOML
     Presets {
         /// The preset to print
@@ -149,6 +151,18 @@ pub(super) struct ShowArgs {
     pub(super) markers: Option<Markers>,
 }
 
+/// How long a run is.
+#[derive(Debug, Args)]
+pub(super) struct LengthArgs {
+    /// Length of the run in time steps [default: the scenario's]
+    #[arg(long, value_name = "N", conflicts_with = "duration", value_parser = clap::value_parser!(u64).range(1..=i64::MAX as u64))]
+    pub(super) steps: Option<u64>,
+
+    /// Length of the run in simulated seconds
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    pub(super) duration: Option<f64>,
+}
+
 #[derive(Debug, Args)]
 pub(super) struct RunArgs {
     #[command(flatten)]
@@ -158,13 +172,8 @@ pub(super) struct RunArgs {
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
 
-    /// Length of the run in time steps [default: the scenario's]
-    #[arg(long, value_name = "N", conflicts_with = "duration", value_parser = clap::value_parser!(u64).range(1..=i64::MAX as u64))]
-    pub(super) steps: Option<u64>,
-
-    /// Length of the run in simulated seconds
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
-    pub(super) duration: Option<f64>,
+    #[command(flatten)]
+    pub(super) length: LengthArgs,
 
     /// Write every N-th row only, and the last
     #[arg(long, value_name = "N", default_value = "1")]
@@ -173,6 +182,31 @@ pub(super) struct RunArgs {
     /// Give the summary as one JSON object
     #[arg(long)]
     pub(super) json: bool,
+
+    /// Replace an existing file
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompareArgs {
+    #[command(flatten)]
+    pub(super) scenario: ScenarioArgs,
+
+    #[command(flatten)]
+    pub(super) length: LengthArgs,
+
+    /// The schemes to compare [default: all that make an error]
+    #[arg(long, value_name = "A,B", value_delimiter = ',', value_parser = PossibleValuesParser::new(scheme::names()))]
+    pub(super) schemes: Vec<String>,
+
+    /// The time steps, s [default: the scenario's, and a half, a quarter and an eighth of it]
+    #[arg(long, value_name = "0.1,0.05", value_delimiter = ',', value_parser = positive)]
+    pub(super) time_steps: Vec<f64>,
+
+    /// Write the table as CSV to this file, or to stdout for -
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
 
     /// Replace an existing file
     #[arg(long)]

@@ -15,8 +15,10 @@ use std::process::ExitCode;
 /// Prints `text` on stdout; a reader that has gone is the caller's to forgive.
 fn print(text: &str) -> anyhow::Result<ExitCode> {
     let mut stdout = io::stdout().lock();
-    stdout.write_all(text.as_bytes())?;
-    stdout.flush()?;
+    stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+        .context("cannot write to stdout")?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -50,11 +52,10 @@ fn preset_list() -> anyhow::Result<String> {
 pub(super) fn schemes() -> anyhow::Result<ExitCode> {
     let mut text = String::new();
     for scheme in SCHEMES {
-        writeln!(
-            text,
-            "{:<8} order {}  {}",
-            scheme.name, scheme.order, scheme.about
-        )?;
+        let order = scheme
+            .order
+            .map_or("exact".to_owned(), |order| format!("order {order}"));
+        writeln!(text, "{:<8} {order:<8} {}", scheme.name, scheme.about)?;
         writeln!(text, "{:<17} {}", "", scheme.source)?;
     }
     print(&text)

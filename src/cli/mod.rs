@@ -3,12 +3,14 @@
 //! Data goes to stdout, talk to stderr. Exit codes: 0 done (a closed pipe too), 1 failed, 2 wrong usage, 130 Ctrl-C.
 
 mod args;
+mod compare;
 mod info;
+mod progress;
 mod run;
+mod scenario;
 mod workbench;
 
-use crate::scenario::{Document, Problems};
-use args::{Changes, Cli, Command};
+use args::{Cli, Command};
 use clap::Parser;
 use std::io;
 use std::process::ExitCode;
@@ -29,28 +31,19 @@ pub fn main() -> ExitCode {
 }
 
 fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
-    match cli.command {
-        None => workbench::open(&cli.workbench),
-        Some(Command::Run(args)) => run::run(&args),
-        Some(Command::Show(args)) => workbench::show(&args),
-        Some(Command::Presets { name }) => info::presets(name.as_deref()),
-        Some(Command::Schemes) => info::schemes(),
-        Some(Command::Check { files }) => info::check(&files),
-        Some(Command::Completions { shell }) => info::completions(shell),
-        Some(Command::Man) => info::man(),
+    let Some(command) = cli.command else {
+        return workbench::open(&cli.workbench);
+    };
+    match command {
+        Command::Run(args) => run::run(&args),
+        Command::Show(args) => workbench::show(&args),
+        Command::Compare(args) => compare::compare(&args),
+        Command::Presets { name } => info::presets(name.as_deref()),
+        Command::Schemes => info::schemes(),
+        Command::Check { files } => info::check(&files),
+        Command::Completions { shell } => info::completions(shell),
+        Command::Man => info::man(),
     }
-}
-
-/// What SCENARIO names, with what the command line changes in it.
-fn changed(scenario: &str, changes: &Changes) -> Result<Document, Problems> {
-    let mut document = Document::open(scenario)?;
-    for set in &changes.set {
-        document.set(set)?;
-    }
-    if let Some(scheme) = &changes.scheme {
-        document.set(&format!("motion.scheme={scheme}"))?;
-    }
-    Ok(document)
 }
 
 /// Says on stderr what went wrong; where even that cannot be written there is nobody to tell.

@@ -1,7 +1,7 @@
 //! `gyrolab` and `gyrolab show`: the lab, live or as one picture.
 
 use super::args::{Changes, Color, Look, Markers, ShowArgs, WorkbenchArgs};
-use super::changed;
+use super::scenario::changed;
 use crate::scenario::Scenario;
 use crate::workbench::lab::Lab;
 use crate::workbench::markers::Marker;

@@ -1,7 +1,7 @@
 //! The one table of columns: every number of a [`Sample`] under the name by which it leaves the program.
 
 use crate::run::Sample;
-use serde::{Serialize, Serializer};
+use serde::ser::{Serialize, SerializeTuple, Serializer};
 
 /// A column of the CSV.
 #[derive(Debug)]
@@ -24,25 +24,48 @@ pub enum Value {
 
 use Value::{Number, Whole};
 
-/// Every column, in the order of the CSV.
-#[rustfmt::skip]
-pub const COLUMNS: &[Column] = &[
-    Column { name: "step", about: "number of the time step, 0 at the start", value: |s| Whole(s.step) },
-    Column { name: "t_s", about: "time", value: |s| Number(s.time_s) },
-    Column { name: "x_m", about: "traced point, world frame", value: |s| Number(s.position.x) },
-    Column { name: "y_m", about: "traced point, world frame", value: |s| Number(s.position.y) },
-    Column { name: "z_m", about: "traced point, world frame", value: |s| Number(s.position.z) },
-    Column { name: "Lx_Js", about: "angular momentum about the pivot, world frame", value: |s| Number(s.momentum.x) },
-    Column { name: "Ly_Js", about: "angular momentum about the pivot, world frame", value: |s| Number(s.momentum.y) },
-    Column { name: "Lz_Js", about: "angular momentum about the pivot, world frame", value: |s| Number(s.momentum.z) },
-    Column { name: "wx_rad_per_s", about: "angular velocity I^-1 L at this step, world frame", value: |s| Number(s.angular_velocity.x) },
-    Column { name: "wy_rad_per_s", about: "angular velocity I^-1 L at this step, world frame", value: |s| Number(s.angular_velocity.y) },
-    Column { name: "wz_rad_per_s", about: "angular velocity I^-1 L at this step, world frame", value: |s| Number(s.angular_velocity.z) },
-    Column { name: "tilt_deg", about: "angle of the axle from +z", value: |s| Number(s.tilt_deg) },
-    Column { name: "azimuth_deg", about: "azimuth of the axle, counted on through full turns", value: |s| Number(s.azimuth_deg) },
-    Column { name: "energy_J", about: "kinetic energy, and that of the weight from the pivot", value: |s| Number(s.energy) },
-    Column { name: "segment", about: "edits of time step, scheme or gravity before this step", value: |s| Whole(s.segment) },
-];
+/// Makes of one list the table, for whoever asks by name, and the row, written without asking.
+macro_rules! columns {
+    ($($name:literal, $about:literal, $kind:ident($sample:ident $(. $field:ident)+);)*) => {
+        /// Every column, in the order of the CSV.
+        pub const COLUMNS: &[Column] = &[
+            $(Column { name: $name, about: $about, value: |$sample| $kind($sample $(. $field)+) }),*
+        ];
+
+        impl Serialize for Row<'_> {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                let mut row = serializer.serialize_tuple(COLUMNS.len())?;
+                $({
+                    let $sample = self.0;
+                    row.serialize_element(&($sample $(. $field)+))?;
+                })*
+                row.end()
+            }
+        }
+    };
+}
+
+/// A sample as one row.
+#[derive(Clone, Copy, Debug)]
+pub struct Row<'a>(pub &'a Sample);
+
+columns! {
+    "step", "number of the time step, 0 at the start", Whole(s.step);
+    "t_s", "time", Number(s.time_s);
+    "x_m", "traced point, world frame", Number(s.position.x);
+    "y_m", "traced point, world frame", Number(s.position.y);
+    "z_m", "traced point, world frame", Number(s.position.z);
+    "Lx_Js", "angular momentum about the pivot, world frame", Number(s.momentum.x);
+    "Ly_Js", "angular momentum about the pivot, world frame", Number(s.momentum.y);
+    "Lz_Js", "angular momentum about the pivot, world frame", Number(s.momentum.z);
+    "wx_rad_per_s", "angular velocity I^-1 L at this step, world frame", Number(s.angular_velocity.x);
+    "wy_rad_per_s", "angular velocity I^-1 L at this step, world frame", Number(s.angular_velocity.y);
+    "wz_rad_per_s", "angular velocity I^-1 L at this step, world frame", Number(s.angular_velocity.z);
+    "tilt_deg", "angle of the axle from +z", Number(s.tilt_deg);
+    "azimuth_deg", "azimuth of the axle, counted on through full turns", Number(s.azimuth_deg);
+    "energy_J", "kinetic energy, and that of the weight from the pivot", Number(s.energy);
+    "segment", "edits of time step, scheme or gravity before this step", Whole(s.segment);
+}
 
 impl Column {
     /// The column of that name.
@@ -63,24 +86,5 @@ impl Value {
             Whole(count) => count as f64,
             Number(number) => number,
         }
-    }
-}
-
-impl Serialize for Value {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match *self {
-            Whole(count) => serializer.serialize_u64(count),
-            Number(number) => serializer.serialize_f64(number),
-        }
-    }
-}
-
-/// A sample as one row.
-#[derive(Clone, Copy, Debug)]
-pub struct Row<'a>(pub &'a Sample);
-
-impl Serialize for Row<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(COLUMNS.iter().map(|column| column.value(self.0)))
     }
 }

@@ -28,7 +28,8 @@ impl<W: Write> CsvWriter<W> {
         let mut rows = csv::WriterBuilder::new()
             .has_headers(false)
             .from_writer(out);
-        rows.write_record(COLUMNS.iter().map(|column| column.name))?;
+        rows.write_record(COLUMNS.iter().map(|column| column.name))
+            .map_err(plain)?;
         Ok(Self { rows })
     }
 
@@ -37,7 +38,7 @@ impl<W: Write> CsvWriter<W> {
     /// # Errors
     /// When the row cannot be written.
     pub fn write(&mut self, sample: &Sample) -> io::Result<()> {
-        Ok(self.rows.serialize(Row(sample))?)
+        self.rows.serialize(Row(sample)).map_err(plain)
     }
 
     /// Writes what is still held back, and gives the place it was written to.
@@ -49,5 +50,13 @@ impl<W: Write> CsvWriter<W> {
         self.rows
             .into_inner()
             .map_err(csv::IntoInnerError::into_error)
+    }
+}
+
+/// The system's own error: csv's conversion wraps it, and a closed pipe could no longer be told from a full disk.
+fn plain(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        other => io::Error::other(format!("{other:?}")),
     }
 }

@@ -32,6 +32,14 @@ pub enum DestinationError {
     /// The name is that of a folder.
     #[error("{} is a folder: name a file in it", .0.display())]
     Folder(PathBuf),
+    /// There is no folder to put the file in.
+    #[error("cannot write {}: there is no folder {}", path.display(), folder.display())]
+    NoFolder {
+        /// The place.
+        path: PathBuf,
+        /// The folder that is not there.
+        folder: PathBuf,
+    },
     /// The system refused.
     #[error("cannot write {}: {error}", path.display())]
     Refused {
@@ -58,6 +66,7 @@ impl Destination {
         };
         match fs::metadata(path) {
             Ok(there) if there.is_dir() => Err(DestinationError::Folder(path.to_owned())),
+            Err(_) if !names_a_file(path) => Err(DestinationError::Folder(path.to_owned())),
             Ok(there) if !there.is_file() => OpenOptions::new()
                 .write(true)
                 .open(path)
@@ -65,26 +74,40 @@ impl Destination {
                 .map_err(refused),
             Ok(_) if !replace => Err(DestinationError::Exists(path.to_owned())),
             // A link stays a link: the file it leads to is replaced.
-            Ok(_) => Self::file(fs::canonicalize(path).map_err(refused)?, replace).map_err(refused),
+            Ok(_) => {
+                let target = fs::canonicalize(path).map_err(refused)?;
+                Self::file(target, replace).map_err(refused)
+            }
             Err(_) if path.is_symlink() => {
                 let error = io::Error::other("a symbolic link that leads nowhere");
                 Err(refused(error))
             }
+            Err(_) if !folder_of(path).is_dir() => Err(DestinationError::NoFolder {
+                path: path.to_owned(),
+                folder: folder_of(path).to_owned(),
+            }),
             Err(_) => Self::file(path.to_owned(), replace).map_err(refused),
         }
     }
 
+    /// Whether opening `path` may wait without end, as a FIFO waits for its reader.
+    pub fn may_wait(path: &Path) -> bool {
+        fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir())
+    }
+
     fn file(path: PathBuf, replace: bool) -> io::Result<Self> {
-        let folder = path
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty())
-            .unwrap_or(Path::new("."));
         let mut builder = tempfile::Builder::new();
         builder.prefix(".gyrolab-").suffix(".part");
-        if let Some(permissions) = permissions(&path) {
+        if let Some(permissions) = new_permissions() {
             builder.permissions(permissions);
         }
-        let temporary = builder.tempfile_in(folder).map_err(plain)?;
+        let temporary = builder
+            .tempfile_in(folder_of(&path))
+            .map_err(|error| plain(&error))?;
+        // A file that is replaced keeps its rights, whatever the umask.
+        if let Ok(there) = fs::metadata(&path) {
+            temporary.as_file().set_permissions(there.permissions())?;
+        }
         Ok(Self::File {
             temporary,
             path,
@@ -140,30 +163,36 @@ impl Destination {
     }
 }
 
-/// The rights of a new file are those the user's umask leaves; one that is replaced keeps its own.
+/// Whether `path` ends in a name, not in `/`, `/.` or `..`.
+fn names_a_file(path: &Path) -> bool {
+    let text = path.as_os_str().as_encoded_bytes();
+    path.file_name()
+        .is_some_and(|name| text.ends_with(name.as_encoded_bytes()))
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."))
+}
+
+/// The rights of a new file are those the user's umask leaves.
 #[cfg(unix)]
-fn permissions(path: &Path) -> Option<fs::Permissions> {
+fn new_permissions() -> Option<fs::Permissions> {
     use std::os::unix::fs::PermissionsExt;
-    let kept = fs::metadata(path).ok().map(|there| there.permissions());
-    Some(kept.unwrap_or_else(|| fs::Permissions::from_mode(0o666)))
+    Some(fs::Permissions::from_mode(0o666))
 }
 
 #[cfg(not(unix))]
-fn permissions(_: &Path) -> Option<fs::Permissions> {
+fn new_permissions() -> Option<fs::Permissions> {
     None
 }
 
 /// The system's words without the temporary name, which means nothing to the user.
-fn plain(error: io::Error) -> io::Error {
-    match error.raw_os_error().or_else(|| inner_code(&error)) {
-        Some(code) => io::Error::from_raw_os_error(code),
-        None => io::Error::from(error.kind()),
-    }
-}
-
-fn inner_code(error: &io::Error) -> Option<i32> {
-    let source = std::error::Error::source(error.get_ref()?)?;
-    source.downcast_ref::<io::Error>()?.raw_os_error()
+fn plain(error: &io::Error) -> io::Error {
+    let text = error.to_string();
+    let words = text.split(" at path ").next().unwrap_or(&text);
+    io::Error::new(error.kind(), words.to_owned())
 }
 
 impl Write for Destination {

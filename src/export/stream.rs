@@ -32,8 +32,8 @@ pub enum Ended {
     NotFinite(NotFinite),
 }
 
-/// Plays `simulation` on to the step `steps`, writing row 0 and every `every`-th row and the last one to `csv` if there is one.
-/// `watch` is asked after each block of steps whether to go on.
+/// Plays `simulation` on to the step `steps`, writing row 0 and every `every`-th row and the last one to `csv` if
+/// there is one. `each` is shown every step, and `watch` is asked after each block of steps whether to go on.
 ///
 /// Gives how it ended and the time spent on stepping alone.
 ///
@@ -44,6 +44,7 @@ pub fn play<W: Write>(
     steps: u64,
     every: u64,
     mut csv: Option<&mut CsvWriter<W>>,
+    mut each: impl FnMut(&Simulation),
     mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
 ) -> io::Result<(Ended, Duration)> {
     let points = simulation.scenario().body.mechanics.points().len();
@@ -57,6 +58,7 @@ pub fn play<W: Write>(
     while ended.is_none() {
         let begin = Instant::now();
         let result = take_block(simulation, steps, block, |simulation| {
+            each(simulation);
             let step = simulation.step_number();
             if csv.is_some() && (step.is_multiple_of(every) || step == steps) {
                 rows.push(simulation.sample());

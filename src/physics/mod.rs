@@ -6,15 +6,21 @@
 //! cosine and arc tangent are compiled in, sums have a fixed order, and no multiply-add is fused.
 
 pub mod body;
+pub mod exact;
 pub mod loads;
 pub mod observables;
 pub mod report;
 pub mod rk4;
 pub mod rotation;
 pub mod scheme;
+pub mod splitting;
 pub mod state;
+pub mod symmetry;
+pub mod trig;
 
 pub use body::{Body, BodyError, PointMass};
+pub use exact::{ExactMotion, LagrangeTop};
 pub use loads::{Loads, PointForce};
 pub use scheme::{Scheme, SchemeInfo};
 pub use state::{State, StepRecord, Workings};
+pub use symmetry::SymmetricTop;

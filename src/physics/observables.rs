@@ -88,7 +88,7 @@ impl Azimuth {
 }
 
 fn is_vertical(axle: &Vector3<f64>) -> bool {
-    libm::hypot(axle.x, axle.y) <= VERTICAL_WITHIN
+    axle.x * axle.x + axle.y * axle.y <= VERTICAL_WITHIN * VERTICAL_WITHIN
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //!
 //! 1. I = Σ m (|X|²E − XXᵀ), about the pivot, from the positions as they stand
 //! 2. Ω = I⁻¹L
-//! 3. R = P + cos(|Ω|dt)(E − P) + sin(|Ω|dt)[u]×, P = uuᵀ, u = Ω/|Ω|; |Ω| = 0 turns nothing
+//! 3. R = P + cos(|Ω|dt)(E − P) + sin(|Ω|dt)\[u\]×, P = uuᵀ, u = Ω/|Ω|; |Ω| = 0 turns nothing
 //! 4. X ← R X, point by point
 //! 5. L ← L + dt Σ X × F, at the *new* positions
 //!

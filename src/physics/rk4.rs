@@ -1,4 +1,4 @@
-//! The classical Runge-Kutta scheme on dQ/dt = [Ω]× Q, dL/dt = torque(Q), Ω = Q I₀⁻¹ Qᵀ L.
+//! The classical Runge-Kutta scheme on dQ/dt = \[Ω\]× Q, dL/dt = torque(Q), Ω = Q I₀⁻¹ Qᵀ L.
 //!
 //! It is here so that the textbook's tops have a scheme that is true to them. It works on the matrix Q itself, whose
 //! equation is smooth off the rotations too, and pulls it back to a rotation once, at the end of the step: that

@@ -1,20 +1,21 @@
 //! Rotation matrices, in the report's formula, with the sine and cosine compiled in.
 
+use super::trig;
 use nalgebra::{Matrix3, Vector3};
 
-/// The matrix [v]× with [v]× w = v × w.
+/// The matrix \[v\]× with \[v\]× w = v × w.
 pub fn cross_matrix(v: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
 }
 
-/// The rotation about `vector` by the angle |`vector`| · `time`: R = P + cos(E − P) + sin [u]×, P = uuᵀ, u the
+/// The rotation about `vector` by the angle |`vector`| · `time`: R = P + cos(E − P) + sin \[u\]×, P = uuᵀ, u the
 /// vector's direction (report, section 3). The zero vector turns nothing.
 pub fn about(vector: &Vector3<f64>, time: f64) -> Matrix3<f64> {
     let length = vector.norm();
     if length == 0.0 {
         return Matrix3::identity();
     }
-    let (sin, cos) = libm::sincos(length * time);
+    let (sin, cos) = trig::sin_cos(length * time);
     let u = vector * (1.0 / length);
     let (xx, yy, zz) = (u.x * u.x, u.y * u.y, u.z * u.z);
     let (xy, xz, yz) = (u.x * u.y, u.x * u.z, u.y * u.z);
@@ -32,10 +33,13 @@ pub fn about(vector: &Vector3<f64>, time: f64) -> Matrix3<f64> {
     )
 }
 
-/// `matrix` brought back to the nearest rotation by one Newton step of the polar decomposition, Q(3E − QᵀQ)/2:
-/// enough for matrices that are off by the error of one time step.
+/// A rotation near `matrix`, which is off by the error of one time step: the axle's column made a unit vector, the
+/// others set square to it. However far off `matrix` is, what comes back is a rotation.
 pub fn straightened(matrix: &Matrix3<f64>) -> Matrix3<f64> {
-    matrix * (Matrix3::identity() * 1.5 - (matrix.transpose() * matrix) * 0.5)
+    let axle = matrix.column(2).normalize();
+    let x = matrix.column(0);
+    let x = (x - axle * axle.dot(&x)).normalize();
+    Matrix3::from_columns(&[x, axle.cross(&x), axle])
 }
 
 #[cfg(test)]
@@ -55,10 +59,15 @@ mod tests {
     }
 
     #[test]
-    fn straightening_restores_a_rotation_to_second_order() {
+    fn straightening_gives_a_rotation_and_leaves_one_alone() {
         let turn = about(&Vector3::new(1.0, -2.0, 0.5), 0.9);
-        let bent = turn + Matrix3::new(1.0, -2.0, 3.0, 0.5, 1.0, -1.0, 2.0, 0.0, 1.0) * 1e-6;
-        let q = straightened(&bent);
-        assert!((q.transpose() * q - Matrix3::identity()).amax() < 1e-10);
+        assert!((straightened(&turn) - turn).amax() < 1e-15);
+        let bend = Matrix3::new(1.0, -2.0, 3.0, 0.5, 1.0, -1.0, 2.0, 0.0, 1.0);
+        for size in [1e-6, 1.0, 1e60] {
+            let q = straightened(&(turn + bend * size));
+            assert!((q.transpose() * q - Matrix3::identity()).amax() < 1e-15);
+            assert!(q.determinant() > 0.0);
+        }
+        assert!((straightened(&(turn + bend * 1e-6)) - turn).amax() < 1e-5);
     }
 }

@@ -1,5 +1,7 @@
 //! The numerical schemes: what each must do, and the table of those there are.
 
+use super::exact::Exact;
+use super::splitting::{Kind, SplittingScheme};
 use super::{Body, Loads, State, Workings, report::Report, rk4::Rk4};
 
 /// A way to take the body one time step further.
@@ -19,6 +21,11 @@ pub trait Scheme: Send {
     /// What the scheme computed on the way from `before` to `after`, the step it took last.
     fn workings(&self, before: &State, after: &State, dt: f64) -> Workings;
 
+    /// What there is to say of how the run was computed, beyond the scheme's name.
+    fn remark(&self) -> Option<String> {
+        None
+    }
+
     /// A copy that goes its own way from here.
     fn boxed(&self) -> Box<dyn Scheme>;
 }
@@ -34,8 +41,8 @@ impl Clone for Box<dyn Scheme> {
 pub struct SchemeInfo {
     /// The name in scenarios and on the command line.
     pub name: &'static str,
-    /// Order of convergence in dt.
-    pub order: u32,
+    /// Order of convergence in dt; `None` where the time step makes no error.
+    pub order: Option<u32>,
     /// One line on what it does.
     pub about: &'static str,
     /// Where it comes from.
@@ -50,7 +57,7 @@ pub struct SchemeInfo {
 pub const SCHEMES: &[SchemeInfo] = &[
     SchemeInfo {
         name: "report",
-        order: 1,
+        order: Some(1),
         about: "the report's: rotate every point by Omega dt, then add dt times the torque at the new positions to L",
         source: "report, section 3",
         continuous: false,
@@ -58,11 +65,35 @@ pub const SCHEMES: &[SchemeInfo] = &[
     },
     SchemeInfo {
         name: "rk4",
-        order: 4,
+        order: Some(4),
         about: "classical Runge-Kutta on orientation and L, the orientation made orthogonal after each step",
         source: "Kutta 1901; Hairer, Norsett, Wanner, Solving ODEs I, section II.1",
         continuous: true,
         make: |body| Box::new(Rk4::new(body)),
+    },
+    SchemeInfo {
+        name: "strang",
+        order: Some(2),
+        about: "symplectic splitting: half a kick by the torque, the free motion exactly, half a kick",
+        source: "Strang, SIAM J. Numer. Anal. 5, 506 (1968); for the top: Reich, Fields Inst. Commun. 10, 181 (1996)",
+        continuous: true,
+        make: |body| Box::new(SplittingScheme::new(Kind::Strang, body)),
+    },
+    SchemeInfo {
+        name: "srkn11b",
+        order: Some(6),
+        about: "symplectic splitting of kicks and exact free motion in eleven stages, a Runge-Kutta-Nystrom composition",
+        source: "Blanes and Moan, J. Comput. Appl. Math. 142, 313 (2002), table 3",
+        continuous: true,
+        make: |body| Box::new(SplittingScheme::new(Kind::Srkn11b, body)),
+    },
+    SchemeInfo {
+        name: "exact",
+        order: None,
+        about: "the true motion: elliptic functions for a symmetric body pushed on its axle, else an integration held to 1e-12",
+        source: "Klein and Sommerfeld, Theorie des Kreisels, chapter VI; Whittaker, Analytical Dynamics, sections 71-72",
+        continuous: true,
+        make: |body| Box::new(Exact::new(body)),
     },
 ];
 

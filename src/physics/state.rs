@@ -21,9 +21,10 @@ impl State {
 
     /// Whether every number is finite.
     pub fn is_finite(&self) -> bool {
-        self.time_s.is_finite()
-            && self.momentum.iter().all(|c| c.is_finite())
-            && self.orientation.iter().all(|c| c.is_finite())
+        // 0 · x is 0 for every finite x and NaN for all else: one sum tells, without thirteen branches.
+        let zeros =
+            (0.0 * self.momentum).sum() + (0.0 * self.orientation).sum() + 0.0 * self.time_s;
+        zeros == 0.0
     }
 }
 

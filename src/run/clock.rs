@@ -1,5 +1,7 @@
 //! What time it is at a step.
 
+use crate::scenario::Scenario;
+
 /// Time as a function of the step, t = t_a + (step − a) dt, with a the step of the last edit of dt: never a running
 /// sum, whose rounding would grow with the run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +19,16 @@ impl Clock {
             anchor_s: 0.0,
             time_step_s,
         }
+    }
+
+    /// The clock in force at `step` of `scenario`, edits made at that step not yet counted.
+    pub fn at(scenario: &Scenario, step: u64) -> Self {
+        let mut clock = Self::new(scenario.motion.time_step_s);
+        let edits = scenario.edits.iter().take_while(|edit| edit.step < step);
+        edits
+            .filter(|edit| edit.touches.time_step)
+            .for_each(|edit| clock.change(edit.step, edit.motion.time_step_s));
+        clock
     }
 
     /// Time at `step`, s; the step must not lie before the last edit of dt.

@@ -88,8 +88,8 @@ fn factor(push: &Push, counting: Counting, stretch: &Stretch) -> f64 {
     }
 }
 
-/// A window in seconds, from and to.
-fn seconds(window: Window, counting: Counting) -> (f64, f64) {
+/// A window in seconds, from and to; infinite where it has none.
+pub fn seconds(window: Window, counting: Counting) -> (f64, f64) {
     match (window, counting) {
         (Window::Time { from_s, for_s }, _) => (from_s, from_s + for_s),
         (Window::Steps { first, count }, Counting::Seconds { written_for_s: dt }) => {
@@ -103,6 +103,10 @@ fn seconds(window: Window, counting: Counting) -> (f64, f64) {
 /// The share of `stretch` that lies between `from` and `to`, 0 to 1, free of rounding at both ends.
 fn share(from: f64, to: f64, stretch: &Stretch) -> f64 {
     let length = stretch.end - stretch.begin;
+    if length <= 0.0 {
+        // A time step so small that it does not move t.
+        return f64::from(from <= stretch.begin && stretch.begin < to);
+    }
     let share = (to.min(stretch.end) - from.max(stretch.begin)) / length;
     if share <= ROUNDING {
         0.0

@@ -23,10 +23,15 @@ pub struct Simulation {
     step: u64,
     segment: u64,
     edits_made: usize,
+    /// The step of the next edit; the last step there could be where there is none.
+    next_edit: u64,
     before: State,
     state: State,
     azimuth: Azimuth,
     energy: EnergyAccount,
+    ended: Option<NotFinite>,
+    /// While |L|² is below this, every number read off a finite state is finite too.
+    safe_below: f64,
 }
 
 /// What the energy would be if the scheme made no error.
@@ -42,7 +47,10 @@ struct EnergyAccount {
 
 /// The numbers of a run are no longer finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the numbers are no longer finite at step {step}: the run ends at step {}", step - 1)]
+#[error(
+    "the numbers are no longer finite at step {step}: the run ends at step {}; a shorter time step or another scheme may mend it",
+    step - 1
+)]
 pub struct NotFinite {
     /// The step that would have led to them.
     pub step: u64,
@@ -74,14 +82,17 @@ impl Simulation {
             acting: Vec::with_capacity(scenario.pushes.len()),
             loads,
             clock: Clock::new(motion.time_step_s),
-            counting: Counting::Steps,
+            counting: counting(&scenario),
             step: 0,
             segment: 0,
             edits_made: 0,
+            next_edit: step_of_edit(&scenario, 0),
             before: state,
             state,
             azimuth: Azimuth::start(&state.axle()),
             energy,
+            ended: None,
+            safe_below: safe_below(&scenario, motion.gravity),
             scenario,
         }
     }
@@ -92,19 +103,27 @@ impl Simulation {
     /// When the numbers stop being finite. The run then stays at the step before, and so it does at every further
     /// call.
     pub fn step(&mut self) -> Result<(), NotFinite> {
-        let resume = self.make_due_edits();
-        let mut next = self.state;
-        let work = self.advance(&mut next);
-        next.time_s = self.clock.time_s(self.step + 1);
-        if !next.is_finite() {
-            self.scheme.start(&self.state);
-            return Err(NotFinite {
-                step: self.step + 1,
-            });
+        if let Some(end) = self.ended {
+            return Err(end);
         }
-        self.segment += resume;
+        let undo = (self.motion, self.energy, self.segment);
+        if self.next_edit == self.step {
+            self.make_due_edits();
+        }
+        self.before = self.state;
+        let work = self.advance();
+        self.state.time_s = self.clock.time_s(self.step + 1);
+        if !self.can_be_read() {
+            // This step's edits have led nowhere: the run is read as it stood before them.
+            (self.motion, self.energy, self.segment) = undo;
+            self.state = self.before;
+            let end = NotFinite {
+                step: self.step + 1,
+            };
+            self.ended = Some(end);
+            return Err(end);
+        }
         self.energy.work += work;
-        self.before = std::mem::replace(&mut self.state, next);
         self.step += 1;
         self.azimuth.follow(&self.state.axle());
         Ok(())
@@ -121,19 +140,36 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes `state` through the coming step and returns the work the pushes did on the way, J.
-    fn advance(&mut self, state: &mut State) -> f64 {
-        let mut stretch = Stretch::step(self.step + 1, &self.clock);
+    /// Whether every number read off the state is finite: squares leave the range of numbers before L itself does. A
+    /// finite energy means a finite Omega too.
+    fn can_be_read(&self) -> bool {
+        let body = &self.scenario.body.mechanics;
+        if !self.state.is_finite() {
+            return false;
+        }
+        // Far inside the range nothing can leave it: only what comes near the edge is looked at number by number.
+        if self.state.momentum.norm_squared() < self.safe_below {
+            return true;
+        }
+        let potential = self.motion.gravity * observables::weight_height(body, &self.state);
+        let energy = observables::kinetic_energy(body, &self.state) + potential;
+        let traced = observables::position(body, &self.state, self.scenario.trace);
+        energy.is_finite() && traced.iter().all(|c| c.is_finite())
+    }
+
+    /// Takes the state through the coming step and returns the work the pushes did on the way, J.
+    fn advance(&mut self) -> f64 {
         if self.pushes.is_empty() {
-            self.scheme.step(self.motion.time_step_s, state);
+            self.scheme.step(self.motion.time_step_s, &mut self.state);
             return 0.0;
         }
+        let mut stretch = Stretch::step(self.step + 1, &self.clock);
         let mut work = 0.0;
         let end = stretch.end;
         if self.motion.scheme.continuous {
             while let Some(change) = pushes::next_change(&self.pushes, self.counting, &stretch) {
                 stretch.end = change;
-                work += self.advance_under_push(&stretch, change - stretch.begin, state);
+                work += self.advance_under_push(&stretch, change - stretch.begin);
                 (stretch.begin, stretch.end) = (change, end);
             }
         }
@@ -143,40 +179,37 @@ impl Simulation {
         } else {
             end - stretch.begin
         };
-        work + self.advance_under_push(&stretch, length, state)
+        work + self.advance_under_push(&stretch, length)
     }
 
-    fn advance_under_push(&mut self, stretch: &Stretch, length: f64, state: &mut State) -> f64 {
+    fn advance_under_push(&mut self, stretch: &Stretch, length: f64) -> f64 {
         pushes::acting(&self.pushes, self.counting, stretch, &mut self.acting);
         if self.acting != self.loads.pushes {
             self.loads.pushes.clone_from(&self.acting);
             self.scheme.load(&self.loads);
         }
-        let before = *state;
-        self.scheme.step(length, state);
+        let before = self.state;
+        self.scheme.step(length, &mut self.state);
         let body = &self.scenario.body.mechanics;
-        let moved = |push: &PointForce| {
-            let at = body.points()[push.point].at;
-            push.force
-                .dot(&(state.orientation * at - before.orientation * at))
-        };
+        let at = |state: &State, push: &PointForce| observables::position(body, state, push.point);
+        let moved =
+            |push: &PointForce| push.force.dot(&(at(&self.state, push) - at(&before, push)));
         self.loads.pushes.iter().map(moved).sum()
     }
 
-    /// Carries out the edits made at this step, and says how many segments they begin.
-    fn make_due_edits(&mut self) -> u64 {
+    /// Carries out the edits made at this step.
+    fn make_due_edits(&mut self) {
         let scenario = Arc::clone(&self.scenario);
-        let mut segments = 0;
         while let Some(edit) = scenario
             .edits
             .get(self.edits_made)
             .filter(|edit| edit.step == self.step)
         {
             self.make_edit(edit);
-            segments += u64::from(edit.touches.segment);
+            self.segment += u64::from(edit.touches.segment);
             self.edits_made += 1;
         }
-        segments
+        self.next_edit = step_of_edit(&scenario, self.edits_made);
     }
 
     fn make_edit(&mut self, edit: &Edit) {
@@ -196,6 +229,7 @@ impl Simulation {
         self.motion = edit.motion;
         self.pushes = edit.pushes.as_slice().into();
         self.loads.gravity = self.motion.gravity;
+        self.safe_below = safe_below(&self.scenario, self.motion.gravity);
         self.loads.pushes.clear();
         self.scheme.load(&self.loads);
     }
@@ -215,9 +249,24 @@ impl Simulation {
         &self.state
     }
 
+    /// The axle's azimuth, counted on through full turns.
+    pub fn azimuth(&self) -> &Azimuth {
+        &self.azimuth
+    }
+
+    /// The forces of the step taken last (at step 0: gravity alone).
+    pub fn loads(&self) -> &Loads {
+        &self.loads
+    }
+
     /// Gravity, scheme and time step of the step taken last (at step 0: of the first).
     pub fn motion(&self) -> &Motion {
         &self.motion
+    }
+
+    /// What the scheme has to say of how the run was computed, beyond its name.
+    pub fn remark(&self) -> Option<String> {
+        self.scheme.remark()
     }
 
     /// The whole of the step taken last; `None` at step 0.
@@ -264,5 +313,30 @@ impl Simulation {
             clock.change(edit.step, edit.motion.time_step_s);
         }
         clock.step_at(time_s)
+    }
+}
+
+fn step_of_edit(scenario: &Scenario, index: usize) -> u64 {
+    scenario.edits.get(index).map_or(u64::MAX, |edit| edit.step)
+}
+
+/// Step counts are steps, unless they were written for another time step.
+fn counting(scenario: &Scenario) -> Counting {
+    match scenario.written_for_s == scenario.motion.time_step_s {
+        true => Counting::Steps,
+        false => Counting::Seconds {
+            written_for_s: scenario.written_for_s,
+        },
+    }
+}
+
+/// |L|² (J² s²) below which energy and traced point cannot leave the range of numbers; 0 where they could at any L.
+fn safe_below(scenario: &Scenario, gravity: f64) -> f64 {
+    const EDGE: f64 = 1e300;
+    let body = &scenario.body.mechanics;
+    let weight = gravity.abs() * body.first_moment().norm();
+    match weight < EDGE && scenario.arm_m() < EDGE {
+        true => EDGE / body.inverse_inertia().trace().max(1.0),
+        false => 0.0,
     }
 }

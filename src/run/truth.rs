@@ -1,80 +1,161 @@
-//! The exact motion of a scenario: what its start does under the same pushes, whatever the scheme and the time step.
+//! The exact motion of a scenario, beside which a run is shown.
 //!
-//! For now it is an integration by `rk4` in steps so short that the textbook's tops are true to 1e-6 m; the closed
-//! form will take its place behind the same two functions. Edits of gravity are not followed yet.
+//! It begins at the scenario's start and lives through the same pushes and edits of gravity, in seconds; it never
+//! adopts the scheme's state, and edits of the time step or the scheme do not touch it.
 
+use super::Clock;
 use super::pushes::{self, Counting, Stretch};
-use crate::physics::{Loads, PointForce, Scheme, SchemeInfo, State, observables, report::Report};
-use crate::scenario::Scenario;
+use crate::physics::exact::Kind;
+use crate::physics::{ExactMotion, Loads, State};
+use crate::scenario::{Push, Scenario, Window};
 use std::sync::Arc;
 
-/// Angle by which the body turns in one step of the integration, rad.
-const TURN: f64 = 0.03;
-
-/// The exact motion; see the module's text.
-#[derive(Clone)]
+/// The exact motion of one scenario, at any time.
+#[derive(Clone, Debug)]
 pub struct Truth {
     scenario: Arc<Scenario>,
-    scheme: Box<dyn Scheme>,
-    acting: Vec<PointForce>,
-    state: State,
+    /// From when on which gravity and pushes are in force; the first from 0.
+    eras: Vec<Era>,
+    /// The motion since the forces last changed, and when they change next.
+    piece: ExactMotion,
+    end_s: f64,
+    loads: Loads,
+    pieces: u64,
+}
+
+#[derive(Clone, Debug)]
+struct Era {
+    begin_s: f64,
+    gravity: f64,
+    pushes: Vec<Push>,
 }
 
 impl Truth {
-    /// The exact motion of `scenario`, at its start.
+    /// The exact motion of `scenario`.
     pub fn new(scenario: Arc<Scenario>) -> Self {
-        let body = &scenario.body.mechanics;
-        let scheme: Box<dyn Scheme> = match SchemeInfo::find("rk4") {
-            Some(rk4) => rk4.make(body),
-            None => Box::new(Report::new(body)),
-        };
-        Self {
-            scheme,
-            acting: Vec::new(),
-            state: scenario.start,
+        let mut truth = Self {
+            eras: eras(&scenario),
+            piece: ExactMotion::new(&scenario.body.mechanics, &Loads::default(), &scenario.start),
+            end_s: 0.0,
+            loads: Loads::default(),
+            pieces: 0,
             scenario,
-        }
+        };
+        truth.begin_piece(truth.scenario.start);
+        truth
     }
 
-    /// The state at `t_s` (s), which must not lie before that of the call before.
-    pub fn advance_to(&mut self, t_s: f64) -> State {
+    /// The state at `time_s`, s, not negative. Later times cost little; one before the forces last changed goes
+    /// through the changes from the start again.
+    pub fn state_at(&mut self, time_s: f64) -> State {
+        if time_s < self.piece.begin_s() {
+            self.pieces = 0;
+            self.begin_piece(self.scenario.start);
+        }
+        while time_s > self.end_s {
+            let state = self.piece.at(self.end_s);
+            self.begin_piece(state);
+        }
+        self.piece.at(time_s)
+    }
+
+    /// The scenario whose exact motion it is.
+    pub fn scenario(&self) -> &Arc<Scenario> {
+        &self.scenario
+    }
+
+    /// The exact motion under the forces of the time asked for last.
+    pub fn motion(&self) -> &ExactMotion {
+        &self.piece
+    }
+
+    /// The forces of the time asked for last.
+    pub fn loads(&self) -> &Loads {
+        &self.loads
+    }
+
+    /// How it is found at the time asked for last.
+    pub fn kind(&self) -> Kind {
+        self.piece.kind()
+    }
+
+    /// The number of times the forces have changed so far: who keeps something of [`motion`](Self::motion) looks here.
+    pub fn changes(&self) -> u64 {
+        self.pieces
+    }
+
+    fn begin_piece(&mut self, state: State) {
         let counting = Counting::Seconds {
-            written_for_s: self.scenario.motion.time_step_s,
+            written_for_s: self.scenario.written_for_s,
         };
-        while self.state.time_s < t_s {
-            let speed =
-                observables::angular_velocity(&self.scenario.body.mechanics, &self.state).norm();
-            let longest = if speed > 0.0 {
-                TURN / speed
-            } else {
-                f64::INFINITY
-            };
-            let begin = self.state.time_s;
-            let mut stretch = Stretch {
-                step: 0,
-                begin,
-                end: t_s.min(begin + longest),
-            };
-            if let Some(change) = pushes::next_change(&self.scenario.pushes, counting, &stretch) {
-                stretch.end = change;
-            }
-            if stretch.end <= begin {
-                break; // steps below the resolution of t: the motion has come as far as it can
-            }
-            self.integrate(counting, &stretch);
-        }
-        self.state
+        let begin = state.time_s;
+        let index = self
+            .eras
+            .partition_point(|era| era.begin_s <= begin)
+            .saturating_sub(1);
+        let era = &self.eras[index];
+        let next_era = self
+            .eras
+            .get(index + 1)
+            .map_or(f64::INFINITY, |era| era.begin_s);
+        self.end_s = next_change(&era.pushes, counting, begin).min(next_era);
+        let stretch = Stretch {
+            step: 1,
+            begin,
+            end: self.end_s,
+        };
+        self.loads.gravity = era.gravity;
+        pushes::acting(&era.pushes, counting, &stretch, &mut self.loads.pushes);
+        self.piece = ExactMotion::new(&self.scenario.body.mechanics, &self.loads, &state);
+        self.pieces += 1;
     }
+}
 
-    fn integrate(&mut self, counting: Counting, stretch: &Stretch) {
-        pushes::acting(&self.scenario.pushes, counting, stretch, &mut self.acting);
-        let loads = Loads {
-            gravity: self.scenario.motion.gravity,
-            pushes: self.acting.clone(),
-        };
-        self.scheme.load(&loads);
-        self.scheme
-            .step(stretch.end - stretch.begin, &mut self.state);
-        self.state.time_s = stretch.end;
+fn eras(scenario: &Scenario) -> Vec<Era> {
+    let mut clock = Clock::new(scenario.motion.time_step_s);
+    let mut eras = vec![Era {
+        begin_s: 0.0,
+        gravity: scenario.motion.gravity,
+        pushes: scenario.pushes.clone(),
+    }];
+    for edit in &scenario.edits {
+        let begin_s = clock.time_s(edit.step);
+        if edit.touches.time_step {
+            clock.change(edit.step, edit.motion.time_step_s);
+        }
+        eras.push(Era {
+            begin_s,
+            gravity: edit.motion.gravity,
+            pushes: edit.pushes.clone(),
+        });
+    }
+    eras
+}
+
+/// The first moment after `now` at which a push begins, ends or (accumulating) grows; infinite where none does.
+fn next_change(pushes: &[Push], counting: Counting, now: f64) -> f64 {
+    let growth = pushes
+        .iter()
+        .filter_map(|push| next_growth(push, counting, now));
+    let edges = pushes
+        .iter()
+        .flat_map(|push| <[f64; 2]>::from(pushes::seconds(push.window, counting)));
+    edges
+        .chain(growth)
+        .filter(|&moment| moment > now)
+        .fold(f64::INFINITY, f64::min)
+}
+
+fn next_growth(push: &Push, counting: Counting, now: f64) -> Option<f64> {
+    match (push.window, counting) {
+        (Window::Steps { first, count }, Counting::Seconds { written_for_s: dt })
+            if push.accumulates =>
+        {
+            // The boundary after `now`, safely past rounding: `now` itself is one of them.
+            let next = (now / dt + 1e-9).floor() + 1.0;
+            let inside = next >= (first - 1) as f64 && next <= (first - 1 + count) as f64;
+            inside.then_some(next * dt)
+        }
+        _ => None,
     }
 }

@@ -1,8 +1,9 @@
 //! A scenario's text, where it came from, and what `--set` changed in it.
 
-use super::checks::{self, Scenario};
-use super::problem::{Problem, Problems, nearest, printable};
-use super::{file::ScenarioFile, keys, presets};
+use super::checks;
+use super::dotted::{is_in, is_written, set_key};
+use super::problem::{Problem, Problems, brief, nearest, printable};
+use super::{file::ScenarioFile, keys, model::Scenario, presets};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -14,6 +15,9 @@ const LONGEST: u64 = 64 << 20;
 
 /// How the header of every CSV begins that gyrolab writes, below the run file.
 const CSV_HEADER: &str = "step,t_s,";
+
+/// Some programs put it before the first line of a file.
+const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 
 /// A scenario or run file on its way to a [`Scenario`].
 #[derive(Clone, Debug)]
@@ -49,9 +53,9 @@ impl Document {
         let origin = path.display().to_string();
         match read_text(path) {
             Ok(text) => Self::parse(&origin, &text),
-            Err(rule) => Err(Problems {
+            Err(problem) => Err(Problems {
                 origin,
-                list: vec![Problem::at("", rule)],
+                list: vec![problem],
             }),
         }
     }
@@ -102,7 +106,7 @@ impl Document {
     /// When there is no `=`, or the key leads nowhere. Whether key and value are allowed shows in
     /// [`scenario`](Self::scenario).
     pub fn set(&mut self, argument: &str) -> Result<(), Problems> {
-        let place = format!("--set {}", printable(argument));
+        let place = set_place(argument);
         let fail = |mut problem: Problem| {
             problem.place = Some(place.clone());
             Problems {
@@ -117,6 +121,7 @@ impl Document {
             )));
         };
         let value = value
+            .trim()
             .parse()
             .unwrap_or_else(|_| Value::String(value.to_owned()));
         if let Err(problem) = set_key(&mut self.table, key.trim(), value) {
@@ -145,22 +150,36 @@ impl Document {
         checks::scenario(file).map_err(|problems| self.placed(problems))
     }
 
+    /// The last `--set` that wrote what a problem at `key` is about: the value, something in it or around it, or the
+    /// table that lacks it where the file has none such.
+    fn setting_behind(&self, key: &str, written: Option<&toml::Table>) -> Option<&str> {
+        let last = |wanted: &dyn Fn(&str) -> bool| {
+            let setting = self.set.iter().rev().find(|(set, _)| wanted(set))?;
+            Some(setting.1.as_str())
+        };
+        last(&|set| is_in(key, set) || is_in(set, key)).or_else(|| {
+            let table = key.rsplit_once('.')?.0;
+            let is_new = !is_written(written?, table);
+            last(&|set| is_new && is_in(set, table))
+        })
+    }
+
     /// Problems with the places at which the user wrote their keys, in the order of the file.
     fn placed(&self, mut list: Vec<Problem>) -> Problems {
         let spans = DeTable::parse(&self.text).ok();
+        let written = (!self.set.is_empty()).then(|| self.text.parse().unwrap_or_default());
+        let line_ends: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
         let mut lines: Vec<(usize, Problem)> = Vec::with_capacity(list.len());
         for mut problem in list.drain(..) {
-            let touches =
-                |key: &str| problem.key == key || problem.key.starts_with(&format!("{key}."));
-            if let Some((_, argument)) = self.set.iter().rev().find(|(key, _)| touches(key)) {
-                problem.place = Some(format!("--set {}", printable(argument)));
+            if let Some(argument) = self.setting_behind(&problem.key, written.as_ref()) {
+                problem.place = Some(set_place(argument));
                 lines.push((usize::MAX, problem));
                 continue;
             }
             let offset = spans
                 .as_ref()
                 .and_then(|table| offset_of(table.get_ref(), &problem.key));
-            let line = offset.map(|offset| line_at(&self.text, offset));
+            let line = offset.map(|offset| line_ends.partition_point(|&end| end < offset) + 1);
             problem.place = line.map(|line| format!("line {line}"));
             lines.push((line.unwrap_or(0), problem));
         }
@@ -172,72 +191,8 @@ impl Document {
     }
 }
 
-/// Writes `value` at the dotted `key`; numbers lead into arrays, and the one past the end adds an element.
-///
-/// # Errors
-/// When the key leads into something that is neither table nor array, or past an array's end.
-pub fn set_key(table: &mut toml::Table, key: &str, value: Value) -> Result<(), Problem> {
-    let names: Vec<&str> = key.split('.').collect();
-    let (last, way) = match names.split_last() {
-        Some((last, way)) if names.iter().all(|name| !name.is_empty()) => (*last, way),
-        _ => {
-            return Err(Problem::at(
-                key,
-                "is not a dotted key such as motion.time_step_s",
-            ));
-        }
-    };
-    let mut path = String::new();
-    let mut inside = Place::Table(table);
-    for (index, name) in way.iter().enumerate() {
-        path = keys::join(&path, name);
-        let next_is_number = names[index + 1].parse::<usize>().is_ok();
-        let empty = if next_is_number {
-            Value::Array(Vec::new())
-        } else {
-            Value::Table(toml::Table::new())
-        };
-        inside = match inside.entry(name, &path, empty)? {
-            Value::Table(table) => Place::Table(table),
-            Value::Array(array) => Place::Array(array),
-            other => {
-                let rule = format!("holds no {}", keys::join("", names[index + 1]));
-                return Err(Problem::with_value(path, other, rule));
-            }
-        };
-    }
-    let place = inside.entry(last, key, Value::Boolean(false))?;
-    *place = value;
-    Ok(())
-}
-
-enum Place<'a> {
-    Table(&'a mut toml::Table),
-    Array(&'a mut Vec<Value>),
-}
-
-impl<'a> Place<'a> {
-    /// What stands at `name` in here, `empty` put there first where nothing does.
-    fn entry(self, name: &str, path: &str, empty: Value) -> Result<&'a mut Value, Problem> {
-        match self {
-            Self::Table(table) => Ok(table.entry(name).or_insert(empty)),
-            Self::Array(array) => {
-                let Ok(index) = name.parse::<usize>() else {
-                    return Err(Problem::at(
-                        path,
-                        "must lead to a place in an array: a number from 0",
-                    ));
-                };
-                let length = array.len();
-                if index == length {
-                    array.push(empty);
-                }
-                let rule =
-                    format!("leads past the end: the array has {length} elements, numbered from 0");
-                array.get_mut(index).ok_or_else(|| Problem::at(path, rule))
-            }
-        }
-    }
+fn set_place(argument: &str) -> String {
+    format!("--set {}", brief(argument, 80))
 }
 
 fn no_preset(name: &str) -> Problems {
@@ -254,51 +209,78 @@ fn no_preset(name: &str) -> Problems {
 }
 
 /// The text of a scenario, or the run file in the header of a CSV, of which no more is read.
-fn read_text(path: &Path) -> Result<String, String> {
-    let cannot = |error: std::io::Error| format!("cannot be read: {error}");
+fn read_text(path: &Path) -> Result<String, Problem> {
+    let whole = |rule: String| Problem::at("", rule);
+    let cannot = |error: std::io::Error| whole(format!("cannot be read: {error}"));
+    if path.is_dir() {
+        return Err(whole("is a folder: name a file in it".to_owned()));
+    }
     let mut reader = BufReader::new(File::open(path).map_err(cannot)?.take(LONGEST + 1));
-    let (mut text, mut header) = (Vec::new(), String::new());
-    loop {
+    let (mut text, mut header) = (Vec::new(), 0);
+    let is_csv = loop {
         let begin = text.len();
         reader.read_until(b'\n', &mut text).map_err(cannot)?;
-        let line = String::from_utf8_lossy(&text[begin..]);
-        match line.strip_prefix('#') {
-            Some(rest) => header.push_str(rest.strip_prefix(' ').unwrap_or(rest)),
-            None if line.starts_with(CSV_HEADER) => return Ok(header),
-            None => break,
+        let line = &text[begin..];
+        let line = line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line);
+        if !line.starts_with(b"#") {
+            break line.starts_with(CSV_HEADER.as_bytes());
         }
+        header = text.len();
+    };
+    if is_csv && header == 0 {
+        let rule = "is a CSV with no run file in its header, the \"# \" lines that gyrolab writes";
+        return Err(whole(rule.to_owned()));
+    }
+    if is_csv {
+        text.truncate(header);
+        let lines = utf8(text)?;
+        let stripped = |line: &str| {
+            let line = line.trim_start_matches(['\u{feff}', '#']);
+            line.strip_prefix(' ').unwrap_or(line).to_owned()
+        };
+        return Ok(lines.split_inclusive('\n').map(stripped).collect());
     }
     if path.extension().is_some_and(|extension| extension == "csv") {
-        return Err(format!(
+        return Err(whole(format!(
             "is not a CSV that gyrolab wrote: no line \"{CSV_HEADER}...\" below its run file"
-        ));
+        )));
     }
     reader.read_to_end(&mut text).map_err(cannot)?;
     if text.len() as u64 > LONGEST {
-        return Err(format!(
+        return Err(whole(format!(
             "is longer than {} MiB: not a scenario",
             LONGEST >> 20
-        ));
+        )));
     }
-    String::from_utf8(text).map_err(|error| {
-        let good = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..good]
-            .iter()
-            .filter(|&&byte| byte == b'\n')
-            .count()
-            + 1;
-        format!("is not text in UTF-8 (line {line})")
+    utf8(text)
+}
+
+fn utf8(bytes: Vec<u8>) -> Result<String, Problem> {
+    String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = good.iter().filter(|&&byte| byte == b'\n').count() + 1;
+        let mut problem = Problem::at("", "is not text in UTF-8: save the file in that encoding");
+        problem.place = Some(format!("line {line}"));
+        problem
     })
 }
 
 fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
-    let picture: Vec<_> = error
-        .to_string()
-        .trim_end()
-        .lines()
-        .map(printable)
-        .collect();
-    let mut problem = Problem::at("", picture.join("\n"));
+    const WIDEST: usize = 160;
+    let picture = error.to_string();
+    let mut lines = picture.trim_end().lines();
+    let rule = if lines.clone().all(|line| line.len() <= WIDEST) {
+        lines.map(printable).collect::<Vec<_>>().join("\n")
+    } else {
+        // A picture of a line that fills the screen shows nothing.
+        let place = brief(lines.next().unwrap_or_default(), WIDEST);
+        format!("{place}: {}", brief(error.message(), WIDEST))
+    };
+    let rule = match error.span() {
+        Some(_) => rule,
+        None => format!("cannot be read as TOML: {rule}"),
+    };
+    let mut problem = Problem::at("", rule);
     problem.place = error
         .span()
         .map(|span| format!("line {}", line_at(text, span.start)));
@@ -315,8 +297,14 @@ fn line_at(text: &str, offset: usize) -> usize {
 
 /// Where the dotted `key`, or as much of it as there is, stands in the text: a value's key, a table's head.
 fn offset_of(table: &DeTable<'_>, key: &str) -> Option<usize> {
-    let (name, rest) = key.split_once('.').unwrap_or((key, ""));
-    let (found, value) = table.iter().find(|(found, _)| found.get_ref() == name)?;
+    let entry = |name: &str| table.iter().find(|(found, _)| found.get_ref() == name);
+    let quoted = key.strip_prefix('"').and_then(|key| key.strip_suffix('"'));
+    let (name, rest) = match quoted {
+        Some(name) => (name, ""),
+        None => key.split_once('.').unwrap_or((key, "")),
+    };
+    // What an edit sets has the whole path for its name.
+    let (found, value) = entry(name).or_else(|| entry(key))?;
     Some(offset_inside(value.get_ref(), rest).unwrap_or(found.span().start))
 }
 

@@ -1,7 +1,7 @@
 //! The one table of keys: what each is called, what it may hold, in which unit, and what it means.
 //!
 //! Every file and every `--set` is held against it, so that a wrong name or value is refused in the same words
-//! wherever it comes from. Rules that need more than one value are in [`super::checks`].
+//! wherever it comes from. Rules that need more than one value are in `checks` and `parts`.
 
 use super::problem::{Problem, is_steering, nearest};
 use crate::physics::scheme;
@@ -133,20 +133,24 @@ fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Vec<
         let (pattern, key) = (join(under, name), join(path, name));
         if name.contains(['.', '*']) || !is_known(&pattern) {
             let near = nearest(name, names_under(under));
+            // In quotes, or a dot in the name would make it the path of another key.
+            let key = match name.contains('.') {
+                true => join(path, &format!("\"{name}\"")),
+                false => key,
+            };
             problems.push(Problem::at(key, format!("unknown key: {near}")));
         } else {
             check_value(value, &pattern, &key, problems);
         }
     }
     for missing in required_under(under).filter(|name| !table.contains_key(*name)) {
-        let about = KEYS
+        let rule = KEYS
             .iter()
             .find(|key| key.path == join(under, missing))
-            .map_or("a table", |key| key.about);
-        problems.push(Problem::at(
-            join(path, missing),
-            format!("is missing ({about})"),
-        ));
+            .map_or(format!("is missing: add a table [{missing}]"), |key| {
+                format!("is missing ({})", key.about)
+            });
+        problems.push(Problem::at(join(path, missing), rule));
     }
 }
 

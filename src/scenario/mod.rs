@@ -1,17 +1,21 @@
 //! Scenarios: from a TOML file, or a run's own CSV, to numbers that have been checked.
 //!
 //! A [`Document`] is the text with its `--set` overrides; [`keys`] is the one table of every key a file may hold;
-//! [`file`](mod@file) is the file's shape as serde reads and writes it; [`checks`] makes of it a [`Scenario`] whose
-//! numbers make sense together. What is refused comes back as [`Problems`], each with place, key, value and rule.
+//! [`file`](mod@file) is the file's shape as serde reads and writes it; `parts` and `edits` make checked numbers of
+//! its tables, and `checks` a [`Scenario`] of those. What is refused comes back as [`Problems`], each with place, key, value and rule.
 
-pub mod checks;
+mod checks;
 pub mod document;
+mod dotted;
+mod edits;
 pub mod file;
 pub mod keys;
+mod model;
+mod parts;
 pub mod presets;
 pub mod problem;
 
-pub use checks::{Body, Edit, Motion, Push, Scenario, Touches, Window};
 pub use document::Document;
 pub use file::ScenarioFile;
+pub use model::{Body, Edit, Motion, Push, Scenario, Touches, Window};
 pub use problem::{Problem, Problems};

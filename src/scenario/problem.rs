@@ -48,8 +48,8 @@ impl fmt::Display for Problem {
         }
         match (self.key.is_empty(), self.value.is_empty()) {
             (true, _) => write!(f, "{}", self.rule),
-            (false, true) => write!(f, "{}: {}", printable(&self.key), self.rule),
-            (false, false) => write!(f, "{} ({}) {}", printable(&self.key), self.value, self.rule),
+            (false, true) => write!(f, "{}: {}", brief(&self.key, 80), self.rule),
+            (false, false) => write!(f, "{} ({}) {}", brief(&self.key, 80), self.value, self.rule),
         }
     }
 }
@@ -115,27 +115,57 @@ pub fn is_steering(c: char) -> bool {
     c.is_control() || bidirectional
 }
 
+/// `text` made printable, at most `most` characters of it: a message is for reading, however long what it is about.
+pub fn brief(text: &str, most: usize) -> String {
+    let beginning: String = text.chars().take(most).collect();
+    let rest = if beginning.len() < text.len() {
+        "..."
+    } else {
+        ""
+    };
+    printable(&beginning) + rest
+}
+
 /// A value on one line, at most 40 characters of it.
 fn shown(value: &toml::Value) -> String {
-    const MOST: usize = 40;
-    let text = match value {
+    match value {
         toml::Value::Table(_) => "a table".to_owned(),
         toml::Value::Array(items) if items.first().is_some_and(toml::Value::is_table) => {
             format!("{} tables", items.len())
         }
-        other => printable(&other.to_string()),
-    };
-    if text.chars().count() <= MOST {
-        return text;
+        other => brief(&other.to_string(), 40),
     }
-    text.chars().take(MOST).chain("...".chars()).collect()
+}
+
+/// The names one after the other, the first dozen of them.
+pub fn listed<'a>(names: impl Iterator<Item = &'a str> + Clone) -> String {
+    const MOST: usize = 12;
+    let mut list: Vec<_> = names
+        .clone()
+        .take(MOST)
+        .map(|name| brief(name, 40))
+        .collect();
+    match names.count().saturating_sub(MOST) {
+        0 => {}
+        more => list.push(format!("and {more} more")),
+    }
+    if list.is_empty() {
+        return "none".to_owned();
+    }
+    list.join(", ")
 }
 
 /// "did you mean ...?" for a name that is not in `known`, or the list of them where none is near.
 pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+    // Nothing so long is a slip of the pen, and comparing costs its length times that of every name.
+    const LONGEST: usize = 80;
+    if wrong.len() > LONGEST {
+        return format!("there is {}", listed(known));
+    }
     let lower = wrong.to_lowercase();
     let near = known
         .clone()
+        .filter(|name| name.len() <= LONGEST)
         .map(|name| {
             (
                 strsim::damerau_levenshtein(&lower, &name.to_lowercase()),
@@ -148,21 +178,11 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
         .clone()
         .find(|name| !lower.is_empty() && name.to_lowercase().starts_with(&lower));
     match (begins, near) {
-        (Some(name), _) => format!("did you mean {name}?"),
+        (Some(name), _) => format!("did you mean {}?", brief(name, LONGEST)),
         (None, Some((distance, name))) if distance <= 2.max(name.len() / 3) => {
             format!("did you mean {name}?")
         }
-        _ => {
-            let all: Vec<_> = known.collect();
-            format!(
-                "there is {}",
-                if all.is_empty() {
-                    "none".to_owned()
-                } else {
-                    all.join(", ")
-                }
-            )
-        }
+        _ => format!("there is {}", listed(known)),
     }
 }
 

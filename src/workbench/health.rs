@@ -1,75 +1,97 @@
-//! What is wrong with the numbers, in words, from what the simulation gives.
+//! What the time step makes of the numbers, in words for one line: the health that [`crate::analysis`] finds, most
+//! important first.
 
-use super::live::LiveRun;
-use std::f64::consts::TAU;
+use crate::analysis::Health;
+use crate::analysis::health::Picture;
 
-/// From this many turns a time step on, the wheel's spin shown is a strobe picture: half a turn, past which nobody
-/// can tell forwards from backwards.
-const STROBED_FROM: f64 = 0.5;
-
-/// How far the numbers can be trusted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Health {
-    /// |Ω| dt / 2π of the last step; `None` at step 0.
-    pub turns_per_step: Option<f64>,
-    /// (E − E₀ − W)/S; `None` where it means nothing.
-    pub energy_drift: Option<f64>,
-    /// Distance of the traced point from the exact motion, m; `None` while that is not known.
-    pub distance_m: Option<f64>,
-    /// Whether the exact motion is shown and still on its way to now.
-    pub exact_is_behind: bool,
-    /// Whether the exact motion is shown.
-    pub exact_is_shown: bool,
+/// One thing to say, at length where there is room, and in short.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Remark {
+    /// In full.
+    pub long: String,
+    /// In few words.
+    pub short: String,
+    /// Whether something is wrong.
+    pub warns: bool,
 }
 
-impl Health {
-    /// Reads `run`.
-    pub fn of(run: &LiveRun) -> Self {
-        let turns = |record: crate::physics::StepRecord| {
-            record.workings.angular_velocity.norm() * record.time_step_s / TAU
-        };
-        Self {
-            turns_per_step: run.simulation().record().map(turns),
-            energy_drift: run.simulation().energy_drift(),
-            distance_m: run
-                .overlay()
-                .and_then(|overlay| overlay.distance(run.now())),
-            exact_is_behind: run.overlay_is_behind(),
-            exact_is_shown: run.overlay().is_some(),
-        }
-    }
-
-    /// Whether the first of its [`sentences`](Self::sentences) is a warning.
-    pub fn warns(&self) -> bool {
-        self.turns_per_step
-            .is_some_and(|turns| turns >= STROBED_FROM)
-    }
-
-    /// What there is to say, most important first.
-    pub fn sentences(&self) -> Vec<String> {
-        let mut sentences = Vec::new();
-        if let Some(turns) = self.turns_per_step {
-            sentences.push(match turns >= STROBED_FROM {
-                true => format!("{turns:.2} turns a step: strobed"),
-                false => format!("{turns:.4} turns a step"),
-            });
-        }
-        sentences.push(match self.energy_drift {
-            Some(drift) => format!("energy {drift:+.4} mgl"),
-            None => "energy n/a".to_owned(),
+/// What there is to say of `health`.
+pub fn remarks(health: &Health) -> Vec<Remark> {
+    let mut remarks = vec![turns(health), distance(health), energy(health)];
+    if let Some(nutation) = health.nutation {
+        let ratio = nutation.lag_ratio();
+        remarks.push(Remark {
+            long: format!("lag ×{ratio:.1} the true one"),
+            short: format!("lag ×{ratio:.0}"),
+            warns: !(0.5..2.0).contains(&ratio),
         });
-        sentences.push(
-            match (self.exact_is_shown, self.exact_is_behind, self.distance_m) {
-                (false, ..) => "press t for the exact motion".to_owned(),
-                (true, false, Some(distance)) => format!("exact motion {} away", length(distance)),
-                _ => "computing the exact motion".to_owned(),
-            },
-        );
-        sentences
+        let multiplier = nutation.multiplier;
+        remarks.push(Remark {
+            long: format!("nutation ×{multiplier:.6} a step"),
+            short: format!("nutation ×{multiplier:.4}"),
+            warns: false,
+        });
+    }
+    remarks
+}
+
+fn turns(health: &Health) -> Remark {
+    let turns = significant(health.turns_per_step);
+    let (in_short, warns) = match health.picture {
+        Picture::Right => (String::new(), false),
+        Picture::Strobed => (": strobed".to_owned(), false),
+        Picture::TooSlow | Picture::Backwards => (": aliased".to_owned(), true),
+    };
+    let long = match health.picture {
+        Picture::Right => format!("the wheel turns {turns} times a step"),
+        picture => format!("the wheel turns {turns} times a step: {picture}"),
+    };
+    Remark {
+        long,
+        short: format!("{turns} turns a step{in_short}"),
+        warns,
     }
 }
 
-/// A length in a column of its own width, from kilometres down to nanometres.
+fn distance(health: &Health) -> Remark {
+    let Some(deviation) = health.deviation else {
+        let unknown = "not held against the exact motion";
+        return Remark {
+            long: unknown.to_owned(),
+            short: unknown.to_owned(),
+            warns: false,
+        };
+    };
+    let metres = length(deviation.distance_m);
+    Remark {
+        long: format!("{metres} off the exact motion"),
+        short: format!("{metres} off exact"),
+        warns: health.is_believed() == Some(false),
+    }
+}
+
+fn energy(health: &Health) -> Remark {
+    let text = match health.energy_drift {
+        Some(drift) => format!("energy {drift:+.4} mgl"),
+        None => "energy n/a".to_owned(),
+    };
+    Remark {
+        long: text.clone(),
+        short: text,
+        warns: false,
+    }
+}
+
+/// Three digits, as a fixed number of characters while the size does not change.
+fn significant(number: f64) -> String {
+    match number {
+        n if n >= 1.0 => format!("{n:.2}"),
+        n if n >= 0.1 => format!("{n:.3}"),
+        n => format!("{n:.4}"),
+    }
+}
+
+/// A length from metres down to nothing.
 fn length(metres: f64) -> String {
     match metres {
         m if m >= 0.01 => format!("{m:.4} m"),

@@ -58,7 +58,7 @@ pub struct Lab {
 impl Lab {
     /// A lab with the run of `scenario`, opened as `name`, at step 0.
     pub fn new(name: &str, scenario: Arc<Scenario>, view: View, running: bool) -> Self {
-        let playback = Playback::new(scenario, running);
+        let mut playback = Playback::new(scenario, running);
         Self {
             name: name.to_owned(),
             readouts: playback.read(),

@@ -3,6 +3,7 @@
 use super::overlay::Overlay;
 use super::path::Path;
 use super::recording::{Moment, Recording};
+use crate::analysis::{Health, Instruments, Monitor, Theory};
 use crate::run::{NotFinite, Simulation};
 use crate::scenario::Scenario;
 use nalgebra::Vector3;
@@ -17,6 +18,7 @@ const ROUNDING: f64 = 1e-6;
 /// A run under observation.
 pub struct LiveRun {
     simulation: Simulation,
+    monitor: Monitor,
     traced: Vector3<f64>,
     now: Moment,
     recording: Recording,
@@ -51,8 +53,10 @@ impl LiveRun {
     pub fn new(scenario: Arc<Scenario>) -> Self {
         let traced = scenario.body.mechanics.points()[scenario.trace].at;
         let now = Moment::new(&scenario.start, &traced);
+        let simulation = Simulation::new(scenario);
         let mut run = Self {
-            simulation: Simulation::new(scenario),
+            monitor: Monitor::new(&simulation),
+            simulation,
             traced,
             now,
             recording: Recording::default(),
@@ -69,6 +73,7 @@ impl LiveRun {
     /// When the numbers stop being finite; it then stays where it is.
     pub fn step(&mut self) -> Result<(), NotFinite> {
         self.simulation.step()?;
+        self.monitor.follow(&self.simulation);
         self.now = Moment::new(self.simulation.state(), &self.traced);
         self.keep();
         Ok(())
@@ -133,6 +138,21 @@ impl LiveRun {
         self.overlay
             .as_ref()
             .is_some_and(|overlay| overlay.now().time_s < self.now.time_s)
+    }
+
+    /// How far its numbers can be trusted where it stands.
+    pub fn health(&mut self) -> Health {
+        self.monitor.health(&self.simulation)
+    }
+
+    /// What theory says of the exact motion now; `None` where it says nothing.
+    pub fn theory(&mut self) -> Option<Theory> {
+        self.monitor.theory(self.now.time_s)
+    }
+
+    /// What has been measured on its steps.
+    pub fn instruments(&self) -> &Instruments {
+        self.monitor.instruments()
     }
 
     /// The run itself.

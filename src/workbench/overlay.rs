@@ -1,4 +1,4 @@
-//! The exact motion beside the run: followed in time, recorded as the run is, and how far apart the two are.
+//! The exact motion beside the run: followed in time, and recorded as the run is.
 
 use super::path::Path;
 use super::recording::{Moment, Recording};
@@ -47,7 +47,7 @@ impl Overlay {
             } else {
                 next
             };
-            let state = self.truth.advance_to(next);
+            let state = self.truth.state_at(next);
             self.look(Moment {
                 time_s: next,
                 ..Moment::new(&state, &self.traced)
@@ -63,11 +63,6 @@ impl Overlay {
         self.path.follow(self.looks, &moment.position);
         self.looks += 1;
         self.now = moment;
-    }
-
-    /// How far the run's `moment` is from the exact motion at the same time, m; `None` while that is behind.
-    pub fn distance(&self, moment: &Moment) -> Option<f64> {
-        (self.now.time_s >= moment.time_s).then(|| (self.now.position - moment.position).norm())
     }
 
     /// Where the exact motion stands.

@@ -30,7 +30,6 @@ pub enum Halt {
 /// A run, its pace, and where it is to stop.
 pub struct Playback {
     run: LiveRun,
-    azimuth_at_start_deg: f64,
     pace: Pace,
     /// The step at which it stops by itself: the scenario's end at first, or where steps that were asked for lead.
     stop: u64,
@@ -44,7 +43,6 @@ impl Playback {
         let speed = scenario.file.view.as_ref().and_then(|view| view.speed);
         let (stop, run) = (scenario.steps, LiveRun::new(scenario));
         Self {
-            azimuth_at_start_deg: run.simulation().sample().azimuth_deg,
             run,
             pace: Pace::new(speed.unwrap_or(SPEED), running),
             stop,
@@ -148,8 +146,8 @@ impl Playback {
     }
 
     /// The numbers as they are now.
-    pub fn read(&self) -> Readouts {
-        Readouts::new(&self.run, &self.pace, self.azimuth_at_start_deg)
+    pub fn read(&mut self) -> Readouts {
+        Readouts::new(&mut self.run, &self.pace)
     }
 
     /// The step it stands at.

@@ -1,9 +1,9 @@
 //! The numbers on the screen, read off a few times a second: digits that change in every frame can be read by nobody,
 //! and a slow line has better things to carry.
 
-use super::health::Health;
 use super::live::LiveRun;
 use super::pace::{Pace, Speed};
+use crate::analysis::Health;
 use crate::run::Sample;
 use std::time::Duration;
 
@@ -15,8 +15,14 @@ pub const EVERY: Duration = Duration::from_millis(250);
 pub struct Readouts {
     /// The run's numbers at its step.
     pub sample: Sample,
-    /// Mean rate of the axle's azimuth since the start, degrees a second; `None` at the start.
+    /// Precession as it was measured so far, degrees a second.
     pub precession_deg_per_s: Option<f64>,
+    /// The exact motion's mean precession, degrees a second.
+    pub predicted_precession_deg_per_s: Option<f64>,
+    /// Nutation period as it was measured so far, s.
+    pub nutation_s: Option<f64>,
+    /// The exact motion's nutation period, s.
+    pub predicted_nutation_s: Option<f64>,
     /// How far the numbers can be trusted.
     pub health: Health,
     /// Whether the run goes on, and how fast.
@@ -24,15 +30,22 @@ pub struct Readouts {
 }
 
 impl Readouts {
-    /// Reads `run`, whose azimuth at the start was `azimuth_at_start_deg`.
-    pub fn new(run: &LiveRun, pace: &Pace, azimuth_at_start_deg: f64) -> Self {
-        let sample = run.simulation().sample();
-        let turned = sample.azimuth_deg - azimuth_at_start_deg;
+    /// Reads `run`, which is played at `pace`.
+    pub fn new(run: &mut LiveRun, pace: &Pace) -> Self {
+        let (health, theory) = (run.health(), run.theory());
+        let (precession, nutation) = (
+            run.instruments().precession_rad_per_s(),
+            run.instruments().nutation_period_s(),
+        );
+        let predicted = theory.and_then(|theory| theory.precession);
         Self {
-            precession_deg_per_s: (sample.time_s > 0.0).then(|| turned / sample.time_s),
-            health: Health::of(run),
+            sample: run.simulation().sample(),
+            precession_deg_per_s: precession.map(|measured| measured.value.to_degrees()),
+            predicted_precession_deg_per_s: predicted.map(f64::to_degrees),
+            nutation_s: nutation.map(|measured| measured.value),
+            predicted_nutation_s: theory.and_then(|theory| theory.nutation_period_s),
+            health,
             pace: pace_in_words(pace),
-            sample,
         }
     }
 }

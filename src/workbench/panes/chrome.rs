@@ -1,12 +1,16 @@
 //! The lines around the panes: title, health, hint and keys.
 
 use super::{wrapped, write};
+use crate::workbench::health::remarks;
 use crate::workbench::keymap::{BINDINGS, Mode};
 use crate::workbench::lab::Lab;
 use crate::workbench::readouts::Readouts;
 use crate::workbench::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+
+/// Between two remarks.
+const SEPARATOR: &str = " · ";
 
 /// Title and scheme on the left; time, step and pace on the right, in fixed columns.
 pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
@@ -51,21 +55,31 @@ fn clock(readouts: &Readouts, time_step_s: f64) -> String {
     )
 }
 
-/// What is wrong with the numbers, in words.
+/// What the time step makes of the numbers, in words: at length if all of it fits, else in short, as much as fits.
 pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let health = &lab.readouts().health;
+    let remarks = remarks(&lab.readouts().health);
+    let length = |text: &String| text.chars().count() + SEPARATOR.chars().count();
+    let whole: usize = remarks.iter().map(|remark| length(&remark.long)).sum();
     let mut x = 1;
-    for (index, sentence) in health.sentences().iter().enumerate() {
-        let role = if index == 0 && health.warns() {
+    for remark in &remarks {
+        let text = if whole <= area.width as usize {
+            &remark.long
+        } else {
+            &remark.short
+        };
+        if x > 1 && x as usize + length(text) > area.width as usize {
+            return;
+        }
+        if x > 1 {
+            x = write(area, (x, 0), SEPARATOR, theme.style(Role::Quiet), buf);
+        }
+        let role = if remark.warns {
             Role::Warning
         } else {
             Role::Text
         };
-        if index > 0 {
-            x = write(area, (x, 0), " · ", theme.style(Role::Quiet), buf);
-        }
-        x = write(area, (x, 0), sentence, theme.style(role), buf);
+        x = write(area, (x, 0), text, theme.style(role), buf);
     }
 }
 

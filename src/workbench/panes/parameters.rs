@@ -196,9 +196,9 @@ fn motion_rows(scenario: &Scenario) -> Vec<Row> {
 
 fn now_rows(readouts: &Readouts) -> Vec<Row> {
     let sample = &readouts.sample;
-    let precession = readouts
-        .precession_deg_per_s
-        .map_or("-".to_owned(), |rate| format!("{rate:.3}"));
+    let or_dash = |number: Option<f64>, digits: usize| {
+        number.map_or("-".to_owned(), |n| format!("{n:.digits$}"))
+    };
     let axis = |label, role, metres: f64| Row {
         label_role: role,
         ..value(0, label, format!("{metres:.4}"), "m")
@@ -209,7 +209,25 @@ fn now_rows(readouts: &Readouts) -> Vec<Row> {
         axis("y", Role::Y, sample.position.y),
         axis("z", Role::Z, sample.position.z),
         value(0, "tilt", format!("{:.3}", sample.tilt_deg), "deg"),
-        value(0, "precession", precession, "deg/s"),
+        value(
+            0,
+            "precession",
+            or_dash(readouts.precession_deg_per_s, 3),
+            "deg/s",
+        ),
+        value(
+            1,
+            "predicted",
+            or_dash(readouts.predicted_precession_deg_per_s, 3),
+            "deg/s",
+        ),
+        value(3, "nutation", or_dash(readouts.nutation_s, 5), "s"),
+        value(
+            3,
+            "predicted",
+            or_dash(readouts.predicted_nutation_s, 5),
+            "s",
+        ),
         value(2, "|L|", format!("{:.3}", sample.momentum.norm()), "J s"),
         value(4, "Lz", format!("{:.3}", sample.momentum.z), "J s"),
         value(4, "energy", format!("{:.2}", sample.energy), "J"),

@@ -1,0 +1,160 @@
+//! Schemes and time steps held against the exact motion: a table of errors, drifts, cost and measured order.
+
+use super::Trial;
+use crate::physics::SchemeInfo;
+use crate::run::resample::resampled;
+use crate::scenario::Scenario;
+use rayon::prelude::*;
+use serde::{Serialize, Serializer};
+use std::fmt;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// One row: a scheme at a time step, over the whole scenario.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// The scheme's name.
+    pub scheme: &'static str,
+    /// Time step, s.
+    pub time_step_s: f64,
+    /// Steps taken; fewer than asked for where the numbers stopped being finite.
+    pub steps: u64,
+    /// Largest distance of the traced point from the exact motion, m.
+    pub error_m: f64,
+    /// The same at the end, m.
+    pub error_at_end_m: f64,
+    /// Order measured against the row before of the same scheme, from `error_m`: ln(error ratio)/ln(time step ratio);
+    /// `None` where the error is down at rounding.
+    #[serde(serialize_with = "or_na")]
+    pub order: Option<f64>,
+    /// Largest |(E − E0 − W)/S|.
+    #[serde(serialize_with = "or_na")]
+    pub energy_drift: Option<f64>,
+    /// Largest deviation of L·axle from the exact motion's, over |L| at the start.
+    pub spin_drift: f64,
+    /// Largest deviation of L_z from the exact motion's, over |L| at the start.
+    pub lz_drift: f64,
+    /// Cost of a step, ns.
+    pub ns_per_step: f64,
+    /// Time spent on stepping alone, s.
+    pub wall_s: f64,
+}
+
+fn or_na<S: Serializer>(number: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    match number {
+        Some(number) => serializer.serialize_f64(*number),
+        None => serializer.serialize_str("n/a"),
+    }
+}
+
+/// Runs `scenario` by every scheme at every time step (s), on all cores, and holds each against the exact motion. What
+/// is counted in steps keeps its seconds. `watch` is told the steps taken so far, of how many, and says whether to go
+/// on; `None` where it said no.
+pub fn compare(
+    scenario: &Scenario,
+    schemes: &[&'static SchemeInfo],
+    time_steps: &[f64],
+    watch: impl Fn(u64, u64) -> ControlFlow<()> + Sync,
+) -> Option<Vec<Row>> {
+    let cells: Vec<Arc<Scenario>> = schemes
+        .iter()
+        .flat_map(|scheme| {
+            time_steps
+                .iter()
+                .map(|&step| Arc::new(resampled(scenario, step, scheme)))
+        })
+        .collect();
+    let total = cells
+        .iter()
+        .map(|cell| cell.steps)
+        .fold(0, u64::saturating_add);
+    let taken = AtomicU64::new(0);
+    let rows: Option<Vec<Row>> = cells
+        .par_iter()
+        .map(|cell| {
+            let mut before = 0;
+            let trial = Trial::run(cell, |step| {
+                let now = taken.fetch_add(step - before, Ordering::Relaxed) + (step - before);
+                before = step;
+                watch(now, total)
+            });
+            trial.map(|trial| Row::new(cell, &trial))
+        })
+        .collect();
+    rows.map(|rows| with_orders(rows, ROUNDING * scenario.arm_m()))
+}
+
+impl Row {
+    fn new(cell: &Scenario, trial: &Trial) -> Self {
+        let wall_s = trial.stepping.as_secs_f64();
+        Self {
+            scheme: cell.motion.scheme.name,
+            time_step_s: cell.motion.time_step_s,
+            steps: trial.steps,
+            error_m: trial.most_distance_m,
+            error_at_end_m: trial.end_distance_m,
+            order: None,
+            energy_drift: trial.energy_drift,
+            spin_drift: trial.spin_drift,
+            lz_drift: trial.lz_drift,
+            ns_per_step: wall_s * 1e9 / trial.steps.max(1) as f64,
+            wall_s,
+        }
+    }
+}
+
+/// An error below this part of the traced point's arm tells of rounding and not of the scheme.
+const ROUNDING: f64 = 1e-12;
+
+fn with_orders(mut rows: Vec<Row>, least_m: f64) -> Vec<Row> {
+    for index in 1..rows.len() {
+        let (coarse, fine) = (rows[index - 1].clone(), &mut rows[index]);
+        let order =
+            (coarse.error_m / fine.error_m).ln() / (coarse.time_step_s / fine.time_step_s).ln();
+        let known = coarse.scheme == fine.scheme && fine.error_m > least_m && order.is_finite();
+        fine.order = known.then_some(order);
+    }
+    rows
+}
+
+/// The rows as a table for reading.
+#[derive(Clone, Copy, Debug)]
+pub struct Table<'a>(pub &'a [Row]);
+
+impl fmt::Display for Table<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:<8} {:>10} {:>10}", "scheme", "dt s", "steps")?;
+        write!(f, " {:>9} {:>9} {:>6}", "error m", "at end m", "order")?;
+        writeln!(
+            f,
+            " {:>9} {:>9} {:>9} {:>8}",
+            "energy", "L.axle", "L_z", "ns/step"
+        )?;
+        for row in self.0 {
+            let order = row
+                .order
+                .map_or("-".to_owned(), |order| format!("{order:.2}"));
+            let energy = row
+                .energy_drift
+                .map_or("n/a".to_owned(), |drift| format!("{drift:.1e}"));
+            write!(
+                f,
+                "{:<8} {:>10} {:>10}",
+                row.scheme, row.time_step_s, row.steps
+            )?;
+            write!(
+                f,
+                " {:>9.1e} {:>9.1e} {order:>6}",
+                row.error_m, row.error_at_end_m
+            )?;
+            write!(
+                f,
+                " {energy:>9} {:>9.1e} {:>9.1e}",
+                row.spin_drift, row.lz_drift
+            )?;
+            writeln!(f, " {:>8.0}", row.ns_per_step)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,133 @@
+//! What the textbook says of the top that is being run, from its exact motion.
+//!
+//! Source: H. Goldstein, Classical Mechanics, section 5.7 (the heavy symmetrical top with one point fixed).
+
+use crate::physics::{LagrangeTop, State, SymmetricTop};
+use std::f64::consts::PI;
+use std::fmt;
+
+/// The theory of one heavy symmetric top under its present loads, of which only gravity is vertical by right: under a
+/// tilted load (a sideways push on the axle) "vertical" is the direction opposite to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Theory {
+    /// κ = I3/I1.
+    pub kappa: f64,
+    /// Moment of the load, N m: M g h for gravity alone.
+    pub load: f64,
+    /// L3 = L·axle, J s, a constant of the motion.
+    pub spin: f64,
+    /// The fast top's precession mgl/L3, rad/s; `None` without spin.
+    pub fast_top_precession: Option<f64>,
+    /// Steady precession at this tilt, the slow root, rad/s; `None` where the top is too slow for it.
+    pub slow_precession: Option<f64>,
+    /// The fast root, rad/s; `None` too for a level axle.
+    pub fast_precession: Option<f64>,
+    /// Mean precession of this very motion, rad/s; `None` where the axle passes through the vertical, and has no azimuth.
+    pub precession: Option<f64>,
+    /// The fast top's nutation L3/I1, rad/s.
+    pub fast_top_nutation: f64,
+    /// Nutation period of this very motion, s; `None` where nothing returns.
+    pub nutation_period_s: Option<f64>,
+    /// Least and greatest tilt of this very motion, degrees.
+    pub tilt_range_deg: (f64, f64),
+    /// The least |L3| with which this top sleeps, J s: L3² > 4 I1 mgl.
+    pub sleeping_limit: f64,
+    /// Tilt at which the axle stands still in azimuth, degrees: the height of the cusps; `None` where it never does.
+    pub cusp_tilt_deg: Option<f64>,
+    /// The path of the axle.
+    pub path: Path,
+}
+
+/// The path of the axle on the sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Path {
+    /// No nutation.
+    Circle,
+    /// It comes to rest at one end of every nutation.
+    Cusps,
+    /// It goes backwards at one end of every nutation.
+    Loops,
+    /// It always goes the same way.
+    Waves,
+}
+
+impl fmt::Display for Path {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Circle => "circle",
+            Self::Cusps => "cusps",
+            Self::Loops => "loops",
+            Self::Waves => "waves",
+        })
+    }
+}
+
+/// A swing of the tilt below this (degrees) is rounding, and so is a difference between two tilts.
+const SAME_DEG: f64 = 1e-6;
+
+/// An axle that comes so near to the vertical (rad) passes through it but for rounding.
+const PASSES_RAD: f64 = 1e-7;
+
+impl Theory {
+    /// The theory of `top` whose exact motion is `motion`, as it is in `state`; `load` is the moment of the load, N m,
+    /// world frame, as [`Loads::on_axle`](crate::physics::Loads::on_axle) gives it.
+    pub fn new(
+        top: &SymmetricTop,
+        load: &nalgebra::Vector3<f64>,
+        motion: &LagrangeTop,
+        state: &State,
+    ) -> Self {
+        let axle = state.axle();
+        let up = -load.try_normalize(0.0).unwrap_or(-axle);
+        let (size, spin) = (load.norm(), state.momentum.dot(&axle));
+        let (low, high) = motion.tilt_range();
+        let tilt_range_deg = (low.to_degrees(), high.to_degrees());
+        let (slow, fast) = steady(top.across * axle.dot(&up), spin, size);
+        let cusp_cosine = state.momentum.dot(&up) / spin;
+        let cusp_tilt_deg =
+            (size > 0.0 && cusp_cosine.abs() <= 1.0).then(|| cusp_cosine.acos().to_degrees());
+        Self {
+            kappa: top.kappa(),
+            load: size,
+            spin,
+            fast_top_precession: (spin != 0.0).then(|| size / spin),
+            slow_precession: slow,
+            fast_precession: fast,
+            precession: (low > PASSES_RAD && high < PI - PASSES_RAD)
+                .then(|| motion.mean_precession()),
+            fast_top_nutation: spin / top.across,
+            nutation_period_s: motion.nutation_period(),
+            tilt_range_deg,
+            sleeping_limit: 2.0 * (top.across * size).sqrt(),
+            cusp_tilt_deg,
+            path: path(tilt_range_deg, cusp_tilt_deg),
+        }
+    }
+
+    /// Whether this top, stood upright, would sleep.
+    pub fn sleeps(&self) -> bool {
+        self.spin.abs() > self.sleeping_limit
+    }
+}
+
+/// The roots of `across_cos` w² − `spin` w + `load` = 0, the slow and the fast one; neither as a small difference.
+fn steady(across_cos: f64, spin: f64, load: f64) -> (Option<f64>, Option<f64>) {
+    let discriminant = spin * spin - 4.0 * across_cos * load;
+    if discriminant < 0.0 || spin == 0.0 {
+        return (None, None);
+    }
+    let larger = 0.5 * (spin + discriminant.sqrt().copysign(spin));
+    let fast = larger / across_cos;
+    (Some(load / larger), fast.is_finite().then_some(fast))
+}
+
+fn path((low, high): (f64, f64), cusp: Option<f64>) -> Path {
+    let inside = |tilt: f64| tilt > low + SAME_DEG && tilt < high - SAME_DEG;
+    let at_end = |tilt: f64| (tilt - low).abs() <= SAME_DEG || (tilt - high).abs() <= SAME_DEG;
+    match cusp {
+        _ if high - low <= SAME_DEG => Path::Circle,
+        Some(tilt) if inside(tilt) => Path::Loops,
+        Some(tilt) if at_end(tilt) => Path::Cusps,
+        _ => Path::Waves,
+    }
+}

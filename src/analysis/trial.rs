@@ -1,0 +1,130 @@
+//! A run played through beside the exact motion: how far it strays, and what of the constants of the motion it loses.
+
+use crate::physics::observables;
+use crate::run::{NotFinite, Simulation, Truth};
+use crate::scenario::Scenario;
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// About how many steps of a trial are held against the exact motion, evenly spread.
+const LOOKS: u64 = 1000;
+
+/// How a run went beside the exact motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trial {
+    /// Steps taken.
+    pub steps: u64,
+    /// Largest distance of the traced point from where it should have been, m.
+    pub most_distance_m: f64,
+    /// The same at the end, m.
+    pub end_distance_m: f64,
+    /// Largest |(E − E0 − W)/S|; `None` where it means nothing.
+    pub energy_drift: Option<f64>,
+    /// Largest deviation of L·axle from the exact motion's, over |L| at the start (J s where that is 0).
+    pub spin_drift: f64,
+    /// Largest deviation of L_z, likewise.
+    pub lz_drift: f64,
+    /// Most turns of the body in one time step.
+    pub most_turns: f64,
+    /// Time spent on stepping alone.
+    pub stepping: Duration,
+    /// Where the numbers stopped being finite, if they did.
+    pub broke: Option<NotFinite>,
+}
+
+/// How far a run is off at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// Distance of the traced point from where it should be, m.
+    pub distance_m: f64,
+    /// L·axle less the exact motion's, J s.
+    pub spin: f64,
+    /// L_z less the exact motion's, J s.
+    pub lz: f64,
+}
+
+impl Deviation {
+    /// Of `simulation` as it stands, from `truth`.
+    pub fn of(simulation: &Simulation, truth: &mut Truth) -> Self {
+        let (seen, exact) = (
+            *simulation.state(),
+            truth.state_at(simulation.state().time_s),
+        );
+        let scenario = simulation.scenario();
+        let at: Vector3<f64> = scenario.body.mechanics.points()[scenario.trace].at;
+        Self {
+            distance_m: ((seen.orientation - exact.orientation) * at).norm(),
+            spin: seen.momentum.dot(&seen.axle()) - exact.momentum.dot(&exact.axle()),
+            lz: seen.momentum.z - exact.momentum.z,
+        }
+    }
+}
+
+impl Trial {
+    /// Plays `scenario` to its end. `watch` is asked from time to time, with the step, whether to go on; `None` where it
+    /// said no.
+    pub fn run(
+        scenario: &Arc<Scenario>,
+        mut watch: impl FnMut(u64) -> ControlFlow<()>,
+    ) -> Option<Self> {
+        let mut simulation = Simulation::new(Arc::clone(scenario));
+        let mut truth = Truth::new(Arc::clone(scenario));
+        let mut trial = Self::nothing();
+        let stride = stride(scenario.steps);
+        let scale = Some(scenario.start.momentum.norm())
+            .filter(|&size| size > 0.0)
+            .unwrap_or(1.0);
+        while simulation.step_number() < scenario.steps && trial.broke.is_none() {
+            let next = scenario.steps.min(simulation.step_number() + stride);
+            let begin = Instant::now();
+            trial.broke = simulation.step_to(next).err();
+            trial.stepping += begin.elapsed();
+            trial.look(&simulation, &mut truth, scale);
+            if watch(simulation.step_number()).is_break() {
+                return None;
+            }
+        }
+        trial.steps = simulation.step_number();
+        Some(trial)
+    }
+
+    fn nothing() -> Self {
+        Self {
+            steps: 0,
+            most_distance_m: 0.0,
+            end_distance_m: 0.0,
+            energy_drift: None,
+            spin_drift: 0.0,
+            lz_drift: 0.0,
+            most_turns: 0.0,
+            stepping: Duration::ZERO,
+            broke: None,
+        }
+    }
+
+    fn look(&mut self, simulation: &Simulation, truth: &mut Truth, scale: f64) {
+        let off = Deviation::of(simulation, truth);
+        self.end_distance_m = off.distance_m;
+        self.most_distance_m = self.most_distance_m.max(off.distance_m);
+        self.spin_drift = self.spin_drift.max((off.spin / scale).abs());
+        self.lz_drift = self.lz_drift.max((off.lz / scale).abs());
+        let body = &simulation.scenario().body.mechanics;
+        let omega = observables::angular_velocity(body, simulation.state()).norm();
+        self.most_turns = self
+            .most_turns
+            .max(omega * simulation.motion().time_step_s / TAU);
+        let drift = simulation.energy_drift().map(f64::abs);
+        self.energy_drift = drift.map(|drift| drift.max(self.energy_drift.unwrap_or(0.0)));
+    }
+}
+
+/// Every how many steps to look; odd, so that an even rhythm of the run is not met always at the same beat.
+pub fn stride(steps: u64) -> u64 {
+    match steps / LOOKS {
+        0 => 1,
+        stride => stride | 1,
+    }
+}

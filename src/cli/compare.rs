@@ -1,0 +1,117 @@
+//! `gyrolab compare`: schemes and time steps against the exact motion.
+
+use super::INTERRUPTED;
+use super::args::CompareArgs;
+use super::progress::{Meter, interruption};
+use super::scenario::scenario_of;
+use crate::analysis::compare::{Row, Table, compare as table_of};
+use crate::analysis::monitor::is_affordable;
+use crate::export::Destination;
+use crate::physics::SchemeInfo;
+use crate::physics::scheme::SCHEMES;
+use crate::run::{Clock, Truth};
+use crate::scenario::Scenario;
+use anyhow::{Context, bail};
+use std::io::{self, Write};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex, PoisonError};
+
+pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
+    let scenario = scenario_of(&args.scenario, &args.length)?;
+    if !is_affordable(&scenario) {
+        bail!(
+            "{}: its exact motion must be integrated, which would take too long for {} s: give a shorter --duration",
+            args.scenario.scenario,
+            duration_s(&scenario)
+        );
+    }
+    let interrupted = interruption()?;
+    let output = args
+        .output
+        .as_deref()
+        .map(|path| Destination::open(path, args.force))
+        .transpose()?;
+    let meter = Mutex::new(Meter::new());
+    let rows = table_of(
+        &scenario,
+        &schemes(args),
+        &time_steps(args, &scenario),
+        |taken, total| {
+            meter
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .show(taken, total);
+            match interrupted.load(Ordering::Relaxed) {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        },
+    );
+    meter.lock().unwrap_or_else(PoisonError::into_inner).clear();
+    let Some(rows) = rows else {
+        return Ok(ExitCode::from(INTERRUPTED));
+    };
+    let on_stdout = args.output.as_deref() == Some(Path::new("-"));
+    if let Some(output) = output {
+        write_csv(output, &rows).context("cannot write the table")?;
+    }
+    if on_stdout {
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut stdout = io::stdout().lock();
+    write!(stdout, "{}\n\n{}", heading(scenario), Table(&rows))?;
+    stdout.flush()?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn schemes(args: &CompareArgs) -> Vec<&'static SchemeInfo> {
+    let chosen = args.schemes.iter().chain(&args.scenario.changes.scheme);
+    let chosen: Vec<_> = chosen.filter_map(|name| SchemeInfo::find(name)).collect();
+    match chosen.is_empty() {
+        true => SCHEMES
+            .iter()
+            .filter(|scheme| scheme.order.is_some())
+            .collect(),
+        false => chosen,
+    }
+}
+
+fn time_steps(args: &CompareArgs, scenario: &Scenario) -> Vec<f64> {
+    let mut steps = args.time_steps.clone();
+    if steps.is_empty() {
+        steps = [1.0, 2.0, 4.0, 8.0]
+            .map(|part| scenario.motion.time_step_s / part)
+            .to_vec();
+    }
+    // From coarse to fine, as the order is measured.
+    steps.sort_by(|a, b| b.total_cmp(a));
+    steps.dedup();
+    steps
+}
+
+fn duration_s(scenario: &Scenario) -> f64 {
+    Clock::at(scenario, scenario.steps).time_s(scenario.steps)
+}
+
+fn heading(scenario: Scenario) -> String {
+    let (title, duration) = (scenario.file.title.clone(), duration_s(&scenario));
+    let mut truth = Truth::new(Arc::new(scenario));
+    truth.state_at(duration);
+    format!(
+        "{title}, {duration} s, against the exact motion ({})",
+        truth.kind()
+    )
+}
+
+fn write_csv(output: Destination, rows: &[Row]) -> anyhow::Result<()> {
+    let mut writer = csv::Writer::from_writer(output);
+    rows.iter().try_for_each(|row| writer.serialize(row))?;
+    writer
+        .into_inner()
+        .map_err(csv::IntoInnerError::into_error)?
+        .keep()?;
+    Ok(())
+}

@@ -1,0 +1,32 @@
+//! The scenario that the command line means.
+
+use super::args::{Changes, LengthArgs, ScenarioArgs};
+use crate::run::Simulation;
+use crate::scenario::{Document, Problems, Scenario};
+
+/// The scenario with all that the command line changes in it, so that its run file tells the whole run.
+pub(super) fn scenario_of(args: &ScenarioArgs, length: &LengthArgs) -> Result<Scenario, Problems> {
+    let mut document = changed(&args.scenario, &args.changes)?;
+    if let Some(steps) = length.steps {
+        document.set(&format!("motion.steps={steps}"))?;
+    }
+    let scenario = document.scenario()?;
+    let Some(duration) = length.duration else {
+        return Ok(scenario);
+    };
+    let steps = Simulation::step_at(&scenario, duration).clamp(1, i64::MAX as u64);
+    document.set(&format!("motion.steps={steps}"))?;
+    document.scenario()
+}
+
+/// What SCENARIO names, with what the command line changes in it.
+pub(super) fn changed(scenario: &str, changes: &Changes) -> Result<Document, Problems> {
+    let mut document = Document::open(scenario)?;
+    for set in &changes.set {
+        document.set(set)?;
+    }
+    if let Some(scheme) = &changes.scheme {
+        document.set(&format!("motion.scheme={scheme}"))?;
+    }
+    Ok(document)
+}

@@ -1,0 +1,117 @@
+//! The true motion of a rigid body about a fixed point, which every stepping scheme is held against.
+//!
+//! - [`LagrangeTop`]: a body symmetric about its axle, under a constant force that acts on the axle. Solved in closed
+//!   form by theta functions: any time, past or future, in one evaluation and without stepping.
+//! - [`AccurateMotion`]: any body under any constant forces, by a Taylor series held to rounding.
+//!
+//! [`ExactMotion`] takes the one that serves; [`Exact`] makes a scheme of it.
+
+mod elliptic;
+mod lagrange;
+mod scheme;
+mod taylor;
+mod theta;
+mod turning;
+
+pub use lagrange::LagrangeTop;
+pub use scheme::Exact;
+pub use taylor::AccurateMotion;
+
+use super::symmetry::SymmetricTop;
+use super::{Body, Loads, State};
+use nalgebra::{Matrix3, Vector3};
+
+/// The exact motion from one state on, while the loads stay as they are.
+#[derive(Clone, Debug)]
+pub struct ExactMotion {
+    begin_s: f64,
+    solution: Solution,
+}
+
+#[derive(Clone, Debug)]
+enum Solution {
+    Closed(Box<LagrangeTop>),
+    Integrated(Box<AccurateMotion>),
+    /// Of numbers that are not finite.
+    None,
+}
+
+/// How exact motion is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// By elliptic functions: the body is symmetric about its axle and every force acts on it.
+    Closed,
+    /// By an integration held to rounding: any body, any forces.
+    Integrated,
+}
+
+impl ExactMotion {
+    /// The motion of `body` under `loads` that is in `state` at the state's own time.
+    pub fn new(body: &Body, loads: &Loads, state: &State) -> Self {
+        let (turn, momentum) = (state.orientation, state.momentum);
+        let top = SymmetricTop::of(body);
+        let force = top.and_then(|top| Some((top, loads.on_axle(body, &top)?)));
+        let solution = match force {
+            Some((top, force)) => Solution::Closed(Box::new(LagrangeTop::new(
+                top.across, top.along, force, turn, momentum,
+            ))),
+            None => AccurateMotion::new(body.inertia(), loads.moment(body), turn, momentum)
+                .map_or(Solution::None, |motion| {
+                    Solution::Integrated(Box::new(motion))
+                }),
+        };
+        Self {
+            begin_s: state.time_s,
+            solution,
+        }
+    }
+
+    /// The state at `time_s`, s. In closed form any time costs the same; an integration goes there from the time asked
+    /// for last.
+    pub fn at(&mut self, time_s: f64) -> State {
+        let t = time_s - self.begin_s;
+        let (orientation, momentum) = match &mut self.solution {
+            Solution::Closed(top) => top.at(t),
+            Solution::Integrated(motion) => motion.advance(t),
+            Solution::None => (
+                Matrix3::from_element(f64::NAN),
+                Vector3::from_element(f64::NAN),
+            ),
+        };
+        State {
+            time_s,
+            orientation,
+            momentum,
+        }
+    }
+
+    /// When it began, s.
+    pub fn begin_s(&self) -> f64 {
+        self.begin_s
+    }
+
+    /// How it is found.
+    pub fn kind(&self) -> Kind {
+        match self.solution {
+            Solution::Closed(_) => Kind::Closed,
+            Solution::Integrated(_) | Solution::None => Kind::Integrated,
+        }
+    }
+
+    /// The closed form, where there is one.
+    pub fn closed_form(&self) -> Option<&LagrangeTop> {
+        match &self.solution {
+            Solution::Closed(top) => Some(top),
+            Solution::Integrated(_) | Solution::None => None,
+        }
+    }
+}
+
+impl std::fmt::Display for Kind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Closed => "closed form",
+            Self::Integrated => "integration held to 1e-12",
+        })
+    }
+}

@@ -1,0 +1,113 @@
+//! The exact motion as a scheme: the time step only says where the rows stand.
+
+use super::{ExactMotion, Kind};
+use crate::physics::{Body, Loads, Scheme, State, Workings};
+
+/// Exact motion, anew from every change of the loads; see [`super`].
+#[derive(Clone, Debug)]
+pub struct Exact {
+    body: Body,
+    loads: Loads,
+    /// The motion since the loads changed, its times counted from there; none before the first step under them.
+    motion: Option<ExactMotion>,
+    pace: Pace,
+    kinds: (bool, bool),
+}
+
+/// Time since the loads changed, counted in steps and not summed.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pace {
+    before_s: f64,
+    time_step_s: f64,
+    steps: u64,
+}
+
+impl Pace {
+    fn advance(&mut self, time_step_s: f64) -> f64 {
+        if time_step_s != self.time_step_s {
+            *self = Self {
+                before_s: self.time_s(),
+                time_step_s,
+                steps: 0,
+            };
+        }
+        self.steps += 1;
+        self.time_s()
+    }
+
+    fn time_s(&self) -> f64 {
+        self.before_s + self.steps as f64 * self.time_step_s
+    }
+}
+
+impl Exact {
+    /// The scheme for `body`.
+    pub fn new(body: &Body) -> Self {
+        let (loads, pace) = (Loads::default(), Pace::default());
+        Self {
+            body: body.clone(),
+            loads,
+            motion: None,
+            pace,
+            kinds: (false, false),
+        }
+    }
+}
+
+impl Scheme for Exact {
+    fn start(&mut self, _: &State) {
+        self.motion = None;
+    }
+
+    fn load(&mut self, loads: &Loads) {
+        self.loads.clone_from(loads);
+        self.motion = None;
+    }
+
+    fn step(&mut self, dt: f64, state: &mut State) {
+        let motion = self.motion.get_or_insert_with(|| {
+            self.pace = Pace::default();
+            ExactMotion::new(
+                &self.body,
+                &self.loads,
+                &State {
+                    time_s: 0.0,
+                    ..*state
+                },
+            )
+        });
+        match motion.kind() {
+            Kind::Closed => self.kinds.0 = true,
+            Kind::Integrated => self.kinds.1 = true,
+        }
+        let now = motion.at(self.pace.advance(dt));
+        (state.orientation, state.momentum) = (now.orientation, now.momentum);
+    }
+
+    fn workings(&self, before: &State, after: &State, dt: f64) -> Workings {
+        Workings::between(
+            &self.body.inertia(),
+            &self.body.inverse_inertia(),
+            before,
+            after,
+            dt,
+        )
+    }
+
+    fn remark(&self) -> Option<String> {
+        match self.kinds {
+            (true, true) => Some(format!(
+                "{}, and off the axle {}",
+                Kind::Closed,
+                Kind::Integrated
+            )),
+            (true, false) => Some(Kind::Closed.to_string()),
+            (false, true) => Some(Kind::Integrated.to_string()),
+            (false, false) => None,
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Scheme> {
+        Box::new(self.clone())
+    }
+}

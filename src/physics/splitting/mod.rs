@@ -1,0 +1,232 @@
+//! Symplectic schemes for a body with a fixed point under constant forces: kicks of L by the torque, and between them the
+//! free motion, exactly.
+//!
+//! The energy is T + V, the kinetic energy and the work of the forces. T alone is the free motion (`free_body`); V alone
+//! leaves the body where it is and changes L at the constant rate of the torque. Both flows are exact and symplectic, so
+//! every composition of them is, and a palindromic one is reversible. T is quadratic in L and V a function of the
+//! orientation alone: {V, {V, T}} is then a function of the orientation alone, and {V, {V, {V, T}}} = 0. That is the
+//! condition of the Runge-Kutta-Nystroem methods, which therefore keep their orders here, with the free motion in place
+//! of the straight one (S. Blanes & P. C. Moan, J. Comput. Appl. Math. 142, 313, 2002; the splitting of a heavy top is
+//! in S. Reich, Fields Inst. Commun. 10, 181, 1996, and E. Celledoni et al., SIAM J. Sci. Comput. 30, 2084, 2008).
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::State;
+use crate::physics::trig::sin_cos;
+use free_body::{FreeBody, SymmetricBody, orthonormal};
+use principal::ROUNDING;
+use turn::Turn;
+
+pub mod free_body;
+mod jacobi;
+mod principal;
+mod scheme;
+mod turn;
+
+pub use scheme::SplittingScheme;
+
+/// Which composition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Kick, free motion, kick: order 2 (G. Strang, SIAM J. Numer. Anal. 5, 506, 1968).
+    Strang,
+    /// Order 4 with 6 free motions: SRKN_6^b of Blanes & Moan.
+    Srkn6b,
+    /// Order 6 with 11 free motions: SRKN_11^b of Blanes & Moan.
+    Srkn11b,
+}
+
+impl Kind {
+    /// Order of convergence in the time step.
+    pub fn order(self) -> u32 {
+        match self {
+            Self::Strang => 2,
+            Self::Srkn6b => 4,
+            Self::Srkn11b => 6,
+        }
+    }
+
+    /// Pairs (kick, free motion) in parts of the step; the last kick, which follows them, is the first once more.
+    fn stages(self) -> &'static [(f64, f64)] {
+        match self {
+            Self::Strang => &[(0.5, 1.0)],
+            Self::Srkn6b => &srkn6b::STAGES,
+            Self::Srkn11b => &srkn11b::STAGES,
+        }
+    }
+}
+
+/// Blanes & Moan (2002), table 3; the middle coefficients from the sums, which must be 1.
+mod srkn6b {
+    const B: [f64; 3] = [0.0829844064174052, 0.396309801498368, -0.0390563049223486];
+    const B4: f64 = 1.0 - 2.0 * (B[0] + B[1] + B[2]);
+    const A: [f64; 2] = [0.245298957184271, 0.604872665711080];
+    const A3: f64 = 0.5 - (A[0] + A[1]);
+
+    pub const STAGES: [(f64, f64); 6] = [
+        (B[0], A[0]),
+        (B[1], A[1]),
+        (B[2], A3),
+        (B4, A3),
+        (B[2], A[1]),
+        (B[1], A[0]),
+    ];
+}
+
+/// Blanes & Moan (2002), table 3; the middle coefficients from the sums, which must be 1.
+mod srkn11b {
+    const B: [f64; 5] = [
+        0.0414649985182624,
+        0.198128671918067,
+        -0.0400061921041533,
+        0.0752539843015807,
+        -0.0115113874206879,
+    ];
+    const B6: f64 = 0.5 - (B[0] + B[1] + B[2] + B[3] + B[4]);
+    const A: [f64; 5] = [
+        0.123229775946271,
+        0.290553797799558,
+        -0.127049212625417,
+        -0.246331761062075,
+        0.357208872795928,
+    ];
+    const A6: f64 = 1.0 - 2.0 * (A[0] + A[1] + A[2] + A[3] + A[4]);
+
+    pub const STAGES: [(f64, f64); 11] = [
+        (B[0], A[0]),
+        (B[1], A[1]),
+        (B[2], A[2]),
+        (B[3], A[3]),
+        (B[4], A[4]),
+        (B6, A6),
+        (B6, A[4]),
+        (B[4], A[3]),
+        (B[3], A[2]),
+        (B[2], A[1]),
+        (B[1], A[0]),
+    ];
+}
+
+/// A scheme for one body under constant forces. It keeps nothing from step to step.
+#[derive(Clone, Debug)]
+pub struct Splitting {
+    stages: &'static [(f64, f64)],
+    top: Top,
+}
+
+#[derive(Clone, Debug)]
+enum Top {
+    Axle(AxleTop),
+    Any(AnyTop),
+}
+
+impl Splitting {
+    /// `inertia` about the pivot, body frame, kg m^2, as for `FreeBody::new`. `moment`, N m: the sum of x F^T over the
+    /// points x (body frame, m) at which the constant forces F (world frame, N) act, gravity at the centre of mass.
+    pub fn new(kind: Kind, inertia: &Matrix3<f64>, moment: &Matrix3<f64>) -> Self {
+        let top = match (FreeBody::new(inertia), force_on_axle(moment)) {
+            (FreeBody::Symmetric(body), Some(force)) if body.axis == Vector3::z() => {
+                Top::Axle(AxleTop { body, force })
+            }
+            (body, _) => Top::Any(AnyTop {
+                body,
+                moment: *moment,
+            }),
+        };
+        Self {
+            stages: kind.stages(),
+            top,
+        }
+    }
+
+    /// One step of `h` seconds, forwards or backwards. L along a direction in which no force has a part across the others
+    /// (the vertical, under vertical forces) keeps every bit. `time_s` is moved by h; who needs it without the rounding
+    /// of a sum sets it.
+    #[inline]
+    pub fn step(&self, state: &mut State, h: f64) {
+        match &self.top {
+            Top::Axle(top) => top.step(self.stages, state, h),
+            Top::Any(top) => top.step(self.stages, state, h),
+        }
+        state.time_s += h;
+    }
+}
+
+/// The third row, if the others are rounding beside it: all forces act on the body's z axis, the axle.
+fn force_on_axle(moment: &Matrix3<f64>) -> Option<Vector3<f64>> {
+    let row = |i: usize| moment.row(i).transpose();
+    let off = row(0).amax().max(row(1).amax());
+    (off <= ROUNDING * row(2).amax()).then(|| row(2))
+}
+
+/// A body symmetric about its axle, with all forces on the axle: the torque does not see the spin, and the spin commutes
+/// with everything else, so that it is done once a step; a free motion is then one rotation about L.
+#[derive(Clone, Debug)]
+struct AxleTop {
+    body: SymmetricBody,
+    /// The sum of z F, N m, world frame: the torque is the axle times this.
+    force: Vector3<f64>,
+}
+
+impl AxleTop {
+    #[inline]
+    fn step(&self, stages: &[(f64, f64)], state: &mut State, h: f64) {
+        let mut axle: Vector3<f64> = state.orientation.column(2).into();
+        let mut momentum = state.momentum;
+        let mut side = self.spun(&state.orientation, axle.dot(&momentum) * h);
+        // The rounding that the last step left in the length; found here, it is ready long before it is needed.
+        let to_unit = inverse_length(&axle);
+        for &(kick, free) in stages {
+            momentum += axle.cross(&(self.force * (kick * h)));
+            let turn = Turn::new(momentum * (self.body.across * (free * h)));
+            axle = turn.of(axle);
+            side = turn.of(side);
+        }
+        axle *= to_unit;
+        state.momentum = momentum + axle.cross(&(self.force * (stages[0].0 * h)));
+        side -= axle * axle.dot(&side);
+        side *= inverse_length(&side);
+        state.orientation = Matrix3::from_columns(&[side, axle.cross(&side), axle]);
+    }
+
+    /// The body's x axis after the spin in excess of the turning about L; `impulse` is L.axle times the time.
+    #[inline]
+    fn spun(&self, orientation: &Matrix3<f64>, impulse: f64) -> Vector3<f64> {
+        let (sine, cosine) = sin_cos(self.body.excess * impulse);
+        orientation.column(0) * cosine + orientation.column(1) * sine
+    }
+}
+
+/// 1 / |v| of a vector that is of unit length but for rounding: one step of Newton's.
+#[inline]
+fn inverse_length(v: &Vector3<f64>) -> f64 {
+    1.5 - 0.5 * v.dot(v)
+}
+
+/// Any body under any constant forces.
+#[derive(Clone, Debug)]
+struct AnyTop {
+    body: FreeBody,
+    moment: Matrix3<f64>,
+}
+
+impl AnyTop {
+    fn step(&self, stages: &[(f64, f64)], state: &mut State, h: f64) {
+        for &(kick, free) in stages {
+            state.momentum += self.torque(&state.orientation) * (kick * h);
+            self.body
+                .advance(&mut state.orientation, &state.momentum, free * h);
+        }
+        state.orientation = orthonormal(&state.orientation);
+        state.momentum += self.torque(&state.orientation) * (stages[0].0 * h);
+    }
+
+    /// The sum of Q x cross F: the antisymmetric part of Q moment, N m, world frame.
+    fn torque(&self, orientation: &Matrix3<f64>) -> Vector3<f64> {
+        let m = orientation * self.moment;
+        Vector3::new(m.m23 - m.m32, m.m31 - m.m13, m.m12 - m.m21)
+    }
+}
+
+#[cfg(test)]
+mod tests;

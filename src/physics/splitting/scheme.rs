@@ -1,0 +1,50 @@
+//! A composition as a scheme.
+
+use super::{Kind, Splitting};
+use crate::physics::{Body, Loads, Scheme, State, Workings};
+
+/// A splitting of one kind for one body; see [`super`].
+#[derive(Clone, Debug)]
+pub struct SplittingScheme {
+    body: Body,
+    kind: Kind,
+    splitting: Splitting,
+}
+
+impl SplittingScheme {
+    /// The scheme of that `kind` for `body`.
+    pub fn new(kind: Kind, body: &Body) -> Self {
+        let splitting = Splitting::new(kind, &body.inertia(), &Loads::default().moment(body));
+        Self {
+            body: body.clone(),
+            kind,
+            splitting,
+        }
+    }
+}
+
+impl Scheme for SplittingScheme {
+    fn start(&mut self, _: &State) {}
+
+    fn load(&mut self, loads: &Loads) {
+        self.splitting = Splitting::new(self.kind, &self.body.inertia(), &loads.moment(&self.body));
+    }
+
+    fn step(&mut self, dt: f64, state: &mut State) {
+        self.splitting.step(state, dt);
+    }
+
+    fn workings(&self, before: &State, after: &State, dt: f64) -> Workings {
+        Workings::between(
+            &self.body.inertia(),
+            &self.body.inverse_inertia(),
+            before,
+            after,
+            dt,
+        )
+    }
+
+    fn boxed(&self) -> Box<dyn Scheme> {
+        Box::new(self.clone())
+    }
+}

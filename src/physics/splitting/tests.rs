@@ -1,0 +1,331 @@
+use std::f64::consts::PI;
+
+use super::*;
+
+const GRAVITY: f64 = 9.8;
+
+/// Inertia and moment.
+type Body = (Matrix3<f64>, Matrix3<f64>);
+
+/// A body of equal points under gravity.
+fn loaded(points: &[[f64; 3]], mass_kg: f64) -> Body {
+    let weight = Vector3::new(0.0, 0.0, -mass_kg * GRAVITY);
+    points
+        .iter()
+        .map(|x| Vector3::from(*x))
+        .fold(Default::default(), |(inertia, moment), x| {
+            let own = (Matrix3::identity() * x.dot(&x) - x * x.transpose()) * mass_kg;
+            (inertia + own, moment + x * weight.transpose())
+        })
+}
+
+/// Ten points on a rim of 0.8 m at 1 m, four on the axle, 0.5 kg each: I1 = 8.35, I3 = 3.2 kg m^2, 63.7 N m.
+fn heavy_top() -> Body {
+    let rim = (0..10)
+        .map(|j| PI * f64::from(j) / 5.0)
+        .map(|a| [0.8 * libm::cos(a), 0.8 * libm::sin(a), 1.0]);
+    let axle = [0.0, 0.5, 1.0, 1.5].map(|z| [0.0, 0.0, z]);
+    loaded(&rim.chain(axle).collect::<Vec<_>>(), 0.5)
+}
+
+/// Four points of no symmetry, the centre of mass off every axis.
+fn lopsided_top() -> Body {
+    loaded(
+        &[
+            [0.9, 0.0, 0.7],
+            [-0.3, 0.5, 1.1],
+            [0.1, -0.6, 0.9],
+            [0.2, 0.1, 1.6],
+        ],
+        1.2,
+    )
+}
+
+/// The symmetric body again, with a load that its axle does not carry.
+fn symmetric_with_side_load() -> Body {
+    let (inertia, moment) = heavy_top();
+    (
+        inertia,
+        moment + Vector3::new(0.8, 0.0, 1.0) * Vector3::new(3.0, -2.0, -5.0).transpose(),
+    )
+}
+
+/// The symmetric body rolled over, its axis along x, with the load where it was, on z.
+fn symmetric_across_its_load() -> Body {
+    let (inertia, moment) = heavy_top();
+    let roll = Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+    (roll * inertia * roll.transpose(), moment)
+}
+
+fn tops() -> [(&'static str, Body); 4] {
+    [
+        ("heavy", heavy_top()),
+        ("lopsided", lopsided_top()),
+        ("side load", symmetric_with_side_load()),
+        ("load across the axis", symmetric_across_its_load()),
+    ]
+}
+
+/// Tilted by 45 degrees about +x; `momentum` in the body frame.
+fn tilted(momentum: [f64; 3]) -> State {
+    let c = 0.5_f64.sqrt();
+    let orientation = Matrix3::new(1.0, 0.0, 0.0, 0.0, c, -c, 0.0, c, c);
+    State {
+        time_s: 0.0,
+        orientation,
+        momentum: orientation * Vector3::from(momentum),
+    }
+}
+
+fn run(kind: Kind, (inertia, moment): Body, start: State, seconds: f64, steps: u32) -> State {
+    let scheme = Splitting::new(kind, &inertia, &moment);
+    let mut state = start;
+    (0..steps).for_each(|_| scheme.step(&mut state, seconds / f64::from(steps)));
+    state
+}
+
+fn distance_of_orientation(a: &State, b: &State) -> f64 {
+    (a.orientation - b.orientation).norm()
+}
+
+fn distance(a: &State, b: &State) -> f64 {
+    distance_of_orientation(a, b) + (a.momentum - b.momentum).norm() / b.momentum.norm()
+}
+
+fn energy((inertia, moment): &Body, state: &State) -> f64 {
+    let momentum = state.orientation.tr_mul(&state.momentum);
+    let omega = inertia
+        .cholesky()
+        .map_or(momentum, |factors| factors.solve(&momentum));
+    0.5 * momentum.dot(&omega) - (state.orientation * moment).trace()
+}
+
+fn orthonormality(q: &Matrix3<f64>) -> f64 {
+    (q.tr_mul(q) - Matrix3::identity()).norm() + (q.determinant() - 1.0).abs()
+}
+
+/// The axle's direction after 10 s by the closed form of the heavy top (elliptic functions, 25 digits).
+const CUSPED_AFTER_10_S: [f64; 3] = [0.27223876596338725, -0.6990663388712098, 0.6612051936909865];
+const LOOPING_AFTER_10_S: [f64; 3] = [
+    -0.5598361163703238,
+    0.39797433249092845,
+    -0.7267736604237891,
+];
+
+fn error_of_axle_top(kind: Kind, momentum: [f64; 3], exact: [f64; 3], steps: u32) -> f64 {
+    let end = run(kind, heavy_top(), tilted(momentum), 10.0, steps);
+    1.5 * (end.orientation.column(2) - Vector3::from(exact)).norm()
+}
+
+#[test]
+fn the_exact_motion_of_a_heavy_top_is_met() {
+    for (momentum, exact, strang) in [
+        ([0.0, 0.0, 100.0], CUSPED_AFTER_10_S, 1.2e-3),
+        ([0.0, -20.0, 30.0], LOOPING_AFTER_10_S, 6e-3),
+    ] {
+        for (kind, tolerance) in [
+            (Kind::Strang, strang),
+            (Kind::Srkn6b, 2.4e-9),
+            (Kind::Srkn11b, 2e-12),
+        ] {
+            let error = error_of_axle_top(kind, momentum, exact, 600);
+            assert!(error < tolerance, "{kind:?}: {error:e} m");
+        }
+    }
+}
+
+#[test]
+fn the_coefficients_are_consistent_and_palindromic() {
+    for kind in [Kind::Strang, Kind::Srkn6b, Kind::Srkn11b] {
+        let stages = kind.stages();
+        let kicks: Vec<f64> = stages.iter().map(|s| s.0).chain([stages[0].0]).collect();
+        let free: Vec<f64> = stages.iter().map(|s| s.1).collect();
+        assert!(
+            (kicks.iter().sum::<f64>() - 1.0).abs() < 1e-15
+                && (free.iter().sum::<f64>() - 1.0).abs() < 1e-15
+        );
+        assert!(kicks.iter().eq(kicks.iter().rev()) && free.iter().eq(free.iter().rev()));
+    }
+}
+
+/// The order from the self-distances at steps of one ratio 1 : 2 : 4, in a range where neither rounding nor higher orders show.
+#[test]
+fn the_order_is_as_named() {
+    for (name, top) in tops() {
+        for (kind, coarse) in [
+            (Kind::Strang, 400),
+            (Kind::Srkn6b, 112),
+            (Kind::Srkn11b, 40),
+        ] {
+            let end = |steps| run(kind, top, tilted([2.0, -5.0, 30.0]), 2.0, steps);
+            let [a, b, c] = [coarse, 2 * coarse, 4 * coarse].map(end);
+            let order = libm::log2(distance(&a, &b) / distance(&b, &c));
+            assert!(
+                (order - f64::from(kind.order())).abs() < 0.15,
+                "{name}, {kind:?}: {order}"
+            );
+        }
+    }
+}
+
+/// The largest relative change of the energy in the first part of a run, and in the rest.
+fn energy_changes(scheme: &Splitting, body: &Body, h: f64, [first, rest]: [u32; 2]) -> [f64; 2] {
+    let mut state = tilted([2.0, -5.0, 30.0]);
+    let start = energy(body, &state);
+    let changes = [first, rest].map(|steps| {
+        (0..steps).fold(0.0_f64, |most, _| {
+            scheme.step(&mut state, h);
+            most.max((energy(body, &state) - start).abs() / start.abs())
+        })
+    });
+    assert!(orthonormality(&state.orientation) < 4e-15, "{state:?}");
+    changes
+}
+
+/// A scheme that is not symplectic adds a little at every turn; here the swing of the first seconds is never left.
+#[test]
+fn energy_does_not_drift_over_a_million_steps() {
+    let (first, rest) = (
+        20_000,
+        if cfg!(debug_assertions) {
+            30_000
+        } else {
+            980_000
+        },
+    );
+    for (name, body) in tops() {
+        for (kind, h, tolerance) in [(Kind::Strang, 0.005, 1e-2), (Kind::Srkn11b, 0.02, 1e-7)] {
+            let scheme = Splitting::new(kind, &body.0, &body.1);
+            let [early, late] = energy_changes(&scheme, &body, h, [first, rest]);
+            // Rounding, where it does not cancel: 1e-16 a step.
+            let rounding = 1e-16 * f64::from(first + rest);
+            assert!(
+                early < tolerance && late < 1.2 * early + rounding,
+                "{name}, {kind:?}: {early:e}, then {late:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn vertical_momentum_keeps_every_bit() {
+    for (name, top) in [("heavy", heavy_top()), ("lopsided", lopsided_top())] {
+        for kind in [Kind::Strang, Kind::Srkn6b, Kind::Srkn11b] {
+            let start = tilted([2.0, -5.0, 30.0]);
+            let end = run(kind, top, start, 300.0, 20_000);
+            assert_eq!(
+                end.momentum.z.to_bits(),
+                start.momentum.z.to_bits(),
+                "{name}, {kind:?}"
+            );
+            assert!((end.momentum - start.momentum).norm() > 1.0);
+        }
+    }
+}
+
+/// Over 5 s, in which neighbouring motions part by less than 200 times: later the load across the axis is chaotic.
+#[test]
+fn backwards_undoes_forwards() {
+    for (name, top) in tops() {
+        for kind in [Kind::Strang, Kind::Srkn6b, Kind::Srkn11b] {
+            let start = tilted([2.0, -5.0, 30.0]);
+            let there = run(kind, top, start, 5.0, 250);
+            let back = run(kind, top, there, -5.0, 250);
+            let error = distance(&back, &start);
+            assert!(error < 3e-12, "{name}, {kind:?}: {error:e}");
+            assert!(distance(&there, &start) > 0.1);
+        }
+    }
+}
+
+/// The quick way for loads on the axle is the general one.
+#[test]
+fn axle_and_any_top_agree() {
+    let (inertia, moment) = heavy_top();
+    let general = AnyTop {
+        body: FreeBody::new(&inertia),
+        moment,
+    };
+    for (kind, h, steps) in [
+        (Kind::Strang, 0.01, 20),
+        (Kind::Srkn11b, 0.1, 20),
+        (Kind::Srkn11b, 3.0, 1),
+    ] {
+        let scheme = Splitting::new(kind, &inertia, &moment);
+        assert!(matches!(scheme.top, Top::Axle(_)));
+        let (mut quick, mut slow) = (tilted([2.0, -5.0, 30.0]), tilted([2.0, -5.0, 30.0]));
+        for _ in 0..steps {
+            scheme.step(&mut quick, h);
+            general.step(kind.stages(), &mut slow, h);
+        }
+        assert!(
+            distance(&quick, &slow) < 1e-13,
+            "{kind:?} {h}: {:e}",
+            distance(&quick, &slow)
+        );
+    }
+}
+
+/// The same top with the axes of its body named differently: x, y, z become y, z, x and z, x, y.
+#[test]
+fn the_axis_of_symmetry_may_be_any() {
+    let start = tilted([2.0, -5.0, 30.0]);
+    for kind in [Kind::Strang, Kind::Srkn11b] {
+        let expected = run(kind, heavy_top(), start, 5.0, 100);
+        let mut names = Matrix3::identity();
+        for _ in 0..2 {
+            names *= Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+            let (inertia, moment) = heavy_top();
+            let renamed = (names.tr_mul(&inertia) * names, names.tr_mul(&moment));
+            let state = State {
+                orientation: start.orientation * names,
+                ..start
+            };
+            let mut end = run(kind, renamed, state, 5.0, 100);
+            end.orientation *= names.transpose();
+            assert!(
+                distance(&end, &expected) < 1e-12,
+                "{kind:?}: {:e}",
+                distance(&end, &expected)
+            );
+        }
+    }
+}
+
+#[test]
+fn a_fresh_scheme_continues_bit_for_bit() {
+    for (name, (inertia, moment)) in tops() {
+        let scheme = Splitting::new(Kind::Srkn11b, &inertia, &moment);
+        let mut whole = tilted([0.0, 0.0, 100.0]);
+        let mut parts = whole;
+        for _ in 0..50 {
+            scheme.step(&mut whole, 0.02);
+            Splitting::new(Kind::Srkn11b, &inertia, &moment).step(&mut parts, 0.02);
+        }
+        assert_eq!(whole, parts, "{name}");
+    }
+}
+
+#[test]
+fn without_momentum_without_load_and_with_nonsense() {
+    let (inertia, moment) = heavy_top();
+    let still = tilted([0.0; 3]);
+    assert!(
+        distance_of_orientation(
+            &run(Kind::Strang, (inertia, Matrix3::zeros()), still, 1.0, 10),
+            &still
+        ) < 1e-15
+    );
+    let falling = run(Kind::Srkn11b, (inertia, moment), still, 0.5, 10);
+    assert!(falling.orientation.m33 < still.orientation.m33);
+    for value in [f64::NAN, f64::INFINITY] {
+        let lost = run(
+            Kind::Srkn11b,
+            (inertia, Matrix3::from_element(value)),
+            still,
+            1.0,
+            2,
+        );
+        assert!(!lost.momentum.x.is_finite());
+    }
+}

@@ -1,0 +1,120 @@
+//! Bodies that are symmetric about their axle, and forces that act on it: what the closed form and the theory of the
+//! heavy top need.
+
+use super::{Body, Loads};
+use nalgebra::Vector3;
+
+/// Differences below this part of the whole are the rounding of a scenario's digits, not a lack of symmetry.
+const WITHIN: f64 = 1e-9;
+
+/// The moments of a body that is symmetric about its axle (the body's z axis), its centre of mass on the axle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SymmetricTop {
+    /// I1, across the axle, about the pivot, kg m².
+    pub across: f64,
+    /// I3, along the axle, kg m².
+    pub along: f64,
+    /// M times the height of the centre of mass along the axle, kg m; negative below the pivot.
+    pub first_moment: f64,
+}
+
+impl SymmetricTop {
+    /// The moments of `body`, or `None` where it is lopsided.
+    pub fn of(body: &Body) -> Option<Self> {
+        let inertia = body.inertia();
+        let largest = inertia.diagonal().amax();
+        let small = |moment: f64| moment.abs() <= WITHIN * largest;
+        let even = small(inertia[(0, 0)] - inertia[(1, 1)])
+            && small(inertia[(0, 1)])
+            && small(inertia[(0, 2)])
+            && small(inertia[(1, 2)]);
+        let first = body.first_moment();
+        // An offset c of the centre of mass counts against the size of the body: M c² against its moments.
+        let size = (largest * body.mass()).sqrt();
+        let centred = first.x.abs().max(first.y.abs()) <= WITHIN * size;
+        (even && centred).then(|| Self {
+            across: 0.5 * (inertia[(0, 0)] + inertia[(1, 1)]),
+            along: inertia[(2, 2)],
+            first_moment: first.z,
+        })
+    }
+
+    /// κ = I3/I1: below 1 a long axle, above 1 a flat body.
+    pub fn kappa(&self) -> f64 {
+        self.along / self.across
+    }
+}
+
+impl Loads {
+    /// Σ s F, N m, world frame, over all forces, s the height along the axle at which each acts: the torque is the axle
+    /// times this. `None` where a force acts off the axle. `body` must be symmetric.
+    pub fn on_axle(&self, body: &Body, top: &SymmetricTop) -> Option<Vector3<f64>> {
+        let weight = Vector3::new(0.0, 0.0, -self.gravity * top.first_moment);
+        let size = (top.across.max(top.along) / body.mass()).sqrt();
+        self.pushes.iter().try_fold(weight, |sum, push| {
+            let at = body.points()[push.point].at;
+            let on_axle = at.x.abs().max(at.y.abs()) <= WITHIN * size.max(at.z.abs());
+            on_axle.then(|| sum + at.z * push.force)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::{PointForce, PointMass};
+
+    fn square(sides: [f64; 2]) -> Vec<PointMass> {
+        let [a, b] = sides;
+        [
+            [a, 0.0, 1.0],
+            [-a, 0.0, 1.0],
+            [0.0, b, 1.0],
+            [0.0, -b, 1.0],
+            [0.0, 0.0, 2.0],
+            [1.0, 0.0, 0.0],
+        ]
+        .iter()
+        .enumerate()
+        .map(|(i, &at)| PointMass {
+            at: Vector3::from(at),
+            mass: if i < 4 { 0.5 } else { 0.0 },
+        })
+        .collect()
+    }
+
+    #[test]
+    fn four_points_in_a_square_are_symmetric_and_in_an_oblong_are_not() {
+        let top = SymmetricTop::of(&Body::new(square([0.8, 0.8])).unwrap()).unwrap();
+        assert!((top.along - 2.0 * 0.64).abs() < 1e-15 && (top.across - 2.64).abs() < 1e-15);
+        assert_eq!(top.first_moment, 2.0);
+        assert_eq!(
+            SymmetricTop::of(&Body::new(square([0.8, 0.81])).unwrap()),
+            None
+        );
+    }
+
+    #[test]
+    fn a_centre_of_mass_off_the_axle_is_lopsided() {
+        let mut points = square([0.8, 0.8]);
+        points.iter_mut().for_each(|point| point.at.x += 0.01);
+        assert_eq!(SymmetricTop::of(&Body::new(points).unwrap()), None);
+    }
+
+    #[test]
+    fn forces_on_the_axle_add_up_and_others_are_told() {
+        let body = Body::new(square([0.8, 0.8])).unwrap();
+        let top = SymmetricTop::of(&body).unwrap();
+        let push = |point| PointForce {
+            point,
+            force: Vector3::new(3.0, 0.0, 0.0),
+        };
+        let loads = |pushes| Loads {
+            gravity: 10.0,
+            pushes,
+        };
+        let sum = loads(vec![push(4)]).on_axle(&body, &top).unwrap();
+        assert_eq!(sum, Vector3::new(6.0, 0.0, -20.0));
+        assert_eq!(loads(vec![push(4), push(5)]).on_axle(&body, &top), None);
+    }
+}

@@ -1,0 +1,98 @@
+//! Dotted keys: the way to a value in a table, with numbers from 0 for the places in arrays (`push.0.force_N`).
+
+use super::keys;
+use super::problem::Problem;
+use toml::Value;
+
+/// Writes `value` at the dotted `key`; numbers lead into arrays, and the one past the end adds an element.
+///
+/// # Errors
+/// When the key leads into something that is neither table nor array, or past an array's end.
+pub fn set_key(table: &mut toml::Table, key: &str, value: Value) -> Result<(), Problem> {
+    // The deepest key is body.point.N.at_m.N. Tables nested without bound would exhaust the stack.
+    const DEEPEST: usize = 5;
+    let names: Vec<&str> = key.split('.').collect();
+    if names.len() > DEEPEST {
+        let rule = format!("leads deeper than any key: at most {DEEPEST} names and numbers");
+        return Err(Problem::at(key, rule));
+    }
+    let (last, way) = match names.split_last() {
+        Some((last, way)) if names.iter().all(|name| !name.is_empty()) => (*last, way),
+        _ => {
+            return Err(Problem::at(
+                key,
+                "is not a dotted key such as motion.time_step_s",
+            ));
+        }
+    };
+    let mut path = String::new();
+    let mut inside = Place::Table(table);
+    for (index, name) in way.iter().enumerate() {
+        path = keys::join(&path, name);
+        let next_is_number = names[index + 1].parse::<usize>().is_ok();
+        let empty = if next_is_number {
+            Value::Array(Vec::new())
+        } else {
+            Value::Table(toml::Table::new())
+        };
+        inside = match inside.entry(name, &path, empty)? {
+            Value::Table(table) => Place::Table(table),
+            Value::Array(array) => Place::Array(array),
+            other => {
+                let rule = format!("holds no {}", keys::join("", names[index + 1]));
+                return Err(Problem::with_value(path, other, rule));
+            }
+        };
+    }
+    let place = inside.entry(last, key, Value::Boolean(false))?;
+    *place = value;
+    Ok(())
+}
+
+enum Place<'a> {
+    Table(&'a mut toml::Table),
+    Array(&'a mut Vec<Value>),
+}
+
+impl<'a> Place<'a> {
+    /// What stands at `name` in here, `empty` put there first where nothing does.
+    fn entry(self, name: &str, path: &str, empty: Value) -> Result<&'a mut Value, Problem> {
+        match self {
+            Self::Table(table) => Ok(table.entry(name).or_insert(empty)),
+            Self::Array(array) => {
+                let Ok(index) = name.parse::<usize>() else {
+                    return Err(Problem::at(
+                        path,
+                        "must lead to a place in an array: a number from 0",
+                    ));
+                };
+                let length = array.len();
+                if index == length {
+                    array.push(empty);
+                }
+                let rule =
+                    format!("leads past the end: the array has {length} elements, numbered from 0");
+                array.get_mut(index).ok_or_else(|| Problem::at(path, rule))
+            }
+        }
+    }
+}
+
+/// Whether a value is `written` at the dotted key.
+pub fn is_written(written: &toml::Table, key: &str) -> bool {
+    let mut names = key.split('.');
+    let first = names.next().and_then(|name| written.get(name));
+    names
+        .fold(first, |value, name| match value? {
+            Value::Table(table) => table.get(name),
+            Value::Array(array) => array.get(name.parse::<usize>().ok()?),
+            _ => None,
+        })
+        .is_some()
+}
+
+/// Whether the dotted `key` is `table` or lies in it.
+pub fn is_in(key: &str, table: &str) -> bool {
+    key.strip_prefix(table)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+}

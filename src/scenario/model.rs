@@ -1,0 +1,151 @@
+//! A scenario whose numbers have been checked: what a run is made from.
+
+use super::file::ScenarioFile;
+use super::problem::{Problem, nearest};
+use crate::physics::{self, SchemeInfo, State};
+use nalgebra::Vector3;
+use std::collections::HashMap;
+
+/// A scenario, or a run with its edits, whose numbers have been checked.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// The file it came from, as it is written again.
+    pub file: ScenarioFile,
+    /// What turns, with the names of its points.
+    pub body: Body,
+    /// Index of the point whose path is shown.
+    pub trace: usize,
+    /// Orientation and momentum at t = 0.
+    pub start: State,
+    /// How it moves at the start.
+    pub motion: Motion,
+    /// Length of the run in steps.
+    pub steps: u64,
+    /// The time step for which its step counts were written, s.
+    pub written_for_s: f64,
+    /// The pushes at the start.
+    pub pushes: Vec<Push>,
+    /// What the user changed during the run, in the order of the steps.
+    pub edits: Vec<Edit>,
+}
+
+/// The body and the names of its points.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// The mechanics.
+    pub mechanics: physics::Body,
+    pub(super) names: HashMap<String, usize>,
+}
+
+/// Gravity, scheme and time step: what edits may change as the run goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// Acceleration of gravity along −z, m/s².
+    pub gravity: f64,
+    /// The numerical scheme.
+    pub scheme: &'static SchemeInfo,
+    /// dt, s.
+    pub time_step_s: f64,
+}
+
+/// A force on one point for a while.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// Index of the pushed point.
+    pub point: usize,
+    /// Force, world frame, N.
+    pub force: Vector3<f64>,
+    /// When it acts.
+    pub window: Window,
+    /// Whether it is the report's line taken literally: j times the force on its j-th step, and kept to the end.
+    pub accumulates: bool,
+}
+
+/// When a push acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Window {
+    /// On `count` steps from step `first` on; step 1 ends at t = dt.
+    Steps {
+        /// The first step on which it acts.
+        first: u64,
+        /// On how many.
+        count: u64,
+    },
+    /// From one time for so long, s.
+    Time {
+        /// The beginning, s.
+        from_s: f64,
+        /// The length, s.
+        for_s: f64,
+    },
+}
+
+/// A change during the run: made at `step`, it acts from the next step on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edit {
+    /// The step at which it was made.
+    pub step: u64,
+    /// How the body moves from then on.
+    pub motion: Motion,
+    /// The pushes from then on.
+    pub pushes: Vec<Push>,
+    /// What it set.
+    pub touches: Touches,
+}
+
+/// Which parts of the motion an edit set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Touches {
+    /// The time step: t is counted anew from here, and pushes keep their seconds.
+    pub time_step: bool,
+    /// The time step, the scheme or gravity: a new segment begins.
+    pub segment: bool,
+}
+
+impl Body {
+    /// Index of the point called `name`.
+    pub fn point(&self, name: &str) -> Option<usize> {
+        self.names.get(name).copied()
+    }
+
+    /// The names of the points that have one, in the order in which the body lists them.
+    pub fn names(&self) -> Vec<&str> {
+        let mut names: Vec<_> = self
+            .names
+            .iter()
+            .map(|(name, index)| (*index, name.as_str()))
+            .collect();
+        names.sort_unstable();
+        names.into_iter().map(|(_, name)| name).collect()
+    }
+
+    pub(super) fn find(&self, key: &str, name: &str) -> Result<usize, Vec<Problem>> {
+        self.point(name).ok_or_else(|| {
+            let near = nearest(name, self.names().into_iter());
+            let value = toml::Value::String(name.to_owned());
+            vec![Problem::with_value(
+                key,
+                &value,
+                format!("is no point of this body: {near}"),
+            )]
+        })
+    }
+}
+
+impl Scenario {
+    /// Distance of the traced point from the pivot, m: the measure of how far off a run may be.
+    pub fn arm_m(&self) -> f64 {
+        self.body.mechanics.points()[self.trace].at.norm()
+    }
+
+    /// The run file: the scenario with its edits, and the version that wrote it. Reading it gives this scenario again.
+    pub fn to_toml(&self) -> String {
+        let version = Some(env!("CARGO_PKG_VERSION").to_owned());
+        let file = ScenarioFile {
+            gyrolab: version,
+            ..self.file.clone()
+        };
+        // A checked file holds nothing that TOML cannot write.
+        toml::to_string(&file).unwrap_or_default()
+    }
+}

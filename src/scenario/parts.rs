@@ -1,0 +1,135 @@
+//! The parts of a scenario, each from its table in the file: points that exist, an inertia that can be inverted, pushes
+//! that say how long they act.
+
+use super::file::{BodyFile, Frame, MotionFile, PushFile, StartFile};
+use super::keys::MOST_POINTS;
+use super::model::{Body, Motion, Push, Window};
+use super::problem::Problem;
+use crate::physics::{self, PointMass, SchemeInfo, State, rotation};
+use nalgebra::Vector3;
+use std::collections::HashMap;
+use std::f64::consts::TAU;
+
+/// Gravity where a scenario gives none, m/s² (the report's figure).
+const GRAVITY: f64 = 9.8;
+
+pub(super) fn body(file: &BodyFile) -> Result<Body, Vec<Problem>> {
+    let rim = file.rim.as_ref().map_or(0, |rim| rim.points);
+    let count = rim + file.point.len();
+    if count > usize::try_from(MOST_POINTS).unwrap_or(usize::MAX) {
+        return Err(vec![Problem::at(
+            "body",
+            format!("has {count} points; at most {MOST_POINTS} are allowed"),
+        )]);
+    }
+    let mut points = rim_points(file);
+    let mut names = HashMap::with_capacity(file.point.len());
+    let mut problems = Vec::new();
+    for (index, point) in file.point.iter().enumerate() {
+        if names.insert(point.name.clone(), points.len()).is_some() {
+            let value = toml::Value::String(point.name.clone());
+            let key = format!("body.point.{index}.name");
+            problems.push(Problem::with_value(
+                key,
+                &value,
+                "is the name of another point too: each needs its own",
+            ));
+        }
+        points.push(PointMass {
+            at: Vector3::from(point.at_m),
+            mass: point.mass_kg.unwrap_or(0.0),
+        });
+    }
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let mechanics =
+        physics::Body::new(points).map_err(|error| vec![Problem::at("body", error.to_string())])?;
+    Ok(Body { mechanics, names })
+}
+
+fn rim_points(file: &BodyFile) -> Vec<PointMass> {
+    let Some(rim) = &file.rim else {
+        return Vec::new();
+    };
+    let point = |j: usize| {
+        let (sin, cos) = libm::sincos(TAU * j as f64 / rim.points as f64);
+        let at = Vector3::new(rim.radius_m * cos, rim.radius_m * sin, rim.height_m);
+        PointMass {
+            at,
+            mass: rim.point_mass_kg,
+        }
+    };
+    (0..rim.points).map(point).collect()
+}
+
+pub(super) fn start(file: &StartFile) -> State {
+    let tilt = file.tilt_deg.unwrap_or(0.0).to_radians();
+    let orientation = rotation::about(&Vector3::x(), tilt);
+    let momentum = Vector3::from(file.momentum_Js);
+    let momentum = match file.momentum_frame.unwrap_or_default() {
+        Frame::World => momentum,
+        Frame::Body => orientation * momentum,
+    };
+    State {
+        time_s: 0.0,
+        orientation,
+        momentum,
+    }
+}
+
+pub(super) fn motion(file: &MotionFile) -> Motion {
+    let named = file.scheme.as_deref().and_then(SchemeInfo::find);
+    Motion {
+        gravity: file.gravity_m_per_s2.unwrap_or(GRAVITY),
+        scheme: named.unwrap_or(&physics::scheme::SCHEMES[0]), // an unknown name has been refused by the keys
+        time_step_s: file.time_step_s,
+    }
+}
+
+pub(super) fn pushes(
+    files: &[PushFile],
+    body: &Body,
+    key: &str,
+) -> Result<Vec<Push>, Vec<Problem>> {
+    files
+        .iter()
+        .enumerate()
+        .map(|(index, file)| push(file, body, &format!("{key}.{index}")))
+        .collect()
+}
+
+fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Vec<Problem>> {
+    let wrong = |rule: &str| Err(vec![Problem::at(key, rule)]);
+    let window = match (file.first_step, file.steps, file.from_s, file.for_s) {
+        (first, Some(count), None, None) => Window::Steps {
+            first: first.unwrap_or(1),
+            count,
+        },
+        (None, None, from, Some(for_s)) => Window::Time {
+            from_s: from.unwrap_or(0.0),
+            for_s,
+        },
+        (None, None, Some(_), None) => return wrong("does not say for how long: add for_s"),
+        (first, steps, None, None) if first.is_some() || steps.is_some() => {
+            return wrong("does not say for how long: add steps");
+        }
+        (None, None, None, None) => return wrong("does not say for how long: add steps, or for_s"),
+        _ => {
+            return wrong(
+                "counts in steps and in seconds: keep first_step and steps, or from_s and for_s",
+            );
+        }
+    };
+    let accumulates = file.accumulates.unwrap_or(false);
+    if accumulates && matches!(window, Window::Time { .. }) {
+        return wrong("accumulates step by step: give first_step and steps instead of seconds");
+    }
+    let point = body.find(&format!("{key}.point"), &file.point)?;
+    Ok(Push {
+        point,
+        force: Vector3::from(file.force_N),
+        window,
+        accumulates,
+    })
+}

@@ -1,0 +1,402 @@
+//! A run is a scenario and its journal: what an edit made at a step changes, from when on, and what it leaves alone.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use gyrolab::export::{CsvWriter, stream};
+use gyrolab::physics::{Loads, SchemeInfo};
+use gyrolab::run::{Sample, Simulation};
+use gyrolab::scenario::Document;
+use std::fmt::Write;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// The textbook's wheel, tilted, with nothing but its weight.
+const WHEEL: &str = r#"
+title = "Wheel"
+[body.rim]
+points = 10
+radius_m = 0.8
+height_m = 1.0
+point_mass_kg = 0.5
+[[body.point]]
+name = "top"
+at_m = [0, 0, 1.5]
+[start]
+tilt_deg = 30
+momentum_Js = [0, 1, 60]
+momentum_frame = "body"
+[motion]
+"#;
+
+/// The wheel, with this for `[motion]` and what follows it, and with edits: the step and the TOML of what is set.
+fn simulation(motion: &str, edits: &[(u64, &str)]) -> Simulation {
+    let mut text = format!("{WHEEL}{motion}\n");
+    for (step, set) in edits {
+        write!(text, "[[edit]]\nstep = {step}\nset = {{ {set} }}\n").unwrap();
+    }
+    let scenario = Document::parse("wheel.toml", &text).and_then(|document| document.scenario());
+    Simulation::new(Arc::new(
+        scenario.unwrap_or_else(|problems| panic!("{problems}")),
+    ))
+}
+
+/// The samples of step 0 to the last.
+fn samples(mut simulation: Simulation) -> Vec<Sample> {
+    let mut samples = vec![simulation.sample()];
+    while simulation.step_number() < simulation.scenario().steps {
+        simulation.step().unwrap();
+        samples.push(simulation.sample());
+    }
+    samples
+}
+
+/// Whether two samples hold the same bits, whatever their segments.
+fn same(a: &Sample, b: &Sample) -> bool {
+    Sample { segment: 0, ..*a } == Sample { segment: 0, ..*b }
+}
+
+const COARSE: &str = "scheme = 'report'\ntime_step_s = 0.1\nsteps = 100";
+const FINE: &str = "scheme = 'rk4'\ntime_step_s = 0.001\nsteps = 100";
+
+#[test]
+fn time_counts_from_the_last_edit_of_the_time_step() {
+    let edits = [
+        (40, "'motion.time_step_s' = 0.05"),
+        (60, "'motion.gravity_m_per_s2' = 9"),
+        (70, "'motion.time_step_s' = 0.3"),
+    ];
+    let samples = samples(simulation(COARSE, &edits));
+    for (n, sample) in samples.iter().enumerate() {
+        let n = n as f64;
+        let expected = match n {
+            ..=40.0 => n * 0.1,
+            ..=70.0 => 40.0 * 0.1 + (n - 40.0) * 0.05,
+            _ => 40.0 * 0.1 + 30.0 * 0.05 + (n - 70.0) * 0.3,
+        };
+        assert_eq!(sample.time_s.to_bits(), f64::to_bits(expected), "step {n}");
+    }
+}
+
+#[test]
+fn segments_count_edits_of_time_step_scheme_and_gravity_from_the_next_row_on() {
+    let edits = [
+        (0, "'motion.gravity_m_per_s2' = 9"),
+        (3, "'motion.scheme' = 'rk4'"),
+        (
+            5,
+            "'push.0' = { point = 'top', force_N = [1, 0, 0], steps = 3 }",
+        ),
+        (5, "'motion.time_step_s' = 0.002"),
+        (
+            9,
+            "'motion.time_step_s' = 0.001, 'motion.gravity_m_per_s2' = 9.8",
+        ),
+        (12, "'motion.time_step_s' = 0.001"),
+        (12, "'motion.scheme' = 'report'"),
+        (20, "'motion.gravity_m_per_s2' = 1"),
+        (25, "'motion.gravity_m_per_s2' = 2"),
+    ];
+    let samples = samples(simulation(
+        "scheme = 'report'\ntime_step_s = 0.001\nsteps = 20",
+        &edits,
+    ));
+    let segments: Vec<_> = samples.iter().map(|sample| sample.segment).collect();
+    assert_eq!(
+        segments,
+        [
+            0, 1, 1, 1, 2, 2, 3, 3, 3, 3, 4, 4, 4, 6, 6, 6, 6, 6, 6, 6, 6
+        ]
+    );
+}
+
+#[test]
+fn an_edit_changes_nothing_up_to_its_own_row_and_something_from_the_next_on() {
+    let pushed = format!("{COARSE}\n[[push]]\npoint = 'top'\nforce_N = [0, 50, 0]\nsteps = 90\n");
+    let plain = samples(simulation(&pushed, &[]));
+    for set in [
+        "'motion.time_step_s' = 0.05",
+        "'motion.scheme' = 'rk4'",
+        "'motion.gravity_m_per_s2' = 3",
+        "'push.0.force_N' = [0, 0, 0]",
+        "'push.1' = { point = 'top', force_N = [9, 0, 0], first_step = 41, steps = 5 }",
+        "'push.1' = { point = 'top', force_N = [9, 0, 0], from_s = 4, for_s = 1 }",
+    ] {
+        let mut edited = simulation(&pushed, &[(40, set)]);
+        for before in &plain[..=40] {
+            edited.step_to(before.step).unwrap();
+            assert_eq!(edited.sample(), *before, "{set}: step {}", before.step);
+        }
+        edited.step().unwrap();
+        assert!(!same(&edited.sample(), &plain[41]), "{set}");
+    }
+}
+
+#[test]
+fn edits_at_the_end_and_beyond_do_nothing() {
+    let plain = samples(simulation(COARSE, &[]));
+    let edits = [
+        (100, "'motion.gravity_m_per_s2' = 1"),
+        (100, "'motion.time_step_s' = 7"),
+        (5000, "'motion.scheme' = 'rk4'"),
+    ];
+    assert_eq!(samples(simulation(COARSE, &edits)), plain);
+}
+
+#[test]
+fn an_edit_at_step_0_is_a_scenario_of_its_own() {
+    for (set, written) in [
+        (
+            "'motion.time_step_s' = 0.002",
+            FINE.replace("0.001", "0.002"),
+        ),
+        ("'motion.scheme' = 'report'", FINE.replace("rk4", "report")),
+        (
+            "'motion.gravity_m_per_s2' = 3",
+            format!("{FINE}\ngravity_m_per_s2 = 3"),
+        ),
+    ] {
+        let (edited, written) = (
+            samples(simulation(FINE, &[(0, set)])),
+            samples(simulation(&written, &[])),
+        );
+        assert_eq!(edited.len(), written.len());
+        for (edited, written) in edited.iter().zip(&written).skip(1) {
+            assert!(same(edited, written), "{set}: step {}", edited.step);
+            assert_eq!(edited.segment, 1);
+        }
+    }
+}
+
+/// Of the scheme before nothing is left but orientation, L and t.
+#[test]
+fn orientation_and_momentum_pass_from_scheme_to_scheme() {
+    for (first, second) in [("report", "rk4"), ("rk4", "report")] {
+        let motion = FINE.replace("rk4", first);
+        let set = format!("'motion.scheme' = '{second}', 'motion.gravity_m_per_s2' = 5");
+        let mut edited = simulation(&motion, &[(50, &set)]);
+        edited.step_to(50).unwrap();
+        let mut state = *edited.state();
+        let body = &edited.scenario().body.mechanics;
+        let mut scheme = SchemeInfo::find(second).unwrap().make(body);
+        scheme.load(&Loads {
+            gravity: 5.0,
+            pushes: Vec::new(),
+        });
+        scheme.start(&state);
+        for step in 51..=60 {
+            scheme.step(0.001, &mut state);
+            edited.step_to(step).unwrap();
+            assert_eq!(
+                edited.state().orientation,
+                state.orientation,
+                "{first} to {second}"
+            );
+            assert_eq!(
+                edited.state().momentum,
+                state.momentum,
+                "{first} to {second}"
+            );
+        }
+    }
+}
+
+/// Steps on which a torque acts, and how many times that of the force alone; without gravity only a push makes one.
+fn pushed_steps(motion: &str, edits: &[(u64, &str)]) -> Vec<(u64, f64)> {
+    let mut simulation = simulation(&format!("gravity_m_per_s2 = 0\n{motion}\n"), edits);
+    let mut pushed = Vec::new();
+    while simulation.step_number() < simulation.scenario().steps {
+        simulation.step().unwrap();
+        let torque = simulation.record().unwrap().workings.torque.norm();
+        if torque > 0.0 {
+            let one = simulation
+                .sample()
+                .position
+                .cross(&nalgebra::Vector3::new(0.0, -2.0, 0.0))
+                .norm();
+            pushed.push((simulation.step_number(), torque / one));
+        }
+    }
+    pushed
+}
+
+fn numbers(pushed: &[(u64, f64)]) -> Vec<u64> {
+    pushed.iter().map(|(step, _)| *step).collect()
+}
+
+#[test]
+fn pushes_counted_in_steps_hold_their_seconds_after_an_edit_of_the_time_step() {
+    let push = |first, steps| {
+        format!(
+            "scheme = 'report'\ntime_step_s = 0.1\nsteps = 500\n[[push]]\npoint = 'top'\nforce_N = [0, -2, 0]\nfirst_step = {first}\nsteps = {steps}\n"
+        )
+    };
+    // 200 steps of 0.1 s are 20 s: 4 s of them before the edit, 16 s or 320 steps of 0.05 s after it.
+    let edits = [(40, "'motion.time_step_s' = 0.05")];
+    assert_eq!(
+        numbers(&pushed_steps(&push(1, 200), &[])),
+        (1..=200).collect::<Vec<_>>()
+    );
+    assert_eq!(
+        numbers(&pushed_steps(&push(1, 200), &edits)),
+        (1..=360).collect::<Vec<_>>()
+    );
+    // From 5 s to 7 s, both after the edit.
+    assert_eq!(
+        numbers(&pushed_steps(&push(51, 20), &edits)),
+        (61..=100).collect::<Vec<_>>()
+    );
+    // Over before the edit.
+    assert_eq!(
+        numbers(&pushed_steps(&push(11, 20), &edits)),
+        (11..=30).collect::<Vec<_>>()
+    );
+    // A second edit counts in the seconds of the scenario's own time step too: 12 steps more to 4.6 s, the rest at 0.2 s.
+    let twice = [
+        (40, "'motion.time_step_s' = 0.05"),
+        (52, "'motion.time_step_s' = 0.2"),
+    ];
+    assert_eq!(
+        numbers(&pushed_steps(&push(1, 200), &twice)),
+        (1..=129).collect::<Vec<_>>()
+    );
+}
+
+#[test]
+fn an_accumulating_push_grows_by_the_clock_after_an_edit_of_the_time_step() {
+    let push = "scheme = 'report'\ntime_step_s = 0.1\nsteps = 20\n[[push]]\npoint = 'top'\nforce_N = [0, -2, 0]\nfirst_step = 2\nsteps = 8\naccumulates = true\n";
+    let forces = |edits: &[(u64, &str)]| {
+        pushed_steps(push, edits)
+            .iter()
+            .map(|(_, force)| force.round())
+            .collect::<Vec<_>>()
+    };
+    let plain = [1, 2, 3, 4, 5, 6, 7, 8, 8, 8, 8, 8, 8, 8, 8, 8, 8, 8, 8].map(f64::from);
+    assert_eq!(forces(&[]), plain);
+    // From step 4 on every 0.1 s is two steps.
+    let edited = [1, 2, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8, 8, 8, 8, 8, 8, 8].map(f64::from);
+    assert_eq!(forces(&[(4, "'motion.time_step_s' = 0.05")]), edited);
+}
+
+#[test]
+fn a_push_in_steps_is_the_push_in_its_seconds() {
+    let run = |window: &str, edits: &[(u64, &str)]| {
+        samples(simulation(
+            &format!("{FINE}\n[[push]]\npoint = 'top'\nforce_N = [3, 2, 1]\n{window}\n"),
+            edits,
+        ))
+    };
+    for edits in [
+        &[][..],
+        &[(30, "'motion.time_step_s' = 0.0007")],
+        &[(0, "'motion.time_step_s' = 0.002")],
+    ] {
+        let (steps, seconds) = (
+            run("first_step = 21\nsteps = 40", edits),
+            run("from_s = 0.02\nfor_s = 0.04", edits),
+        );
+        for (steps, seconds) in steps.iter().zip(&seconds) {
+            assert!(
+                (steps.momentum - seconds.momentum).norm() < 1e-12,
+                "step {}",
+                steps.step
+            );
+        }
+    }
+}
+
+/// Drift is what the scheme alone has done: neither a push nor an edit of gravity shows in it.
+#[test]
+fn the_energy_drift_leaves_out_the_work_of_pushes_and_of_edits_of_gravity() {
+    let motion = "scheme = 'rk4'\ntime_step_s = 0.0005\nsteps = 8000\n\
+        [[push]]\npoint = 'top'\nforce_N = [0, 30, -20]\nfirst_step = 100\nsteps = 900\n\
+        [[push]]\npoint = 'top'\nforce_N = [25, 0, 10]\nfrom_s = 1.00017\nfor_s = 0.70031\n\
+        [[push]]\npoint = 'top'\nforce_N = [0.02, 0, 0]\nfirst_step = 4000\nsteps = 300\naccumulates = true\n";
+    let edits = [
+        (500, "'motion.gravity_m_per_s2' = 1.6"),
+        (1200, "'push.1.force_N' = [-20, 5, 0]"),
+        (
+            2000,
+            "'motion.gravity_m_per_s2' = 24.8, 'motion.time_step_s' = 0.0004",
+        ),
+        (5000, "'motion.gravity_m_per_s2' = -3"),
+    ];
+    let mut simulation = simulation(motion, &edits);
+    let weight = 9.8 * 5.0; // M g |c|, J
+    let start = simulation.sample().energy;
+    let mut largest = 0.0f64;
+    for step in 1..=8000 {
+        simulation.step_to(step).unwrap();
+        let drift = simulation.energy_drift().unwrap();
+        assert!(drift.abs() < 1e-9, "step {step}: {drift:e}");
+        largest = largest.max((simulation.sample().energy - start).abs() / weight);
+    }
+    assert!(largest > 0.1, "the energy itself has changed: {largest}");
+}
+
+#[test]
+fn the_azimuth_counts_every_turn_however_few_rows_there_are() {
+    let azimuths = |every: u64| -> Vec<(u64, f64)> {
+        let scenario = Document::open("torque-free")
+            .and_then(|document| document.scenario())
+            .unwrap();
+        let mut simulation = Simulation::new(Arc::new(scenario));
+        let mut csv = CsvWriter::new(Vec::new(), simulation.scenario()).unwrap();
+        stream::play(
+            &mut simulation,
+            4000,
+            every,
+            Some(&mut csv),
+            |_| {},
+            |_| ControlFlow::Continue(()),
+        )
+        .unwrap();
+        let bytes = csv.finish().unwrap();
+        let mut rows = csv::ReaderBuilder::new()
+            .comment(Some(b'#'))
+            .from_reader(bytes.as_slice());
+        rows.records()
+            .map(|row| {
+                row.map(|row| (row[0].parse().unwrap(), row[12].parse().unwrap()))
+                    .unwrap()
+            })
+            .collect()
+    };
+    let all = azimuths(1);
+    assert!(
+        all.last().unwrap().1.abs() > 3.0 * 360.0,
+        "several turns: {:?}",
+        all.last()
+    );
+    for every in [7, 97, 1999] {
+        let some = azimuths(every);
+        let expected: Vec<_> = all
+            .iter()
+            .filter(|(step, _)| step % every == 0 || *step == 4000)
+            .copied()
+            .collect();
+        assert_eq!(some, expected, "--every {every}");
+    }
+}
+
+/// A run that ends in numbers that are not finite is read as it stood before, and stays there.
+#[test]
+fn an_edit_that_leads_nowhere_is_not_made() {
+    let mut simulation = simulation(FINE, &[(50, "'motion.gravity_m_per_s2' = 1e307")]);
+    simulation.step_to(50).unwrap();
+    let (sample, drift, motion) = (
+        simulation.sample(),
+        simulation.energy_drift(),
+        *simulation.motion(),
+    );
+    for _ in 0..3 {
+        assert_eq!(simulation.step().unwrap_err().step, 51);
+        assert_eq!(
+            (
+                simulation.sample(),
+                simulation.energy_drift(),
+                *simulation.motion()
+            ),
+            (sample, drift, motion)
+        );
+    }
+}
