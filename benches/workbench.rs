@@ -1,32 +1,34 @@
 //! What the lab costs, measured on the program itself in a pty of 80x24: bytes over the line, processor, memory, and
 //! how long until there is something to see. `cargo bench --bench workbench` prints the figures beside their budgets.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 use portable_pty::{Child, CommandBuilder, PtySize, native_pty_system};
 use std::io::{Read, Write};
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, mpsc};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
-const MEASURED: Duration = Duration::from_secs(10);
+const MEASURED: Duration = Duration::from_secs(8);
 /// Clock ticks of /proc a second, the same on every Linux.
 const TICKS: f64 = 100.0;
+
+const SMALL: (u16, u16) = (80, 24);
+const LARGE: (u16, u16) = (200, 50);
 
 struct Lab {
     child: Box<dyn Child + Send + Sync>,
     keys: Box<dyn Write + Send>,
-    bytes: Arc<AtomicU64>,
+    output: Arc<Mutex<Vec<u8>>>,
     first_frame: Duration,
     _pty: Box<dyn portable_pty::MasterPty + Send>,
 }
 
 impl Lab {
-    fn open(args: &[&str]) -> Self {
+    fn open(args: &[&str], (cols, rows): (u16, u16)) -> Self {
         let size = PtySize {
-            rows: 24,
-            cols: 80,
+            rows,
+            cols,
             pixel_width: 0,
             pixel_height: 0,
         };
@@ -35,35 +37,58 @@ impl Lab {
         command.args(args);
         command.env("TERM", "xterm");
         command.env("LANG", "C.UTF-8");
-        let mut output = pty.master.try_clone_reader().unwrap();
+        let mut reader = pty.master.try_clone_reader().unwrap();
         let keys = pty.master.take_writer().unwrap();
         let begin = Instant::now();
         let child = pty.slave.spawn_command(command).unwrap();
-        let bytes = Arc::new(AtomicU64::new(0));
-        let counted = Arc::clone(&bytes);
-        let (seen, first) = mpsc::channel();
+        let output = Arc::new(Mutex::new(Vec::new()));
+        let kept = Arc::clone(&output);
         thread::spawn(move || {
-            let mut text = Vec::new();
             let mut buffer = [0; 65536];
-            while let Ok(length @ 1..) = output.read(&mut buffer) {
-                counted.fetch_add(length as u64, Ordering::Relaxed);
-                // The first frame is there when its last line, the keys, is.
-                if text.len() < 65536 {
-                    text.extend_from_slice(&buffer[..length]);
-                    if String::from_utf8_lossy(&text).contains("quit") {
-                        let _ = seen.send(begin.elapsed());
-                    }
-                }
+            while let Ok(length @ 1..) = reader.read(&mut buffer) {
+                kept.lock().unwrap().extend_from_slice(&buffer[..length]);
             }
         });
-        let first_frame = first.recv_timeout(Duration::from_secs(10)).unwrap();
-        Self {
+        let mut lab = Self {
             child,
             keys,
-            bytes,
-            first_frame,
+            output,
+            first_frame: Duration::ZERO,
             _pty: pty.master,
+        };
+        // The first frame is there when its last line, the keys, is.
+        lab.wait_for("quit", 0);
+        lab.first_frame = begin.elapsed();
+        lab
+    }
+
+    fn sent(&self) -> usize {
+        self.output.lock().unwrap().len()
+    }
+
+    fn wait_for(&self, words: &str, from: usize) {
+        let begin = Instant::now();
+        while begin.elapsed() < Duration::from_secs(10) {
+            if String::from_utf8_lossy(&self.output.lock().unwrap()[from..]).contains(words) {
+                return;
+            }
+            thread::sleep(Duration::from_millis(1));
         }
+        panic!("{words:?} never came");
+    }
+
+    /// The longest time from pressing ? to the list of keys on the screen, of `times`.
+    fn slowest_answer(&mut self, times: u32) -> Duration {
+        let mut slowest = Duration::ZERO;
+        for _ in 0..times {
+            thread::sleep(Duration::from_millis(137));
+            let (from, begin) = (self.sent(), Instant::now());
+            self.press("?");
+            self.wait_for("closes", from);
+            slowest = slowest.max(begin.elapsed());
+            self.press("?");
+        }
+        slowest
     }
 
     fn press(&mut self, keys: &str) {
@@ -102,13 +127,13 @@ impl Lab {
             / 1024.0
     }
 
-    /// Bytes a second, and the share of a processor's core, while `MEASURED` passes.
+    /// Bytes a second, and the share of a processor's core, %, while `MEASURED` passes.
     fn measure(&self) -> (f64, f64) {
-        let (bytes, processor) = (self.bytes.load(Ordering::Relaxed), self.processor_s());
-        let begin = Instant::now();
+        thread::sleep(Duration::from_secs(1));
+        let (bytes, processor, begin) = (self.sent(), self.processor_s(), Instant::now());
         thread::sleep(MEASURED);
         let seconds = begin.elapsed().as_secs_f64();
-        let bytes = (self.bytes.load(Ordering::Relaxed) - bytes) as f64 / seconds;
+        let bytes = (self.sent() - bytes) as f64 / seconds;
         (bytes, (self.processor_s() - processor) / seconds * 100.0)
     }
 
@@ -124,8 +149,7 @@ fn main() {
         MEASURED.as_secs()
     );
     for (fps, budget) in [("10", "3000"), ("15", "5000")] {
-        let mut lab = Lab::open(&["--fps", fps]);
-        thread::sleep(Duration::from_secs(1));
+        let mut lab = Lab::open(&["--fps", fps], SMALL);
         let (bytes, core) = lab.measure();
         println!(
             "{fps} frames a second: {bytes:.0} bytes/s (budget {budget}), {core:.1} % of a core (budget 2)"
@@ -135,33 +159,62 @@ fn main() {
             lab.first_frame.as_secs_f64() * 1e3
         );
         lab.press(" ");
-        thread::sleep(Duration::from_secs(1));
         let (bytes, core) = lab.measure();
         println!("  paused: {bytes:.0} bytes/s (budget 0), {core:.1} % of a core");
         println!("  memory {:.1} MB (budget 30)", lab.memory_mb());
         lab.close();
     }
-    let mut lab = Lab::open(&["cusps"]);
-    lab.press("t");
-    thread::sleep(Duration::from_secs(1));
-    let (bytes, core) = lab.measure();
-    println!(
-        "cusps with the exact motion: {bytes:.0} bytes/s, {core:.1} % of a core, {:.1} MB",
-        lab.memory_mb()
+    report(
+        "method-2 with the exact motion",
+        &["--set", "motion.steps=100000"],
+        "t",
+        SMALL,
     );
-    lab.close();
-    let mut lab = Lab::open(&[
-        "--set",
-        "motion.steps=1000000000",
-        "--set",
-        "view.speed=1e8",
-    ]);
-    lab.press("+++++++");
-    thread::sleep(Duration::from_secs(1));
+    report(
+        "cusps with the exact motion",
+        &["cusps", "--set", "motion.steps=1000000"],
+        "t",
+        SMALL,
+    );
+    report(
+        "cusps with the exact motion at 200x50",
+        &["cusps", "--set", "motion.steps=1000000"],
+        "t",
+        LARGE,
+    );
+    report(
+        "method-2 at top speed",
+        &["--set", "motion.steps=1000000000"],
+        "99+",
+        SMALL,
+    );
+    report(
+        "method-2 at top speed, exact motion",
+        &["--set", "motion.steps=1000000000"],
+        "99+t",
+        SMALL,
+    );
+    report(
+        "a wheel of 100000 points at top speed",
+        &[
+            "--set",
+            "motion.steps=1000000000",
+            "--set",
+            "body.rim.points=99990",
+        ],
+        "99+",
+        SMALL,
+    );
+}
+
+fn report(what: &str, args: &[&str], keys: &str, size: (u16, u16)) {
+    let mut lab = Lab::open(args, size);
+    lab.press(keys);
     let (bytes, core) = lab.measure();
+    let answer = lab.slowest_answer(20).as_secs_f64() * 1e3;
+    let memory = lab.memory_mb();
     println!(
-        "top speed: {bytes:.0} bytes/s, {core:.1} % of a core, {:.1} MB",
-        lab.memory_mb()
+        "{what}: {bytes:.0} bytes/s, {core:.1} % of a core, {memory:.1} MB, keys within {answer:.0} ms (budget 50)"
     );
     lab.close();
 }

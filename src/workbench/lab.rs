@@ -142,7 +142,7 @@ impl Lab {
             Action::WiderWindow => self.zoom(true),
             Action::NarrowerWindow => self.zoom(false),
             Action::NextMarker => self.next_marker(),
-            Action::ToggleColour => self.view.theme.colour = !self.view.theme.colour,
+            Action::ToggleColour => self.toggle_colour(),
             Action::ToggleBackground => self.toggle_background(),
             Action::Browse => self.browse(),
             Action::Choose => self.choose(),
@@ -155,6 +155,7 @@ impl Lab {
             Action::Suspend => return Some(Request::Suspend),
             Action::Quit => return Some(Request::Quit),
         }
+        self.view.keep_focus(&self.layout().focusable());
         self.read_now();
         None
     }
@@ -209,6 +210,15 @@ impl Lab {
     fn next_marker(&mut self) {
         self.view.marker = self.view.marker.next();
         self.say(format!("dots: {}", self.view.marker.name()));
+    }
+
+    fn toggle_colour(&mut self) {
+        self.view.theme.colour = !self.view.theme.colour;
+        self.say(if self.view.theme.colour {
+            "with colours"
+        } else {
+            "without colours"
+        });
     }
 
     fn toggle_background(&mut self) {
@@ -293,6 +303,7 @@ impl Lab {
     /// The screen has this size now.
     pub fn resize(&mut self, size: Rect) {
         self.size = size;
+        self.view.keep_focus(&self.layout().focusable());
         self.changed = true;
     }
 

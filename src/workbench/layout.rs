@@ -59,10 +59,10 @@ impl Layout {
         }
     }
 
-    /// Every pane that may have the focus: those on the screen, or all where only one is.
+    /// Every pane that may have the focus: those on the screen, or all where there is room for one or two.
     pub fn focusable(&self) -> Vec<Pane> {
         match self.panes.len() {
-            0 | 1 => Pane::ALL.to_vec(),
+            0..=2 => Pane::ALL.to_vec(),
             _ => self.panes.iter().map(|(pane, _)| *pane).collect(),
         }
     }
@@ -88,7 +88,12 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     }
     if area.width < ALL_FROM {
         let widths = [area.width - area.width / 2, area.width / 2];
-        return beside(area, &[Pane::Traces, Pane::FromAbove], &widths);
+        let second = if view.focus == Pane::Traces {
+            Pane::FromAbove
+        } else {
+            view.focus
+        };
+        return beside(area, &[Pane::Traces, second], &widths);
     }
     let rest = area.width - PARAMETERS;
     if area.width < THREE_D_FROM {

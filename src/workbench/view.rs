@@ -99,6 +99,13 @@ impl View {
         }
     }
 
+    /// The focus on one of `shown`.
+    pub fn keep_focus(&mut self, shown: &[Pane]) {
+        if !shown.contains(&self.focus) {
+            self.focus = Pane::Traces;
+        }
+    }
+
     /// The pane in focus fills the screen, or no longer.
     pub fn toggle_filled(&mut self) {
         self.filled = !self.filled;

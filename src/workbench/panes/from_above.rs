@@ -128,7 +128,13 @@ impl FromAbove<'_> {
     /// What a metre is, and what the marks mean, where there is room for it.
     fn scale_bar(&self, plan: &Plan, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
-        let length_m = nice_below(0.25 * area.width as f64 * plan.cell_width_m);
+        // The longer legend beside it leaves less room for the bar.
+        let share = if self.run.overlay().is_some() {
+            0.25
+        } else {
+            0.4
+        };
+        let length_m = nice_below(share * area.width as f64 * plan.cell_width_m);
         let cells = (length_m / plan.cell_width_m).round() as usize;
         let bar = format!("├{}┤ {length_m} m", "─".repeat(cells.saturating_sub(2)));
         let end = write(area, (0, 0), &bar, theme.style(Role::Quiet), buf);
