@@ -203,7 +203,7 @@ fn keys_are_answered_at_top_speed() {
     let mut session = Session::open(&["--set", "motion.steps=1000000000"]);
     session.wait_for("q quit");
     session.press("99+");
-    session.wait_for("top: ×");
+    session.wait_for("top ×");
     let begin = Instant::now();
     session.press("?");
     session.wait_for("keys: Esc");

@@ -37,18 +37,20 @@ pub fn remarks(health: &Health) -> Vec<Remark> {
 
 fn turns(health: &Health) -> Remark {
     let turns = significant(health.turns_per_step);
-    let (in_short, warns) = match health.picture {
-        Picture::Right => (String::new(), false),
-        Picture::Strobed => (": strobed".to_owned(), false),
-        Picture::TooSlow | Picture::Backwards => (": aliased".to_owned(), true),
-    };
-    let long = match health.picture {
-        Picture::Right => format!("the wheel turns {turns} times a step"),
-        picture => format!("the wheel turns {turns} times a step: {picture}"),
+    let swing = "the swing is the time step's";
+    let (long, short, warns) = match (health.picture, health.nutation) {
+        (Picture::Right, _) => (String::new(), String::new(), false),
+        (Picture::Strobed, _) => (
+            format!(": {}", health.picture),
+            ": strobed".to_owned(),
+            false,
+        ),
+        (picture, None) => (format!(": {picture}"), ": aliased".to_owned(), true),
+        (_, Some(_)) => (format!(", so that {swing}"), format!(": {swing}"), true),
     };
     Remark {
-        long,
-        short: format!("{turns} turns a step{in_short}"),
+        long: format!("the wheel turns {turns} times a step{long}"),
+        short: format!("{turns} turns a step{short}"),
         warns,
     }
 }
@@ -72,7 +74,7 @@ fn distance(health: &Health) -> Remark {
 
 fn energy(health: &Health) -> Remark {
     let text = match health.energy_drift {
-        Some(drift) => format!("energy {drift:+.4} mgl"),
+        Some(drift) => format!("energy drift {drift:+.4}"),
         None => "energy n/a".to_owned(),
     };
     Remark {

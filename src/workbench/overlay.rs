@@ -7,12 +7,16 @@ use crate::scenario::Scenario;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
+/// Looks that may be due at once; of a run that is further ahead every second, third, ... step is looked at, so that the
+/// exact motion comes after it within a frame.
+const MOST_DUE: f64 = 20_000.0;
+
 /// The exact motion from the start to (almost) now.
 pub struct Overlay {
     truth: Truth,
     traced: Vector3<f64>,
-    /// Time between two looks at it, s.
-    spacing_s: f64,
+    /// Time between two looks at it where there is time for all, s.
+    time_step_s: f64,
     looks: u64,
     now: Moment,
     recording: Recording,
@@ -27,7 +31,7 @@ impl Overlay {
         let mut overlay = Self {
             truth: Truth::new(Arc::clone(scenario)),
             traced,
-            spacing_s: scenario.motion.time_step_s,
+            time_step_s: scenario.motion.time_step_s,
             looks: 0,
             now,
             recording: Recording::default(),
@@ -39,10 +43,12 @@ impl Overlay {
 
     /// Follows it to `time_s` (s), look by look, until `enough` says that there is no more time for it.
     pub fn follow(&mut self, time_s: f64, mut enough: impl FnMut() -> bool) {
+        let due = (time_s - self.now.time_s) / self.time_step_s;
+        let spacing_s = self.time_step_s * (due / MOST_DUE).ceil().max(1.0);
         while self.now.time_s < time_s {
-            let next = self.now.time_s + self.spacing_s;
+            let next = self.now.time_s + spacing_s;
             // The last look falls on the run's own time, whatever the rounding of the sums on the way.
-            let next = if next > time_s - 0.5 * self.spacing_s {
+            let next = if next > time_s - 0.5 * self.time_step_s {
                 time_s
             } else {
                 next

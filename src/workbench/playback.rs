@@ -8,10 +8,11 @@ use crate::scenario::Scenario;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Longest stretch of stepping between two looks at the keyboard.
-const STEPPING: Duration = Duration::from_millis(25);
+/// Longest stretch of stepping between two looks at the keyboard: a key pressed at its beginning is answered after the
+/// stretch that follows.
+const STEPPING: Duration = Duration::from_millis(12);
 /// The exact motion's share of that, and of a frame of 15 a second: a tenth.
-const FOLLOWING_FLAT_OUT: Duration = Duration::from_micros(2500);
+const FOLLOWING_FLAT_OUT: Duration = Duration::from_micros(1200);
 const FOLLOWING: Duration = Duration::from_millis(6);
 /// Playback speed where the scenario names none, simulated seconds a second.
 const SPEED: f64 = 1.0;

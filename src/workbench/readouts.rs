@@ -54,13 +54,9 @@ fn pace_in_words(pace: &Pace) -> String {
     match (pace.is_running(), pace.speed()) {
         (false, Speed::Times(speed)) => format!("paused ×{}", short(speed)),
         (false, Speed::Top) => "paused, top".to_owned(),
-        (true, Speed::Top) => format!("► top: ×{}", short(two_digits(pace.achieved()))),
-        (true, Speed::Times(speed)) if pace.falls_behind() => {
-            format!(
-                "► ×{} of ×{}",
-                short(two_digits(pace.achieved())),
-                short(speed)
-            )
+        (true, Speed::Top) => format!("► top ×{}", short(two_digits(pace.achieved()))),
+        (true, Speed::Times(_)) if pace.falls_behind() => {
+            format!("► ×{} max", short(two_digits(pace.achieved())))
         }
         (true, Speed::Times(speed)) => format!("► ×{}", short(speed)),
     }

@@ -1,6 +1,6 @@
 //! What the traces are drawn from: every step's extremes, however long the run, in bounded memory.
 //!
-//! Blocks of one step, of two, of four and so on, the newest [`KEPT`] of each size. Two full blocks of one size make
+//! Blocks of one step, of two, of four and so on, a few thousand of each size. Two full blocks of one size make
 //! one of the next, so that any stretch of the run up to now is covered by blocks of some size, a thousand or more to
 //! a window, and no step's minimum or maximum is ever lost to the picture.
 

@@ -9,40 +9,42 @@ use crate::workbench::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
+/// Columns without which a title is none: the clock goes first then.
+const LEAST_TITLE: u16 = 12;
 /// Between two remarks.
 const SEPARATOR: &str = " · ";
 
-/// Title and scheme on the left; time, step and pace on the right, in fixed columns.
+/// Title and scheme on the left, as much as fits; time, step and pace on the right, in fixed columns.
 pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let scenario = lab.run().scenario();
     let motion = lab.run().simulation().motion();
-    let right = clock(lab.readouts(), motion.time_step_s);
-    let room = area.width.saturating_sub(right.chars().count() as u16 + 2);
+    let clock = clock(lab.readouts(), motion.time_step_s);
+    let clock_x = area
+        .width
+        .checked_sub(clock.chars().count() as u16)
+        .filter(|&x| x >= LEAST_TITLE);
     let left = Rect {
-        width: if room < 12 { area.width } else { room },
+        width: clock_x.unwrap_or(area.width),
         ..area
     };
-    let name = write(
+    let mut x = write(
         left,
         (1, 0),
-        &scenario.file.title,
+        &lab.run().scenario().file.title,
         theme.style(Role::Heading),
         buf,
     );
-    let details = format!(
-        " · {} scheme · dt {} s",
-        motion.scheme.name, motion.time_step_s
-    );
-    write(left, (name, 0), &details, theme.style(Role::Quiet), buf);
-    if room >= 12 {
-        write(
-            area,
-            (area.width - right.chars().count() as u16, 0),
-            &right,
-            theme.style(Role::Text),
-            buf,
-        );
+    let details = [
+        format!(" · {} scheme", motion.scheme.name),
+        format!(" · dt {} s", motion.time_step_s),
+    ];
+    for detail in details {
+        if x as usize + detail.chars().count() < left.width as usize {
+            x = write(left, (x, 0), &detail, theme.style(Role::Quiet), buf);
+        }
+    }
+    if let Some(x) = clock_x {
+        write(area, (x, 0), &clock, theme.style(Role::Text), buf);
     }
 }
 

@@ -129,7 +129,7 @@ fn body_rows(scenario: &Scenario) -> Vec<Row> {
     let mut rows = vec![
         heading("body"),
         value(0, "mass", format!("{:.3}", body.mass()), "kg"),
-        value(1, "mass at z", format!("{height:.4}"), "m"),
+        value(3, "mass at z", format!("{height:.4}"), "m"),
     ];
     if let Some(rim) = &scenario.file.body.rim {
         rows.push(value(3, "rim radius", format!("{:.4}", rim.radius_m), "m"));
@@ -228,7 +228,16 @@ fn now_rows(readouts: &Readouts) -> Vec<Row> {
             or_dash(readouts.predicted_nutation_s, 5),
             "s",
         ),
-        value(2, "|L|", format!("{:.3}", sample.momentum.norm()), "J s"),
+        value(
+            2,
+            "E drift",
+            readouts
+                .health
+                .energy_drift
+                .map_or("n/a".to_owned(), |drift| format!("{drift:+.4}")),
+            "",
+        ),
+        value(3, "|L|", format!("{:.3}", sample.momentum.norm()), "J s"),
         value(4, "Lz", format!("{:.3}", sample.momentum.z), "J s"),
         value(4, "energy", format!("{:.2}", sample.energy), "J"),
     ]
