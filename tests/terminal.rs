@@ -230,11 +230,17 @@ fn it_follows_the_size_of_the_screen() {
 #[test]
 fn signals_to_end_give_the_terminal_back() {
     for (signal, code) in [("TERM", 143), ("INT", 130), ("HUP", 129), ("QUIT", 131)] {
-        let mut session = Session::open(&[]);
+        let mut session = Session::open(&["--fps", "60"]);
         session.wait_for("q quit");
         session.signal(signal);
         assert_eq!(session.wait_for_end().exit_code(), code, "{signal}");
         session.has_given_the_terminal_back();
+        let sent = session.sent_text();
+        let farewell = sent.rfind(LEAVES_ALTERNATE_SCREEN).unwrap();
+        assert_eq!(
+            &sent[farewell..],
+            format!("{LEAVES_ALTERNATE_SCREEN}{SHOWS_CURSOR}")
+        );
     }
 }
 
@@ -246,7 +252,8 @@ fn a_lost_line_ends_it() {
         session.lost.store(true, Ordering::Relaxed);
         session.keys = None;
         session.pty = None;
-        assert_eq!(session.wait_for_end().exit_code(), 129);
+        // By the signal, or by the frame that could not be written: whichever comes first.
+        assert!([1, 129].contains(&session.wait_for_end().exit_code()));
     }
 }
 

@@ -32,7 +32,8 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     }
 }
 
-fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
+/// Draws one pane of `lab` on `area`.
+pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
     let (run, view, readouts) = (lab.run(), lab.view(), lab.readouts());
     match pane {
         Pane::Traces => Traces { run, view }.render(area, buf),

@@ -18,14 +18,18 @@ use std::fs::File;
 use std::io::{self, BufWriter};
 use std::mem::ManuallyDrop;
 use std::os::fd::AsFd;
-use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
+use std::sync::{Mutex, MutexGuard, Once, PoisonError, TryLockError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Whether the terminal is ours at the moment.
 static ENTERED: AtomicBool = AtomicBool::new(false);
+/// Whoever writes to the terminal holds it.
+static PEN: Mutex<()> = Mutex::new(());
+/// A signal is ending the process.
+static ENDING: AtomicBool = AtomicBool::new(false);
 /// Somebody asked from outside to stop until resumed.
 static SUSPEND: AtomicBool = AtomicBool::new(false);
 /// The shell resumed us.
@@ -84,6 +88,10 @@ impl Screen {
     /// # Errors
     /// When the terminal cannot be written to.
     pub fn draw(&mut self, picture: impl FnOnce(Rect, &mut Buffer)) -> io::Result<()> {
+        let _pen = PEN.lock().unwrap_or_else(PoisonError::into_inner);
+        while ENDING.load(Ordering::SeqCst) {
+            thread::park(); // the process ends by a signal: nothing may follow the farewell
+        }
         self.terminal
             .draw(|frame| picture(frame.area(), frame.buffer_mut()))
             .map(|_| ())
@@ -210,11 +218,26 @@ fn listen(mut signals: Signals) {
             SIGTSTP => SUSPEND.store(true, Ordering::Relaxed),
             SIGCONT => RESUMED.store(true, Ordering::Relaxed),
             end => {
+                ENDING.store(true, Ordering::SeqCst);
+                let _pen = take_pen();
                 leave_in_time();
                 std::process::exit(128 + end);
             }
         }
     }
+}
+
+/// Waits until no frame is being drawn; `None` where one hangs in a terminal that takes no more bytes.
+fn take_pen() -> Option<MutexGuard<'static, ()>> {
+    let begin = Instant::now();
+    while begin.elapsed() < PATIENCE {
+        match PEN.try_lock() {
+            Ok(pen) => return Some(pen),
+            Err(TryLockError::Poisoned(pen)) => return Some(pen.into_inner()),
+            Err(TryLockError::WouldBlock) => thread::sleep(Duration::from_millis(2)),
+        }
+    }
+    None
 }
 
 fn leave_in_time() {
