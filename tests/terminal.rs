@@ -23,7 +23,10 @@ struct Session {
     pty: Option<Box<dyn MasterPty + Send>>,
     bytes: Arc<Mutex<Vec<u8>>>,
     size: (u16, u16),
+    /// The reader hangs up at the next byte.
     lost: Arc<AtomicBool>,
+    /// The reader takes no more bytes, as a terminal stopped by Ctrl-S does.
+    stopped: Arc<AtomicBool>,
 }
 
 impl Session {
@@ -48,12 +51,17 @@ impl Session {
         let kept = Arc::clone(&bytes);
         let lost = Arc::new(AtomicBool::new(false));
         let cut = Arc::clone(&lost);
+        let stopped = Arc::new(AtomicBool::new(false));
+        let shut = Arc::clone(&stopped);
         thread::spawn(move || {
             let mut buffer = [0; 65536];
             while let Ok(length @ 1..) = output.read(&mut buffer) {
                 kept.lock().unwrap().extend_from_slice(&buffer[..length]);
                 if cut.load(Ordering::Relaxed) {
                     break; // the last handle of the pty's near side: the line is lost
+                }
+                while shut.load(Ordering::Relaxed) {
+                    thread::sleep(Duration::from_millis(20));
                 }
             }
         });
@@ -65,6 +73,7 @@ impl Session {
             bytes,
             size,
             lost,
+            stopped,
         }
     }
 
@@ -255,6 +264,24 @@ fn a_lost_line_ends_it() {
         // By the signal, or by the frame that could not be written: whichever comes first.
         assert!([1, 129].contains(&session.wait_for_end().exit_code()));
     }
+}
+
+#[test]
+fn a_terminal_that_takes_no_bytes_does_not_hold_up_the_end() {
+    let mut session = Session::open(&["--fps", "60", "--set", "motion.steps=1000000000"]);
+    session.wait_for("q quit");
+    session.press("99+");
+    session.stopped.store(true, Ordering::Relaxed);
+    thread::sleep(Duration::from_secs(3)); // until the pty is full and a frame hangs
+    let begin = Instant::now();
+    session.signal("TERM");
+    session.wait_for_end();
+    assert!(
+        begin.elapsed() < Duration::from_secs(3),
+        "{:?}",
+        begin.elapsed()
+    );
+    session.stopped.store(false, Ordering::Relaxed);
 }
 
 #[test]
