@@ -4,6 +4,7 @@
 use super::camera::Camera;
 use super::markers::Marker;
 use super::theme::{Background, Theme};
+use crate::run::Clock;
 use crate::scenario::Scenario;
 
 /// A sweep that takes longer than this to be drawn, s, is no picture of the run.
@@ -138,7 +139,7 @@ fn first_window_s(scenario: &Scenario) -> f64 {
         .as_ref()
         .and_then(|view| view.speed)
         .unwrap_or(1.0);
-    let whole = scenario.steps as f64 * scenario.motion.time_step_s;
+    let whole = Clock::at(scenario, scenario.steps).time_s(scenario.steps);
     whole
         .min(LONGEST_SWEEP_S * speed)
         .max(2.0 * scenario.motion.time_step_s)

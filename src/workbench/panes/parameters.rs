@@ -2,7 +2,7 @@
 
 use super::{frame, write};
 use crate::physics::Body;
-use crate::scenario::{Scenario, Window};
+use crate::scenario::{Motion, Scenario, Window};
 use crate::workbench::readouts::Readouts;
 use crate::workbench::theme::Role;
 use crate::workbench::view::{Pane, View};
@@ -19,6 +19,8 @@ const UNIT: u16 = 19;
 pub struct Parameters<'a> {
     /// The scenario.
     pub scenario: &'a Scenario,
+    /// Gravity, scheme and time step as they are now: edits may have changed them.
+    pub motion: &'a Motion,
     /// The latest reading of its run.
     pub readouts: &'a Readouts,
     /// How it is looked at.
@@ -81,7 +83,7 @@ impl Parameters<'_> {
         let mut rows = Vec::with_capacity(32);
         rows.extend(body_rows(self.scenario));
         rows.extend(start_rows(self.scenario));
-        rows.extend(motion_rows(self.scenario));
+        rows.extend(motion_rows(self.scenario, self.motion));
         rows.extend(now_rows(self.readouts));
         rows
     }
@@ -161,8 +163,7 @@ fn start_rows(scenario: &Scenario) -> Vec<Row> {
     ]
 }
 
-fn motion_rows(scenario: &Scenario) -> Vec<Row> {
-    let motion = &scenario.motion;
+fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
     let pushes = match (scenario.pushes.len(), scenario.pushes.first()) {
         (0, _) => "none".to_owned(),
         (1, Some(push)) => format!("{:.0} N", push.force.norm()),
