@@ -12,7 +12,8 @@
 //! - [`run`]: a scenario and its journal of edits, played forward step by step. It is the one road forward in time.
 //! - [`analysis`]: what a run's numbers are worth: theory, measurement, health, comparisons.
 //! - [`export`]: what leaves the program: columns, CSV, summaries, and the files they are written to.
-//! - [`cli`]: the commands, and the only room that talks to the user.
+//! - [`workbench`]: the live lab in the terminal; it watches a run and changes nothing in it.
+//! - [`cli`]: the commands, and what each does with the rooms above.
 //!
 //! Frames: *world* has its origin at the pivot and +z up; *body* is fixed in the body and equals the world frame
 //! in the upright pose. Units are SI throughout: metres, kilograms, seconds, newtons, J s; angles are radians
@@ -26,3 +27,4 @@ pub mod export;
 pub mod physics;
 pub mod run;
 pub mod scenario;
+pub mod workbench;

@@ -2,20 +2,25 @@
 
 use crate::physics::scheme;
 use clap::builder::PossibleValuesParser;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroU64;
 use std::path::PathBuf;
 
 /// A terminal lab for the precession of a gyroscope: a report's stepper, better schemes, and any run as CSV.
 #[derive(Debug, Parser)]
-#[command(name = "gyrolab", version, about, arg_required_else_help = true, after_help = EXAMPLES)]
+#[command(name = "gyrolab", version, about, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub(super) struct Cli {
     #[command(subcommand)]
-    pub(super) command: Command,
+    pub(super) command: Option<Command>,
+
+    #[command(flatten)]
+    pub(super) workbench: WorkbenchArgs,
 }
 
 const EXAMPLES: &str = "\
 Examples:
+  gyrolab                                           open the lab: the report's Method 2, live
+  gyrolab cusps --paused --at 500                   a screen prepared for the class
   gyrolab presets                                   what there is to run
   gyrolab run method-2                              the report's Method 2, how it ends
   gyrolab run method-2 -o method-2.csv              every step of it as CSV
@@ -26,6 +31,8 @@ Examples:
 pub(super) enum Command {
     /// Run a scenario without a terminal: a summary, or with -o its CSV
     Run(RunArgs),
+    /// Print the lab's picture at the end of a run, as plain text
+    Show(ShowArgs),
     /// Hold schemes and time steps against the exact motion: errors, drifts, cost, measured order
     Compare(CompareArgs),
     /// List the shipped presets, or print one as TOML
@@ -56,6 +63,13 @@ pub(super) struct ScenarioArgs {
     /// A preset's name, or a file (.toml or .csv): a scenario, a run file, or a CSV that gyrolab wrote
     pub(super) scenario: String,
 
+    #[command(flatten)]
+    pub(super) changes: Changes,
+}
+
+/// What is changed in a scenario before it is run.
+#[derive(Debug, Args)]
+pub(super) struct Changes {
     /// Change a value first, such as motion.time_step_s=0.05 or push.0.force_N=[0,0,-50]; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(super) set: Vec<String>,
@@ -63,6 +77,78 @@ pub(super) struct ScenarioArgs {
     /// The numerical scheme
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(scheme::names()))]
     pub(super) scheme: Option<String>,
+}
+
+/// How the lab is opened.
+#[derive(Debug, Args)]
+pub(super) struct WorkbenchArgs {
+    /// A preset's name, or a file (.toml or .csv): a scenario, a run file, or a CSV that gyrolab wrote [default: method-2]
+    pub(super) scenario: Option<String>,
+
+    #[command(flatten)]
+    pub(super) changes: Changes,
+
+    /// Open with the run standing still
+    #[arg(long)]
+    pub(super) paused: bool,
+
+    /// Open at this step
+    #[arg(long, value_name = "STEP")]
+    pub(super) at: Option<u64>,
+
+    #[command(flatten)]
+    pub(super) look: Look,
+
+    /// Frames a second at most
+    #[arg(long, value_name = "FRAMES", default_value = "15", value_parser = clap::value_parser!(u32).range(1..=60))]
+    pub(super) fps: u32,
+}
+
+/// What the lab looks like.
+#[derive(Clone, Copy, Debug, Args)]
+pub(super) struct Look {
+    /// Colours: auto honours NO_COLOR
+    #[arg(long, value_enum, value_name = "WHEN", default_value = "auto")]
+    pub(super) color: Color,
+
+    /// What dots are made of [default: by locale and terminal]
+    #[arg(long, value_enum, value_name = "KIND")]
+    pub(super) markers: Option<Markers>,
+}
+
+/// `--color`
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Color {
+    Auto,
+    Always,
+    Never,
+}
+
+/// `--markers`
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Markers {
+    Braille,
+    HalfBlock,
+    Dot,
+    Ascii,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ShowArgs {
+    #[command(flatten)]
+    pub(super) scenario: ScenarioArgs,
+
+    /// Show this step instead of the run's end
+    #[arg(long, value_name = "STEP")]
+    pub(super) at: Option<u64>,
+
+    /// Columns and lines of the picture
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "80x24", value_parser = size)]
+    pub(super) size: (u16, u16),
+
+    /// What dots are made of [default: by locale and terminal]
+    #[arg(long, value_enum, value_name = "KIND")]
+    pub(super) markers: Option<Markers>,
 }
 
 /// How long a run is.
@@ -132,4 +218,18 @@ fn positive(text: &str) -> Result<f64, String> {
         Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
         _ => Err("must be a number greater than zero".to_owned()),
     }
+}
+
+/// The largest picture, columns and lines.
+const LARGEST: u16 = 1000;
+
+fn size(text: &str) -> Result<(u16, u16), String> {
+    let number = |text: &str| {
+        text.parse()
+            .ok()
+            .filter(|number| (1..=LARGEST).contains(number))
+    };
+    text.split_once('x')
+        .and_then(|(width, height)| Some((number(width)?, number(height)?)))
+        .ok_or_else(|| format!("must be columns x lines, such as 80x24, each from 1 to {LARGEST}"))
 }

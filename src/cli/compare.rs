@@ -69,7 +69,7 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
 }
 
 fn schemes(args: &CompareArgs) -> Vec<&'static SchemeInfo> {
-    let chosen = args.schemes.iter().chain(&args.scenario.scheme);
+    let chosen = args.schemes.iter().chain(&args.scenario.changes.scheme);
     let chosen: Vec<_> = chosen.filter_map(|name| SchemeInfo::find(name)).collect();
     match chosen.is_empty() {
         true => SCHEMES

@@ -8,6 +8,7 @@ mod info;
 mod progress;
 mod run;
 mod scenario;
+mod workbench;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -30,8 +31,12 @@ pub fn main() -> ExitCode {
 }
 
 fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
-    match cli.command {
+    let Some(command) = cli.command else {
+        return workbench::open(&cli.workbench);
+    };
+    match command {
         Command::Run(args) => run::run(&args),
+        Command::Show(args) => workbench::show(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Presets { name } => info::presets(name.as_deref()),
         Command::Schemes => info::schemes(),

@@ -1,12 +1,12 @@
 //! The scenario that the command line means.
 
-use super::args::{LengthArgs, ScenarioArgs};
+use super::args::{Changes, LengthArgs, ScenarioArgs};
 use crate::run::Simulation;
 use crate::scenario::{Document, Problems, Scenario};
 
 /// The scenario with all that the command line changes in it, so that its run file tells the whole run.
 pub(super) fn scenario_of(args: &ScenarioArgs, length: &LengthArgs) -> Result<Scenario, Problems> {
-    let mut document = changed_document(args)?;
+    let mut document = changed(&args.scenario, &args.changes)?;
     if let Some(steps) = length.steps {
         document.set(&format!("motion.steps={steps}"))?;
     }
@@ -19,12 +19,13 @@ pub(super) fn scenario_of(args: &ScenarioArgs, length: &LengthArgs) -> Result<Sc
     document.scenario()
 }
 
-fn changed_document(args: &ScenarioArgs) -> Result<Document, Problems> {
-    let mut document = Document::open(&args.scenario)?;
-    for set in &args.set {
+/// What SCENARIO names, with what the command line changes in it.
+pub(super) fn changed(scenario: &str, changes: &Changes) -> Result<Document, Problems> {
+    let mut document = Document::open(scenario)?;
+    for set in &changes.set {
         document.set(set)?;
     }
-    if let Some(scheme) = &args.scheme {
+    if let Some(scheme) = &changes.scheme {
         document.set(&format!("motion.scheme={scheme}"))?;
     }
     Ok(document)

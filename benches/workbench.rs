@@ -1,0 +1,220 @@
+//! What the lab costs, measured on the program itself in a pty of 80x24: bytes over the line, processor, memory, and
+//! how long until there is something to see. `cargo bench --bench workbench` prints the figures beside their budgets.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use portable_pty::{Child, CommandBuilder, PtySize, native_pty_system};
+use std::io::{Read, Write};
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::{Duration, Instant};
+
+const MEASURED: Duration = Duration::from_secs(8);
+/// Clock ticks of /proc a second, the same on every Linux.
+const TICKS: f64 = 100.0;
+
+const SMALL: (u16, u16) = (80, 24);
+const LARGE: (u16, u16) = (200, 50);
+
+struct Lab {
+    child: Box<dyn Child + Send + Sync>,
+    keys: Box<dyn Write + Send>,
+    output: Arc<Mutex<Vec<u8>>>,
+    first_frame: Duration,
+    _pty: Box<dyn portable_pty::MasterPty + Send>,
+}
+
+impl Lab {
+    fn open(args: &[&str], (cols, rows): (u16, u16)) -> Self {
+        let size = PtySize {
+            rows,
+            cols,
+            pixel_width: 0,
+            pixel_height: 0,
+        };
+        let pty = native_pty_system().openpty(size).unwrap();
+        let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_gyrolab"));
+        command.args(args);
+        command.env("TERM", "xterm");
+        command.env("LANG", "C.UTF-8");
+        let mut reader = pty.master.try_clone_reader().unwrap();
+        let keys = pty.master.take_writer().unwrap();
+        let begin = Instant::now();
+        let child = pty.slave.spawn_command(command).unwrap();
+        let output = Arc::new(Mutex::new(Vec::new()));
+        let kept = Arc::clone(&output);
+        thread::spawn(move || {
+            let mut buffer = [0; 65536];
+            while let Ok(length @ 1..) = reader.read(&mut buffer) {
+                kept.lock().unwrap().extend_from_slice(&buffer[..length]);
+            }
+        });
+        let mut lab = Self {
+            child,
+            keys,
+            output,
+            first_frame: Duration::ZERO,
+            _pty: pty.master,
+        };
+        // The first frame is there when its last line, the keys, is.
+        lab.wait_for("quit", 0);
+        lab.first_frame = begin.elapsed();
+        lab
+    }
+
+    fn sent(&self) -> usize {
+        self.output.lock().unwrap().len()
+    }
+
+    fn wait_for(&self, words: &str, from: usize) {
+        let begin = Instant::now();
+        while begin.elapsed() < Duration::from_secs(10) {
+            if String::from_utf8_lossy(&self.output.lock().unwrap()[from..]).contains(words) {
+                return;
+            }
+            thread::sleep(Duration::from_millis(1));
+        }
+        panic!("{words:?} never came");
+    }
+
+    /// The longest time from pressing ? to the list of keys on the screen, of `times`.
+    fn slowest_answer(&mut self, times: u32) -> Duration {
+        let mut slowest = Duration::ZERO;
+        for _ in 0..times {
+            thread::sleep(Duration::from_millis(137));
+            let (from, begin) = (self.sent(), Instant::now());
+            self.press("?");
+            self.wait_for("closes", from);
+            slowest = slowest.max(begin.elapsed());
+            self.press("?");
+        }
+        slowest
+    }
+
+    fn press(&mut self, keys: &str) {
+        self.keys.write_all(keys.as_bytes()).unwrap();
+        self.keys.flush().unwrap();
+    }
+
+    fn proc(&self, file: &str) -> String {
+        let id = self.child.process_id().unwrap();
+        std::fs::read_to_string(format!("/proc/{id}/{file}")).unwrap_or_default()
+    }
+
+    /// Processor time so far, s.
+    fn processor_s(&self) -> f64 {
+        let stat = self.proc("stat");
+        let after_name = stat.rsplit(") ").next().unwrap_or_default();
+        let fields: Vec<f64> = after_name
+            .split(' ')
+            .skip(11)
+            .take(2)
+            .filter_map(|f| f.parse().ok())
+            .collect();
+        fields.iter().sum::<f64>() / TICKS
+    }
+
+    fn memory_mb(&self) -> f64 {
+        let status = self.proc("status");
+        let line = status
+            .lines()
+            .find(|line| line.starts_with("VmHWM"))
+            .unwrap_or_default();
+        line.split_whitespace()
+            .nth(1)
+            .and_then(|kb| kb.parse::<f64>().ok())
+            .unwrap_or(f64::NAN)
+            / 1024.0
+    }
+
+    /// Bytes a second, and the share of a processor's core, %, while `MEASURED` passes.
+    fn measure(&self) -> (f64, f64) {
+        thread::sleep(Duration::from_secs(1));
+        let (bytes, processor, begin) = (self.sent(), self.processor_s(), Instant::now());
+        thread::sleep(MEASURED);
+        let seconds = begin.elapsed().as_secs_f64();
+        let bytes = (self.sent() - bytes) as f64 / seconds;
+        (bytes, (self.processor_s() - processor) / seconds * 100.0)
+    }
+
+    fn close(mut self) {
+        self.press("q");
+        self.child.wait().unwrap();
+    }
+}
+
+fn main() {
+    println!(
+        "80x24, method-2 with the defaults, {} s each",
+        MEASURED.as_secs()
+    );
+    for (fps, budget) in [("10", "3000"), ("15", "5000")] {
+        let mut lab = Lab::open(&["--fps", fps], SMALL);
+        let (bytes, core) = lab.measure();
+        println!(
+            "{fps} frames a second: {bytes:.0} bytes/s (budget {budget}), {core:.1} % of a core (budget 2)"
+        );
+        println!(
+            "  first frame after {:.0} ms (budget 100)",
+            lab.first_frame.as_secs_f64() * 1e3
+        );
+        lab.press(" ");
+        let (bytes, core) = lab.measure();
+        println!("  paused: {bytes:.0} bytes/s (budget 0), {core:.1} % of a core");
+        println!("  memory {:.1} MB (budget 30)", lab.memory_mb());
+        lab.close();
+    }
+    report(
+        "method-2 with the exact motion",
+        &["--set", "motion.steps=100000"],
+        "t",
+        SMALL,
+    );
+    report(
+        "cusps with the exact motion",
+        &["cusps", "--set", "motion.steps=1000000"],
+        "t",
+        SMALL,
+    );
+    report(
+        "cusps with the exact motion at 200x50",
+        &["cusps", "--set", "motion.steps=1000000"],
+        "t",
+        LARGE,
+    );
+    report(
+        "method-2 at top speed",
+        &["--set", "motion.steps=1000000000"],
+        "99+",
+        SMALL,
+    );
+    report(
+        "method-2 at top speed, exact motion",
+        &["--set", "motion.steps=1000000000"],
+        "99+t",
+        SMALL,
+    );
+    report(
+        "a wheel of 100000 points at top speed",
+        &[
+            "--set",
+            "motion.steps=1000000000",
+            "--set",
+            "body.rim.points=99990",
+        ],
+        "99+",
+        SMALL,
+    );
+}
+
+fn report(what: &str, args: &[&str], keys: &str, size: (u16, u16)) {
+    let mut lab = Lab::open(args, size);
+    lab.press(keys);
+    let (bytes, core) = lab.measure();
+    let answer = lab.slowest_answer(20).as_secs_f64() * 1e3;
+    let memory = lab.memory_mb();
+    println!(
+        "{what}: {bytes:.0} bytes/s, {core:.1} % of a core, {memory:.1} MB, keys within {answer:.0} ms (budget 50)"
+    );
+    lab.close();
+}

@@ -1,0 +1,79 @@
+//! The loop: events to actions, time to steps, and a frame where something has changed.
+
+use super::keymap;
+use super::lab::{Lab, Request};
+use super::screen;
+use super::terminal::{Event, Screen};
+use std::io;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+/// How long to sleep where nothing moves and nothing is due.
+const IDLE: Duration = Duration::from_millis(500);
+
+/// Runs `lab` on the terminal at up to `frames` a second, until the user leaves.
+///
+/// # Errors
+/// When there is no terminal, or it is gone; it has been given back then as far as that can be.
+pub fn run(mut lab: Lab, frames: u32) -> io::Result<()> {
+    let mut screen = Screen::enter()?;
+    let frame = Duration::from_secs(1) / frames.max(1);
+    let begin = Instant::now();
+    let mut next_frame = Duration::ZERO;
+    lab.resize(screen.size()?);
+    loop {
+        let wait = wait(&lab, next_frame.saturating_sub(begin.elapsed()));
+        let events = screen.events(wait)?;
+        let acted = !events.is_empty();
+        for event in events {
+            if handle(event, &mut lab, &mut screen)?.is_break() {
+                return Ok(());
+            }
+        }
+        lab.advance(&mut || begin.elapsed());
+        let now = begin.elapsed();
+        // An action is answered at once, whenever the next frame would be.
+        if (acted || now >= next_frame) && lab.take_changed() {
+            screen.draw(|area, buf| screen::draw(&lab, true, area, buf))?;
+            next_frame = now + frame;
+        }
+    }
+}
+
+/// How long there is time for events alone, with `to_frame` to go to the next frame.
+fn wait(lab: &Lab, to_frame: Duration) -> Duration {
+    if lab.playback().is_flat_out() {
+        Duration::ZERO
+    } else if lab.playback().is_busy() {
+        // At least a little: a run too slow to change anything by the next frame must not spin.
+        to_frame.max(Duration::from_millis(1))
+    } else {
+        lab.notice_ends_in().unwrap_or(IDLE).min(IDLE)
+    }
+}
+
+fn handle(event: Event, lab: &mut Lab, screen: &mut Screen) -> io::Result<ControlFlow<()>> {
+    let request = match event {
+        Event::Key(key) => keymap::action(lab.mode(), key).and_then(|action| lab.update(action)),
+        Event::Resized => {
+            lab.resize(screen.size()?);
+            None
+        }
+        Event::Suspend => Some(Request::Suspend),
+        Event::Resumed => {
+            screen.resume()?;
+            lab.resize(screen.size()?);
+            None
+        }
+    };
+    match request {
+        None => {}
+        Some(Request::Quit) => return Ok(ControlFlow::Break(())),
+        Some(Request::Redraw) => screen.forget()?,
+        Some(Request::Suspend) => {
+            screen.suspend()?;
+            lab.resize(screen.size()?);
+        }
+    }
+    Ok(ControlFlow::Continue(()))
+}

@@ -1,0 +1,149 @@
+//! The list of presets and files: what there is, which of it the filter lets through, which is selected.
+
+use crate::scenario::presets::PRESETS;
+use crate::scenario::problem::printable;
+use crate::scenario::{Document, Scenario};
+use std::path::Path;
+
+/// Files beyond this many are not listed.
+const MOST_FILES: usize = 1000;
+
+/// What may be opened.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// As SCENARIO on the command line: a preset's name, or a file's path.
+    pub name: String,
+    /// Whether it is a file.
+    pub is_file: bool,
+}
+
+/// The browser's state.
+#[derive(Clone, Debug, Default)]
+pub struct Browser {
+    entries: Vec<Entry>,
+    filter: String,
+    selected: usize,
+    preview: Option<(String, Result<Scenario, String>)>,
+}
+
+impl Browser {
+    /// Presets, and the scenario, run and CSV files in `folder`, with `name` selected.
+    pub fn new(folder: &Path, name: &str) -> Self {
+        let presets = PRESETS.iter().map(|preset| Entry {
+            name: preset.name.to_owned(),
+            is_file: false,
+        });
+        let files = files(folder).into_iter().map(|name| Entry {
+            name,
+            is_file: true,
+        });
+        let entries: Vec<_> = presets.chain(files).collect();
+        let selected = entries
+            .iter()
+            .position(|entry| entry.name == name)
+            .unwrap_or(0);
+        let mut browser = Self {
+            entries,
+            selected,
+            ..Self::default()
+        };
+        browser.load_preview();
+        browser
+    }
+
+    /// The entries the filter lets through.
+    pub fn shown(&self) -> Vec<&Entry> {
+        let wanted = self.filter.to_lowercase();
+        self.entries
+            .iter()
+            .filter(|entry| entry.name.to_lowercase().contains(&wanted))
+            .collect()
+    }
+
+    /// The place of the selected one among them.
+    pub fn selected(&self) -> usize {
+        self.selected
+    }
+
+    /// The selected entry.
+    pub fn choice(&self) -> Option<&Entry> {
+        self.shown().get(self.selected).copied()
+    }
+
+    /// What the selected entry holds, or why it cannot be opened.
+    pub fn preview(&self) -> Option<&Result<Scenario, String>> {
+        self.preview.as_ref().map(|(_, preview)| preview)
+    }
+
+    /// The filter as it is typed.
+    pub fn filter(&self) -> &str {
+        &self.filter
+    }
+
+    /// Moves the selection by `rows`, no further than the ends.
+    pub fn shift(&mut self, rows: isize) {
+        let last = self.shown().len().saturating_sub(1);
+        self.selected = self.selected.saturating_add_signed(rows).min(last);
+        self.load_preview();
+    }
+
+    /// Adds a character to the filter.
+    pub fn type_char(&mut self, typed: char) {
+        self.filter.push(typed);
+        self.refilter();
+    }
+
+    /// Takes the filter's last character away.
+    pub fn erase(&mut self) {
+        self.filter.pop();
+        self.refilter();
+    }
+
+    /// Lets everything through again.
+    pub fn clear_filter(&mut self) {
+        self.filter.clear();
+        self.refilter();
+    }
+
+    fn refilter(&mut self) {
+        self.selected = 0;
+        self.load_preview();
+    }
+
+    fn load_preview(&mut self) {
+        let name = self.choice().map(|entry| entry.name.clone());
+        if self.preview.as_ref().map(|(of, _)| of) == name.as_ref() {
+            return;
+        }
+        self.preview = name.map(|name| {
+            let preview = Document::open(&name)
+                .and_then(|document| document.scenario())
+                .map_err(|problems| problems.to_string());
+            (name, preview)
+        });
+    }
+}
+
+/// What SCENARIO would name the files in `folder` that may hold a scenario, in the order of their names.
+fn files(folder: &Path) -> Vec<String> {
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return Vec::new(); // a folder that cannot be read has nothing to offer
+    };
+    let mut names: Vec<_> = entries
+        .flatten()
+        .filter(|entry| entry.path().is_file())
+        .filter_map(|entry| entry.file_name().into_string().ok())
+        .filter(|name| name.ends_with(".toml") || name.ends_with(".csv"))
+        .filter(|name| printable(name) == *name)
+        .take(MOST_FILES)
+        .map(|name| {
+            if folder == Path::new(".") {
+                name
+            } else {
+                folder.join(name).display().to_string()
+            }
+        })
+        .collect();
+    names.sort_unstable();
+    names
+}

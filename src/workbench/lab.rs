@@ -1,0 +1,387 @@
+//! The lab's state, and what every action does to it. It draws nothing and reads no clock: time comes in.
+
+use super::action::{Action, Direction};
+use super::browser::Browser;
+use super::keymap::Mode;
+use super::layout::Layout;
+use super::live::LiveRun;
+use super::notice::Notice;
+use super::playback::{Halt, Playback};
+use super::readouts::{self, Readouts};
+use super::view::{Pane, View};
+use crate::run::NotFinite;
+use crate::scenario::{Document, Scenario};
+use ratatui::layout::Rect;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Rows of a page in lists.
+const PAGE: isize = 10;
+/// Degrees the camera turns at a key.
+const TURN_DEG: f64 = 10.0;
+/// The longest count that can be typed.
+const MOST_COUNTED: u64 = 999_999_999;
+/// Repeating something on the screen more often than this shows nothing new.
+const MOST_REPEATED: u64 = 1000;
+
+/// What the loop must do that the lab cannot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// Draw the whole screen again.
+    Redraw,
+    /// Stop until the shell resumes the program.
+    Suspend,
+    /// End.
+    Quit,
+}
+
+/// The whole of what the user sees and steers.
+pub struct Lab {
+    /// SCENARIO as it was opened.
+    name: String,
+    playback: Playback,
+    readouts: Readouts,
+    read_at: Duration,
+    view: View,
+    mode: Mode,
+    /// The mode under the help.
+    under_help: Mode,
+    browser: Browser,
+    count: Option<u64>,
+    notice: Notice,
+    now: Duration,
+    size: Rect,
+    changed: bool,
+}
+
+impl Lab {
+    /// A lab with the run of `scenario`, opened as `name`, at step 0.
+    pub fn new(name: &str, scenario: Arc<Scenario>, view: View, running: bool) -> Self {
+        let mut playback = Playback::new(scenario, running);
+        Self {
+            name: name.to_owned(),
+            readouts: playback.read(),
+            playback,
+            read_at: Duration::ZERO,
+            view,
+            mode: Mode::Lab,
+            under_help: Mode::Lab,
+            browser: Browser::default(),
+            count: None,
+            notice: Notice::default(),
+            now: Duration::ZERO,
+            size: Rect::new(0, 0, 80, 24),
+            changed: true,
+        }
+    }
+
+    /// Takes the run to `step` at once, before anything is shown.
+    ///
+    /// # Errors
+    /// When the numbers stop being finite on the way.
+    pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
+        let arrived = self.playback.begin_at(step);
+        self.read_now();
+        arrived
+    }
+
+    /// Lets time pass up to now, as `clock` tells it (since the lab was opened): steps, follows the exact motion, reads.
+    pub fn advance(&mut self, clock: &mut dyn FnMut() -> Duration) {
+        let now = clock();
+        let wall = now.saturating_sub(self.now);
+        self.now = now;
+        self.changed |= self.notice.expire(now);
+        let before = self.playback.step_number();
+        if let Some(halt) = self.playback.advance(now, wall, clock) {
+            self.halted(halt);
+        }
+        self.changed |= self.playback.step_number() != before;
+        if self.run().overlay_is_behind() {
+            self.playback.follow_exact(clock);
+            self.changed = true;
+        }
+        if self.changed && now >= self.read_at + readouts::EVERY {
+            self.read_now();
+        }
+    }
+
+    fn halted(&mut self, halt: Halt) {
+        match halt {
+            Halt::StepsTaken => {}
+            Halt::EndOfRun => self
+                .notice
+                .keep_saying("end of the scenario's run: space goes on, r begins again"),
+            Halt::NotFinite(error) => {
+                let text = format!(
+                    "the numbers are no longer finite at step {}: r begins again",
+                    error.step
+                );
+                self.notice.keep_saying(text);
+            }
+        }
+        self.read_now();
+    }
+
+    /// Carries out `action`; what only the loop can do comes back.
+    pub fn update(&mut self, action: Action) -> Option<Request> {
+        let count = self.count.take();
+        match action {
+            Action::TogglePause => self.toggle_pause(),
+            Action::Step => self.playback.take_steps(count.unwrap_or(1)),
+            Action::Digit(digit) => self.count = Some(counted(count, digit)),
+            Action::Faster => self.playback.shift_speed(repeated(count)),
+            Action::Slower => self.playback.shift_speed(-repeated(count)),
+            Action::Restart => self.restart(),
+            Action::ToggleExact => self.toggle_exact(),
+            Action::NextPane => self.view.shift_focus(&self.layout().focusable(), true),
+            Action::PreviousPane => self.view.shift_focus(&self.layout().focusable(), false),
+            Action::FillScreen => self.view.toggle_filled(),
+            Action::ThreeD => self.view.toggle_three_d(),
+            Action::Move(direction) => self.shift(direction, repeated(count)),
+            Action::WiderWindow => self.zoom(true),
+            Action::NarrowerWindow => self.zoom(false),
+            Action::NextMarker => self.next_marker(),
+            Action::ToggleColour => self.toggle_colour(),
+            Action::ToggleBackground => self.toggle_background(),
+            Action::Browse => self.browse(),
+            Action::Choose => self.choose(),
+            Action::Filter => self.mode = Mode::Filter,
+            Action::Type(typed) => self.browser.type_char(typed),
+            Action::Erase => self.browser.erase(),
+            Action::Help => self.toggle_help(),
+            Action::Close => self.close(),
+            Action::Redraw => return Some(Request::Redraw),
+            Action::Suspend => return Some(Request::Suspend),
+            Action::Quit => return Some(Request::Quit),
+        }
+        self.view.keep_focus(&self.layout().focusable());
+        self.read_now();
+        None
+    }
+
+    fn toggle_pause(&mut self) {
+        self.notice.take_back();
+        self.playback.set_running(!self.playback.is_running());
+    }
+
+    fn restart(&mut self) {
+        self.notice.take_back();
+        self.playback.restart();
+    }
+
+    fn toggle_exact(&mut self) {
+        let shown = self.run().overlay().is_none();
+        self.playback.set_exact(shown);
+        self.say(match shown {
+            true => "the exact motion of the same start is drawn in dashes; t takes it away",
+            false => "without the exact motion",
+        });
+    }
+
+    fn shift(&mut self, direction: Direction, times: i32) {
+        let rows = rows(direction) * times as isize;
+        match (self.mode, self.view.focus) {
+            (Mode::Browser | Mode::Filter, _) => self.browser.shift(rows),
+            (Mode::Lab, Pane::ThreeD) => self.turn_camera(direction, f64::from(times) * TURN_DEG),
+            (Mode::Lab, Pane::Traces | Pane::FromAbove) => {
+                self.say("arrows turn the 3-D view (d) and move in lists");
+            }
+            _ => self.view.scroll = self.view.scroll.saturating_add_signed(rows),
+        }
+    }
+
+    fn turn_camera(&mut self, direction: Direction, degrees: f64) {
+        let (yaw, pitch) = match direction {
+            Direction::Left => (-degrees, 0.0),
+            Direction::Right => (degrees, 0.0),
+            Direction::Up | Direction::PageUp => (0.0, degrees),
+            Direction::Down | Direction::PageDown => (0.0, -degrees),
+        };
+        self.view.camera.turn(yaw, pitch);
+    }
+
+    fn zoom(&mut self, wider: bool) {
+        self.view
+            .zoom(wider, self.run().simulation().motion().time_step_s);
+        self.say(format!("the traces show {} s", self.view.window_s));
+    }
+
+    fn next_marker(&mut self) {
+        self.view.marker = self.view.marker.next();
+        self.say(format!("dots: {}", self.view.marker.name()));
+    }
+
+    fn toggle_colour(&mut self) {
+        self.view.theme.colour = !self.view.theme.colour;
+        self.say(if self.view.theme.colour {
+            "with colours"
+        } else {
+            "without colours"
+        });
+    }
+
+    fn toggle_background(&mut self) {
+        self.view.toggle_background();
+        self.say(match self.view.theme.colour {
+            true => format!("colours for a {:?} screen", self.view.theme.background).to_lowercase(),
+            false => "there are no colours: c turns them on".to_owned(),
+        });
+    }
+
+    fn browse(&mut self) {
+        self.browser = Browser::new(Path::new("."), &self.name);
+        self.mode = Mode::Browser;
+    }
+
+    fn choose(&mut self) {
+        let Some(name) = self.browser.choice().map(|entry| entry.name.clone()) else {
+            return self.say("nothing is selected: Esc clears the filter");
+        };
+        match Document::open(&name).and_then(|document| document.scenario()) {
+            Ok(scenario) => self.open(name, Arc::new(scenario)),
+            Err(problems) => {
+                let first = problems
+                    .list
+                    .first()
+                    .map(ToString::to_string)
+                    .unwrap_or_default();
+                self.say(format!(
+                    "{}: {}",
+                    problems.origin,
+                    first.lines().next().unwrap_or_default()
+                ));
+            }
+        }
+    }
+
+    fn open(&mut self, name: String, scenario: Arc<Scenario>) {
+        let shows_exact = self.run().overlay().is_some();
+        self.mode = Mode::Lab;
+        self.name = name;
+        self.notice.take_back();
+        self.view.fit(&scenario);
+        self.playback = Playback::new(scenario, true);
+        self.playback.set_exact(shows_exact);
+    }
+
+    fn toggle_help(&mut self) {
+        self.view.scroll = 0;
+        if self.mode == Mode::Help {
+            self.mode = self.under_help;
+        } else {
+            self.under_help = self.mode;
+            self.mode = Mode::Help;
+        }
+    }
+
+    /// Closes what lies on top, one thing at a time; with nothing to close it says how to leave.
+    fn close(&mut self) {
+        match self.mode {
+            Mode::Help => self.toggle_help(),
+            Mode::Filter => {
+                self.browser.clear_filter();
+                self.mode = Mode::Browser;
+            }
+            Mode::Browser => self.mode = Mode::Lab,
+            Mode::Lab if self.view.filled => self.view.filled = false,
+            Mode::Lab if self.notice.take_back() => {}
+            Mode::Lab => self.say("nothing to close; q leaves"),
+        }
+    }
+
+    fn say(&mut self, text: impl Into<String>) {
+        self.notice.say(text, self.now);
+    }
+
+    fn read_now(&mut self) {
+        self.readouts = self.playback.read();
+        self.read_at = self.now;
+        self.changed = true;
+    }
+
+    /// The screen has this size now.
+    pub fn resize(&mut self, size: Rect) {
+        self.size = size;
+        self.view.keep_focus(&self.layout().focusable());
+        self.changed = true;
+    }
+
+    /// Whether the picture has changed since this was asked last.
+    pub fn take_changed(&mut self) -> bool {
+        std::mem::take(&mut self.changed)
+    }
+
+    /// How long until the notice goes away by itself.
+    pub fn notice_ends_in(&self) -> Option<Duration> {
+        self.notice.ends_in(self.now)
+    }
+
+    /// The size of the screen.
+    pub fn size(&self) -> Rect {
+        self.size
+    }
+
+    /// The layout of the screen as it is now.
+    pub fn layout(&self) -> Layout {
+        Layout::new(self.size, &self.view, true)
+    }
+
+    /// The run on its pace.
+    pub fn playback(&self) -> &Playback {
+        &self.playback
+    }
+
+    /// The run.
+    pub fn run(&self) -> &LiveRun {
+        self.playback.run()
+    }
+
+    /// How it is looked at.
+    pub fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// The latest reading.
+    pub fn readouts(&self) -> &Readouts {
+        &self.readouts
+    }
+
+    /// What gets the keys.
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// The browser of presets and files.
+    pub fn browser(&self) -> &Browser {
+        &self.browser
+    }
+
+    /// The count typed so far.
+    pub fn count(&self) -> Option<u64> {
+        self.count
+    }
+
+    /// What is to be said now, if anything.
+    pub fn notice(&self) -> Option<&str> {
+        self.notice.text()
+    }
+}
+
+fn counted(count: Option<u64>, digit: u8) -> u64 {
+    (count.unwrap_or(0) * 10 + u64::from(digit)).min(MOST_COUNTED)
+}
+
+/// How often to repeat what needs no more than `MOST_REPEATED` repetitions.
+fn repeated(count: Option<u64>) -> i32 {
+    count.unwrap_or(1).min(MOST_REPEATED) as i32
+}
+
+fn rows(direction: Direction) -> isize {
+    match direction {
+        Direction::Up | Direction::Left => -1,
+        Direction::Down | Direction::Right => 1,
+        Direction::PageUp => -PAGE,
+        Direction::PageDown => PAGE,
+    }
+}

@@ -1,0 +1,161 @@
+//! Which panes stand where, at every size of the screen.
+//!
+//! From 80x24 on all of them stand side by side, from 120 columns on with the 3-D view; on smaller screens there are
+//! fewer, the most important first, and the hint line says so.
+
+use super::view::{Pane, View};
+use ratatui::layout::Rect;
+
+/// From this width on all panes but 3-D stand side by side.
+const ALL_FROM: u16 = 80;
+/// From this width on the 3-D view stands among them.
+const THREE_D_FROM: u16 = 120;
+/// From this width on two panes stand side by side.
+const TWO_FROM: u16 = 52;
+/// From this height of the panes on, the view from above and the 3-D view stand one above the other.
+const STACKED_FROM: u16 = 36;
+/// Width of the parameters.
+const PARAMETERS: u16 = 26;
+/// The height the whole lab wants.
+const HEIGHT: u16 = 24;
+
+/// Where everything stands; what has no place has an empty area.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// The line on top.
+    pub title: Rect,
+    /// The panes that have a place, from left to right.
+    pub panes: Vec<(Pane, Rect)>,
+    /// The line about the numbers' health.
+    pub health: Rect,
+    /// The lines that say what to look at: one, or two where the screen is narrow.
+    pub hint: Rect,
+    /// The line of keys.
+    pub keys: Rect,
+    /// Whether the screen is too small for the whole lab.
+    pub is_cramped: bool,
+}
+
+impl Layout {
+    /// The layout of `area`; `keys` says whether there is a line of keys.
+    pub fn new(area: Rect, view: &View, keys: bool) -> Self {
+        let mut rest = area;
+        let title = cut(&mut rest, area.height >= 3, false);
+        let keys = cut(&mut rest, keys && area.height >= 7, true);
+        let hint = cut(&mut rest, area.height >= 6, true);
+        let hint = match area.height >= HEIGHT && area.width < THREE_D_FROM {
+            true => hint.union(cut(&mut rest, true, true)),
+            false => hint,
+        };
+        let health = cut(&mut rest, area.height >= 9, true);
+        let is_cramped = area.width < ALL_FROM || area.height < HEIGHT;
+        Self {
+            title,
+            panes: panes(rest, view),
+            health,
+            hint,
+            keys,
+            is_cramped,
+        }
+    }
+
+    /// Every pane that may have the focus: those on the screen, or all where there is room for one or two.
+    pub fn focusable(&self) -> Vec<Pane> {
+        match self.panes.len() {
+            0..=2 => Pane::ALL.to_vec(),
+            _ => self.panes.iter().map(|(pane, _)| *pane).collect(),
+        }
+    }
+}
+
+/// Takes a line off `rest`, at its bottom or its top, if it is `wanted`.
+fn cut(rest: &mut Rect, wanted: bool, bottom: bool) -> Rect {
+    let height = u16::from(wanted && rest.height > 0);
+    rest.height -= height;
+    let y = if bottom { rest.y + rest.height } else { rest.y };
+    if !bottom {
+        rest.y += height;
+    }
+    Rect { y, height, ..*rest }
+}
+
+fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
+    if area.is_empty() {
+        return Vec::new();
+    }
+    if view.filled || area.width < TWO_FROM {
+        return vec![(view.focus, area)];
+    }
+    if area.width < ALL_FROM {
+        let widths = [area.width - area.width / 2, area.width / 2];
+        let second = if view.focus == Pane::Traces {
+            Pane::FromAbove
+        } else {
+            view.focus
+        };
+        return beside(area, &[Pane::Traces, second], &widths);
+    }
+    let rest = area.width - PARAMETERS;
+    if area.width < THREE_D_FROM {
+        let round = (rest / 2).min(2 * area.height);
+        let widths = [rest - round, round, PARAMETERS];
+        return beside(
+            area,
+            &[Pane::Traces, Pane::FromAbove, Pane::Parameters],
+            &widths,
+        );
+    }
+    if area.height < STACKED_FROM {
+        let round = (rest / 3).min(2 * area.height);
+        return beside(
+            area,
+            &Pane::ALL,
+            &[rest - 2 * round, round, round, PARAMETERS],
+        );
+    }
+    stacked(area, (rest / 2).min(area.height))
+}
+
+fn beside(area: Rect, panes: &[Pane], widths: &[u16]) -> Vec<(Pane, Rect)> {
+    let mut x = area.x;
+    let place = |(&pane, &width)| {
+        let place = Rect { x, width, ..area };
+        x += width;
+        (pane, place)
+    };
+    panes.iter().zip(widths).map(place).collect()
+}
+
+/// The two round panes, `round` wide, one above the other between traces and parameters.
+fn stacked(area: Rect, round: u16) -> Vec<(Pane, Rect)> {
+    let rest = area.width - PARAMETERS - round;
+    let columns = beside(
+        area,
+        &[Pane::Traces, Pane::FromAbove, Pane::Parameters],
+        &[rest, round, PARAMETERS],
+    );
+    let mut places = Vec::with_capacity(columns.len() + 1);
+    for (pane, place) in columns {
+        if pane != Pane::FromAbove {
+            places.push((pane, place));
+            continue;
+        }
+        let upper = place.height / 2;
+        places.push((
+            pane,
+            Rect {
+                height: upper,
+                ..place
+            },
+        ));
+        places.push((
+            Pane::ThreeD,
+            Rect {
+                y: place.y + upper,
+                height: place.height - upper,
+                ..place
+            },
+        ));
+    }
+    places
+}

@@ -1,0 +1,201 @@
+//! How fast the run is played: simulated time for wall time, apart from the time step.
+
+use std::time::Duration;
+
+/// A frame that lasted longer than this (a suspended program, a slow line) is not caught up with.
+const LONGEST_FRAME: Duration = Duration::from_millis(250);
+
+/// The speeds there are to choose from, simulated seconds a second: 1, 2, 5 in every decade.
+const SLOWEST_DECADE: i32 = -4;
+const FASTEST_DECADE: i32 = 5;
+
+/// Playback speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Speed {
+    /// Simulated seconds a second.
+    Times(f64),
+    /// As fast as the machine goes.
+    Top,
+}
+
+/// Whether the run goes on, how fast, and how much simulated time it is owed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pace {
+    speed: Speed,
+    running: bool,
+    /// Simulated time that has been earned and not been stepped yet, s.
+    owed_s: f64,
+    /// Simulated seconds a second as they really were of late.
+    achieved: f64,
+}
+
+impl Pace {
+    /// The pace of `speed` simulated seconds a second.
+    pub fn new(speed: f64, running: bool) -> Self {
+        Self {
+            speed: Speed::Times(speed),
+            running,
+            owed_s: 0.0,
+            achieved: speed,
+        }
+    }
+
+    /// The speed that is set.
+    pub fn speed(&self) -> Speed {
+        self.speed
+    }
+
+    /// Simulated seconds a second as they really were of late.
+    pub fn achieved(&self) -> f64 {
+        self.achieved
+    }
+
+    /// Whether the machine cannot keep up with the speed that is set.
+    pub fn falls_behind(&self) -> bool {
+        matches!(self.speed, Speed::Times(speed) if self.running && self.achieved < 0.8 * speed)
+    }
+
+    /// Whether the run goes on by itself.
+    pub fn is_running(&self) -> bool {
+        self.running
+    }
+
+    /// Goes on, or stops.
+    pub fn set_running(&mut self, running: bool) {
+        self.running = running;
+        self.owed_s = 0.0;
+        if let Speed::Times(speed) = self.speed {
+            self.achieved = speed;
+        }
+    }
+
+    /// The next speed up (`notches` > 0) or down the ladder.
+    pub fn shift(&mut self, notches: i32) {
+        for _ in 0..notches.unsigned_abs() {
+            self.speed = if notches > 0 {
+                faster(self.speed)
+            } else {
+                slower(self.speed)
+            };
+        }
+        self.owed_s = 0.0;
+        if let Speed::Times(speed) = self.speed {
+            self.achieved = speed;
+        }
+    }
+
+    /// Lets `wall` pass; gives how much simulated time may be stepped now, s.
+    pub fn earn(&mut self, wall: Duration) -> f64 {
+        let wall = wall.min(LONGEST_FRAME).as_secs_f64();
+        self.owed_s = match (self.running, self.speed) {
+            (false, _) => 0.0,
+            (true, Speed::Times(speed)) => self.owed_s + speed * wall,
+            (true, Speed::Top) => f64::INFINITY,
+        };
+        self.owed_s
+    }
+
+    /// Accounts for `stepped_s` simulated seconds, stepped within `wall`. `cut_short` says that there was no time for
+    /// more: what is still owed is then forgiven, for the machine would never catch up.
+    pub fn spend(&mut self, stepped_s: f64, wall: Duration, cut_short: bool) {
+        self.owed_s = if cut_short {
+            0.0
+        } else {
+            (self.owed_s - stepped_s).max(0.0)
+        };
+        match self.speed {
+            Speed::Times(speed) if !cut_short => self.achieved = speed,
+            _ if wall > Duration::ZERO => {
+                let now = stepped_s / wall.as_secs_f64();
+                self.achieved += 0.2 * (now - self.achieved);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Every speed of the ladder, slowest first.
+fn ladder() -> impl DoubleEndedIterator<Item = f64> {
+    (SLOWEST_DECADE..=FASTEST_DECADE)
+        .flat_map(|decade| [1, 2, 5].map(|digit| format!("{digit}e{decade}")))
+        .filter_map(|speed| speed.parse().ok())
+}
+
+fn faster(speed: Speed) -> Speed {
+    match speed {
+        Speed::Times(now) => ladder()
+            .find(|&next| next > now * 1.0001)
+            .map_or(Speed::Top, Speed::Times),
+        Speed::Top => Speed::Top,
+    }
+}
+
+fn slower(speed: Speed) -> Speed {
+    match speed {
+        Speed::Times(now) => Speed::Times(
+            ladder()
+                .rev()
+                .find(|&next| next < now * 0.9999)
+                .unwrap_or(now),
+        ),
+        Speed::Top => ladder().next_back().map_or(Speed::Top, Speed::Times),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FRAME: Duration = Duration::from_millis(100);
+
+    #[test]
+    fn simulated_time_follows_wall_time() {
+        let mut pace = Pace::new(20.0, true);
+        let mut stepped = 0.0;
+        for _ in 0..10 {
+            let steps = (pace.earn(FRAME) / 0.3).floor();
+            pace.spend(steps * 0.3, FRAME, false);
+            stepped += steps * 0.3;
+        }
+        assert!((stepped - 20.0).abs() < 0.3, "{stepped}");
+    }
+
+    #[test]
+    fn a_slow_speed_still_comes_to_its_step() {
+        let mut pace = Pace::new(0.1, true);
+        let steps: u32 = (0..100)
+            .map(|_| {
+                let due = pace.earn(FRAME) >= 0.1;
+                pace.spend(if due { 0.1 } else { 0.0 }, FRAME, false);
+                u32::from(due)
+            })
+            .sum();
+        assert!((9..=10).contains(&steps), "{steps}");
+    }
+
+    #[test]
+    fn what_the_machine_cannot_do_is_not_owed_for_ever() {
+        let mut pace = Pace::new(1000.0, true);
+        pace.earn(FRAME);
+        pace.spend(1.0, FRAME, true);
+        assert_eq!(pace.owed_s, 0.0);
+        (0..30).for_each(|_| {
+            pace.earn(FRAME);
+            pace.spend(1.0, FRAME, true);
+        });
+        assert!(pace.falls_behind());
+    }
+
+    #[test]
+    fn the_ladder_leads_to_the_top_and_back() {
+        let mut pace = Pace::new(20.0, true);
+        pace.shift(1);
+        assert_eq!(pace.speed(), Speed::Times(50.0));
+        pace.shift(100);
+        assert_eq!(pace.speed(), Speed::Top);
+        pace.shift(-1);
+        assert_eq!(pace.speed(), Speed::Times(5e5));
+        pace.shift(-100);
+        assert_eq!(pace.speed(), Speed::Times(1e-4));
+    }
+}

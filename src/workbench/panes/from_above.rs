@@ -1,0 +1,217 @@
+//! The path of the traced point from above, x to the right and y up: a true circle at every size.
+
+use super::{frame, write};
+use crate::workbench::dots::{Dots, Ink};
+use crate::workbench::live::LiveRun;
+use crate::workbench::theme::Role;
+use crate::workbench::view::{Pane, View};
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::widgets::Widget;
+
+/// Dots of the path's raster from one dash of the exact motion to the next: without colours, dashes tell it from the run.
+const DASH: usize = 12;
+
+/// The least radius shown, m: a path that never leaves the vertical has none of its own.
+const LEAST: f64 = 1e-6;
+
+/// The radius shown grows by this factor's exponential, or not at all.
+const STEP: f64 = 0.05;
+
+/// The view from above on a run.
+pub struct FromAbove<'a> {
+    /// The run.
+    pub run: &'a LiveRun,
+    /// How it is looked at.
+    pub view: &'a View,
+}
+
+impl Widget for FromAbove<'_> {
+    fn render(self, area: Rect, buf: &mut Buffer) {
+        let theme = &self.view.theme;
+        let inside = frame(
+            "from above",
+            area,
+            self.view.focus == Pane::FromAbove,
+            theme,
+            buf,
+        );
+        if inside.height < 2 || inside.width == 0 {
+            return;
+        }
+        let picture = Rect {
+            height: inside.height - 1,
+            ..inside
+        };
+        let plan = Plan::new(picture, self.radius(), self.view);
+        self.path(&plan, picture, buf);
+        self.marks(&plan, picture, buf);
+        let scale = Rect {
+            y: picture.bottom(),
+            height: 1,
+            ..inside
+        };
+        self.scale_bar(&plan, scale, buf);
+    }
+}
+
+impl FromAbove<'_> {
+    fn radius(&self) -> f64 {
+        let exact = self
+            .run
+            .overlay()
+            .map_or(0.0, |overlay| overlay.path().radius());
+        let radius = self.run.path().radius().max(exact).max(LEAST);
+        // In steps of 5 %: the picture shall not breathe with every millimetre.
+        libm::exp((libm::log(radius) / STEP).ceil() * STEP) * 1.02
+    }
+
+    fn path(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
+        let mut dots = Dots::new(picture, self.view.marker);
+        if let Some(overlay) = self.run.overlay() {
+            let dashed = overlay
+                .path()
+                .dots()
+                .enumerate()
+                .filter(|(dot, _)| dot % DASH < DASH / 2);
+            for (_, (x, y)) in dashed {
+                let (x, y) = plan.dot(x, y);
+                dots.set(x, y, Ink::Faint(Role::Exact));
+            }
+        }
+        for (x, y) in self.run.path().dots() {
+            let (x, y) = plan.dot(x, y);
+            dots.set(x, y, Ink::Strong(Role::Path));
+        }
+        dots.render(&self.view.theme, buf);
+    }
+
+    /// The pivot, the axes' names, and where the point is now.
+    fn marks(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
+        let theme = &self.view.theme;
+        let (right, middle) = (picture.width - 1, picture.height / 2);
+        write(picture, (right, middle), "x", theme.style(Role::X), buf);
+        write(
+            picture,
+            (picture.width / 2, 0),
+            "y",
+            theme.style(Role::Y),
+            buf,
+        );
+        write(
+            picture,
+            plan.cell(0.0, 0.0),
+            "+",
+            theme.style(Role::Quiet),
+            buf,
+        );
+        if let Some(overlay) = self.run.overlay() {
+            let at = overlay.now().position;
+            write(
+                picture,
+                plan.cell(at.x, at.y),
+                "e",
+                theme.style(Role::Exact),
+                buf,
+            );
+        }
+        let at = self.run.now().position;
+        write(
+            picture,
+            plan.cell(at.x, at.y),
+            "o",
+            theme.style(Role::Focus),
+            buf,
+        );
+    }
+
+    /// What a metre is, and what the marks mean, where there is room for it.
+    fn scale_bar(&self, plan: &Plan, area: Rect, buf: &mut Buffer) {
+        let theme = &self.view.theme;
+        // The longer legend beside it leaves less room for the bar.
+        let share = if self.run.overlay().is_some() {
+            0.25
+        } else {
+            0.4
+        };
+        let length_m = nice_below(share * area.width as f64 * plan.cell_width_m);
+        let cells = (length_m / plan.cell_width_m).round() as usize;
+        let bar = format!("├{}┤ {length_m} m", "─".repeat(cells.saturating_sub(2)));
+        let end = write(area, (0, 0), &bar, theme.style(Role::Quiet), buf);
+        let legends: &[&str] = match self.run.overlay() {
+            Some(_) => &["o now e exact", "e exact"],
+            None => &["o now"],
+        };
+        let place = |legend: &&str| {
+            area.width
+                .checked_sub(legend.len() as u16)
+                .filter(|&x| x > end)
+        };
+        if let Some((legend, x)) = legends
+            .iter()
+            .find_map(|legend| Some((legend, place(legend)?)))
+        {
+            write(area, (x, 0), legend, theme.style(Role::Quiet), buf);
+        }
+    }
+}
+
+/// From metres to dots and cells, the pivot in the middle.
+struct Plan {
+    width: f64,
+    height: f64,
+    /// Dots in a metre, across and down.
+    across: f64,
+    down: f64,
+    dots: (f64, f64),
+    cell_width_m: f64,
+}
+
+impl Plan {
+    fn new(picture: Rect, radius_m: f64, view: &View) -> Self {
+        let (in_x, in_y) = view.marker.dots();
+        let (width, height) = (
+            picture.width as f64 * in_x as f64,
+            picture.height as f64 * in_y as f64,
+        );
+        // A dot is `aspect` times as wide as high: this is what keeps circles round.
+        let aspect = view.marker.dot_aspect();
+        let down = (0.5 * height).min(0.5 * width * aspect) / radius_m;
+        let across = down / aspect;
+        let cell_width_m = in_x as f64 / across;
+        Self {
+            width,
+            height,
+            across,
+            down,
+            dots: (in_x as f64, in_y as f64),
+            cell_width_m,
+        }
+    }
+
+    fn dot(&self, x: f64, y: f64) -> (f64, f64) {
+        (
+            0.5 * self.width + x * self.across,
+            0.5 * self.height - y * self.down,
+        )
+    }
+
+    fn cell(&self, x: f64, y: f64) -> (u16, u16) {
+        let (column, row) = self.dot(x, y);
+        let inside = |dot: f64, dots: f64| dot.clamp(0.0, dots - 1.0);
+        let column = inside(column, self.width) / self.dots.0;
+        let row = inside(row, self.height) / self.dots.1;
+        (column as u16, row as u16)
+    }
+}
+
+/// The largest of 1, 2, 5 times a power of ten that is not above `value` (> 0).
+fn nice_below(value: f64) -> f64 {
+    let exponent = value.log10().floor() as i32;
+    let near =
+        [(5, exponent), (2, exponent), (1, exponent)].map(|(digit, e)| format!("{digit}e{e}"));
+    near.iter()
+        .filter_map(|text| text.parse().ok())
+        .find(|&step: &f64| step <= value)
+        .unwrap_or(value)
+}

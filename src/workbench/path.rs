@@ -1,0 +1,141 @@
+//! The path of the traced point seen from above, whole, in bounded memory.
+//!
+//! A square raster about the pivot that remembers at which step each of its cells was first visited. It begins small
+//! and doubles when the path leaves it, so that the path of a nearly upright top is as fine as that of a falling one.
+
+use nalgebra::Vector3;
+
+/// Cells along one side; a power of two, so that the raster can be halved about its middle.
+const SIDE: usize = 512;
+const NEVER: u64 = u64::MAX;
+/// Cells that are drawn as a line between two positions: longer leaps are left open, since nobody knows the way.
+const LONGEST_LINE: f64 = 24.0;
+
+/// The path from above; lengths in m, world frame.
+#[derive(Clone, Debug)]
+pub struct Path {
+    half_width: f64,
+    first_visit: Vec<u64>,
+    visited: Vec<u32>,
+    last: Option<(f64, f64)>,
+    radius: f64,
+}
+
+impl Path {
+    /// An empty path of a point whose distance from the pivot is `reach` (m).
+    pub fn new(reach: f64) -> Self {
+        let half_width = if reach > 0.0 { reach / 64.0 } else { 1.0 };
+        Self {
+            half_width,
+            first_visit: vec![NEVER; SIDE * SIDE],
+            visited: Vec::new(),
+            last: None,
+            radius: 0.0,
+        }
+    }
+
+    /// Follows the point to `position` at `step`.
+    pub fn follow(&mut self, step: u64, position: &Vector3<f64>) {
+        let (x, y) = (position.x, position.y);
+        let radius = x.abs().max(y.abs());
+        while radius >= self.half_width {
+            self.double();
+        }
+        self.radius = self.radius.max(libm::hypot(x, y));
+        let (from_x, from_y) = self.last.replace((x, y)).unwrap_or((x, y));
+        let cell = 2.0 * self.half_width / SIDE as f64;
+        let cells = ((x - from_x).abs().max((y - from_y).abs()) / cell).ceil();
+        let dots = if cells > LONGEST_LINE {
+            1.0
+        } else {
+            cells.max(1.0)
+        };
+        for dot in 1..=dots as u32 {
+            let share = f64::from(dot) / dots;
+            self.visit(
+                step,
+                from_x + share * (x - from_x),
+                from_y + share * (y - from_y),
+            );
+        }
+    }
+
+    fn visit(&mut self, step: u64, x: f64, y: f64) {
+        let cell = self.row_or_column(y) * SIDE + self.row_or_column(x);
+        if self.first_visit[cell] == NEVER {
+            self.first_visit[cell] = step;
+            self.visited.push(cell as u32);
+        }
+    }
+
+    fn row_or_column(&self, length: f64) -> usize {
+        let share = 0.5 * (length / self.half_width + 1.0);
+        ((share * SIDE as f64) as usize).min(SIDE - 1)
+    }
+
+    /// Twice the width: four cells become one.
+    fn double(&mut self) {
+        let old = std::mem::replace(&mut self.first_visit, vec![NEVER; SIDE * SIDE]);
+        let cells = std::mem::take(&mut self.visited);
+        self.half_width *= 2.0;
+        for cell in cells.into_iter().map(|cell| cell as usize) {
+            let halved = |place: usize| SIDE / 4 + place / 2;
+            let merged = halved(cell / SIDE) * SIDE + halved(cell % SIDE);
+            if self.first_visit[merged] == NEVER {
+                self.visited.push(merged as u32);
+            }
+            self.first_visit[merged] = self.first_visit[merged].min(old[cell]);
+        }
+    }
+
+    /// The largest distance from the vertical through the pivot so far, m.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The middle of every cell the path went through, x and y in m.
+    pub fn dots(&self) -> impl Iterator<Item = (f64, f64)> {
+        let middle =
+            |place: usize| ((place as f64 + 0.5) / SIDE as f64 * 2.0 - 1.0) * self.half_width;
+        self.visited
+            .iter()
+            .map(move |&cell| (middle(cell as usize % SIDE), middle(cell as usize / SIDE)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn every_position_has_a_dot_within_half_a_cell(
+            positions in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64), 1..40)
+        ) {
+            let mut path = Path::new(2.0);
+            for (&(x, y), step) in positions.iter().zip(0..) {
+                path.follow(step, &Vector3::new(x, y, 0.0));
+            }
+            let cell = 2.0 * path.half_width / SIDE as f64;
+            for (x, y) in positions {
+                let near = path.dots().any(|(a, b)| (a - x).abs() <= cell && (b - y).abs() <= cell);
+                prop_assert!(near, "({}, {})", x, y);
+            }
+        }
+    }
+
+    #[test]
+    fn a_small_circle_is_as_fine_as_a_large_one() {
+        let dots = |radius: f64| {
+            let mut path = Path::new(1.0);
+            for step in 0..5000u32 {
+                let (y, x) = (f64::from(step) / 500.0).sin_cos();
+                path.follow(step.into(), &Vector3::new(radius * x, radius * y, 0.0));
+            }
+            path.dots().count()
+        };
+        assert!(dots(0.02) > 400, "{}", dots(0.02));
+        assert!(dots(1.0) > 400, "{}", dots(1.0));
+    }
+}

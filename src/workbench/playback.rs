@@ -1,0 +1,179 @@
+//! A run being played: at its pace, as far as its next stop.
+
+use super::live::{LiveRun, PlayEnd, Played};
+use super::pace::{Pace, Speed};
+use super::readouts::Readouts;
+use crate::run::NotFinite;
+use crate::scenario::Scenario;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Longest stretch of stepping between two looks at the keyboard: a key pressed at its beginning is answered after the
+/// stretch that follows.
+const STEPPING: Duration = Duration::from_millis(12);
+/// The exact motion's share of that, and of a frame of 15 a second: a tenth.
+const FOLLOWING_FLAT_OUT: Duration = Duration::from_micros(1200);
+const FOLLOWING: Duration = Duration::from_millis(6);
+/// Playback speed where the scenario names none, simulated seconds a second.
+const SPEED: f64 = 1.0;
+
+/// Why a run has stopped by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Halt {
+    /// It stands at the scenario's last step; it can go on.
+    EndOfRun,
+    /// The steps that were asked for are taken.
+    StepsTaken,
+    /// The numbers would stop being finite.
+    NotFinite(NotFinite),
+}
+
+/// A run, its pace, and where it is to stop.
+pub struct Playback {
+    run: LiveRun,
+    pace: Pace,
+    /// The step at which it stops by itself: the scenario's end at first, or where steps that were asked for lead.
+    stop: u64,
+    /// Whether it is on its way to `stop` as fast as it can.
+    hurries: bool,
+}
+
+impl Playback {
+    /// The run of `scenario` at step 0, at the speed the scenario names.
+    pub fn new(scenario: Arc<Scenario>, running: bool) -> Self {
+        let speed = scenario.file.view.as_ref().and_then(|view| view.speed);
+        let (stop, run) = (scenario.steps, LiveRun::new(scenario));
+        Self {
+            run,
+            pace: Pace::new(speed.unwrap_or(SPEED), running),
+            stop,
+            hurries: false,
+        }
+    }
+
+    /// Takes the run to `step` at once.
+    ///
+    /// # Errors
+    /// When the numbers stop being finite on the way.
+    pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
+        while self.step_number() < step {
+            self.run.step()?;
+        }
+        self.stop = self.next_stop();
+        Ok(())
+    }
+
+    /// Back to step 0; speed, running or not, and the exact motion's being shown stay as they are.
+    pub fn restart(&mut self) {
+        let shows_exact = self.run.overlay().is_some();
+        self.run = LiveRun::new(Arc::clone(self.run.scenario()));
+        self.run.set_overlay(shows_exact);
+        self.hurries = false;
+        self.stop = self.next_stop();
+    }
+
+    /// Plays what `wall` has earned since `now` (as `clock` tells it), as far as there is time for it. Gives why it
+    /// stopped, if it did.
+    pub fn advance(
+        &mut self,
+        now: Duration,
+        wall: Duration,
+        clock: &mut dyn FnMut() -> Duration,
+    ) -> Option<Halt> {
+        let owed_s = if self.hurries {
+            f64::INFINITY
+        } else {
+            self.pace.earn(wall)
+        };
+        if owed_s <= 0.0 {
+            return None;
+        }
+        let deadline = now + STEPPING;
+        let Played { stepped_s, end } = self.run.play(owed_s, self.stop, || clock() >= deadline);
+        self.pace.spend(stepped_s, wall, end == PlayEnd::CutShort);
+        let halt = match end {
+            PlayEnd::InTime | PlayEnd::CutShort => return None,
+            PlayEnd::AtStop if self.hurries => Halt::StepsTaken,
+            PlayEnd::AtStop => Halt::EndOfRun,
+            PlayEnd::NotFinite(error) => Halt::NotFinite(error),
+        };
+        self.set_running(false);
+        self.stop = self.next_stop();
+        Some(halt)
+    }
+
+    /// Lets the exact motion come after the run, where it is shown, for its share of the time.
+    pub fn follow_exact(&mut self, clock: &mut dyn FnMut() -> Duration) {
+        let share = if self.is_flat_out() {
+            FOLLOWING_FLAT_OUT
+        } else {
+            FOLLOWING
+        };
+        let deadline = clock() + share;
+        self.run.follow_exact(|| clock() >= deadline);
+    }
+
+    /// The end of the scenario's run, once it is passed none.
+    fn next_stop(&self) -> u64 {
+        let end = self.run.scenario().steps;
+        if self.step_number() < end {
+            end
+        } else {
+            u64::MAX
+        }
+    }
+
+    /// Goes on, or stops where it is.
+    pub fn set_running(&mut self, running: bool) {
+        self.hurries = false;
+        self.pace.set_running(running);
+    }
+
+    /// Takes `steps` time steps as fast as it can, and stops.
+    pub fn take_steps(&mut self, steps: u64) {
+        self.set_running(false);
+        self.stop = self.step_number().saturating_add(steps);
+        self.hurries = true;
+    }
+
+    /// Goes `notches` up the ladder of speeds, or down.
+    pub fn shift_speed(&mut self, notches: i32) {
+        self.pace.shift(notches);
+    }
+
+    /// Shows the exact motion beside the run, or does not.
+    pub fn set_exact(&mut self, shown: bool) {
+        self.run.set_overlay(shown);
+    }
+
+    /// The numbers as they are now.
+    pub fn read(&mut self) -> Readouts {
+        Readouts::new(&mut self.run, &self.pace)
+    }
+
+    /// The step it stands at.
+    pub fn step_number(&self) -> u64 {
+        self.run.simulation().step_number()
+    }
+
+    /// The run.
+    pub fn run(&self) -> &LiveRun {
+        &self.run
+    }
+
+    /// Whether it goes on by itself.
+    pub fn is_running(&self) -> bool {
+        self.pace.is_running()
+    }
+
+    /// Whether time changes anything: the run goes on, or something is being computed.
+    pub fn is_busy(&self) -> bool {
+        self.pace.is_running() || self.hurries || self.run.overlay_is_behind()
+    }
+
+    /// Whether it uses all the time there is, rather than moments that one can wait for.
+    pub fn is_flat_out(&self) -> bool {
+        let catches_up = !self.pace.is_running() && self.run.overlay_is_behind();
+        self.hurries || catches_up || (self.pace.is_running() && self.pace.speed() == Speed::Top)
+    }
+}

@@ -1,0 +1,280 @@
+//! The terminal: taken over, drawn on, listened to, and given back once, whatever happens.
+//!
+//! The one room that knows crossterm. Nothing here waits for an answer from the terminal: over slow lines, and in
+//! bare ptys, there may be none.
+
+use super::keymap::Key;
+use ratatui::Terminal;
+use ratatui::backend::CrosstermBackend;
+use ratatui::buffer::Buffer;
+use ratatui::crossterm::cursor::{Hide, Show};
+use ratatui::crossterm::event::{self, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use ratatui::crossterm::terminal::{self, EnterAlternateScreen, LeaveAlternateScreen};
+use ratatui::crossterm::{execute, style};
+use ratatui::layout::Rect;
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP};
+use signal_hook::iterator::Signals;
+use std::fs::File;
+use std::io::{self, BufWriter};
+use std::mem::ManuallyDrop;
+use std::os::fd::AsFd;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
+use std::sync::{Mutex, MutexGuard, Once, PoisonError, TryLockError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Whether the terminal is ours at the moment.
+static ENTERED: AtomicBool = AtomicBool::new(false);
+/// Whoever writes to the terminal holds it.
+static PEN: Mutex<()> = Mutex::new(());
+/// A signal is ending the process.
+static ENDING: AtomicBool = AtomicBool::new(false);
+/// Somebody asked from outside to stop until resumed.
+static SUSPEND: AtomicBool = AtomicBool::new(false);
+/// The shell resumed us.
+static RESUMED: AtomicBool = AtomicBool::new(false);
+
+/// How long a terminal that takes no more bytes may hold up the end.
+const PATIENCE: Duration = Duration::from_millis(500);
+/// Events taken at once: held keys on a slow line are joined.
+const MOST_EVENTS: usize = 256;
+
+/// What comes from the user.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// A key was pressed.
+    Key(Key),
+    /// The screen has another size.
+    Resized,
+    /// The program is to stop until resumed.
+    Suspend,
+    /// The program has been resumed, and the screen may hold anything.
+    Resumed,
+}
+
+/// The terminal while it is ours.
+pub struct Screen {
+    /// Not dropped: ratatui's own farewell prints to a stderr that may be gone.
+    terminal: ManuallyDrop<Terminal<CrosstermBackend<BufWriter<File>>>>,
+}
+
+impl Screen {
+    /// Takes the terminal over.
+    ///
+    /// # Errors
+    /// When there is none, or it cannot be written to; it is then as it was.
+    pub fn enter() -> io::Result<Self> {
+        guard()?;
+        // crossterm's own reading of NO_COLOR would take the reversed selection away too; the theme honours it.
+        style::force_color_output(true);
+        let taken = take_over().and_then(|()| {
+            let backend = CrosstermBackend::new(BufWriter::with_capacity(1 << 16, stdout()?));
+            Terminal::new(backend)
+        });
+        match taken {
+            Ok(terminal) => Ok(Self {
+                terminal: ManuallyDrop::new(terminal),
+            }),
+            Err(error) => {
+                leave();
+                Err(error)
+            }
+        }
+    }
+
+    /// Draws a frame; only what differs from the one before goes over the line.
+    ///
+    /// # Errors
+    /// When the terminal cannot be written to.
+    pub fn draw(&mut self, picture: impl FnOnce(Rect, &mut Buffer)) -> io::Result<()> {
+        let _pen = PEN.lock().unwrap_or_else(PoisonError::into_inner);
+        while ENDING.load(Ordering::SeqCst) {
+            thread::park(); // the process ends by a signal: nothing may follow the farewell
+        }
+        self.terminal
+            .draw(|frame| picture(frame.area(), frame.buffer_mut()))
+            .map(|_| ())
+    }
+
+    /// The size of the screen, cells.
+    ///
+    /// # Errors
+    /// When the terminal does not tell.
+    pub fn size(&self) -> io::Result<Rect> {
+        self.terminal
+            .size()
+            .map(|size| Rect::new(0, 0, size.width, size.height))
+    }
+
+    /// Forgets what is on the screen: the next frame is drawn whole.
+    ///
+    /// # Errors
+    /// When the terminal cannot be written to.
+    pub fn forget(&mut self) -> io::Result<()> {
+        let size = self.size()?;
+        self.terminal.resize(size) // not clear(), which asks where the cursor is
+    }
+
+    /// Gives the terminal back to the shell until it resumes the program.
+    ///
+    /// # Errors
+    /// When the terminal cannot be taken over again.
+    pub fn suspend(&mut self) -> io::Result<()> {
+        leave();
+        signal_hook::low_level::emulate_default_handler(SIGTSTP)?;
+        RESUMED.store(false, Ordering::Relaxed);
+        self.resume()
+    }
+
+    /// Takes the terminal over again.
+    ///
+    /// # Errors
+    /// When that fails.
+    pub fn resume(&mut self) -> io::Result<()> {
+        take_over()?;
+        self.forget()
+    }
+
+    /// What came from the user; waits for it at most `wait`.
+    ///
+    /// # Errors
+    /// When the terminal is gone.
+    pub fn events(&self, wait: Duration) -> io::Result<Vec<Event>> {
+        let mut events = Vec::new();
+        let mut wait = wait;
+        while events.len() < MOST_EVENTS && event::poll(wait)? {
+            events.extend(understood(&event::read()?));
+            wait = Duration::ZERO;
+        }
+        events.extend(
+            SUSPEND
+                .swap(false, Ordering::Relaxed)
+                .then_some(Event::Suspend),
+        );
+        events.extend(
+            RESUMED
+                .swap(false, Ordering::Relaxed)
+                .then_some(Event::Resumed),
+        );
+        Ok(events)
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        leave();
+    }
+}
+
+/// Stdout by a handle of its own: a frame that hangs in a stopped terminal must not hold a lock that leaving needs.
+fn stdout() -> io::Result<File> {
+    io::stdout().as_fd().try_clone_to_owned().map(File::from)
+}
+
+fn take_over() -> io::Result<()> {
+    ENTERED.store(true, Ordering::SeqCst);
+    terminal::enable_raw_mode()?;
+    execute!(stdout()?, EnterAlternateScreen, Hide)
+}
+
+/// Gives the terminal back, once; the one way out for every end there is. What fails here has nobody left to be told.
+pub fn leave() {
+    if !ENTERED.swap(false, Ordering::SeqCst) {
+        return;
+    }
+    if let Ok(mut stdout) = stdout() {
+        let _ = execute!(stdout, LeaveAlternateScreen, Show);
+    }
+    let _ = terminal::disable_raw_mode();
+}
+
+/// Leaves on panics and signals too; set up once a process.
+fn guard() -> io::Result<()> {
+    static GUARD: Once = Once::new();
+    let mut result = Ok(());
+    GUARD.call_once(|| {
+        let before = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            leave();
+            before(panic);
+        }));
+        result = Signals::new([SIGHUP, SIGTERM, SIGINT, SIGQUIT, SIGTSTP, SIGCONT])
+            .and_then(|signals| {
+                thread::Builder::new()
+                    .name("signals".to_owned())
+                    .spawn(|| listen(signals))
+            })
+            .map(|_| ());
+    });
+    result
+}
+
+/// The end by a signal comes from here, not from the loop: a terminal that has hung up answers the loop with errors
+/// or not at all.
+fn listen(mut signals: Signals) {
+    for signal in signals.forever() {
+        match signal {
+            SIGTSTP => SUSPEND.store(true, Ordering::Relaxed),
+            SIGCONT => RESUMED.store(true, Ordering::Relaxed),
+            end => {
+                ENDING.store(true, Ordering::SeqCst);
+                let _pen = take_pen();
+                leave_in_time();
+                std::process::exit(128 + end);
+            }
+        }
+    }
+}
+
+/// Waits until no frame is being drawn; `None` where one hangs in a terminal that takes no more bytes.
+fn take_pen() -> Option<MutexGuard<'static, ()>> {
+    let begin = Instant::now();
+    while begin.elapsed() < PATIENCE {
+        match PEN.try_lock() {
+            Ok(pen) => return Some(pen),
+            Err(TryLockError::Poisoned(pen)) => return Some(pen.into_inner()),
+            Err(TryLockError::WouldBlock) => thread::sleep(Duration::from_millis(2)),
+        }
+    }
+    None
+}
+
+fn leave_in_time() {
+    let (done, left) = mpsc::channel();
+    let spawned = thread::Builder::new().spawn(move || {
+        leave();
+        let _ = done.send(());
+    });
+    if spawned.is_ok() {
+        let _ = left.recv_timeout(PATIENCE);
+    }
+}
+
+fn understood(event: &event::Event) -> Option<Event> {
+    match event {
+        event::Event::Key(key) if key.kind != KeyEventKind::Release => pressed(key).map(Event::Key),
+        event::Event::Resize(..) => Some(Event::Resized),
+        _ => None,
+    }
+}
+
+fn pressed(key: &KeyEvent) -> Option<Key> {
+    let control = key.modifiers.contains(KeyModifiers::CONTROL);
+    Some(match key.code {
+        KeyCode::Char(c) if control => Key::Ctrl(c.to_ascii_lowercase()),
+        KeyCode::Char(c) => Key::Char(c),
+        KeyCode::Enter => Key::Enter,
+        KeyCode::Esc => Key::Esc,
+        KeyCode::Tab => Key::Tab,
+        KeyCode::BackTab => Key::BackTab,
+        KeyCode::Backspace | KeyCode::Delete => Key::Backspace,
+        KeyCode::Up => Key::Up,
+        KeyCode::Down => Key::Down,
+        KeyCode::Left => Key::Left,
+        KeyCode::Right => Key::Right,
+        KeyCode::PageUp => Key::PageUp,
+        KeyCode::PageDown => Key::PageDown,
+        _ => return None,
+    })
+}

@@ -1,0 +1,481 @@
+//! The lab from its keys to its picture, without a terminal: pictures of every mode, journeys, and properties at
+//! random sizes and states.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use gyrolab::scenario::Document;
+use gyrolab::scenario::presets::PRESETS;
+use gyrolab::workbench::keymap::{self, BINDINGS, Key, Mode};
+use gyrolab::workbench::lab::{Lab, Request};
+use gyrolab::workbench::markers::Marker;
+use gyrolab::workbench::screen;
+use gyrolab::workbench::theme::{Background, Theme};
+use gyrolab::workbench::view::{Pane, View};
+use proptest::prelude::*;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use std::sync::Arc;
+use std::time::Duration;
+
+const SMALL: Rect = Rect {
+    x: 0,
+    y: 0,
+    width: 80,
+    height: 24,
+};
+const LARGE: Rect = Rect {
+    x: 0,
+    y: 0,
+    width: 200,
+    height: 50,
+};
+const FRAME: Duration = Duration::from_millis(100);
+
+/// A lab with a keyboard, and a clock that goes only when told.
+struct Stage {
+    lab: Lab,
+    now: Duration,
+    size: Rect,
+}
+
+impl Stage {
+    fn open(scenario: &str, set: &[&str], size: Rect) -> Self {
+        let mut document = Document::open(scenario).unwrap();
+        set.iter().for_each(|set| document.set(set).unwrap());
+        let scenario_numbers = Arc::new(document.scenario().unwrap());
+        let theme = Theme {
+            colour: true,
+            background: Background::Dark,
+        };
+        let view = View::new(&scenario_numbers, Marker::Braille, theme);
+        let mut lab = Lab::new(scenario, scenario_numbers, view, true);
+        lab.resize(size);
+        Self {
+            lab,
+            now: Duration::ZERO,
+            size,
+        }
+    }
+
+    fn key(&mut self, key: Key) -> Option<Request> {
+        keymap::action(self.lab.mode(), key).and_then(|action| self.lab.update(action))
+    }
+
+    fn press(&mut self, keys: &str) -> &mut Self {
+        for key in keys.chars() {
+            let key = match key {
+                '\n' => Key::Enter,
+                '\t' => Key::Tab,
+                '\u{1b}' => Key::Esc,
+                '↑' => Key::Up,
+                '↓' => Key::Down,
+                '←' => Key::Left,
+                '→' => Key::Right,
+                c => Key::Char(c),
+            };
+            self.key(key);
+        }
+        self.wait(0.0)
+    }
+
+    /// Lets time pass, frame by frame; looking at the clock takes time too.
+    fn wait(&mut self, seconds: f64) -> &mut Self {
+        for _ in 0..=(seconds / FRAME.as_secs_f64()).round() as usize {
+            let mut looks = 0;
+            let now = self.now;
+            self.lab.advance(&mut || {
+                looks += 1;
+                now + Duration::from_micros(50) * (looks - 1)
+            });
+            self.now += FRAME;
+        }
+        self.now -= FRAME;
+        self
+    }
+
+    fn picture(&self) -> String {
+        screen::text(&self.lab, true, self.size)
+    }
+
+    fn step(&self) -> u64 {
+        self.lab.run().simulation().step_number()
+    }
+
+    #[track_caller]
+    fn shows(&mut self, words: &str) -> &mut Self {
+        let picture = self.picture();
+        assert!(picture.contains(words), "no {words:?} in\n{picture}");
+        self
+    }
+
+    #[track_caller]
+    fn shows_no(&mut self, words: &str) -> &mut Self {
+        let picture = self.picture();
+        assert!(!picture.contains(words), "{words:?} in\n{picture}");
+        self
+    }
+}
+
+fn picture(scenario: &str, size: Rect, seconds: f64, keys: &str) -> String {
+    let mut stage = Stage::open(scenario, &[], size);
+    stage.wait(seconds).press(" ").press(keys).wait(6.0);
+    stage.picture()
+}
+
+#[test]
+fn pictures_of_the_lab() {
+    insta::assert_snapshot!("method_2_small", picture("method-2", SMALL, 5.0, ""));
+    insta::assert_snapshot!("method_2_large", picture("method-2", LARGE, 5.0, ""));
+    insta::assert_snapshot!("cusps_small", picture("cusps", SMALL, 6.0, ""));
+    insta::assert_snapshot!("cusps_large", picture("cusps", LARGE, 6.0, ""));
+    insta::assert_snapshot!(
+        "wobble_push_exact_small",
+        picture("wobble-push", SMALL, 5.0, "t")
+    );
+    insta::assert_snapshot!(
+        "wobble_push_exact_large",
+        picture("wobble-push", LARGE, 5.0, "t")
+    );
+}
+
+#[test]
+fn pictures_of_what_lies_on_top() {
+    insta::assert_snapshot!("help_small", picture("method-2", SMALL, 1.0, "?"));
+    insta::assert_snapshot!("help_large", picture("method-2", LARGE, 1.0, "?"));
+    // Not the files: what lies in the folder is no part of the picture.
+    insta::assert_snapshot!("filter_small", picture("method-2", SMALL, 1.0, "o/cus"));
+    insta::assert_snapshot!("filter_large", picture("method-2", LARGE, 1.0, "o/cus"));
+}
+
+#[test]
+fn pictures_of_one_pane() {
+    insta::assert_snapshot!("traces_fill", picture("loops", SMALL, 4.0, "f"));
+    insta::assert_snapshot!("from_above_fill", picture("loops", SMALL, 4.0, "\tf"));
+    insta::assert_snapshot!("three_d_fill", picture("loops", SMALL, 4.0, "d"));
+    insta::assert_snapshot!("three_d_turned", picture("loops", SMALL, 4.0, "d9↑"));
+}
+
+#[test]
+fn pictures_of_markers_and_small_screens() {
+    insta::assert_snapshot!("half_blocks", picture("cusps", SMALL, 3.0, "m"));
+    insta::assert_snapshot!("points", picture("cusps", SMALL, 3.0, "mm"));
+    insta::assert_snapshot!("ascii", picture("cusps", SMALL, 3.0, "mmm"));
+    insta::assert_snapshot!(
+        "two_panes",
+        picture("cusps", Rect::new(0, 0, 60, 16), 3.0, "")
+    );
+    insta::assert_snapshot!(
+        "one_pane",
+        picture("cusps", Rect::new(0, 0, 30, 10), 3.0, "")
+    );
+}
+
+#[test]
+fn a_teacher_stops_steps_and_goes_on() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.wait(1.0);
+    assert_eq!(stage.step(), 200);
+    stage
+        .press(" ")
+        .wait(1.0)
+        .shows("paused")
+        .shows("space go on");
+    assert_eq!(stage.step(), 200);
+    stage.press(".").wait(0.1);
+    assert_eq!(stage.step(), 201);
+    stage
+        .press("10")
+        .shows("10 times: which key?")
+        .press(".")
+        .wait(0.1);
+    assert_eq!(stage.step(), 211);
+    stage
+        .press(" ")
+        .wait(1.0)
+        .shows("► ×20")
+        .shows("space pause");
+    assert_eq!(stage.step(), 411);
+    stage.press("r").wait(0.0);
+    assert!(stage.step() < 30);
+}
+
+#[test]
+fn speed_is_apart_from_the_time_step() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.press("+").shows("×50").wait(1.0);
+    assert_eq!(stage.step(), 500);
+    stage.press("r---").shows("×5").wait(1.0);
+    assert_eq!(stage.lab.run().simulation().motion().time_step_s, 0.1);
+    assert!((49..=51).contains(&stage.step()), "{}", stage.step());
+    stage.press("99-").shows("×1e-4").press("99+").shows("top");
+}
+
+#[test]
+fn the_run_pauses_once_at_its_end() {
+    let mut stage = Stage::open("method-2", &["motion.steps=50"], SMALL);
+    stage
+        .wait(3.0)
+        .shows("end of the scenario's run")
+        .shows("paused");
+    assert_eq!(stage.step(), 50);
+    stage
+        .press(" ")
+        .wait(1.0)
+        .shows_no("end of the scenario's run");
+    assert!(stage.step() > 200);
+}
+
+#[test]
+fn top_speed_is_as_fast_as_there_is_time_for() {
+    let mut stage = Stage::open("method-2", &["motion.steps=100000000"], SMALL);
+    stage.press("99+").wait(0.5).shows("top ×");
+    // 25 ms a slice, 50 µs a look: 500 looks of some hundred steps each.
+    assert!(stage.step() > 100_000, "{}", stage.step());
+}
+
+#[test]
+fn steps_asked_for_by_the_million_do_not_hold_up_the_keys() {
+    let mut stage = Stage::open("method-2", &["motion.steps=1000"], SMALL);
+    stage.press("9000000.").wait(0.1);
+    let underway = stage.step();
+    assert!((1000..9_000_000).contains(&underway), "{underway}");
+    stage.press(" ");
+    stage.press(" ").wait(0.2).shows("paused");
+}
+
+#[test]
+fn the_exact_motion_and_the_distance_from_it() {
+    let mut stage = Stage::open("method-2", &["motion.time_step_s=0.05"], SMALL);
+    stage.wait(0.2).press(" ").shows_no("e exact");
+    stage
+        .press("t")
+        .wait(6.0)
+        .shows(" off exact")
+        .shows("e exact");
+    let distance = stage.lab.readouts().health.deviation.unwrap().distance_m;
+    assert!(distance > 0.0 && distance < 0.05, "{distance}");
+    stage.press("t").wait(6.0).shows_no("e exact");
+}
+
+#[test]
+fn a_true_scheme_lies_on_the_exact_motion() {
+    let mut stage = Stage::open("cusps", &[], SMALL);
+    stage.wait(3.0).press(" t").wait(6.0);
+    let distance = stage.lab.readouts().health.deviation.unwrap().distance_m;
+    assert!(distance < 1e-5, "{distance}");
+}
+
+#[test]
+fn the_browser_opens_what_the_filter_finds() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage
+        .press("o")
+        .shows("> method-2")
+        .press("↓")
+        .shows("> wobble-push")
+        .shows("The wobble push");
+    stage
+        .press("/zzz")
+        .shows("nothing has that in its name")
+        .press("\n")
+        .shows("nothing is selected");
+    stage
+        .press("\u{1b}")
+        .shows("> method-1")
+        .press("/loo")
+        .shows("> loops")
+        .press("\n");
+    stage.shows("Loops").shows_no("filters by name").wait(1.0);
+    assert_eq!(stage.lab.run().scenario().file.title, "Loops");
+    assert!(stage.step() > 500);
+}
+
+#[test]
+fn esc_closes_one_thing_at_a_time_and_never_leaves() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.press("o/cus?").shows("/cus?_");
+    for _ in 0..5 {
+        assert_eq!(stage.key(Key::Esc), None);
+    }
+    assert_eq!(stage.lab.mode(), Mode::Lab);
+    stage.shows("q leaves");
+    assert_eq!(stage.key(Key::Char('q')), Some(Request::Quit));
+}
+
+#[test]
+fn any_pane_fills_the_screen_and_comes_back() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    for pane in ["axle top over time", "from above", "parameters"] {
+        stage.press("f").shows(pane);
+        assert_eq!(stage.picture().matches('┌').count(), 1);
+        stage.press("f");
+        assert_eq!(stage.picture().matches('┌').count(), 3);
+        stage.press("\t");
+    }
+    stage
+        .press("d")
+        .shows(" 3-D ")
+        .press("\u{1b}")
+        .shows("parameters");
+}
+
+#[test]
+fn resizing_at_any_moment_shows_what_there_is_room_for() {
+    let mut stage = Stage::open("method-2", &[], LARGE);
+    stage.wait(1.0).shows(" 3-D ").shows("parameters");
+    for (width, height, shown, hidden) in [
+        (100, 30, "parameters", " 3-D "),
+        (60, 20, "from above", "parameters"),
+    ] {
+        stage.size = Rect::new(0, 0, width, height);
+        stage.lab.resize(stage.size);
+        stage.shows(shown).shows_no(hidden);
+    }
+    stage.shows("60x20: 80x24 shows all panes");
+}
+
+#[test]
+fn nothing_changes_while_it_stands_still() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.wait(1.0).press(" ").wait(6.0);
+    stage.lab.take_changed();
+    stage.wait(10.0);
+    assert!(!stage.lab.take_changed());
+}
+
+#[test]
+fn numbers_that_are_not_finite_stop_the_run_and_are_named() {
+    let set = [
+        "motion.time_step_s=1e300",
+        "motion.gravity_m_per_s2=1e10",
+        "start.momentum_Js=[1e5, 1e5, 1e5]",
+    ];
+    let mut stage = Stage::open("method-2", &set, SMALL);
+    stage
+        .press("99+")
+        .wait(1.0)
+        .shows("no longer finite at step")
+        .shows("paused");
+}
+
+#[test]
+fn every_preset_is_drawn_in_every_marker() {
+    for preset in PRESETS {
+        let mut stage = Stage::open(preset.name, &[], LARGE);
+        stage.wait(1.0);
+        for _ in Marker::ALL {
+            stage.press("m").shows("from above");
+        }
+    }
+}
+
+#[test]
+fn ascii_is_ascii_to_the_last_cell() {
+    let mut stage = Stage::open("method-2", &["title=\"Kreisel über ∂\""], LARGE);
+    stage.wait(2.0).press("tmmm").wait(0.5);
+    assert!(stage.picture().is_ascii(), "{}", stage.picture());
+    stage.press("?");
+    assert!(stage.picture().is_ascii());
+}
+
+#[test]
+fn a_circle_is_round() {
+    for marker in 0..3 {
+        for (width, height) in [(80, 24), (100, 60), (131, 37), (200, 50), (90, 80)] {
+            let mut stage = Stage::open("steady-slow", &[], Rect::new(0, 0, width, height));
+            stage
+                .wait(8.0)
+                .press("\tf")
+                .press(&"m".repeat(marker))
+                .wait(6.0);
+            let (across, down) = extent_of_the_path(&stage.picture());
+            // A cell is twice as high as wide; the path's edge may lie anywhere in a cell at both ends.
+            assert!(
+                (across - 2.0 * down).abs() <= 4.0,
+                "{across} x {down} at {width}x{height}:\n{}",
+                stage.picture()
+            );
+        }
+    }
+}
+
+/// Cells across and down that hold the path.
+fn extent_of_the_path(picture: &str) -> (f64, f64) {
+    let is_dot = |c: char| ('\u{2800}'..='\u{28ff}').contains(&c) || "▀▄█•".contains(c);
+    let at: Vec<(usize, usize)> = picture
+        .lines()
+        .enumerate()
+        .flat_map(|(y, line)| {
+            line.chars()
+                .enumerate()
+                .filter(|(_, c)| is_dot(*c))
+                .map(move |(x, _)| (x, y))
+        })
+        .collect();
+    let span = |places: Vec<usize>| {
+        (places.iter().max().unwrap() - places.iter().min().unwrap() + 1) as f64
+    };
+    (
+        span(at.iter().map(|(x, _)| *x).collect()),
+        span(at.iter().map(|(_, y)| *y).collect()),
+    )
+}
+
+fn any_key() -> impl Strategy<Value = Key> {
+    let bound: Vec<Key> = BINDINGS
+        .iter()
+        .flat_map(|row| row.keys.iter().copied())
+        .collect();
+    prop_oneof![8 => prop::sample::select(bound), 1 => prop::char::range('0', 'z').prop_map(Key::Char)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn no_keys_at_no_size_break_anything(
+        keys in prop::collection::vec(any_key(), 0..40),
+        sizes in prop::collection::vec((1u16..230, 1u16..70), 1..6),
+        preset in 0..PRESETS.len(),
+    ) {
+        let mut stage = Stage::open(PRESETS[preset].name, &[], SMALL);
+        for (index, key) in keys.into_iter().enumerate() {
+            let (width, height) = sizes[index % sizes.len()];
+            stage.size = Rect::new(0, 0, width, height);
+            stage.lab.resize(stage.size);
+            stage.key(key);
+            stage.wait(0.1);
+            prop_assert_eq!(stage.picture().lines().count(), height as usize);
+        }
+    }
+
+    #[test]
+    fn nothing_is_drawn_outside(width in 0u16..100, height in 0u16..40, keys in "[fdtm?o]{0,4}") {
+        let mut stage = Stage::open("cusps", &[], Rect::new(0, 0, width, height));
+        stage.wait(0.5).press(&keys);
+        let around = Rect::new(0, 0, width + 6, height + 6);
+        let mut buffer = Buffer::filled(around, ratatui::buffer::Cell::new("#"));
+        let inside = Rect::new(3, 3, width, height);
+        screen::draw(&stage.lab, true, inside, &mut buffer);
+        for position in around.positions().filter(|position| !inside.contains(*position)) {
+            prop_assert_eq!(buffer[position].symbol(), "#", "{:?}", position);
+        }
+    }
+
+    #[test]
+    fn no_pane_draws_outside_itself(
+        width in 0u16..90, height in 0u16..40, seconds in 0.0..3.0f64, keys in "[tm]{0,4}", preset in 0..PRESETS.len()
+    ) {
+        let mut stage = Stage::open(PRESETS[preset].name, &[], SMALL);
+        stage.wait(seconds).press(&keys);
+        let around = Rect::new(0, 0, width + 6, height + 6);
+        let inside = Rect::new(3, 3, width, height);
+        for pane in Pane::ALL {
+            let mut buffer = Buffer::filled(around, ratatui::buffer::Cell::new("#"));
+            screen::draw_pane(&stage.lab, pane, inside, &mut buffer);
+            for position in around.positions().filter(|position| !inside.contains(*position)) {
+                prop_assert_eq!(buffer[position].symbol(), "#", "{:?} at {:?}", pane, position);
+            }
+        }
+    }
+}
