@@ -48,6 +48,8 @@ pub(super) enum Command {
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
     },
+    /// List every key that a scenario or run file may hold
+    Keys,
     /// Print a completion script for a shell
     Completions {
         /// The shell
