@@ -32,8 +32,10 @@ pub struct Row {
     #[serde(serialize_with = "or_na")]
     pub energy_drift: Option<f64>,
     /// Largest deviation of L·axle from the exact motion's, over |L| at the start.
+    #[serde(rename = "L_axle_drift")]
     pub spin_drift: f64,
     /// Largest deviation of L_z from the exact motion's, over |L| at the start.
+    #[serde(rename = "Lz_drift")]
     pub lz_drift: f64,
     /// Cost of a step, ns.
     pub ns_per_step: f64,
@@ -155,6 +157,18 @@ impl fmt::Display for Table<'_> {
             )?;
             writeln!(f, " {:>8.0}", row.ns_per_step)?;
         }
-        Ok(())
+        writeln!(f)?;
+        writeln!(
+            f,
+            "order   from the row above; it means something once the error falls evenly. -: first row, or rounding."
+        )?;
+        writeln!(
+            f,
+            "energy  in units of M g |c|; L.axle and L_z in units of |L|: how far off each was at most."
+        )?;
+        writeln!(
+            f,
+            "ns/step with every core at work: to be compared within the table only."
+        )
     }
 }

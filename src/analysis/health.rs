@@ -229,7 +229,7 @@ impl fmt::Display for Picture {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Right => "it shows as it is",
-            Self::Strobed => "one point takes another's place, a strobe picture",
+            Self::Strobed => "its points are taken for one another, a strobe's picture",
             Self::TooSlow => "it seems to turn too slowly",
             Self::Backwards => "it seems to turn backwards",
         })

@@ -18,6 +18,8 @@ pub struct Monitor {
     /// The theory, and the change of forces since which it holds.
     theory: Option<(u64, Option<Theory>)>,
     most_distance_m: f64,
+    /// The change of forces since which the instruments measure.
+    changes: u64,
     /// The next step at which to hold the run against the exact motion, and how many there are between two.
     next_look: u64,
     stride: u64,
@@ -33,6 +35,7 @@ impl Monitor {
             truth,
             theory: None,
             most_distance_m: 0.0,
+            changes: simulation.changes(),
             next_look: simulation.step_number(),
             stride: stride(scenario.steps),
         }
@@ -41,7 +44,12 @@ impl Monitor {
     /// Takes in the step that `simulation` stands at; to be shown every step.
     #[inline]
     pub fn follow(&mut self, simulation: &Simulation) {
-        self.instruments.follow(simulation);
+        if simulation.changes() == self.changes {
+            self.instruments.follow(simulation);
+        } else {
+            self.changes = simulation.changes();
+            self.instruments = Instruments::new(simulation);
+        }
         if simulation.step_number() >= self.next_look {
             self.next_look = simulation.step_number() + self.stride;
             self.deviation(simulation);
@@ -79,7 +87,7 @@ impl Monitor {
         theory
     }
 
-    /// What has been measured.
+    /// What has been measured since the forces last changed.
     pub fn instruments(&self) -> &Instruments {
         &self.instruments
     }

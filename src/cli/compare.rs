@@ -7,6 +7,7 @@ use super::scenario::scenario_of;
 use crate::analysis::compare::{Row, Table, compare as table_of};
 use crate::analysis::monitor::is_affordable;
 use crate::export::Destination;
+use crate::export::csv::commented;
 use crate::physics::SchemeInfo;
 use crate::physics::scheme::SCHEMES;
 use crate::run::{Clock, Truth};
@@ -56,13 +57,13 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     };
     let on_stdout = args.output.as_deref() == Some(Path::new("-"));
     if let Some(output) = output {
-        write_csv(output, &rows).context("cannot write the table")?;
+        write_csv(output, &scenario, &rows).context("cannot write the table")?;
     }
     if on_stdout {
         return Ok(ExitCode::SUCCESS);
     }
     let mut stdout = io::stdout().lock();
-    write!(stdout, "{}\n\n{}", heading(scenario), Table(&rows))?;
+    write!(stdout, "{}\n\n{}", heading(&scenario), Table(&rows))?;
     stdout.flush()?;
     Ok(ExitCode::SUCCESS)
 }
@@ -96,9 +97,9 @@ fn duration_s(scenario: &Scenario) -> f64 {
     Clock::at(scenario, scenario.steps).time_s(scenario.steps)
 }
 
-fn heading(scenario: Scenario) -> String {
-    let (title, duration) = (scenario.file.title.clone(), duration_s(&scenario));
-    let mut truth = Truth::new(Arc::new(scenario));
+fn heading(scenario: &Scenario) -> String {
+    let (title, duration) = (scenario.file.title.clone(), duration_s(scenario));
+    let mut truth = Truth::new(Arc::new(scenario.clone()));
     truth.state_at(duration);
     format!(
         "{title}, {duration} s, against the exact motion ({})",
@@ -106,7 +107,9 @@ fn heading(scenario: Scenario) -> String {
     )
 }
 
-fn write_csv(output: Destination, rows: &[Row]) -> anyhow::Result<()> {
+/// The table below the run file of the scenario, so that a file tells what was compared.
+fn write_csv(mut output: Destination, scenario: &Scenario, rows: &[Row]) -> anyhow::Result<()> {
+    output.write_all(commented(&scenario.to_toml()).as_bytes())?;
     let mut writer = csv::Writer::from_writer(output);
     rows.iter().try_for_each(|row| writer.serialize(row))?;
     writer

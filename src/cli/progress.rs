@@ -2,7 +2,7 @@
 
 use super::INTERRUPTED;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use signal_hook::consts::TERM_SIGNALS;
+use signal_hook::consts::{SIGHUP, TERM_SIGNALS};
 use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -14,7 +14,8 @@ use std::time::{Duration, Instant};
 /// would end the process with the temporary file still there.
 pub(super) fn interruption() -> io::Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
-    for &signal in TERM_SIGNALS {
+    let hangup = (!hangup_is_ignored()).then_some(SIGHUP);
+    for signal in TERM_SIGNALS.iter().copied().chain(hangup) {
         signal_hook::flag::register_conditional_shutdown(
             signal,
             INTERRUPTED.into(),
@@ -25,6 +26,15 @@ pub(super) fn interruption() -> io::Result<Arc<AtomicBool>> {
     #[cfg(unix)]
     signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
     Ok(flag)
+}
+
+/// Whether the process was started to outlive its terminal (`nohup`): a handler of ours would undo that. Linux says so
+/// in the process's status; elsewhere, where nothing says, a hang-up is left to the system.
+fn hangup_is_ignored() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_none_or(|mask| mask & (1 << (SIGHUP - 1)) != 0)
 }
 
 /// Steps, rate and time left on stderr, for runs that take more than a second and have somebody to watch them.

@@ -7,7 +7,7 @@ use super::{INTERRUPTED, complain};
 use crate::analysis::health::{Advice, advise};
 use crate::analysis::{Health, Monitor};
 use crate::export::stream::{self, Ended};
-use crate::export::{CsvWriter, Destination, Summary};
+use crate::export::{CsvWriter, Destination, Readouts, Summary};
 use crate::run::Simulation;
 use anyhow::Context;
 use clap::CommandFactory;
@@ -64,10 +64,8 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     }
     let health = monitor.health(&simulation);
     let advice = advice(&health, &simulation);
-    report(
-        args,
-        &Summary::new(&simulation, &mut monitor, &health, advice.as_ref(), wall),
-    )?;
+    let readouts = Readouts::new(&simulation, &mut monitor, &health, advice.as_ref());
+    report(args, &Summary::new(&simulation, readouts, wall))?;
     match ended {
         Ended::NotFinite(error) => {
             complain(&anyhow::Error::new(error).context(args.scenario.scenario.clone()));

@@ -18,13 +18,7 @@ impl<W: Write> CsvWriter<W> {
     /// # Errors
     /// When `out` cannot be written.
     pub fn new(mut out: W, scenario: &Scenario) -> io::Result<Self> {
-        let mut header = String::new();
-        for line in scenario.to_toml().lines() {
-            header.push_str("# ");
-            header.push_str(line);
-            header.push('\n');
-        }
-        out.write_all(header.as_bytes())?;
+        out.write_all(commented(&scenario.to_toml()).as_bytes())?;
         let mut rows = csv::WriterBuilder::new()
             .has_headers(false)
             .from_writer(out);
@@ -59,4 +53,9 @@ fn plain(error: csv::Error) -> io::Error {
         csv::ErrorKind::Io(error) => error,
         other => io::Error::other(format!("{other:?}")),
     }
+}
+
+/// `text` with "# " before every line, as it stands above the rows.
+pub fn commented(text: &str) -> String {
+    text.lines().flat_map(|line| ["# ", line, "\n"]).collect()
 }

@@ -1,7 +1,6 @@
 //! How a run ended, as text for a reader and as JSON for a program.
 
-use crate::analysis::health::Advice;
-use crate::analysis::{Health, Measured, Monitor};
+use super::Readouts;
 use crate::run::{Sample, Simulation};
 use serde::Serialize;
 use std::fmt;
@@ -33,21 +32,9 @@ pub struct Summary {
     pub energy_drift: Option<f64>,
     /// Number of edits of time step, scheme or gravity.
     pub segment: u64,
-    /// Turns of the body in one time step.
-    pub turns_per_step: f64,
-    /// Largest distance of the traced point from the exact motion so far; `None` where that was not to be had.
-    pub most_distance_m: Option<f64>,
-    pub distance_m: Option<f64>,
-    /// κ = I3/I1; `None` for a lopsided body, as all that theory says.
-    pub kappa: Option<f64>,
-    pub predicted_precession_rad_per_s: Option<f64>,
-    pub measured_precession_rad_per_s: Option<f64>,
-    pub measured_precession_uncertainty_rad_per_s: Option<f64>,
-    pub predicted_nutation_period_s: Option<f64>,
-    pub measured_nutation_period_s: Option<f64>,
-    pub measured_nutation_uncertainty_s: Option<f64>,
-    /// Whether the numbers hold, in one sentence.
-    pub health: String,
+    /// Theory, measurement and health.
+    #[serde(flatten)]
+    pub readouts: Readouts,
     /// Time spent on stepping alone, s: no start-up, no output.
     pub wall_s: f64,
     pub steps_per_second: f64,
@@ -55,17 +42,7 @@ pub struct Summary {
 
 impl Summary {
     /// The summary of `simulation` where it stands, after stepping for `wall`.
-    /// `monitor` has followed it, `health` is how it stands, and `advice` what would mend it.
-    pub fn new(
-        simulation: &Simulation,
-        monitor: &mut Monitor,
-        health: &Health,
-        advice: Option<&Advice>,
-        wall: Duration,
-    ) -> Self {
-        let theory = monitor.theory(simulation.state().time_s);
-        let precession = monitor.instruments().precession_rad_per_s();
-        let nutation = monitor.instruments().nutation_period_s();
+    pub fn new(simulation: &Simulation, readouts: Readouts, wall: Duration) -> Self {
         let Sample {
             step,
             time_s,
@@ -96,18 +73,7 @@ impl Summary {
             energy_J: energy,
             energy_drift: simulation.energy_drift(),
             segment,
-            turns_per_step: health.turns_per_step,
-            most_distance_m: health.most_distance_m,
-            distance_m: health.deviation.map(|deviation| deviation.distance_m),
-            kappa: theory.map(|theory| theory.kappa),
-            predicted_precession_rad_per_s: theory.and_then(|theory| theory.precession),
-            measured_precession_rad_per_s: value(precession),
-            measured_precession_uncertainty_rad_per_s: precession
-                .map(|measured| measured.uncertainty),
-            predicted_nutation_period_s: theory.and_then(|theory| theory.nutation_period_s),
-            measured_nutation_period_s: value(nutation),
-            measured_nutation_uncertainty_s: nutation.map(|measured| measured.uncertainty),
-            health: health.sentence(advice),
+            readouts,
             wall_s,
             steps_per_second: if wall_s > 0.0 {
                 step as f64 / wall_s
@@ -115,43 +81,6 @@ impl Summary {
                 0.0
             },
         }
-    }
-}
-
-fn value(measured: Option<Measured>) -> Option<f64> {
-    measured.map(|measured| measured.value)
-}
-
-impl Summary {
-    /// Theory beside measurement, a line each.
-    fn theory_lines(&self) -> [String; 2] {
-        let predicted = |number: Option<f64>| match (self.kappa, number) {
-            (None, _) => "lopsided".to_owned(),
-            (_, Some(number)) => format!("{number:.6}"),
-            (_, None) => "none".to_owned(),
-        };
-        let measured = |number: Option<f64>, uncertainty: Option<f64>| match (number, uncertainty) {
-            (Some(number), Some(uncertainty)) => format!("{number:.6} +- {uncertainty:.1e}"),
-            _ => "none yet".to_owned(),
-        };
-        [
-            format!(
-                "{} rad/s by theory, {} measured",
-                predicted(self.predicted_precession_rad_per_s),
-                measured(
-                    self.measured_precession_rad_per_s,
-                    self.measured_precession_uncertainty_rad_per_s
-                ),
-            ),
-            format!(
-                "{} s by theory, {} measured",
-                predicted(self.predicted_nutation_period_s),
-                measured(
-                    self.measured_nutation_period_s,
-                    self.measured_nutation_uncertainty_s
-                ),
-            ),
-        ]
     }
 }
 
@@ -187,14 +116,7 @@ impl fmt::Display for Summary {
         writeln!(f, "  tilt          {:.6} degrees", self.tilt_deg)?;
         writeln!(f, "  azimuth       {:.6} degrees", self.azimuth_deg)?;
         writeln!(f, "  energy drift  {drift}")?;
-        let [precession, nutation] = self.theory_lines();
-        writeln!(f, "  precession    {precession}")?;
-        writeln!(f, "  nutation      {nutation}")?;
-        writeln!(
-            f,
-            "  turns         {:.4} in a time step",
-            self.turns_per_step
-        )?;
+        write!(f, "{}", self.readouts)?;
         if self.segment > 0 {
             writeln!(
                 f,
@@ -207,6 +129,6 @@ impl fmt::Display for Summary {
             "  wall time     {:.3} s, {:.3e} steps a second",
             self.wall_s, self.steps_per_second
         )?;
-        write!(f, "\n{}", self.health)
+        write!(f, "\n{}", self.readouts.health)
     }
 }

@@ -7,22 +7,23 @@
 //! 5. L ← L + dt Σ X × F, at the *new* positions
 //!
 //! The points themselves are carried from step to step, as the report carries them. They are visited once a step,
-//! four at a time: the pass that turns them also sums the torque (5) and the inertia that the next step begins with
-//! (1). Four lanes on every processor, added up in one fixed order, give every machine the same bits.
+//! two at a time: the pass that turns them also sums the torque (5) and the inertia that the next step begins with
+//! (1). Two lanes on every processor, added up in one fixed order, give every machine the same bits; four lanes would
+//! want more registers than the baseline x86-64 has, and are slower there.
 
 use super::{Body, Loads, PointForce, Scheme, State, Workings, rotation};
 use nalgebra::{Matrix3, Vector3};
-use wide::f64x4;
+use wide::f64x2;
 
-const LANES: usize = 4;
+const LANES: usize = 2;
 
-/// Four points side by side, world frame; places past the last point hold no mass.
+/// Two points side by side, world frame; places past the last point hold no mass.
 #[derive(Clone, Copy, Debug)]
-struct Four {
-    x: f64x4,
-    y: f64x4,
-    z: f64x4,
-    mass: f64x4,
+struct Pair {
+    x: f64x2,
+    y: f64x2,
+    z: f64x2,
+    mass: f64x2,
 }
 
 /// Sums over all points, world frame.
@@ -38,7 +39,7 @@ struct Sums {
 #[derive(Clone, Debug)]
 pub struct Report {
     body: Body,
-    points: Vec<Four>,
+    points: Vec<Pair>,
     gravity: f64,
     pushes: Vec<PointForce>,
     /// From the positions as they stand: what the next step begins with.
@@ -67,12 +68,12 @@ impl Report {
 
     /// Where the scheme has carried point `index`, world frame, m.
     pub fn position(&self, index: usize) -> Vector3<f64> {
-        let four = &self.points[index / LANES];
+        let pair = &self.points[index / LANES];
         let lane = index % LANES;
         Vector3::new(
-            four.x.to_array()[lane],
-            four.y.to_array()[lane],
-            four.z.to_array()[lane],
+            pair.x.to_array()[lane],
+            pair.y.to_array()[lane],
+            pair.z.to_array()[lane],
         )
     }
 
@@ -100,8 +101,8 @@ impl Scheme for Report {
                     row[lane] = value;
                 }
             }
-            let [x, y, z, mass] = lanes.map(f64x4::new);
-            self.points.push(Four { x, y, z, mass });
+            let [x, y, z, mass] = lanes.map(f64x2::new);
+            self.points.push(Pair { x, y, z, mass });
         }
         self.inertia = turn(&mut self.points, &Matrix3::identity()).inertia;
     }
@@ -154,12 +155,12 @@ fn solve(inertia: &Matrix3<f64>, momentum: &Vector3<f64>) -> Vector3<f64> {
 }
 
 /// Turns every point by `rotation` and adds up what the torque and the next inertia need.
-fn turn(points: &mut [Four], rotation: &Matrix3<f64>) -> Sums {
-    let r = |row, column| f64x4::splat(rotation[(row, column)]);
+fn turn(points: &mut [Pair], rotation: &Matrix3<f64>) -> Sums {
+    let r = |row, column| f64x2::splat(rotation[(row, column)]);
     let (r00, r01, r02) = (r(0, 0), r(0, 1), r(0, 2));
     let (r10, r11, r12) = (r(1, 0), r(1, 1), r(1, 2));
     let (r20, r21, r22) = (r(2, 0), r(2, 1), r(2, 2));
-    let zero = f64x4::splat(0.0);
+    let zero = f64x2::splat(0.0);
     let [
         mut sx,
         mut sy,
@@ -171,15 +172,15 @@ fn turn(points: &mut [Four], rotation: &Matrix3<f64>) -> Sums {
         mut xz,
         mut yz,
     ] = [zero; 9];
-    for four in points {
-        let x = r00 * four.x + r01 * four.y + r02 * four.z;
-        let y = r10 * four.x + r11 * four.y + r12 * four.z;
-        let z = r20 * four.x + r21 * four.y + r22 * four.z;
-        let (mx, my, mz) = (four.mass * x, four.mass * y, four.mass * z);
+    for pair in points {
+        let x = r00 * pair.x + r01 * pair.y + r02 * pair.z;
+        let y = r10 * pair.x + r11 * pair.y + r12 * pair.z;
+        let z = r20 * pair.x + r21 * pair.y + r22 * pair.z;
+        let (mx, my, mz) = (pair.mass * x, pair.mass * y, pair.mass * z);
         (sx, sy, sz) = (sx + mx, sy + my, sz + mz);
         (xx, yy, zz) = (xx + mx * x, yy + my * y, zz + mz * z);
         (xy, xz, yz) = (xy + mx * y, xz + mx * z, yz + my * z);
-        (four.x, four.y, four.z) = (x, y, z);
+        (pair.x, pair.y, pair.z) = (x, y, z);
     }
     let [xx, yy, zz, xy, xz, yz] = [xx, yy, zz, xy, xz, yz].map(add_up);
     Sums {
@@ -188,8 +189,8 @@ fn turn(points: &mut [Four], rotation: &Matrix3<f64>) -> Sums {
     }
 }
 
-/// The sum of four lanes in an order of our own: the library's may differ between processors.
-fn add_up(lanes: f64x4) -> f64 {
-    let [a, b, c, d] = lanes.to_array();
-    (a + c) + (b + d)
+/// The sum of both lanes, without the library, whose order may differ between processors.
+fn add_up(lanes: f64x2) -> f64 {
+    let [a, b] = lanes.to_array();
+    a + b
 }

@@ -30,6 +30,8 @@ pub struct Simulation {
     azimuth: Azimuth,
     energy: EnergyAccount,
     ended: Option<NotFinite>,
+    /// How often the forces have changed.
+    changes: u64,
     /// While |L|² is below this, every number read off a finite state is finite too.
     safe_below: f64,
 }
@@ -92,6 +94,7 @@ impl Simulation {
             azimuth: Azimuth::start(&state.axle()),
             energy,
             ended: None,
+            changes: 0,
             safe_below: safe_below(&scenario, motion.gravity),
             scenario,
         }
@@ -186,6 +189,7 @@ impl Simulation {
         pushes::acting(&self.pushes, self.counting, stretch, &mut self.acting);
         if self.acting != self.loads.pushes {
             self.loads.pushes.clone_from(&self.acting);
+            self.changes += 1;
             self.scheme.load(&self.loads);
         }
         let before = self.state;
@@ -231,6 +235,7 @@ impl Simulation {
         self.loads.gravity = self.motion.gravity;
         self.safe_below = safe_below(&self.scenario, self.motion.gravity);
         self.loads.pushes.clear();
+        self.changes += 1;
         self.scheme.load(&self.loads);
     }
 
@@ -252,6 +257,12 @@ impl Simulation {
     /// The axle's azimuth, counted on through full turns.
     pub fn azimuth(&self) -> &Azimuth {
         &self.azimuth
+    }
+
+    /// How often the forces have changed so far, edits of the time step and the scheme counted in: what is measured
+    /// across such a change is the motion of neither side.
+    pub fn changes(&self) -> u64 {
+        self.changes
     }
 
     /// The forces of the step taken last (at step 0: gravity alone).

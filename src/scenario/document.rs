@@ -242,7 +242,7 @@ fn read_text(path: &Path) -> Result<String, Problem> {
     }
     if path.extension().is_some_and(|extension| extension == "csv") {
         return Err(whole(format!(
-            "is not a CSV that gyrolab wrote: no line \"{CSV_HEADER}...\" below its run file"
+            "is not the CSV of a run: no line \"{CSV_HEADER}...\" below a run file"
         )));
     }
     reader.read_to_end(&mut text).map_err(cannot)?;
