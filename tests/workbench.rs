@@ -401,6 +401,18 @@ fn ascii_is_ascii_to_the_last_cell() {
     assert!(stage.picture().is_ascii());
 }
 
+/// The Linux console's fonts have the 256 characters of the old PC, and some of Latin 1.
+#[test]
+fn half_blocks_need_no_rare_glyphs() {
+    for keys in ["mt", "md", "m?", "mo/loops"] {
+        let mut stage = Stage::open("method-2", &[], LARGE);
+        stage.wait(2.0).press(keys);
+        let rare = |c: &char| !c.is_ascii() && !"─│┌┐└┘├┤▀▄█·×►Ω".contains(*c);
+        let picture = stage.picture();
+        assert_eq!(picture.chars().find(rare), None, "{picture}");
+    }
+}
+
 #[test]
 fn a_circle_is_round() {
     for marker in 0..3 {
