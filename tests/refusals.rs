@@ -464,16 +464,16 @@ fn files_that_are_no_scenarios() {
         b"# title = 'caf\xe9'\nstep,t_s,x_m\n",
         &["latin.csv:1: ", "UTF-8"],
     );
-    refused("empty.csv", b"", &["not a CSV that gyrolab wrote"]);
+    refused("empty.csv", b"", &["is not the CSV of a run"]);
     refused(
         "other.csv",
         b"a,b,c\n1,2,3\n",
-        &["not a CSV that gyrolab wrote", "step,t_s,"],
+        &["is not the CSV of a run", "step,t_s,"],
     );
     refused(
         "no-columns.csv",
         b"# title = 'x'\n0,0,0\n",
-        &["not a CSV that gyrolab wrote"],
+        &["is not the CSV of a run"],
     );
     refused("no-header.csv", b"step,t_s,x_m\n0,0,0\n", &["no run file"]);
     refused(

@@ -202,7 +202,9 @@ impl Health {
     fn mend(&self, advice: &Advice) -> String {
         match advice {
             Advice::Holds | Advice::Nothing => String::new(),
-            Advice::TimeStep(step) => format!("; a time step of {step} s keeps it within 1 %"),
+            Advice::TimeStep(step) => {
+                format!("; a time step of {step} s (--time-step {step}) keeps it within 1 %")
+            }
             Advice::Scheme {
                 time_step_s,
                 tried_s,

@@ -24,7 +24,7 @@ Examples:
   gyrolab presets                                   what there is to run
   gyrolab run method-2                              the report's Method 2, how it ends
   gyrolab run method-2 -o method-2.csv              every step of it as CSV
-  gyrolab run wobble-push --set motion.time_step_s=0.005 --duration 40 -o -
+  gyrolab run wobble-push --time-step 0.005 -o -
   gyrolab run method-2.csv -o again.csv             a CSV runs again: its header is the run file";
 
 #[derive(Debug, Subcommand)]
@@ -48,6 +48,8 @@ pub(super) enum Command {
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
     },
+    /// List every key that a scenario or run file may hold
+    Keys,
     /// Print a completion script for a shell
     Completions {
         /// The shell
@@ -71,8 +73,12 @@ pub(super) struct ScenarioArgs {
 #[derive(Debug, Args)]
 pub(super) struct Changes {
     /// Change a value first, such as motion.time_step_s=0.05 or push.0.force_N=[0,0,-50]; may be repeated
-    #[arg(long = "set", value_name = "KEY=VALUE")]
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pub(super) set: Vec<String>,
+
+    /// The time step, s, with the run's length and its pushes held in seconds (--set motion.time_step_s holds their steps)
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = positive)]
+    pub(super) time_step: Option<f64>,
 
     /// The numerical scheme
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(scheme::names()))]
@@ -170,7 +176,7 @@ pub(super) struct LengthArgs {
     pub(super) steps: Option<u64>,
 
     /// Length of the run in simulated seconds
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = positive)]
     pub(super) duration: Option<f64>,
 }
 
@@ -187,7 +193,7 @@ pub(super) struct RunArgs {
     pub(super) length: LengthArgs,
 
     /// Write every N-th row only, and the last
-    #[arg(long, value_name = "N", default_value = "1")]
+    #[arg(long, value_name = "N", default_value = "1", value_parser = one_or_more)]
     pub(super) every: NonZeroU64,
 
     /// Give the summary as one JSON object
@@ -222,6 +228,18 @@ pub(super) struct CompareArgs {
     /// Replace an existing file
     #[arg(long)]
     pub(super) force: bool,
+}
+
+fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
+    text.parse()
+        .map_err(|_| "must be a whole number, 1 or more".to_owned())
+}
+
+fn setting(text: &str) -> Result<String, String> {
+    match text.contains('=') {
+        true => Ok(text.to_owned()),
+        false => Err("must be KEY=VALUE, such as motion.time_step_s=0.05".to_owned()),
+    }
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -2,6 +2,7 @@
 
 use super::args::Cli;
 use crate::physics::scheme::SCHEMES;
+use crate::scenario::keys::{KEYS, Key};
 use crate::scenario::presets::{self, PRESETS, Preset};
 use crate::scenario::problem::{nearest, printable};
 use crate::scenario::{Document, Problems, Scenario};
@@ -58,6 +59,23 @@ pub(super) fn schemes() -> anyhow::Result<ExitCode> {
         writeln!(text, "{:<8} {order:<8} {}", scheme.name, scheme.about)?;
         writeln!(text, "{:<17} {}", "", scheme.source)?;
     }
+    print(&text)
+}
+
+pub(super) fn keys() -> anyhow::Result<ExitCode> {
+    let mut text = String::new();
+    for Key {
+        path,
+        required,
+        about,
+        ..
+    } in KEYS
+    {
+        let must = if *required { " (required)" } else { "" };
+        writeln!(text, "{path}{must}\n    {about}")?;
+    }
+    text.push_str("\nA * stands for a number from 0: [[body.point]], [[push]], [[expected]] and [[edit]] may be repeated.\n");
+    text.push_str("A table may be left out whole where none of its keys is wanted, but [start] and [motion].\n");
     print(&text)
 }
 

@@ -2,7 +2,8 @@
 
 use super::args::{Changes, LengthArgs, ScenarioArgs};
 use crate::run::Simulation;
-use crate::scenario::{Document, Problems, Scenario};
+use crate::scenario::rescale::MOST_STEPS;
+use crate::scenario::{Document, Problem, Problems, Scenario};
 
 /// The scenario with all that the command line changes in it, so that its run file tells the whole run.
 pub(super) fn scenario_of(args: &ScenarioArgs, length: &LengthArgs) -> Result<Scenario, Problems> {
@@ -14,7 +15,15 @@ pub(super) fn scenario_of(args: &ScenarioArgs, length: &LengthArgs) -> Result<Sc
     let Some(duration) = length.duration else {
         return Ok(scenario);
     };
-    let steps = Simulation::step_at(&scenario, duration).clamp(1, i64::MAX as u64);
+    if duration / scenario.motion.time_step_s > MOST_STEPS {
+        let rule = format!("{duration:e} s are more than {MOST_STEPS:e} time steps");
+        let problem = Problem::at("--duration", rule);
+        return Err(Problems {
+            origin: args.scenario.clone(),
+            list: vec![problem],
+        });
+    }
+    let steps = Simulation::step_at(&scenario, duration).max(1);
     document.set(&format!("motion.steps={steps}"))?;
     document.scenario()
 }
@@ -27,6 +36,9 @@ pub(super) fn changed(scenario: &str, changes: &Changes) -> Result<Document, Pro
     }
     if let Some(scheme) = &changes.scheme {
         document.set(&format!("motion.scheme={scheme}"))?;
+    }
+    if let Some(time_step_s) = changes.time_step {
+        document.set_time_step(time_step_s)?;
     }
     Ok(document)
 }

@@ -30,6 +30,8 @@ pub struct Summary {
     pub energy_J: f64,
     /// (E − E₀ − W)/S, see [`Simulation::energy_drift`]; `None` (null in JSON) where it means nothing.
     pub energy_drift: Option<f64>,
+    #[serde(skip)]
+    pub energy_unit: &'static str,
     /// Number of edits of time step, scheme or gravity.
     pub segment: u64,
     /// Theory, measurement and health.
@@ -72,6 +74,10 @@ impl Summary {
             azimuth_deg,
             energy_J: energy,
             energy_drift: simulation.energy_drift(),
+            energy_unit: match simulation.scenario().motion.gravity == 0.0 {
+                true => "of the kinetic energy at the start",
+                false => "of M g |c|",
+            },
             segment,
             readouts,
             wall_s,
@@ -88,7 +94,7 @@ impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let drift = match self.energy_drift {
             Some(drift) => {
-                format!("{drift:+.3e} (of M g |c|, or of the kinetic energy where that is 0)")
+                format!("{drift:+.3e} {}", self.energy_unit)
             }
             None => "n/a".to_owned(),
         };

@@ -3,7 +3,7 @@
 use super::checks;
 use super::dotted::{is_in, is_written, set_key};
 use super::problem::{Problem, Problems, brief, nearest, printable};
-use super::{file::ScenarioFile, keys, model::Scenario, presets};
+use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -131,6 +131,17 @@ impl Document {
         Ok(())
     }
 
+    /// Takes the scenario to another time step (s), holding its seconds: see [`rescale`](super::rescale).
+    ///
+    /// # Errors
+    /// What is wrong with the scenario, or cannot be held.
+    pub fn set_time_step(&mut self, time_step_s: f64) -> Result<(), Problems> {
+        let file = rescale::at_time_step(&self.scenario()?.file, time_step_s)
+            .map_err(|problem| self.placed(vec![problem]))?;
+        *self = Self::from_file(&self.origin, &file)?;
+        Ok(())
+    }
+
     /// The scenario, checked.
     ///
     /// # Errors
@@ -198,10 +209,10 @@ fn set_place(argument: &str) -> String {
 fn no_preset(name: &str) -> Problems {
     let near = nearest(name, presets::PRESETS.iter().map(|preset| preset.name));
     let hint = match Path::new(name).exists() {
-        true => format!("; for the file of that name write ./{}", printable(name)),
-        false => "; a file's name holds a / or ends in .toml or .csv".to_owned(),
+        true => format!("for the file of that name write ./{}", printable(name)),
+        false => "a file's name holds a / or ends in .toml or .csv".to_owned(),
     };
-    let rule = format!("no preset of that name: {near}{hint}");
+    let rule = format!("no preset of that name: {near} ({hint})");
     Problems {
         origin: name.to_owned(),
         list: vec![Problem::at("", rule)],

@@ -132,7 +132,7 @@ fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Vec<
     for (name, value) in table {
         let (pattern, key) = (join(under, name), join(path, name));
         if name.contains(['.', '*']) || !is_known(&pattern) {
-            let near = nearest(name, names_under(under));
+            let near = elsewhere(name).unwrap_or_else(|| nearest(name, names_under(under)));
             // In quotes, or a dot in the name would make it the path of another key.
             let key = match name.contains('.') {
                 true => join(path, &format!("\"{name}\"")),
@@ -151,6 +151,19 @@ fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Vec<
                 format!("is missing ({})", key.about)
             });
         problems.push(Problem::at(join(path, missing), rule));
+    }
+}
+
+/// Where a name belongs that stands in the wrong table.
+fn elsewhere(name: &str) -> Option<String> {
+    let mut homes = KEYS
+        .iter()
+        .filter(|key| key.path.rsplit('.').next() == Some(name) && key.path != name);
+    match (homes.next(), homes.next()) {
+        (Some(home), None) if !home.path.contains('*') => {
+            Some(format!("did you mean {}?", home.path))
+        }
+        _ => None,
     }
 }
 
@@ -346,11 +359,13 @@ fn check_word(word: &str, words: &[&str]) -> Result<(), String> {
     if words.contains(&word) {
         return Ok(());
     }
-    Err(format!(
-        "must be one of {}; {}",
-        words.join(", "),
-        nearest(word, words.iter().copied())
-    ))
+    let near = nearest(word, words.iter().copied());
+    let near = if near.starts_with("did") {
+        format!("; {near}")
+    } else {
+        String::new()
+    };
+    Err(format!("must be one of {}{near}", words.join(", ")))
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ mod model;
 mod parts;
 pub mod presets;
 pub mod problem;
+pub mod rescale;
 
 pub use document::Document;
 pub use file::ScenarioFile;

@@ -1,0 +1,49 @@
+//! The same scenario at another time step, as a file: what was counted in steps is given in seconds.
+
+use super::file::{PushFile, ScenarioFile};
+use super::problem::Problem;
+
+/// `file` at the time step `time_step_s` (s): as long in seconds, and its pushes at the same times.
+///
+/// # Errors
+/// Where steps have a meaning that seconds cannot hold: a push that accumulates step by step, an edit at a step.
+pub fn at_time_step(file: &ScenarioFile, time_step_s: f64) -> Result<ScenarioFile, Problem> {
+    let written_for_s = file.motion.time_step_s;
+    if !file.edit.is_empty() {
+        let rule =
+            "has edits at steps, which another time step would move: change the steps by hand";
+        return Err(Problem::at("edit", rule));
+    }
+    let mut other = file.clone();
+    let steps = (file.motion.steps as f64 * written_for_s / time_step_s).round();
+    if steps > MOST_STEPS {
+        return Err(Problem::at(
+            "motion.steps",
+            format!("would be {steps:e}: too many"),
+        ));
+    }
+    other.motion.steps = (steps as u64).max(1);
+    other.motion.time_step_s = time_step_s;
+    for (index, push) in other.push.iter_mut().enumerate() {
+        hold_seconds(push, written_for_s)
+            .map_err(|rule| Problem::at(format!("push.{index}"), rule))?;
+    }
+    Ok(other)
+}
+
+/// The most steps a run may be given by a length in seconds: whole numbers are exact up to here.
+pub const MOST_STEPS: f64 = 9e15;
+
+fn hold_seconds(push: &mut PushFile, written_for_s: f64) -> Result<(), &'static str> {
+    let Some(count) = push.steps else {
+        return Ok(());
+    };
+    if push.accumulates == Some(true) {
+        return Err("accumulates step by step: its force is another at another time step");
+    }
+    let first = push.first_step.unwrap_or(1);
+    push.from_s = Some((first - 1) as f64 * written_for_s);
+    push.for_s = Some(count as f64 * written_for_s);
+    (push.first_step, push.steps) = (None, None);
+    Ok(())
+}
