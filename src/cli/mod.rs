@@ -40,6 +40,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Compare(args) => compare::compare(&args),
         Command::Presets { name } => info::presets(name.as_deref()),
         Command::Schemes => info::schemes(),
+        Command::Keys => info::keys(),
         Command::Check { files } => info::check(&files),
         Command::Completions { shell } => info::completions(shell),
         Command::Man => info::man(),
