@@ -285,6 +285,17 @@ fn a_terminal_that_takes_no_bytes_does_not_hold_up_the_end() {
 }
 
 #[test]
+fn ctrl_l_draws_all_of_it_again() {
+    let mut session = Session::open(&["--paused"]);
+    session.wait_for("q quit");
+    thread::sleep(Duration::from_millis(300));
+    session.bytes.lock().unwrap().clear();
+    session.press("\u{c}");
+    session.wait_for("q quit");
+    session.wait_for("Method 2");
+}
+
+#[test]
 fn ctrl_z_gives_the_terminal_back_and_resuming_draws_all_of_it() {
     let mut session = Session::open(&["--paused"]);
     session.wait_for("q quit");

@@ -258,6 +258,29 @@ fn the_exact_motion_and_the_distance_from_it() {
 }
 
 #[test]
+fn the_strips_have_room_for_the_exact_motion_too() {
+    // The scheme damps the nutation: the run stays above the exact motion's lowest, at 36.69 degrees.
+    let set = ["motion.scheme=\"report\"", "motion.time_step_s=0.02"];
+    let mut stage = Stage::open("cusps", &set, SMALL);
+    stage.wait(3.0).press(" ");
+    let highest = |stage: &Stage| {
+        let picture = stage.picture();
+        let label = picture
+            .lines()
+            .find(|line| line.contains("│tilt "))
+            .unwrap();
+        let numbers: Vec<f64> = label
+            .split(' ')
+            .filter_map(|word| word.parse().ok())
+            .collect();
+        numbers[1]
+    };
+    assert!(highest(&stage) < 36.68);
+    stage.press("t").wait(1.0);
+    assert!(highest(&stage) > 36.68);
+}
+
+#[test]
 fn a_true_scheme_lies_on_the_exact_motion() {
     let mut stage = Stage::open("cusps", &[], SMALL);
     stage.wait(3.0).press(" t").wait(6.0);
@@ -376,6 +399,18 @@ fn ascii_is_ascii_to_the_last_cell() {
     assert!(stage.picture().is_ascii(), "{}", stage.picture());
     stage.press("?");
     assert!(stage.picture().is_ascii());
+}
+
+/// The Linux console's fonts have the 256 characters of the old PC, and some of Latin 1.
+#[test]
+fn half_blocks_need_no_rare_glyphs() {
+    for keys in ["mt", "md", "m?", "mo/loops"] {
+        let mut stage = Stage::open("method-2", &[], LARGE);
+        stage.wait(2.0).press(keys);
+        let rare = |c: &char| !c.is_ascii() && !"─│┌┐└┘├┤▀▄█·×►Ω".contains(*c);
+        let picture = stage.picture();
+        assert_eq!(picture.chars().find(rare), None, "{picture}");
+    }
 }
 
 #[test]

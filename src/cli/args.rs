@@ -117,9 +117,20 @@ pub(super) struct Look {
     #[arg(long, value_enum, value_name = "WHEN", default_value = "auto")]
     pub(super) color: Color,
 
+    /// What the colours are for [default: dark, or as COLORFGBG says]
+    #[arg(long, value_enum, value_name = "SCREEN")]
+    pub(super) background: Option<Screen>,
+
     /// What dots are made of [default: by locale and terminal]
     #[arg(long, value_enum, value_name = "KIND")]
     pub(super) markers: Option<Markers>,
+}
+
+/// `--background`
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Screen {
+    Dark,
+    Light,
 }
 
 /// `--color`

@@ -1,6 +1,6 @@
 //! `gyrolab` and `gyrolab show`: the lab, live or as one picture.
 
-use super::args::{Changes, Color, Look, Markers, ShowArgs, WorkbenchArgs};
+use super::args::{Changes, Color, Look, Markers, Screen, ShowArgs, WorkbenchArgs};
 use super::scenario::changed;
 use crate::scenario::Scenario;
 use crate::workbench::lab::Lab;
@@ -87,7 +87,16 @@ fn theme(look: Look) -> Theme {
         Color::Always => ColourChoice::Always,
         Color::Never => ColourChoice::Never,
     };
-    surroundings::theme(choice, variable)
+    let theme = surroundings::theme(choice, variable);
+    let background = match look.background {
+        None => theme.background,
+        Some(Screen::Dark) => Background::Dark,
+        Some(Screen::Light) => Background::Light,
+    };
+    Theme {
+        background,
+        ..theme
+    }
 }
 
 fn marker(markers: Option<Markers>) -> Marker {

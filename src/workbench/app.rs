@@ -55,11 +55,11 @@ fn wait(lab: &Lab, to_frame: Duration) -> Duration {
 fn handle(event: Event, lab: &mut Lab, screen: &mut Screen) -> io::Result<ControlFlow<()>> {
     let request = match event {
         Event::Key(key) => keymap::action(lab.mode(), key).and_then(|action| lab.update(action)),
+        Event::Suspend => Some(Request::Suspend),
         Event::Resized => {
             lab.resize(screen.size()?);
             None
         }
-        Event::Suspend => Some(Request::Suspend),
         Event::Resumed => {
             screen.resume()?;
             lab.resize(screen.size()?);
@@ -67,13 +67,11 @@ fn handle(event: Event, lab: &mut Lab, screen: &mut Screen) -> io::Result<Contro
         }
     };
     match request {
-        None => {}
+        None => return Ok(ControlFlow::Continue(())),
         Some(Request::Quit) => return Ok(ControlFlow::Break(())),
         Some(Request::Redraw) => screen.forget()?,
-        Some(Request::Suspend) => {
-            screen.suspend()?;
-            lab.resize(screen.size()?);
-        }
+        Some(Request::Suspend) => screen.suspend()?,
     }
+    lab.resize(screen.size()?); // all of it is to be drawn, at the size there is now
     Ok(ControlFlow::Continue(()))
 }

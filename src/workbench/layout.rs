@@ -14,6 +14,8 @@ const THREE_D_FROM: u16 = 120;
 const TWO_FROM: u16 = 52;
 /// From this height of the panes on, the view from above and the 3-D view stand one above the other.
 const STACKED_FROM: u16 = 36;
+/// From this width on a hint fits on one line.
+const ONE_LINE_FROM: u16 = 140;
 /// Width of the parameters.
 const PARAMETERS: u16 = 26;
 /// The height the whole lab wants.
@@ -43,7 +45,7 @@ impl Layout {
         let title = cut(&mut rest, area.height >= 3, false);
         let keys = cut(&mut rest, keys && area.height >= 7, true);
         let hint = cut(&mut rest, area.height >= 6, true);
-        let hint = match area.height >= HEIGHT && area.width < THREE_D_FROM {
+        let hint = match area.height >= HEIGHT && area.width < ONE_LINE_FROM {
             true => hint.union(cut(&mut rest, true, true)),
             false => hint,
         };

@@ -197,9 +197,6 @@ fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
 
 fn now_rows(readouts: &Readouts) -> Vec<Row> {
     let sample = &readouts.sample;
-    let or_dash = |number: Option<f64>, digits: usize| {
-        number.map_or("-".to_owned(), |n| format!("{n:.digits$}"))
-    };
     let axis = |label, role, metres: f64| Row {
         label_role: role,
         ..value(0, label, format!("{metres:.4}"), "m")
@@ -213,22 +210,17 @@ fn now_rows(readouts: &Readouts) -> Vec<Row> {
         value(
             0,
             "precession",
-            or_dash(readouts.precession_deg_per_s, 3),
+            fixed(readouts.precession_deg_per_s, 3),
             "deg/s",
         ),
         value(
             1,
             "predicted",
-            or_dash(readouts.predicted_precession_deg_per_s, 3),
+            fixed(readouts.predicted_precession_deg_per_s, 3),
             "deg/s",
         ),
-        value(3, "nutation", or_dash(readouts.nutation_s, 5), "s"),
-        value(
-            3,
-            "predicted",
-            or_dash(readouts.predicted_nutation_s, 5),
-            "s",
-        ),
+        value(3, "nutation", fixed(readouts.nutation_s, 5), "s"),
+        value(3, "predicted", fixed(readouts.predicted_nutation_s, 5), "s"),
         value(
             2,
             "E drift",
@@ -242,4 +234,31 @@ fn now_rows(readouts: &Readouts) -> Vec<Row> {
         value(4, "Lz", format!("{:.3}", sample.momentum.z), "J s"),
         value(4, "energy", format!("{:.2}", sample.energy), "J"),
     ]
+}
+
+/// Characters a number has beside the longest label, a blank between them.
+const ROOM: usize = 6;
+
+/// `number` with `digits` decimals, or fewer where they would run into its label; a dash where there is none.
+fn fixed(number: Option<f64>, digits: usize) -> String {
+    let Some(number) = number else {
+        return "-".to_owned();
+    };
+    let text = format!("{number:.digits$}");
+    let excess = text.len().saturating_sub(ROOM.max(digits + 2));
+    format!("{number:.*}", digits.saturating_sub(excess))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_off_their_labels() {
+        assert_eq!(fixed(Some(1.5881), 3), "1.588");
+        assert_eq!(fixed(Some(171.185), 3), "171.19");
+        assert_eq!(fixed(Some(-171.185), 3), "-171.2");
+        assert_eq!(fixed(Some(0.80972), 5), "0.80972");
+        assert_eq!(fixed(None, 3), "-");
+    }
 }

@@ -117,12 +117,7 @@ impl Traces<'_> {
 
     /// The range of values a strip shows: x and y share one about 0, z and tilt have their own.
     fn scale(&self, curve: Curve) -> Scale {
-        let extent = |curve: Curve| {
-            self.run
-                .recording()
-                .whole()
-                .map_or(Extent::of(0.0), |w| w.extents[curve as usize])
-        };
+        let extent = |curve| self.extent(curve);
         match curve {
             Curve::X | Curve::Y => {
                 let both = extent(Curve::X).and(extent(Curve::Y));
@@ -131,6 +126,17 @@ impl Traces<'_> {
             Curve::Z => Scale::around(extent(curve), Z_LEAST * self.reach()),
             Curve::Tilt => Scale::around(extent(curve), TILT_LEAST),
         }
+    }
+
+    /// Everything the strip of `curve` has to show: the run, and the exact motion where it is shown.
+    fn extent(&self, curve: Curve) -> Extent {
+        let exact = self
+            .run
+            .overlay()
+            .and_then(|overlay| overlay.recording().whole());
+        let blocks = self.run.recording().whole().into_iter().chain(exact);
+        let extents = blocks.map(|block| block.extents[curve as usize]);
+        extents.reduce(Extent::and).unwrap_or(Extent::of(0.0))
     }
 
     fn reach(&self) -> f64 {
