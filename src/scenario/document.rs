@@ -131,7 +131,7 @@ impl Document {
         Ok(())
     }
 
-    /// Takes the scenario to another time step (s), holding its seconds: see [`rescale`](super::rescale).
+    /// Takes the scenario to another time step (s), holding its seconds: see [`rescale`].
     ///
     /// # Errors
     /// What is wrong with the scenario, or cannot be held.
