@@ -341,9 +341,14 @@ fn the_azimuth_counts_every_turn_however_few_rows_there_are() {
             .unwrap();
         let mut simulation = Simulation::new(Arc::new(scenario));
         let mut csv = CsvWriter::new(Vec::new(), simulation.scenario()).unwrap();
-        stream::play(&mut simulation, 4000, every, Some(&mut csv), |_| {
-            ControlFlow::Continue(())
-        })
+        stream::play(
+            &mut simulation,
+            4000,
+            every,
+            Some(&mut csv),
+            |_| (),
+            |_| ControlFlow::Continue(()),
+        )
         .unwrap();
         let bytes = csv.finish().unwrap();
         let mut rows = csv::ReaderBuilder::new()
