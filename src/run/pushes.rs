@@ -78,14 +78,36 @@ fn factor(push: &Push, counting: Counting, stretch: &Stretch) -> f64 {
         (Window::Steps { first, count }, Counting::Seconds { written_for_s })
             if push.accumulates =>
         {
-            let nth = (stretch.end / written_for_s - (first - 1) as f64 - ROUNDING).ceil();
-            nth.clamp(0.0, count as f64)
+            let own_steps = |time_s: f64| time_s / written_for_s - (first - 1) as f64;
+            mean_growth(
+                own_steps(stretch.begin),
+                own_steps(stretch.end),
+                count as f64,
+            )
         }
         (window, counting) => {
             let (from, to) = seconds(window, counting);
             share(from, to, stretch)
         }
     }
+}
+
+/// The mean factor of an accumulating push between two times that are counted in its own steps from its beginning.
+fn mean_growth(begin: f64, end: f64, count: f64) -> f64 {
+    let nth = (end - ROUNDING).ceil();
+    let is_full = begin + ROUNDING >= count;
+    if is_full || nth <= (begin + ROUNDING).floor() + 1.0 {
+        return nth.clamp(0.0, count);
+    }
+    // The factors summed up to a time: whole steps 1 + 2 + ..., and the begun one.
+    let sum = |time: f64| {
+        let growing = time.clamp(0.0, count);
+        let whole = growing.floor();
+        whole * (whole + 1.0) / 2.0
+            + (growing - whole) * (whole + 1.0)
+            + (time - count).max(0.0) * count
+    };
+    (sum(end) - sum(begin)) / (end - begin)
 }
 
 /// A window in seconds, from and to; infinite where it has none.
@@ -117,14 +139,38 @@ fn share(from: f64, to: f64, stretch: &Stretch) -> f64 {
     }
 }
 
-/// The first moment strictly inside `stretch` at which a push given in seconds begins or ends.
+/// The first moment strictly inside `stretch` at which a push counted in seconds begins, ends or (accumulating) grows.
 pub fn next_change(pushes: &[Push], counting: Counting, stretch: &Stretch) -> Option<f64> {
     let margin = ROUNDING * (stretch.end - stretch.begin);
+    let moment = next_after(pushes, counting, stretch.begin + margin);
+    (moment < stretch.end - margin).then_some(moment)
+}
+
+/// The first moment after `time_s` (s) at which a push counted in seconds begins, ends or grows; infinite where none does.
+pub fn next_after(pushes: &[Push], counting: Counting, time_s: f64) -> f64 {
+    let growth = pushes
+        .iter()
+        .filter_map(|push| next_growth(push, counting, time_s));
     pushes
         .iter()
         .flat_map(|push| <[f64; 2]>::from(seconds(push.window, counting)))
-        .filter(|&moment| moment > stretch.begin + margin && moment < stretch.end - margin)
-        .min_by(f64::total_cmp)
+        .chain(growth)
+        .filter(|&moment| moment > time_s)
+        .fold(f64::INFINITY, f64::min)
+}
+
+fn next_growth(push: &Push, counting: Counting, time_s: f64) -> Option<f64> {
+    match (push.window, counting) {
+        (Window::Steps { first, count }, Counting::Seconds { written_for_s: dt })
+            if push.accumulates =>
+        {
+            // The boundary after `time_s`, safely past rounding: `time_s` itself may be one of them.
+            let next = (time_s / dt + ROUNDING).floor() + 1.0;
+            let inside = next >= (first - 1) as f64 && next <= (first - 1 + count) as f64;
+            inside.then_some(next * dt)
+        }
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -211,6 +257,44 @@ mod tests {
                 .sum();
             assert!((impulse - 0.05).abs() < 1e-12, "dt {dt}: {impulse}");
         }
+    }
+
+    #[test]
+    fn an_accumulating_push_has_the_same_impulse_at_every_time_step() {
+        let window = Window::Steps { first: 2, count: 3 };
+        let seconds = Counting::Seconds { written_for_s: 0.1 };
+        // 1 + 2 + 3 tenths and 3 for the rest of 2.4 s.
+        let impulse = 0.1 * (1.0 + 2.0 + 3.0) + 3.0 * 2.0;
+        for dt in [0.8, 0.3, 0.24, 0.16, 0.1, 0.075, 0.01] {
+            let steps = (2.4 / dt + 0.5) as u64;
+            let factors = factors(push(window, true), seconds, &Clock::new(dt), steps);
+            let sum = factors.iter().sum::<f64>() * dt;
+            assert!((sum - impulse).abs() < 1e-12, "dt {dt}: {sum}");
+            if dt <= 0.1 && dt != 0.075 {
+                assert!(
+                    factors.iter().all(|factor| factor.fract() == 0.0),
+                    "dt {dt}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn an_accumulating_push_changes_where_its_own_steps_end() {
+        let pushes = [push(Window::Steps { first: 2, count: 3 }, true)];
+        let seconds = Counting::Seconds { written_for_s: 0.1 };
+        let mut stretch = Stretch {
+            step: 1,
+            begin: 0.0,
+            end: 1.0,
+        };
+        let mut changes = Vec::new();
+        while let Some(change) = next_change(&pushes, seconds, &stretch) {
+            changes.push(change);
+            stretch.begin = change;
+        }
+        assert_eq!(changes, [0.1, 0.2, 0.1 * 3.0, 0.4]);
+        assert_eq!(next_change(&pushes, Counting::Steps, &stretch), None);
     }
 
     #[test]

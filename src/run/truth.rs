@@ -7,7 +7,7 @@ use super::Clock;
 use super::pushes::{self, Counting, Stretch};
 use crate::physics::exact::Kind;
 use crate::physics::{ExactMotion, Loads, State};
-use crate::scenario::{Push, Scenario, Window};
+use crate::scenario::{Push, Scenario};
 use std::sync::Arc;
 
 /// The exact motion of one scenario, at any time.
@@ -28,6 +28,12 @@ struct Era {
     begin_s: f64,
     gravity: f64,
     pushes: Vec<Push>,
+}
+
+impl Era {
+    fn has_forces_of(&self, other: &Self) -> bool {
+        self.gravity == other.gravity && self.pushes == other.pushes
+    }
 }
 
 impl Truth {
@@ -98,7 +104,7 @@ impl Truth {
             .eras
             .get(index + 1)
             .map_or(f64::INFINITY, |era| era.begin_s);
-        self.end_s = next_change(&era.pushes, counting, begin).min(next_era);
+        self.end_s = pushes::next_after(&era.pushes, counting, begin).min(next_era);
         let stretch = Stretch {
             step: 1,
             begin,
@@ -123,39 +129,15 @@ fn eras(scenario: &Scenario) -> Vec<Era> {
         if edit.touches.time_step {
             clock.change(edit.step, edit.motion.time_step_s);
         }
-        eras.push(Era {
+        let era = Era {
             begin_s,
             gravity: edit.motion.gravity,
             pushes: edit.pushes.clone(),
-        });
+        };
+        // An edit of the time step or the scheme touches no force, and so not a bit of the exact motion.
+        if !eras.last().is_some_and(|last| last.has_forces_of(&era)) {
+            eras.push(era);
+        }
     }
     eras
-}
-
-/// The first moment after `now` at which a push begins, ends or (accumulating) grows; infinite where none does.
-fn next_change(pushes: &[Push], counting: Counting, now: f64) -> f64 {
-    let growth = pushes
-        .iter()
-        .filter_map(|push| next_growth(push, counting, now));
-    let edges = pushes
-        .iter()
-        .flat_map(|push| <[f64; 2]>::from(pushes::seconds(push.window, counting)));
-    edges
-        .chain(growth)
-        .filter(|&moment| moment > now)
-        .fold(f64::INFINITY, f64::min)
-}
-
-fn next_growth(push: &Push, counting: Counting, now: f64) -> Option<f64> {
-    match (push.window, counting) {
-        (Window::Steps { first, count }, Counting::Seconds { written_for_s: dt })
-            if push.accumulates =>
-        {
-            // The boundary after `now`, safely past rounding: `now` itself is one of them.
-            let next = (now / dt + 1e-9).floor() + 1.0;
-            let inside = next >= (first - 1) as f64 && next <= (first - 1 + count) as f64;
-            inside.then_some(next * dt)
-        }
-        _ => None,
-    }
 }

@@ -3,6 +3,10 @@
 use gyrolab::physics::exact::LagrangeTop;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
+#[path = "../support/dice.rs"]
+mod dice;
+pub use dice::Dice;
+
 pub struct Start {
     pub name: String,
     pub across: f64,
@@ -107,37 +111,4 @@ fn row(line: &str) -> (Start, Known) {
 /// The body turned by `degrees` about the world's first axis.
 pub fn tilted(degrees: f64) -> Matrix3<f64> {
     *Rotation3::from_axis_angle(&Vector3::x_axis(), degrees.to_radians()).matrix()
-}
-
-/// A small generator of numbers in 0..1, the same on every machine (Marsaglia's xorshift).
-pub struct Dice(pub u64);
-
-impl Dice {
-    pub fn unit(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    /// Even in the logarithm.
-    pub fn scale(&mut self, low: f64, high: f64) -> f64 {
-        (self.between(low.ln(), high.ln())).exp()
-    }
-
-    pub fn vector(&mut self) -> Vector3<f64> {
-        Vector3::new(
-            self.between(-1.0, 1.0),
-            self.between(-1.0, 1.0),
-            self.between(-1.0, 1.0),
-        )
-    }
-
-    pub fn orientation(&mut self) -> Matrix3<f64> {
-        *Rotation3::new(self.vector() * 3.0).matrix()
-    }
 }
