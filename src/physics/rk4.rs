@@ -33,10 +33,11 @@ impl Rk4 {
         }
     }
 
+    #[inline]
     fn slope(&self, orientation: &Matrix3<f64>, momentum: &Vector3<f64>) -> Slope {
         let omega = orientation * (self.inverse_inertia * orientation.tr_mul(momentum));
         Slope {
-            orientation: rotation::cross_matrix(&omega) * orientation,
+            orientation: rotation::crossed(&omega, orientation),
             momentum: torque(orientation, &self.moment),
         }
     }

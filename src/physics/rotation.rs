@@ -3,9 +3,10 @@
 use super::trig;
 use nalgebra::{Matrix3, Vector3};
 
-/// The matrix \[v\]× with \[v\]× w = v × w.
-pub fn cross_matrix(v: &Vector3<f64>) -> Matrix3<f64> {
-    Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
+/// \[v\]× times `matrix`: v × each of its columns.
+#[inline]
+pub fn crossed(v: &Vector3<f64>, matrix: &Matrix3<f64>) -> Matrix3<f64> {
+    Matrix3::from_columns(&[0, 1, 2].map(|j| v.cross(&matrix.column(j))))
 }
 
 /// The rotation about `vector` by the angle |`vector`| · `time`: R = P + cos(E − P) + sin \[u\]×, P = uuᵀ, u the
