@@ -33,7 +33,7 @@ impl Monitor {
             truth,
             theory: None,
             most_distance_m: 0.0,
-            next_look: simulation.step_number(),
+            next_look: simulation.step_number() + stride(scenario.steps),
             stride: stride(scenario.steps),
         }
     }
@@ -60,6 +60,10 @@ impl Monitor {
 
     fn deviation(&mut self, simulation: &Simulation) -> Option<Deviation> {
         let deviation = Deviation::of(simulation, self.truth.as_mut()?);
+        if !deviation.distance_m.is_finite() {
+            self.truth = None; // it has left the range of numbers, and does not come back
+            return None;
+        }
         self.most_distance_m = self.most_distance_m.max(deviation.distance_m);
         Some(deviation)
     }
@@ -119,5 +123,8 @@ pub fn integration_rad(scenario: &Scenario) -> f64 {
         return 0.0;
     }
     let spin = observables::angular_velocity(body, &scenario.start).norm();
-    spin * crate::run::Clock::at(scenario, scenario.steps).time_s(scenario.steps)
+    // A body at rest will swing and turn under its weight, at about this rate.
+    let weight = scenario.motion.gravity.abs() * body.first_moment().norm();
+    let swing = (weight * body.inverse_inertia().trace()).sqrt();
+    (spin + swing) * crate::run::Clock::at(scenario, scenario.steps).time_s(scenario.steps)
 }
