@@ -15,8 +15,6 @@ pub const AFFORDABLE_RAD: f64 = 5e5;
 pub struct Monitor {
     instruments: Instruments,
     truth: Option<Truth>,
-    /// The theory, and the change of forces since which it holds.
-    theory: Option<(u64, Option<Theory>)>,
     most_distance_m: f64,
     /// The next step at which to hold the run against the exact motion, and how many there are between two.
     next_look: u64,
@@ -31,7 +29,6 @@ impl Monitor {
         Self {
             instruments: Instruments::new(simulation),
             truth,
-            theory: None,
             most_distance_m: 0.0,
             next_look: simulation.step_number() + stride(scenario.steps),
             stride: stride(scenario.steps),
@@ -73,32 +70,17 @@ impl Monitor {
     pub fn theory(&mut self, time_s: f64) -> Option<Theory> {
         let truth = self.truth.as_mut()?;
         let state = truth.state_at(time_s);
-        if let Some((changes, theory)) = self.theory
-            && changes == truth.changes()
-        {
-            return theory;
-        }
-        let theory = theory_of(truth, &state);
-        self.theory = Some((truth.changes(), theory));
-        theory
+        let body = &truth.scenario().body.mechanics;
+        let top = SymmetricTop::of(body)?;
+        let load = truth.loads().on_axle(body, &top)?;
+        let motion = truth.motion().closed_form()?;
+        Some(Theory::new(&top, &load, motion, &state))
     }
 
     /// What has been measured.
     pub fn instruments(&self) -> &Instruments {
         &self.instruments
     }
-}
-
-fn theory_of(truth: &Truth, state: &crate::physics::State) -> Option<Theory> {
-    let body = &truth.scenario().body.mechanics;
-    let top = SymmetricTop::of(body)?;
-    let load = truth.loads().on_axle(body, &top)?;
-    Some(Theory::new(
-        &top,
-        &load,
-        truth.motion().closed_form()?,
-        state,
-    ))
 }
 
 /// Whether the exact motion of `scenario` can be had on the side: in closed form always, by integration for a while.

@@ -2,6 +2,7 @@
 
 use crate::analysis::health::Advice;
 use crate::analysis::{Health, Measured, Monitor};
+use crate::physics::SymmetricTop;
 use crate::run::{Sample, Simulation};
 use serde::Serialize;
 use std::fmt;
@@ -38,7 +39,8 @@ pub struct Summary {
     /// Largest distance of the traced point from the exact motion so far; `None` where that was not to be had.
     pub most_distance_m: Option<f64>,
     pub distance_m: Option<f64>,
-    /// κ = I3/I1; `None` for a lopsided body, as all that theory says.
+    /// κ = I3/I1; `None` for a lopsided body, as all that theory says. What it says is `None` too while a push acts off
+    /// the axle, or where the exact motion would take too long.
     pub kappa: Option<f64>,
     pub predicted_precession_rad_per_s: Option<f64>,
     pub measured_precession_rad_per_s: Option<f64>,
@@ -99,7 +101,7 @@ impl Summary {
             turns_per_step: health.turns_per_step,
             most_distance_m: health.most_distance_m,
             distance_m: health.deviation.map(|deviation| deviation.distance_m),
-            kappa: theory.map(|theory| theory.kappa),
+            kappa: SymmetricTop::of(&simulation.scenario().body.mechanics).map(|top| top.kappa()),
             predicted_precession_rad_per_s: theory.and_then(|theory| theory.precession),
             measured_precession_rad_per_s: value(precession),
             measured_precession_uncertainty_rad_per_s: precession
@@ -125,30 +127,36 @@ fn value(measured: Option<Measured>) -> Option<f64> {
 impl Summary {
     /// Theory beside measurement, a line each.
     fn theory_lines(&self) -> [String; 2] {
-        let predicted = |number: Option<f64>| match (self.kappa, number) {
+        let predicted = |number: Option<f64>, unit: &str| match (self.kappa, number) {
             (None, _) => "lopsided".to_owned(),
-            (_, Some(number)) => format!("{number:.6}"),
+            (_, Some(number)) => format!("{number:.6} {unit}"),
             (_, None) => "none".to_owned(),
         };
-        let measured = |number: Option<f64>, uncertainty: Option<f64>| match (number, uncertainty) {
-            (Some(number), Some(uncertainty)) => format!("{number:.6} +- {uncertainty:.1e}"),
-            _ => "none yet".to_owned(),
-        };
+        let measured =
+            |number: Option<f64>, uncertainty: Option<f64>, unit: &str| match (number, uncertainty)
+            {
+                (Some(number), Some(uncertainty)) => {
+                    format!("{number:.6} +- {uncertainty:.1e} {unit}")
+                }
+                _ => "none".to_owned(),
+            };
         [
             format!(
-                "{} rad/s by theory, {} measured",
-                predicted(self.predicted_precession_rad_per_s),
+                "{} by theory, {} measured",
+                predicted(self.predicted_precession_rad_per_s, "rad/s"),
                 measured(
                     self.measured_precession_rad_per_s,
-                    self.measured_precession_uncertainty_rad_per_s
+                    self.measured_precession_uncertainty_rad_per_s,
+                    "rad/s"
                 ),
             ),
             format!(
-                "{} s by theory, {} measured",
-                predicted(self.predicted_nutation_period_s),
+                "{} by theory, {} measured",
+                predicted(self.predicted_nutation_period_s, "s"),
                 measured(
                     self.measured_nutation_period_s,
-                    self.measured_nutation_uncertainty_s
+                    self.measured_nutation_uncertainty_s,
+                    "s"
                 ),
             ),
         ]
