@@ -8,9 +8,9 @@ use super::monitor::{AFFORDABLE_RAD, integration_rad, is_affordable};
 use super::trial::{Deviation, Trial};
 use crate::physics::loads::torque;
 use crate::physics::{SchemeInfo, SymmetricTop, observables};
-use crate::run::Simulation;
 use crate::run::resample::resampled;
-use crate::scenario::Scenario;
+use crate::run::{Clock, Simulation};
+use crate::scenario::{Edit, Scenario};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 use std::ops::ControlFlow;
@@ -130,17 +130,22 @@ impl Health {
         }
     }
 
-    /// Whether the traced point has kept near enough to the exact motion; `None` where that is not known.
+    /// Whether the traced point has kept near enough to the exact motion; `None` where that is not known, or the traced
+    /// point is the pivot.
     pub fn is_believed(&self) -> Option<bool> {
         self.most_distance_m
+            .filter(|_| self.arm_m > 0.0)
             .map(|most| most <= BELIEVED_WITHIN * self.arm_m)
     }
 
     /// In one sentence: whether the numbers hold, what is wrong with them, and what would mend it.
     pub fn sentence(&self, advice: Option<&Advice>) -> String {
         let Some(most) = self.most_distance_m else {
-            return "Not held against the exact motion, which would take too long for a run of this length.".to_owned();
+            return "Not held against the exact motion, which would take too long or leaves the range of numbers.".to_owned();
         };
+        if self.arm_m == 0.0 {
+            return "Nothing can be said: the traced point is the pivot, which stands still in every run.".to_owned();
+        }
         let far = format!(
             "{} m ({} % of its arm)",
             short(most),
@@ -201,7 +206,10 @@ impl Health {
 
     fn mend(&self, advice: &Advice) -> String {
         match advice {
-            Advice::Holds | Advice::Nothing => String::new(),
+            Advice::Holds => String::new(),
+            Advice::Nothing => {
+                "; nothing that could be tried in reasonable time mends it".to_owned()
+            }
             Advice::TimeStep(step) => {
                 format!("; a time step of {step} s (--time-step {step}) keeps it within 1 %")
             }
@@ -266,27 +274,30 @@ impl Nutation {
     }
 }
 
-/// What would mend `scenario`: each finer time step of the series 1, 2, 5, then the better scheme, is tried by running
-/// it beside the exact motion, so that what is advised has been seen to hold. A time step in which the body turns by
-/// more than half a turn may come near by luck (wobble-push does at 0.05 s, and not at 0.02): it is not advised.
+/// What would mend `scenario`: its own time step without the edits of time step and scheme, each finer one of the series
+/// 1, 2, 5, then the better scheme, are tried by running them beside the exact motion, so that what is advised has been
+/// seen to hold. A time step in which the body turns by more than half a turn may come near by luck (wobble-push does at
+/// 0.05 s, and not at 0.02): it is not advised.
 pub fn advise(scenario: &Scenario) -> Advice {
-    let scheme = scenario.motion.scheme;
-    let holds = |step: f64, scheme| {
+    let (own, scheme) = (scenario.motion.time_step_s, scenario.motion.scheme);
+    let trial = |step: f64, scheme| {
         let other = Arc::new(resampled(scenario, step, scheme));
-        let trial = Trial::run(&other, |_| ControlFlow::Continue(()));
-        trial.is_some_and(|trial| {
-            trial.broke.is_none()
-                && trial.most_turns < 0.5
-                && trial.most_distance_m <= BELIEVED_WITHIN * scenario.arm_m()
-        })
+        Trial::run(&other, |_| ControlFlow::Continue(()))
+            .filter(|trial| trial.broke.is_none())
+            .filter(|trial| trial.most_distance_m <= BELIEVED_WITHIN * scenario.arm_m())
     };
-    if !is_affordable(scenario) {
+    let holds = |step: f64, scheme| trial(step, scheme).is_some_and(|trial| trial.most_turns < 0.5);
+    if !is_affordable(scenario) || duration_s(scenario) / own > most_steps(scenario) {
         return Advice::Nothing;
     }
-    if holds(scenario.motion.time_step_s, scheme) {
-        return Advice::Holds;
+    if trial(own, scheme).is_some() {
+        let is_edited = |edit: &Edit| edit.motion.scheme != scheme || edit.touches.time_step;
+        return match scenario.edits.iter().any(is_edited) {
+            true => Advice::TimeStep(own),
+            false => Advice::Holds,
+        };
     }
-    let mut tried_s = scenario.motion.time_step_s;
+    let mut tried_s = own;
     for step in finer_time_steps(scenario) {
         if holds(step, scheme) {
             return Advice::TimeStep(step);
@@ -294,7 +305,8 @@ pub fn advise(scenario: &Scenario) -> Advice {
         tried_s = step;
     }
     let better = SchemeInfo::find(BETTER_SCHEME).unwrap_or(scheme);
-    match finer_time_steps(scenario).find(|&step| holds(step, better)) {
+    let mut steps = std::iter::once(own).chain(finer_time_steps(scenario));
+    match steps.find(|&step| better != scheme && holds(step, better)) {
         Some(time_step_s) => Advice::Scheme {
             time_step_s,
             tried_s,
@@ -303,14 +315,21 @@ pub fn advise(scenario: &Scenario) -> Advice {
     }
 }
 
+fn duration_s(scenario: &Scenario) -> f64 {
+    Clock::at(scenario, scenario.steps).time_s(scenario.steps)
+}
+
+/// How many steps a search may take with this many points.
+fn most_steps(scenario: &Scenario) -> f64 {
+    SEARCH_STEPS as f64 * 14.0 / scenario.body.mechanics.points().len().max(14) as f64
+}
+
 /// 5, 2 and 1 of every power of ten below the scenario's time step in which the body turns by less than half a turn,
 /// while all of them together take no more steps than the search may.
 fn finer_time_steps(scenario: &Scenario) -> impl Iterator<Item = f64> + use<> {
     let begin = scenario.motion.time_step_s;
-    let duration = scenario.steps as f64 * begin;
-    let body = &scenario.body.mechanics;
-    let most = SEARCH_STEPS as f64 * 14.0 / body.points().len().max(14) as f64;
-    let spin = observables::angular_velocity(body, &scenario.start).norm();
+    let (duration, most) = (duration_s(scenario), most_steps(scenario));
+    let spin = observables::angular_velocity(&scenario.body.mechanics, &scenario.start).norm();
     let coarsest = begin.min(PI / spin);
     let decade = libm::floor(libm::log10(coarsest)) as i32;
     // An exact motion that has to be integrated is integrated anew for every trial.

@@ -3,11 +3,16 @@
 //! Method. The axle's tilt turns back once in every nutation. Where it is least, a parabola through three steps gives
 //! time and azimuth of the turning point. Nutation is the mean time from one such point to the next, precession the
 //! change of azimuth from the first to the last over the time between them; the uncertainty is the standard error of
-//! the single nutations, or one time step where there was only one. A run without nutation has its precession from the
-//! whole way of the azimuth, with the difference between the rates of the whole and of its later half as uncertainty.
+//! the single nutations, or one time step where there was only one, with what the parabola may be off by. A run without
+//! nutation has its precession from the whole way of the azimuth, with the difference between the rates of the whole and
+//! of its later half as uncertainty.
+//!
+//! What is measured is the run as its steps show it: the error of its scheme is not in the uncertainty, and a nutation of
+//! less than two time steps is seen as a slower one, as it is on the screen.
 
 use crate::physics::observables::Azimuth;
 use crate::run::Simulation;
+use std::f64::consts::TAU;
 
 /// A measured number with its uncertainty, in its own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,6 +88,22 @@ impl Spread {
             0 | 1 => of_one,
             n => (self.squares / ((n - 1) as f64 * n as f64)).sqrt(),
         }
+    }
+}
+
+/// No number is known better than to its rounding, however well its parts agree.
+fn at_least_rounding(uncertainty: f64, value: f64) -> f64 {
+    uncertainty.max(f64::EPSILON * value.abs())
+}
+
+impl Tops {
+    /// How far off, as a part, the first and the last point together may put the mean. A parabola through three steps of
+    /// a swing's top, ψ apart, is off by up to (2/3√3) ψ²/12 of a step; where a swing takes almost a whole number of
+    /// steps that is the same each time, and does not show in the spread.
+    fn resolution(&self, step_s: f64) -> f64 {
+        let psi = TAU * step_s / self.periods.mean;
+        let of_a_step = 2.0 / 27_f64.sqrt() * psi * psi / 12.0;
+        2.0 * of_a_step * step_s / (self.periods.mean * self.periods.count as f64)
     }
 }
 
@@ -177,7 +198,8 @@ impl Instruments {
     pub fn nutation_period_s(&self) -> Option<Measured> {
         let Spread { count, mean, .. } = self.tops.periods;
         let step = self.looks[2].time_s - self.looks[1].time_s;
-        let uncertainty = self.tops.periods.standard_error(step);
+        let spread = self.tops.periods.standard_error(step);
+        let uncertainty = at_least_rounding(spread.hypot(mean * self.tops.resolution(step)), mean);
         (count > 0).then_some(Measured {
             value: mean,
             uncertainty,
@@ -192,7 +214,10 @@ impl Instruments {
                 let time = last.time_s - first.time_s;
                 let value = (last.azimuth_deg - first.azimuth_deg).to_radians() / time;
                 let step = self.looks[2].time_s - self.looks[1].time_s;
-                let uncertainty = self.tops.rates.standard_error(value.abs() * step / time);
+                let spread = self.tops.rates.standard_error(value.abs() * step / time);
+                // At the top of its nutation the axle turns at up to about twice the mean rate.
+                let resolution = 2.0 * value * self.tops.resolution(step);
+                let uncertainty = at_least_rounding(spread.hypot(resolution), value);
                 Some(Measured {
                     value,
                     uncertainty,
@@ -213,7 +238,7 @@ impl Instruments {
         whole.is_finite().then(|| Measured {
             value: whole,
             uncertainty: if later.is_finite() {
-                (whole - later).abs()
+                at_least_rounding((whole - later).abs(), whole)
             } else {
                 whole.abs()
             },

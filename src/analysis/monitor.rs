@@ -15,8 +15,6 @@ pub const AFFORDABLE_RAD: f64 = 5e5;
 pub struct Monitor {
     instruments: Instruments,
     truth: Option<Truth>,
-    /// The theory, and the change of forces since which it holds.
-    theory: Option<(u64, Option<Theory>)>,
     most_distance_m: f64,
     /// The change of forces since which the instruments measure.
     changes: u64,
@@ -33,10 +31,9 @@ impl Monitor {
         Self {
             instruments: Instruments::new(simulation),
             truth,
-            theory: None,
             most_distance_m: 0.0,
             changes: simulation.changes(),
-            next_look: simulation.step_number(),
+            next_look: simulation.step_number() + stride(scenario.steps),
             stride: stride(scenario.steps),
         }
     }
@@ -68,6 +65,10 @@ impl Monitor {
 
     fn deviation(&mut self, simulation: &Simulation) -> Option<Deviation> {
         let deviation = Deviation::of(simulation, self.truth.as_mut()?);
+        if !deviation.distance_m.is_finite() {
+            self.truth = None; // it has left the range of numbers, and does not come back
+            return None;
+        }
         self.most_distance_m = self.most_distance_m.max(deviation.distance_m);
         Some(deviation)
     }
@@ -77,32 +78,17 @@ impl Monitor {
     pub fn theory(&mut self, time_s: f64) -> Option<Theory> {
         let truth = self.truth.as_mut()?;
         let state = truth.state_at(time_s);
-        if let Some((changes, theory)) = self.theory
-            && changes == truth.changes()
-        {
-            return theory;
-        }
-        let theory = theory_of(truth, &state);
-        self.theory = Some((truth.changes(), theory));
-        theory
+        let body = &truth.scenario().body.mechanics;
+        let top = SymmetricTop::of(body)?;
+        let load = truth.loads().on_axle(body, &top)?;
+        let motion = truth.motion().closed_form()?;
+        Some(Theory::new(&top, &load, motion, &state))
     }
 
     /// What has been measured since the forces last changed.
     pub fn instruments(&self) -> &Instruments {
         &self.instruments
     }
-}
-
-fn theory_of(truth: &Truth, state: &crate::physics::State) -> Option<Theory> {
-    let body = &truth.scenario().body.mechanics;
-    let top = SymmetricTop::of(body)?;
-    let load = truth.loads().on_axle(body, &top)?;
-    Some(Theory::new(
-        &top,
-        &load,
-        truth.motion().closed_form()?,
-        state,
-    ))
 }
 
 /// Whether the exact motion of `scenario` can be had on the side: in closed form always, by integration for a while.
@@ -127,5 +113,8 @@ pub fn integration_rad(scenario: &Scenario) -> f64 {
         return 0.0;
     }
     let spin = observables::angular_velocity(body, &scenario.start).norm();
-    spin * crate::run::Clock::at(scenario, scenario.steps).time_s(scenario.steps)
+    // A body at rest will swing and turn under its weight, at about this rate.
+    let weight = scenario.motion.gravity.abs() * body.first_moment().norm();
+    let swing = (weight * body.inverse_inertia().trace()).sqrt();
+    (spin + swing) * crate::run::Clock::at(scenario, scenario.steps).time_s(scenario.steps)
 }

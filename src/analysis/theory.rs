@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use std::fmt;
 
 /// The theory of one heavy symmetric top under its present loads, of which only gravity is vertical by right: under a
-/// tilted load (a sideways push on the axle) "vertical" is the direction opposite to it.
+/// tilted load (a sideways push on the axle) "vertical" is the direction opposite to it, and without a load that of L.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Theory {
     /// κ = I3/I1.
@@ -49,6 +49,8 @@ pub enum Path {
     Loops,
     /// It always goes the same way.
     Waves,
+    /// It passes through the vertical, or stays there.
+    ThroughVertical,
 }
 
 impl fmt::Display for Path {
@@ -58,12 +60,16 @@ impl fmt::Display for Path {
             Self::Cusps => "cusps",
             Self::Loops => "loops",
             Self::Waves => "waves",
+            Self::ThroughVertical => "through the vertical",
         })
     }
 }
 
 /// A swing of the tilt below this (degrees) is rounding, and so is a difference between two tilts.
 const SAME_DEG: f64 = 1e-6;
+
+/// A spin below this part of the momenta that the motion is made of is rounding.
+const SAME_PART: f64 = 1e-12;
 
 /// An axle that comes so near to the vertical (rad) passes through it but for rounding.
 const PASSES_RAD: f64 = 1e-7;
@@ -78,29 +84,39 @@ impl Theory {
         state: &State,
     ) -> Self {
         let axle = state.axle();
-        let up = -load.try_normalize(0.0).unwrap_or(-axle);
+        // Without a load the axle turns about L.
+        let free = || -state.momentum.try_normalize(0.0).unwrap_or(axle);
+        let up = -load.try_normalize(0.0).unwrap_or_else(free);
         let (size, spin) = (load.norm(), state.momentum.dot(&axle));
+        let momenta = state.momentum.norm() + (top.across * size).sqrt();
+        let spins = spin.abs() > SAME_PART * momenta;
         let (low, high) = motion.tilt_range();
+        let is_through_vertical = low <= PASSES_RAD || high >= PI - PASSES_RAD;
         let tilt_range_deg = (low.to_degrees(), high.to_degrees());
-        let (slow, fast) = steady(top.across * axle.dot(&up), spin, size);
+        let (slow, fast) = match spins {
+            true => steady(top.across * axle.dot(&up), spin, size),
+            false => (None, None),
+        };
         let cusp_cosine = state.momentum.dot(&up) / spin;
-        let cusp_tilt_deg =
-            (size > 0.0 && cusp_cosine.abs() <= 1.0).then(|| cusp_cosine.acos().to_degrees());
+        let cusp_tilt_deg = (size > 0.0 && spins && cusp_cosine.abs() <= 1.0)
+            .then(|| cusp_cosine.acos().to_degrees());
         Self {
             kappa: top.kappa(),
             load: size,
             spin,
-            fast_top_precession: (spin != 0.0).then(|| size / spin),
+            fast_top_precession: spins.then(|| size / spin),
             slow_precession: slow,
             fast_precession: fast,
-            precession: (low > PASSES_RAD && high < PI - PASSES_RAD)
-                .then(|| motion.mean_precession()),
+            precession: (!is_through_vertical).then(|| motion.mean_precession()),
             fast_top_nutation: spin / top.across,
             nutation_period_s: motion.nutation_period(),
             tilt_range_deg,
             sleeping_limit: 2.0 * (top.across * size).sqrt(),
             cusp_tilt_deg,
-            path: path(tilt_range_deg, cusp_tilt_deg),
+            path: match is_through_vertical {
+                true => Path::ThroughVertical,
+                false => path(tilt_range_deg, cusp_tilt_deg),
+            },
         }
     }
 
@@ -113,7 +129,7 @@ impl Theory {
 /// The roots of `across_cos` w² − `spin` w + `load` = 0, the slow and the fast one; neither as a small difference.
 fn steady(across_cos: f64, spin: f64, load: f64) -> (Option<f64>, Option<f64>) {
     let discriminant = spin * spin - 4.0 * across_cos * load;
-    if discriminant < 0.0 || spin == 0.0 {
+    if discriminant < 0.0 {
         return (None, None);
     }
     let larger = 0.5 * (spin + discriminant.sqrt().copysign(spin));

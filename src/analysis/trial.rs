@@ -11,6 +11,8 @@ use std::time::{Duration, Instant};
 
 /// About how many steps of a trial are held against the exact motion, evenly spread.
 const LOOKS: u64 = 1000;
+/// After so many steps at most the watcher is asked whether to go on.
+const WATCH_STEPS: u64 = 1 << 15;
 
 /// How a run went beside the exact motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,12 +79,18 @@ impl Trial {
         let scale = Some(scenario.start.momentum.norm())
             .filter(|&size| size > 0.0)
             .unwrap_or(1.0);
+        let mut next_look = 0;
         while simulation.step_number() < scenario.steps && trial.broke.is_none() {
-            let next = scenario.steps.min(simulation.step_number() + stride);
+            if simulation.step_number() == next_look {
+                next_look = scenario.steps.min(next_look.saturating_add(stride));
+            }
+            let next = next_look.min(simulation.step_number() + WATCH_STEPS);
             let begin = Instant::now();
             trial.broke = simulation.step_to(next).err();
             trial.stepping += begin.elapsed();
-            trial.look(&simulation, &mut truth, scale);
+            if next == next_look || trial.broke.is_some() {
+                trial.look(&simulation, &mut truth, scale);
+            }
             if watch(simulation.step_number()).is_break() {
                 return None;
             }
@@ -108,9 +116,9 @@ impl Trial {
     fn look(&mut self, simulation: &Simulation, truth: &mut Truth, scale: f64) {
         let off = Deviation::of(simulation, truth);
         self.end_distance_m = off.distance_m;
-        self.most_distance_m = self.most_distance_m.max(off.distance_m);
-        self.spin_drift = self.spin_drift.max((off.spin / scale).abs());
-        self.lz_drift = self.lz_drift.max((off.lz / scale).abs());
+        self.most_distance_m = greater(self.most_distance_m, off.distance_m);
+        self.spin_drift = greater(self.spin_drift, (off.spin / scale).abs());
+        self.lz_drift = greater(self.lz_drift, (off.lz / scale).abs());
         let body = &simulation.scenario().body.mechanics;
         let omega = observables::angular_velocity(body, simulation.state()).norm();
         self.most_turns = self
@@ -118,6 +126,15 @@ impl Trial {
             .max(omega * simulation.motion().time_step_s / TAU);
         let drift = simulation.energy_drift().map(f64::abs);
         self.energy_drift = drift.map(|drift| drift.max(self.energy_drift.unwrap_or(0.0)));
+    }
+}
+
+/// The greater of two numbers, of which one that is no number must not be lost: it is a run that could not be followed.
+fn greater(most: f64, now: f64) -> f64 {
+    if most.is_nan() || now <= most {
+        most
+    } else {
+        now
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::analysis::health::Advice;
 use crate::analysis::{Health, Measured, Monitor};
+use crate::physics::SymmetricTop;
 use crate::run::Simulation;
 use serde::Serialize;
 use std::fmt;
@@ -69,7 +70,7 @@ impl Readouts {
             most_distance_m: health.most_distance_m,
             L_axle_drift_Js: health.deviation.map(|off| off.spin),
             Lz_drift_Js: health.deviation.map(|off| off.lz),
-            kappa: theory.map(|theory| theory.kappa),
+            kappa: SymmetricTop::of(&simulation.scenario().body.mechanics).map(|top| top.kappa()),
             path: theory.map(|theory| theory.path.to_string()),
             lowest_tilt_deg: theory.map(|theory| theory.tilt_range_deg.0),
             highest_tilt_deg: theory.map(|theory| theory.tilt_range_deg.1),
@@ -94,17 +95,16 @@ impl Readouts {
     }
 
     fn write_theory(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Some(kappa) = self.kappa else {
-            return writeln!(
-                f,
-                "  theory        none: the body is lopsided, or pushed off its axle"
-            );
+        let (kappa, path) = match (self.kappa, &self.path) {
+            (None, _) => return writeln!(f, "  theory        none: the body is lopsided"),
+            (Some(kappa), None) => {
+                let why = "pushed off its axle, or too long a run";
+                return writeln!(f, "  theory        kappa {kappa:.4}; none now: {why}");
+            }
+            (Some(kappa), Some(path)) => (kappa, path),
         };
-        let [path, low, high] = [
-            self.path.clone().unwrap_or_default(),
-            number(self.lowest_tilt_deg, 4),
-            number(self.highest_tilt_deg, 4),
-        ];
+        let low = number(self.lowest_tilt_deg, 4);
+        let high = number(self.highest_tilt_deg, 4);
         writeln!(
             f,
             "  theory        kappa {kappa:.4}; path: {path}, tilt {low} to {high} degrees"
@@ -163,9 +163,9 @@ fn number(value: Option<f64>, decimals: usize) -> String {
     value.map_or("none".to_owned(), |value| format!("{value:.decimals$}"))
 }
 
-/// "0.886033 rad/s by theory, 0.886033 +- 2.4e-9 measured".
+/// "0.886033 rad/s by theory, 0.886033 +- 2.4e-9 rad/s measured".
 fn beside(
-    unit: &str,
+    [unit, none]: [&str; 2],
     predicted: Option<f64>,
     measured: Option<f64>,
     uncertainty: Option<f64>,
@@ -178,20 +178,25 @@ fn beside(
     };
     match predicted {
         Some(value) => format!("{value:.6} {unit} by theory, {measured}"),
-        None => format!("none by theory, {measured}"),
+        None => format!("{none} by theory, {measured}"),
     }
 }
 
 impl fmt::Display for Readouts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let none = if self.kappa.is_some() {
+            "none"
+        } else {
+            "lopsided"
+        };
         let precession = beside(
-            "rad/s",
+            ["rad/s", none],
             self.predicted_precession_rad_per_s,
             self.measured_precession_rad_per_s,
             self.measured_precession_uncertainty_rad_per_s,
         );
         let nutation = beside(
-            "s",
+            ["s", none],
             self.predicted_nutation_period_s,
             self.measured_nutation_period_s,
             self.measured_nutation_uncertainty_s,

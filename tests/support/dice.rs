@@ -1,5 +1,7 @@
 //! Random numbers for tests, the same on every machine.
 
+#![allow(dead_code, reason = "no test needs all of them")]
+
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 /// A small generator of numbers in 0..1 (Marsaglia's xorshift).

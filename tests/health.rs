@@ -1,0 +1,566 @@
+//! The health of a run: when it warns, whether what it advises is right, and whether its numbers are those of the run.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "support/dice.rs"]
+mod dice;
+
+use dice::Dice;
+use gyrolab::analysis::health::{Advice, BELIEVED_WITHIN, Health, Picture, advise};
+use gyrolab::analysis::{Monitor, Trial};
+use gyrolab::physics::SchemeInfo;
+use gyrolab::physics::scheme::SCHEMES;
+use gyrolab::run::resample::resampled;
+use gyrolab::run::{Simulation, Truth};
+use gyrolab::scenario::presets::PRESETS;
+use gyrolab::scenario::{Document, Scenario};
+use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+fn preset(name: &str, set: &[&str]) -> Scenario {
+    let mut document = Document::open(name).unwrap();
+    set.iter().for_each(|set| document.set(set).unwrap());
+    document
+        .scenario()
+        .unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn parse(text: &str) -> Scenario {
+    let scenario = Document::parse("x.toml", text).and_then(|document| document.scenario());
+    scenario.unwrap_or_else(|problems| panic!("{problems}\n{text}"))
+}
+
+fn find(name: &str) -> &'static SchemeInfo {
+    SchemeInfo::find(name).unwrap()
+}
+
+/// The health of the whole run, as `gyrolab run` has it.
+fn health(scenario: Scenario) -> Health {
+    let steps = scenario.steps;
+    health_at(scenario, steps)
+}
+
+fn health_at(scenario: Scenario, step: u64) -> Health {
+    let mut simulation = Simulation::new(Arc::new(scenario));
+    let mut monitor = Monitor::new(&simulation);
+    while simulation.step_number() < step && simulation.step().is_ok() {
+        monitor.follow(&simulation);
+    }
+    monitor.health(&simulation)
+}
+
+#[test]
+fn it_warns_of_the_runs_that_the_time_step_has_made() {
+    for (name, set, words) in [
+        (
+            "method-2",
+            &[][..],
+            "the wheel turns 4.97 times in a time step",
+        ),
+        ("wobble-push", &[], "times in a time step"),
+        ("wobble-push-accumulating", &[], "times in a time step"),
+        (
+            "cusps",
+            &[
+                "motion.scheme=report",
+                "motion.time_step_s=0.01",
+                "motion.steps=1000",
+            ],
+            "damps the nutation",
+        ),
+    ] {
+        let scenario = preset(name, set);
+        let health = health(scenario.clone());
+        let sentence = health.sentence(Some(&advise(&scenario)));
+        println!("{sentence}");
+        assert_eq!(health.is_believed(), Some(false));
+        assert!(
+            sentence.starts_with("Do not believe this run") && sentence.contains(words),
+            "{sentence}"
+        );
+        assert!(
+            sentence.contains("; a time step of 0.0")
+                || sentence.contains("but the scheme srkn11b at 0.0"),
+            "{sentence}"
+        );
+        assert!(!sentence.contains('\n') && !sentence.contains("NaN"));
+    }
+}
+
+#[test]
+fn it_does_not_warn_of_the_runs_that_hold() {
+    for preset in PRESETS {
+        let scenario = self::preset(preset.name, &[]);
+        if ["method-2", "wobble-push", "wobble-push-accumulating"].contains(&preset.name) {
+            continue;
+        }
+        let health = health(scenario.clone());
+        let sentence = health.sentence(None);
+        assert_eq!(
+            health.is_believed(),
+            Some(true),
+            "{}: {sentence}",
+            preset.name
+        );
+        assert!(sentence.starts_with("The numbers hold"), "{sentence}");
+        assert_eq!(advise(&scenario), Advice::Holds, "{}", preset.name);
+    }
+}
+
+/// Largest distance from the exact motion, looked at on every step, as a part of the arm; infinite where a run breaks.
+fn strays(scenario: Scenario) -> f64 {
+    let scenario = Arc::new(scenario);
+    let mut truth = Truth::new(Arc::clone(&scenario));
+    let mut simulation = Simulation::new(Arc::clone(&scenario));
+    let at = scenario.body.mechanics.points()[scenario.trace].at;
+    let mut most = 0.0_f64;
+    while simulation.step_number() < scenario.steps {
+        if simulation.step().is_err() {
+            return f64::INFINITY;
+        }
+        let state = simulation.state();
+        let known = truth.state_at(state.time_s);
+        most = most.max(((state.orientation - known.orientation) * at).norm());
+    }
+    most / scenario.arm_m()
+}
+
+/// Asks for advice and takes it.
+fn advice_is_right(name: &str, scenario: &Scenario) -> Advice {
+    let advice = advise(scenario);
+    let (step, scheme) = (scenario.motion.time_step_s, scenario.motion.scheme);
+    let case = format!("{name}, {} at {step} s: {advice:?}", scheme.name);
+    let held = |step, scheme| strays(resampled(scenario, step, scheme));
+    let is_held = |step, scheme| {
+        let most = held(step, scheme);
+        assert!(most <= BELIEVED_WITHIN, "{case}: {most}");
+    };
+    match advice {
+        Advice::Holds => is_held(step, scheme),
+        Advice::TimeStep(finer) => {
+            is_held(finer, scheme);
+            assert!(
+                finer < step && held(step, scheme) > 0.9 * BELIEVED_WITHIN,
+                "{case}"
+            );
+        }
+        Advice::Scheme {
+            time_step_s,
+            tried_s,
+        } => {
+            is_held(time_step_s, find("srkn11b"));
+            assert!(
+                held(tried_s, scheme) > 0.9 * BELIEVED_WITHIN && tried_s <= step,
+                "{case}"
+            );
+        }
+        Advice::Nothing => {}
+    }
+    advice
+}
+
+#[test]
+fn the_advice_is_right_for_every_preset_under_every_scheme() {
+    let cases: Vec<_> = PRESETS
+        .iter()
+        .flat_map(|preset| SCHEMES.iter().map(move |scheme| (preset, scheme)))
+        .flat_map(|(preset, scheme)| [0.1, 1.0, 10.0].map(|times| (preset, scheme, times)))
+        .collect();
+    let advice: Vec<_> = cases
+        .par_iter()
+        .map(|(preset, scheme, times)| {
+            let scenario = self::preset(preset.name, &[]);
+            let step = scenario.motion.time_step_s * times;
+            advice_is_right(preset.name, &resampled(&scenario, step, scheme))
+        })
+        .collect();
+    let count = |is: fn(&Advice) -> bool| advice.iter().filter(|advice| is(advice)).count();
+    assert!(count(|advice| matches!(advice, Advice::Holds)) > 20);
+    assert!(count(|advice| matches!(advice, Advice::TimeStep(_))) > 20);
+    assert!(count(|advice| matches!(advice, Advice::Scheme { .. })) > 2);
+    assert_eq!(count(|advice| *advice == Advice::Nothing), 0);
+}
+
+/// A wheel or a few points anywhere, spinning, with a push or none.
+fn random(dice: &mut Dice) -> Scenario {
+    let body = match dice.unit() < 0.6 {
+        true => format!(
+            "[body.rim]\npoints = {}\nradius_m = {}\nheight_m = {}\npoint_mass_kg = {}\n",
+            dice.whole(3, 12),
+            dice.between(0.3, 1.0),
+            dice.between(-0.8, 1.2),
+            dice.scale(0.1, 1.0)
+        ),
+        false => (0..dice.whole(3, 5))
+            .map(|j| {
+                let at = dice.vector();
+                format!(
+                    "[[body.point]]\nname = 'p{j}'\nat_m = [{}, {}, {}]\nmass_kg = {}\n",
+                    at.x,
+                    at.y,
+                    at.z,
+                    dice.between(0.1, 1.0)
+                )
+            })
+            .collect(),
+    };
+    let spin = dice.vector() * 10.0;
+    let momentum = format!("[{}, {}, {}]", spin.x, spin.y, dice.scale(1.0, 200.0));
+    let dt = dice.scale(0.001, 0.2);
+    let push = match dice.unit() < 0.5 {
+        true => format!(
+            "[[push]]\npoint = 'top'\nforce_N = [{}, 0, -20]\nfrom_s = {}\nfor_s = 0.5\n",
+            dice.between(-20.0, 20.0),
+            dice.between(0.0, 3.0)
+        ),
+        false => String::new(),
+    };
+    parse(&format!(
+        "title = 'x'\n{body}[[body.point]]\nname = 'top'\nat_m = [0, 0, 1.2]\nmass_kg = 0.1\n[start]\ntilt_deg = {}\nmomentum_Js = {momentum}\nmomentum_frame = 'body'\n[motion]\nscheme = '{}'\ntime_step_s = {dt}\nsteps = {}\n{push}",
+        dice.between(0.0, 150.0),
+        dice.pick(SCHEMES_TRIED),
+        (dice.between(2.0, 10.0) / dt).ceil(),
+    ))
+}
+
+const SCHEMES_TRIED: &[&str] = &["report", "report", "rk4", "strang", "srkn11b", "exact"];
+
+#[test]
+fn the_advice_is_right_for_random_bodies() {
+    let mut dice = Dice(0x5851_F42D_4C95_7F2D);
+    let scenarios: Vec<_> = (0..150).map(|_| random(&mut dice)).collect();
+    let advice: Vec<_> = scenarios
+        .par_iter()
+        .map(|scenario| {
+            is_believed_rightly(scenario);
+            advice_is_right("random", scenario)
+        })
+        .collect();
+    let count = |is: fn(&Advice) -> bool| advice.iter().filter(|advice| is(advice)).count();
+    assert!(count(|advice| matches!(advice, Advice::Holds)) > 20);
+    assert!(count(|advice| matches!(advice, Advice::TimeStep(_))) > 20);
+    assert!(count(|advice| matches!(advice, Advice::Scheme { .. })) > 5);
+    assert_eq!(count(|advice| *advice == Advice::Nothing), 0);
+}
+
+/// The monitor looks at some steps only: it may miss a little of the largest distance.
+fn is_believed_rightly(scenario: &Scenario) {
+    let health = health(scenario.clone());
+    let (seen, most) = (
+        health.most_distance_m.unwrap() / scenario.arm_m(),
+        strays(scenario.clone()),
+    );
+    if most.is_infinite() {
+        assert_eq!(health.is_believed(), Some(false), "its numbers break");
+        return;
+    }
+    assert!(
+        seen <= most * (1.0 + 1e-9) && seen > 0.9 * most - 1e-12,
+        "{seen} of {most}"
+    );
+    let sentence = health.sentence(None);
+    match health.is_believed().unwrap() {
+        true => assert!(sentence.starts_with("The numbers hold") && most < 1.1 * BELIEVED_WITHIN),
+        false => assert!(sentence.starts_with("Do not believe") && most > BELIEVED_WITHIN),
+    }
+}
+
+/// A wheel of 5 kg at 0.8 m whose hub is at `height` (m), with 0.5 kg at each of four points of its axle or none there.
+fn wheel(height: f64, axle_kg: f64, rest: &str) -> Scenario {
+    let axle: String = [("hub", 1.0), ("top", 1.5), ("foot", 0.0), ("middle", 0.5)]
+        .map(|(name, part)| {
+            let at = part * height;
+            format!("[[body.point]]\nname = '{name}'\nat_m = [0, 0, {at}]\nmass_kg = {axle_kg}\n")
+        })
+        .concat();
+    parse(&format!(
+        "title = 'x'\n[body.rim]\npoints = 10\nradius_m = 0.8\nheight_m = {height}\npoint_mass_kg = 0.5\n{axle}{rest}"
+    ))
+}
+
+/// The wheel standing upright without gravity, turning by `psi` (rad) a step, some of it aside.
+fn turning(height: f64, psi: f64, aside: f64, steps: u64) -> Scenario {
+    // I3 = 3.2 kg m^2, and dt = 1 s.
+    let momentum = 3.2 * psi;
+    wheel(
+        height,
+        0.0,
+        &format!(
+            "[start]\nmomentum_Js = [0, {}, {momentum}]\n[motion]\ngravity_m_per_s2 = 0\ntime_step_s = 1\nsteps = {steps}\n",
+            aside * momentum
+        ),
+    )
+}
+
+#[test]
+fn the_picture_changes_at_its_thresholds() {
+    let picture = |psi: f64| health_at(turning(1.0, psi, 0.0, 1), 0).picture;
+    for (at, below, above) in [
+        (PI / 10.0, Picture::Right, Picture::Strobed),
+        (PI, Picture::Strobed, Picture::Backwards),
+        (TAU, Picture::Backwards, Picture::TooSlow),
+        (3.0 * PI, Picture::TooSlow, Picture::Backwards),
+        (4.0 * TAU, Picture::Backwards, Picture::TooSlow),
+        (4.0 * TAU + PI, Picture::TooSlow, Picture::Backwards),
+    ] {
+        assert_eq!(picture(at - 1e-9), below, "below {at}");
+        assert_eq!(picture(at + 1e-9), above, "above {at}");
+    }
+}
+
+#[test]
+fn the_picture_is_what_one_step_shows() {
+    let mut dice = Dice(31);
+    for _ in 0..200 {
+        let psi = dice.between(0.01, 40.0);
+        let mut simulation = Simulation::new(Arc::new(turning(1.0, psi, 0.0, 1)));
+        simulation.step().unwrap();
+        let spoke = simulation.state().orientation.column(0).into_owned();
+        let seems = spoke.y.atan2(spoke.x);
+        let shown = Monitor::new(&simulation).health(&simulation).picture;
+        let expected = match seems {
+            _ if seems < 0.0 => Picture::Backwards,
+            _ if (seems - psi).abs() > 1e-9 => Picture::TooSlow,
+            _ if seems > PI / 10.0 => Picture::Strobed,
+            _ => Picture::Right,
+        };
+        assert_eq!(shown, expected, "{psi}");
+    }
+}
+
+#[test]
+fn the_multiplier_is_that_of_a_measured_run() {
+    let steps = 8;
+    for (height, psi) in [
+        (1.0, 0.3),
+        (1.0, 2.0),
+        (0.6, 1.0),
+        (0.3, 0.5),
+        (1.0, 31.25),
+        (0.2, 0.05),
+    ] {
+        let scenario = turning(height, psi, 1e-6, steps);
+        let lag = |step| health_at(scenario.clone(), step);
+        let (first, last) = (lag(0), lag(steps));
+        let measured = (last.lag_deg / first.lag_deg).powf(1.0 / steps as f64);
+        let told = last.nutation.unwrap().multiplier;
+        assert!(
+            (measured - told).abs() < 1e-8,
+            "h {height}, psi {psi}: {told}, measured {measured}"
+        );
+        assert!((told - 1.0).abs() > 1e-4 || height == 0.2);
+    }
+    let isotropic = turning(0.8 / 2_f64.sqrt(), 31.25, 1e-6, 1);
+    assert!((health(isotropic).nutation.unwrap().multiplier - 1.0).abs() < 1e-12);
+    let other = resampled(&turning(1.0, 1.0, 0.0, 1), 1.0, find("rk4"));
+    assert_eq!(
+        health(other).nutation,
+        None,
+        "it is the report's scheme alone"
+    );
+}
+
+/// Largest angle between axle and L over the run, degrees.
+fn largest_lag(scenario: &Scenario) -> f64 {
+    let mut simulation = Simulation::new(Arc::new(scenario.clone()));
+    let mut most = 0.0_f64;
+    while simulation.step_number() < scenario.steps {
+        simulation.step().unwrap();
+        let state = simulation.state();
+        most = most.max(state.axle().angle(&state.momentum));
+    }
+    most.to_degrees()
+}
+
+#[test]
+fn the_lag_of_method_2_is_188_times_the_true_one() {
+    let scenario = preset("method-2", &[]);
+    let nutation = health_at(scenario.clone(), 0).nutation.unwrap();
+    // kappa = 1: |tau| dt/|L| over 2 sin(psi/2), and over psi.
+    let torque = 5.0 * 9.8 * 0.565685424949238 * 0.5_f64.sqrt();
+    let psi: f64 = 1000.0 / 3.2 * 0.1;
+    let kick = torque * 0.1 / 1000.0;
+    let expected = (kick / (2.0 * (psi / 2.0).sin().abs())).to_degrees();
+    assert!(
+        (nutation.scheme_lag_deg / expected - 1.0).abs() < 1e-9,
+        "{nutation:?}"
+    );
+    assert!((nutation.true_lag_deg / (kick / psi).to_degrees() - 1.0).abs() < 1e-9);
+    assert!(
+        (nutation.lag_ratio() - 188.0).abs() < 1.0,
+        "{}",
+        nutation.lag_ratio()
+    );
+    // It swings about the lag, from none to twice as much.
+    let measured = largest_lag(&scenario) / 2.0;
+    println!("lag {}, measured {measured}", nutation.scheme_lag_deg);
+    assert!(
+        (measured / nutation.scheme_lag_deg - 1.0).abs() < 0.02,
+        "{measured}"
+    );
+    let exact = resampled(
+        &preset("method-2", &["motion.steps=10"]),
+        0.0007,
+        find("exact"),
+    );
+    let measured = largest_lag(&exact) / 2.0;
+    println!("true lag {}, measured {measured}", nutation.true_lag_deg);
+    assert!(
+        (measured / nutation.true_lag_deg - 1.0).abs() < 0.001,
+        "{measured}"
+    );
+}
+
+/// The body of kappa = 0.38 for ten seconds under the report's scheme at 1e-3 s.
+fn reference_top(momentum: &str) -> Scenario {
+    wheel(
+        1.0,
+        0.5,
+        &format!(
+            "[start]\ntilt_deg = 45\nmomentum_Js = {momentum}\nmomentum_frame = 'body'\n[motion]\ntime_step_s = 1e-3\nsteps = 10000\n"
+        ),
+    )
+}
+
+#[test]
+fn drifts_and_deviation_are_those_of_known_cases() {
+    let cusped = health(reference_top("[0, 0, 100]"));
+    assert!((cusped.energy_drift.unwrap() - 0.116).abs() < 5e-4);
+    let looping = health(reference_top("[0, -20, 30]"));
+    let deviation = looping.deviation.unwrap();
+    assert!(
+        (deviation.spin / 30.0 - 0.125).abs() < 5e-4,
+        "{deviation:?}"
+    );
+    assert!(deviation.lz.abs() < 1e-11);
+    let trial = Trial::run(&Arc::new(reference_top("[0, -20, 30]")), |_| {
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    assert!(
+        (trial.spin_drift * 1300_f64.sqrt() / 30.0 - 0.125).abs() < 5e-4,
+        "{trial:?}"
+    );
+    assert!(trial.lz_drift < 1e-12 && trial.steps == 10_000 && trial.broke.is_none());
+    assert_eq!(trial.end_distance_m, deviation.distance_m);
+    assert_eq!(Some(trial.most_distance_m), looping.most_distance_m);
+}
+
+#[test]
+fn distances_are_those_from_the_reference_motions() {
+    // Rows: t (s), axle, ...; the traced point is 1.5 m up the axle.
+    for (momentum, table) in [
+        ("[0, 0, 100]", include_str!("reference/exact/cusped.csv")),
+        ("[0, -20, 30]", include_str!("reference/exact/looping.csv")),
+    ] {
+        let scenario = reference_top(momentum);
+        let mut simulation = Simulation::new(Arc::new(scenario));
+        let mut monitor = Monitor::new(&simulation);
+        let mut compared = 0;
+        for line in table.lines().skip(1) {
+            let row: Vec<f64> = line.split(',').map(|x| x.parse().unwrap()).collect();
+            let step = (row[0] * 1000.0).round();
+            if (step / 1000.0 - row[0]).abs() > 1e-12 {
+                continue;
+            }
+            simulation.step_to(step as u64).unwrap();
+            let axle = simulation.state().axle();
+            let known = nalgebra::Vector3::new(row[1], row[2], row[3]);
+            let distance = monitor.health(&simulation).deviation.unwrap().distance_m;
+            assert!(
+                (distance - 1.5 * (axle - known).norm()).abs() < 1e-12,
+                "at {} s",
+                row[0]
+            );
+            compared += 1;
+        }
+        assert!(compared > 5, "{compared}");
+    }
+}
+
+#[test]
+fn lz_drifts_where_a_push_from_the_side_meets_the_wrong_axle() {
+    let scenario = preset(
+        "cusps",
+        &["push.0={point='top',force_N=[30,0,0],from_s=0.5,for_s=2}"],
+    );
+    let drift = |step, scheme| {
+        let scenario = Arc::new(resampled(&scenario, step, find(scheme)));
+        Trial::run(&scenario, |_| ControlFlow::Continue(()))
+            .unwrap()
+            .lz_drift
+    };
+    let (report, better) = (drift(0.01, "report"), drift(0.01, "srkn11b"));
+    assert!(report > 1e-3 && better < 1e-10, "{report} {better}");
+}
+
+#[test]
+fn where_nothing_can_be_said_it_says_so() {
+    let pivot = health(preset("method-2", &["trace=foot", "motion.steps=10"]));
+    assert_eq!(pivot.is_believed(), None);
+    assert!(
+        pivot
+            .sentence(None)
+            .contains("the traced point is the pivot")
+    );
+    // The closed form leaves the range of numbers long before the report's scheme does.
+    let huge = health(preset(
+        "cusps",
+        &[
+            "motion.scheme=report",
+            "start.momentum_Js=[0,0,1e100]",
+            "motion.steps=10",
+        ],
+    ));
+    assert_eq!(huge.is_believed(), None);
+    assert!(
+        huge.sentence(None).contains("leaves the range of numbers"),
+        "{}",
+        huge.sentence(None)
+    );
+    let push = "push.0={point='side',force_N=[0,0,-1],steps=5}";
+    let side = "body.point.2={name='side',at_m=[0.5,0,1]}";
+    let long = preset("cusps", &[side, push, "motion.steps=100000000"]);
+    assert_eq!(advise(&long), Advice::Nothing);
+    assert!(
+        health_at(long, 3)
+            .sentence(None)
+            .contains("would take too long")
+    );
+}
+
+#[test]
+fn a_body_at_rest_counts_as_one_that_will_swing() {
+    let at_rest = wheel(
+        1.0,
+        0.5,
+        "[start]\ntilt_deg = 45\nmomentum_Js = [0, 0, 0]\n[motion]\ntime_step_s = 0.1\nsteps = 100000000\n[[push]]\npoint = 'top'\nforce_N = [1, 0, 0]\nsteps = 3\n",
+    );
+    assert!(
+        gyrolab::analysis::monitor::is_affordable(&at_rest),
+        "pushed on the axle: closed form"
+    );
+    let mut lopsided = at_rest.file.clone();
+    lopsided.body.point[0].at_m[0] = 0.3;
+    let lopsided = gyrolab::scenario::Document::from_file("lopsided", &lopsided)
+        .unwrap()
+        .scenario()
+        .unwrap();
+    assert!(!gyrolab::analysis::monitor::is_affordable(&lopsided));
+}
+
+#[test]
+fn edits_that_spoil_a_run_are_advised_away() {
+    let text = Document::open("cusps")
+        .unwrap()
+        .scenario()
+        .unwrap()
+        .to_toml();
+    let spoilt = parse(&format!(
+        "{text}\n[[edit]]\nstep = 1000\nset = {{ 'motion.scheme' = 'report', 'motion.time_step_s' = 0.05 }}\n"
+    ));
+    assert_eq!(health(spoilt.clone()).is_believed(), Some(false));
+    assert_eq!(advise(&spoilt), Advice::TimeStep(0.001));
+}
