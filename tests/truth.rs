@@ -35,6 +35,9 @@ struct Told {
     gravity: f64,
 }
 
+/// A place in the upright pose (m) and the force there (N).
+type PointForce = (Vector3<f64>, Vector3<f64>);
+
 #[derive(Clone)]
 struct Pushed {
     point: usize,
@@ -167,7 +170,7 @@ impl Told {
     }
 
     /// Gravity, and the forces beside it with the places on which they act, at a moment at which none changes.
-    fn forces(&self, time: f64) -> (f64, Vec<(Vector3<f64>, Vector3<f64>)>) {
+    fn forces(&self, time: f64) -> (f64, Vec<PointForce>) {
         let mut gravity = self.gravity;
         let mut pushes = self.pushes.clone();
         for (edit, at) in self.edits.iter().zip(self.edit_times()) {
