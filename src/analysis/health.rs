@@ -10,7 +10,7 @@ use crate::physics::loads::torque;
 use crate::physics::{SchemeInfo, SymmetricTop, observables};
 use crate::run::resample::resampled;
 use crate::run::{Clock, Simulation};
-use crate::scenario::{Edit, Scenario};
+use crate::scenario::{Edit, Scenario, rescale};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 use std::ops::ControlFlow;
@@ -49,6 +49,8 @@ pub struct Health {
     pub arm_m: f64,
     /// Steps taken.
     pub steps: u64,
+    /// Whether the whole run can be had at another time step by itself: no edits, no push that counts its own steps.
+    pub can_be_rescaled: bool,
 }
 
 /// What the time step does to the picture of a wheel of n equal points.
@@ -127,6 +129,7 @@ impl Health {
             most_distance_m,
             arm_m: scenario.arm_m(),
             steps: simulation.step_number(),
+            can_be_rescaled: rescale::can_be_rescaled(&scenario.file),
         }
     }
 
@@ -194,6 +197,9 @@ impl Health {
                     "the body turns {turns} times in a time step, more than the scheme {name} can follow"
                 )
             }
+            _ if self.scheme.order.is_none() => {
+                "what another scheme did before the edit is carried on exactly".to_owned()
+            }
             _ => format!("the error that the scheme {name} makes at this time step has added up"),
         }
     }
@@ -211,7 +217,11 @@ impl Health {
                 "; nothing that could be tried in reasonable time mends it".to_owned()
             }
             Advice::TimeStep(step) => {
-                format!("; a time step of {step} s (--time-step {step}) keeps it within 1 %")
+                let option = match self.can_be_rescaled {
+                    true => format!(" (--time-step {step})"),
+                    false => String::new(),
+                };
+                format!("; a time step of {step} s{option} keeps it within 1 %")
             }
             Advice::Scheme {
                 time_step_s,

@@ -31,6 +31,11 @@ pub fn at_time_step(file: &ScenarioFile, time_step_s: f64) -> Result<ScenarioFil
     Ok(other)
 }
 
+/// Whether steps mean nothing in `file` that seconds cannot hold.
+pub fn can_be_rescaled(file: &ScenarioFile) -> bool {
+    file.edit.is_empty() && !file.push.iter().any(|push| push.accumulates == Some(true))
+}
+
 /// The most steps a run may be given by a length in seconds: whole numbers are exact up to here.
 pub const MOST_STEPS: f64 = 9e15;
 
