@@ -41,6 +41,7 @@ struct Stage {
 impl Stage {
     fn open(scenario: &str, set: &[&str], size: Rect) -> Self {
         let mut document = Document::open(scenario).unwrap();
+        let file = document.scenario().unwrap();
         set.iter().for_each(|set| document.set(set).unwrap());
         let scenario_numbers = Arc::new(document.scenario().unwrap());
         let theme = Theme {
@@ -49,6 +50,7 @@ impl Stage {
         };
         let view = View::new(&scenario_numbers, Marker::Braille, theme);
         let mut lab = Lab::new(scenario, scenario_numbers, view, true);
+        lab.set_file(&file);
         lab.resize(size);
         Self {
             lab,
@@ -197,6 +199,19 @@ fn a_teacher_stops_steps_and_goes_on() {
     assert_eq!(stage.step(), 411);
     stage.press("r").wait(0.0);
     assert!(stage.step() < 30);
+}
+
+#[test]
+fn a_note_that_may_not_hold_any_more_is_not_shown() {
+    let set = ["motion.time_step_s=0.01", "start.tilt_deg=30"];
+    let mut stage = Stage::open("method-2", &set, SMALL);
+    stage
+        .shows("changed from the file: dt 0.01 s, not 0.1, another start")
+        .shows_no("almost a circle");
+    stage.press("o\n").shows("almost a circle");
+    Stage::open("method-2", &["motion.steps=50", "view.speed=2"], SMALL).shows("almost a circle");
+    let set = ["motion.time_step_s=0.01", "view.look_at=\"mine\""];
+    Stage::open("method-2", &set, SMALL).shows("mine");
 }
 
 #[test]

@@ -5,6 +5,7 @@ use super::browser::Browser;
 use super::keymap::Mode;
 use super::layout::Layout;
 use super::live::LiveRun;
+use super::note;
 use super::notice::Notice;
 use super::playback::{Halt, Playback};
 use super::readouts::{self, Readouts};
@@ -40,6 +41,8 @@ pub enum Request {
 pub struct Lab {
     /// SCENARIO as it was opened.
     name: String,
+    /// How the scenario was changed from its file, where it was.
+    changed_from_file: Option<String>,
     playback: Playback,
     readouts: Readouts,
     read_at: Duration,
@@ -61,6 +64,7 @@ impl Lab {
         let mut playback = Playback::new(scenario, running);
         Self {
             name: name.to_owned(),
+            changed_from_file: None,
             readouts: playback.read(),
             playback,
             read_at: Duration::ZERO,
@@ -74,6 +78,11 @@ impl Lab {
             size: Rect::new(0, 0, 80, 24),
             changed: true,
         }
+    }
+
+    /// Says that its scenario was `file` before it was changed: the file's note is shown only where it still holds.
+    pub fn set_file(&mut self, file: &Scenario) {
+        self.changed_from_file = note::changed(file, self.run().scenario());
     }
 
     /// Takes the run to `step` at once, before anything is shown.
@@ -259,6 +268,7 @@ impl Lab {
         let shows_exact = self.run().overlay().is_some();
         self.mode = Mode::Lab;
         self.name = name;
+        self.changed_from_file = None;
         self.notice.take_back();
         self.view.fit(&scenario);
         self.playback = Playback::new(scenario, true);
@@ -360,6 +370,13 @@ impl Lab {
     /// The count typed so far.
     pub fn count(&self) -> Option<u64> {
         self.count
+    }
+
+    /// What there is to see in the run.
+    pub fn note(&self) -> &str {
+        let file = || note::look_at(self.run().scenario());
+        let note = self.changed_from_file.as_deref().or_else(file);
+        note.unwrap_or("r begins the run again, o opens another")
     }
 
     /// What is to be said now, if anything.

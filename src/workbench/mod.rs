@@ -11,6 +11,7 @@
 //! - [`keymap`] is the one table of keys, [`action`] what they can mean, [`lab`] the state that actions change.
 //! - [`live`] plays a run; [`recording`] and [`path`] keep what the pictures need of it, [`overlay`] the exact motion
 //!   beside it; [`pace`] says how fast it is played, [`playback`] plays it as far as its next stop; [`readouts`] and [`health`] read numbers off it.
+//! - [`note`] says what there is to see, [`notice`] what has just happened.
 //! - [`view`] is how it is looked at, [`layout`] where the panes stand, [`screen`] puts them there, [`panes`] draw.
 //!   [`sweep`] and [`camera`] are their geometry, [`dots`], [`markers`] and [`theme`] their ink.
 
@@ -25,6 +26,7 @@ pub mod lab;
 pub mod layout;
 pub mod live;
 pub mod markers;
+pub mod note;
 pub mod notice;
 pub mod overlay;
 pub mod pace;

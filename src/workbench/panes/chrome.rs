@@ -87,13 +87,6 @@ pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
 
 /// What is to be said now; else what there is to see; on a small screen, that there would be more.
 pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
-    let look_at = lab
-        .run()
-        .scenario()
-        .file
-        .view
-        .as_ref()
-        .and_then(|view| view.look_at.as_deref());
     let cramped = format!(
         "{}x{}: 80x24 shows all panes; Tab goes through them",
         lab.size().width,
@@ -103,12 +96,7 @@ pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
         (Some(count), ..) => (format!("{count} times: which key?"), Role::Focus),
         (_, Some(notice), _) => (notice.to_owned(), Role::Focus),
         (_, _, true) => (cramped, Role::Quiet),
-        (_, _, false) => (
-            look_at
-                .unwrap_or("r begins the run again, o opens another")
-                .to_owned(),
-            Role::Text,
-        ),
+        (_, _, false) => (lab.note().to_owned(), Role::Text),
     };
     let style = lab.view().theme.style(role);
     for (line, y) in wrapped(&text, area.width.saturating_sub(2) as usize)
