@@ -187,7 +187,7 @@ fn a_teacher_stops_steps_and_goes_on() {
     assert_eq!(stage.step(), 201);
     stage
         .press("10")
-        .shows("10 times: which key?")
+        .shows("10: now the key")
         .press(".")
         .wait(0.1);
     assert_eq!(stage.step(), 211);
@@ -251,11 +251,19 @@ fn top_speed_is_as_fast_as_there_is_time_for() {
 #[test]
 fn steps_asked_for_by_the_million_do_not_hold_up_the_keys() {
     let mut stage = Stage::open("method-2", &["motion.steps=1000"], SMALL);
-    stage.press("9000000.").wait(0.1);
-    let underway = stage.step();
-    assert!((1000..9_000_000).contains(&underway), "{underway}");
-    stage.press(" ");
-    stage.press(" ").wait(0.2).shows("paused");
+    for stop in ["\u{1b}", " "] {
+        stage
+            .press("r9000000.")
+            .wait(0.1)
+            .shows("stepping: 8 ")
+            .shows("to go, Esc stops");
+        let underway = stage.step();
+        assert!((1000..9_000_000).contains(&underway), "{underway}");
+        stage.press(stop).shows("paused").shows("stopped with 8 ");
+        let stopped = stage.step();
+        stage.wait(1.0).shows("paused");
+        assert_eq!(stage.step(), stopped);
+    }
 }
 
 #[test]
@@ -379,6 +387,21 @@ fn nothing_changes_while_it_stands_still() {
     stage.lab.take_changed();
     stage.wait(10.0);
     assert!(!stage.lab.take_changed());
+}
+
+#[test]
+fn a_notice_goes_with_time_and_at_the_next_key() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.press(" b").shows("colours for a light").wait(5.2);
+    stage.shows_no("colours for").shows("almost a circle");
+    stage.press("b").shows("colours for a dark").press("f");
+    stage
+        .shows_no("colours for")
+        .press("f↑")
+        .shows("arrows turn");
+    stage.press("o").shows_no("arrows turn").press("/zzz\n");
+    stage.shows("nothing is selected").press("\u{1b}");
+    stage.shows_no("nothing is selected");
 }
 
 #[test]

@@ -135,13 +135,14 @@ impl Lab {
     /// Carries out `action`; what only the loop can do comes back.
     pub fn update(&mut self, action: Action) -> Option<Request> {
         let count = self.count.take();
+        let closed = self.notice.take_back() || count.is_some();
         match action {
             Action::TogglePause => self.toggle_pause(),
             Action::Step => self.playback.take_steps(count.unwrap_or(1)),
             Action::Digit(digit) => self.count = Some(counted(count, digit)),
             Action::Faster => self.playback.shift_speed(repeated(count)),
             Action::Slower => self.playback.shift_speed(-repeated(count)),
-            Action::Restart => self.restart(),
+            Action::Restart => self.playback.restart(),
             Action::ToggleExact => self.toggle_exact(),
             Action::NextPane => self.view.shift_focus(&self.layout().focusable(), true),
             Action::PreviousPane => self.view.shift_focus(&self.layout().focusable(), false),
@@ -159,7 +160,7 @@ impl Lab {
             Action::Type(typed) => self.browser.type_char(typed),
             Action::Erase => self.browser.erase(),
             Action::Help => self.toggle_help(),
-            Action::Close => self.close(),
+            Action::Close => self.close(closed),
             Action::Redraw => return Some(Request::Redraw),
             Action::Suspend => return Some(Request::Suspend),
             Action::Quit => return Some(Request::Quit),
@@ -170,13 +171,19 @@ impl Lab {
     }
 
     fn toggle_pause(&mut self) {
-        self.notice.take_back();
-        self.playback.set_running(!self.playback.is_running());
+        if !self.stop_steps() {
+            self.playback.set_running(!self.playback.is_running());
+        }
     }
 
-    fn restart(&mut self) {
-        self.notice.take_back();
-        self.playback.restart();
+    /// Stops on the way through the steps that were asked for; gives whether it was there.
+    fn stop_steps(&mut self) -> bool {
+        let Some(left) = self.playback.steps_to_go() else {
+            return false;
+        };
+        self.playback.set_running(false);
+        self.say(format!("stopped with {} steps to go", grouped(left)));
+        true
     }
 
     fn toggle_exact(&mut self) {
@@ -269,7 +276,6 @@ impl Lab {
         self.mode = Mode::Lab;
         self.name = name;
         self.changed_from_file = None;
-        self.notice.take_back();
         self.view.fit(&scenario);
         self.playback = Playback::new(scenario, true);
         self.playback.set_exact(shows_exact);
@@ -285,8 +291,9 @@ impl Lab {
         }
     }
 
-    /// Closes what lies on top, one thing at a time; with nothing to close it says how to leave.
-    fn close(&mut self) {
+    /// Closes what lies on top, one thing at a time; with nothing to close, and nothing `closed` already, it says how
+    /// to leave.
+    fn close(&mut self, closed: bool) {
         match self.mode {
             Mode::Help => self.toggle_help(),
             Mode::Filter => {
@@ -294,8 +301,11 @@ impl Lab {
                 self.mode = Mode::Browser;
             }
             Mode::Browser => self.mode = Mode::Lab,
+            Mode::Lab if self.playback.steps_to_go().is_some() => {
+                self.stop_steps();
+            }
             Mode::Lab if self.view.filled => self.view.filled = false,
-            Mode::Lab if self.notice.take_back() => {}
+            Mode::Lab if closed => {}
             Mode::Lab => self.say("nothing to close; q leaves"),
         }
     }
@@ -379,14 +389,31 @@ impl Lab {
         note.unwrap_or("r begins the run again, o opens another")
     }
 
-    /// What is to be said now, if anything.
-    pub fn notice(&self) -> Option<&str> {
-        self.notice.text()
+    /// What is to be said now, if anything: what keeps the lab busy, or else what has happened.
+    pub fn notice(&self) -> Option<String> {
+        let stepping = self
+            .playback
+            .steps_to_go()
+            .map(|left| format!("stepping: {} to go, Esc stops", grouped(left)));
+        stepping.or_else(|| self.notice.text().map(str::to_owned))
     }
 }
 
 fn counted(count: Option<u64>, digit: u8) -> u64 {
     (count.unwrap_or(0) * 10 + u64::from(digit)).min(MOST_COUNTED)
+}
+
+/// `number` with its digits in groups of three.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
 }
 
 /// How often to repeat what needs no more than `MOST_REPEATED` repetitions.

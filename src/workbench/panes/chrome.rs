@@ -93,8 +93,11 @@ pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
         lab.size().height
     );
     let (text, role) = match (lab.count(), lab.notice(), is_cramped) {
-        (Some(count), ..) => (format!("{count} times: which key?"), Role::Focus),
-        (_, Some(notice), _) => (notice.to_owned(), Role::Focus),
+        (Some(count), ..) => (
+            format!("{count}: now the key, such as . for that many steps; Esc forgets it"),
+            Role::Focus,
+        ),
+        (_, Some(notice), _) => (notice, Role::Focus),
         (_, _, true) => (cramped, Role::Quiet),
         (_, _, false) => (lab.note().to_owned(), Role::Text),
     };
