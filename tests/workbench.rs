@@ -5,7 +5,8 @@
 
 use gyrolab::scenario::Document;
 use gyrolab::scenario::presets::PRESETS;
-use gyrolab::workbench::keymap::{self, BINDINGS, Key, Mode};
+use gyrolab::workbench::app;
+use gyrolab::workbench::keymap::{BINDINGS, Key, Mode};
 use gyrolab::workbench::lab::{Lab, Request};
 use gyrolab::workbench::markers::Marker;
 use gyrolab::workbench::screen;
@@ -60,7 +61,7 @@ impl Stage {
     }
 
     fn key(&mut self, key: Key) -> Option<Request> {
-        keymap::action(self.lab.mode(), key).and_then(|action| self.lab.update(action))
+        app::press(key, &mut self.lab)
     }
 
     fn press(&mut self, keys: &str) -> &mut Self {
@@ -402,6 +403,45 @@ fn a_notice_goes_with_time_and_at_the_next_key() {
     stage.press("o").shows_no("arrows turn").press("/zzz\n");
     stage.shows("nothing is selected").press("\u{1b}");
     stage.shows_no("nothing is selected");
+}
+
+#[test]
+fn what_does_nothing_says_why() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.press("!").shows("no key ! here; ? lists them");
+    stage.press("\n").shows("Enter opens what is selected");
+    stage.press("/").shows("/ filters the list");
+    stage
+        .press("99+")
+        .shows_no("this is")
+        .press("+")
+        .shows("this is the top speed");
+    stage
+        .press("99-")
+        .shows("a step takes 1000 s")
+        .press("-")
+        .shows("this is the lowest speed");
+}
+
+#[test]
+fn at_speed_numbers_and_pictures_are_of_one_moment() {
+    for keys in ["+++++", "99+", "9000000."] {
+        let mut stage = Stage::open("method-2", &["motion.steps=100000000"], SMALL);
+        stage.press(keys);
+        for _ in 0..7 {
+            stage.wait(0.1);
+            assert_eq!(stage.lab.readouts().sample.step, stage.step(), "{keys}");
+        }
+    }
+}
+
+#[test]
+fn a_precession_is_shown_once_it_is_measured() {
+    let mut stage = Stage::open("cusps", &[], SMALL);
+    stage.press(" 5.").wait(0.1);
+    assert_eq!(stage.lab.readouts().precession_deg_per_s, None);
+    stage.press(" ").wait(6.0);
+    assert!(stage.lab.readouts().precession_deg_per_s.is_some());
 }
 
 #[test]

@@ -2,11 +2,12 @@
 
 use super::action::{Action, Direction};
 use super::browser::Browser;
-use super::keymap::Mode;
+use super::keymap::{Key, Mode};
 use super::layout::Layout;
 use super::live::LiveRun;
 use super::note;
 use super::notice::Notice;
+use super::pace::Speed;
 use super::playback::{Halt, Playback};
 use super::readouts::{self, Readouts};
 use super::view::{Pane, View};
@@ -21,6 +22,10 @@ use std::time::Duration;
 const PAGE: isize = 10;
 /// Degrees the camera turns at a key.
 const TURN_DEG: f64 = 10.0;
+/// Part of the traces' time that may pass between two readings.
+const FAST: f64 = 0.1;
+/// A step that takes longer than this is announced, s.
+const LONG_STEP_S: f64 = 3.0;
 /// The longest count that can be typed.
 const MOST_COUNTED: u64 = 999_999_999;
 /// Repeating something on the screen more often than this shows nothing new.
@@ -110,9 +115,18 @@ impl Lab {
             self.playback.follow_exact(clock);
             self.changed = true;
         }
-        if self.changed && now >= self.read_at + readouts::EVERY {
+        let is_due = self.is_fast() || now >= self.read_at + readouts::EVERY;
+        if self.changed && is_due {
             self.read_now();
         }
+    }
+
+    /// Whether the pictures run away from numbers that are read off a few times a second.
+    fn is_fast(&self) -> bool {
+        let window_s = self.view.window_s;
+        let passes_s = readouts::EVERY.as_secs_f64();
+        self.playback.is_flat_out()
+            || matches!(self.playback.speed(), Speed::Times(speed) if speed * passes_s > FAST * window_s)
     }
 
     fn halted(&mut self, halt: Halt) {
@@ -140,8 +154,8 @@ impl Lab {
             Action::TogglePause => self.toggle_pause(),
             Action::Step => self.playback.take_steps(count.unwrap_or(1)),
             Action::Digit(digit) => self.count = Some(counted(count, digit)),
-            Action::Faster => self.playback.shift_speed(repeated(count)),
-            Action::Slower => self.playback.shift_speed(-repeated(count)),
+            Action::Faster => self.shift_speed(repeated(count)),
+            Action::Slower => self.shift_speed(-repeated(count)),
             Action::Restart => self.playback.restart(),
             Action::ToggleExact => self.toggle_exact(),
             Action::NextPane => self.view.shift_focus(&self.layout().focusable(), true),
@@ -184,6 +198,44 @@ impl Lab {
         self.playback.set_running(false);
         self.say(format!("stopped with {} steps to go", grouped(left)));
         true
+    }
+
+    /// Another speed; says so where there is none, or where it lets nothing be seen for a while.
+    fn shift_speed(&mut self, notches: i32) {
+        let before = self.playback.speed();
+        self.playback.shift_speed(notches);
+        match self.playback.speed() {
+            now if now == before && notches > 0 => self.say("this is the top speed"),
+            now if now == before => self.say("this is the lowest speed; . takes a single step"),
+            Speed::Times(speed) => self.announce_step(speed),
+            Speed::Top => {}
+        }
+    }
+
+    fn announce_step(&mut self, speed: f64) {
+        let wall_s = self.run().simulation().motion().time_step_s / speed;
+        if wall_s > LONG_STEP_S {
+            self.say(format!(
+                "a step takes {wall_s:.0} s at this speed; . takes one now"
+            ));
+        }
+    }
+
+    /// Says that `key` means nothing here.
+    pub fn refuse(&mut self, key: Key) {
+        self.count = None;
+        let text = match (self.mode, key) {
+            (Mode::Lab, Key::Enter) => {
+                "Enter opens what is selected in a list: o shows the list".to_owned()
+            }
+            (Mode::Lab, Key::Char('/')) => {
+                "/ filters the list of presets and files: o shows it".to_owned()
+            }
+            (Mode::Filter, _) => format!("no key {key} here; Enter opens, Esc clears the filter"),
+            _ => format!("no key {key} here; ? lists them"),
+        };
+        self.say(text);
+        self.changed = true;
     }
 
     fn toggle_exact(&mut self) {

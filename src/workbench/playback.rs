@@ -147,6 +147,11 @@ impl Playback {
         self.pace.shift(notches);
     }
 
+    /// The speed that is set.
+    pub fn speed(&self) -> Speed {
+        self.pace.speed()
+    }
+
     /// Shows the exact motion beside the run, or does not.
     pub fn set_exact(&mut self, shown: bool) {
         self.run.set_overlay(shown);
