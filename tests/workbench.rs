@@ -445,6 +445,25 @@ fn a_precession_is_shown_once_it_is_measured() {
 }
 
 #[test]
+fn what_would_mend_a_run_is_found_on_the_side() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.shows("0 m off exact");
+    stage.lab.take_advice();
+    stage.wait(5.0).press(" ");
+    for _ in 0..600 {
+        std::thread::sleep(Duration::from_millis(100));
+        if stage.wait(0.0).lab.advice().is_some() {
+            break;
+        }
+    }
+    stage
+        .shows("m off exact")
+        .shows(" mends it")
+        .press("oj\n")
+        .shows_no(" mends it");
+}
+
+#[test]
 fn numbers_that_are_not_finite_stop_the_run_and_are_named() {
     let set = [
         "motion.time_step_s=1e300",

@@ -38,6 +38,7 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     if let Some(step) = args.at {
         lab.begin_at(step).with_context(|| name.to_owned())?;
     }
+    lab.take_advice();
     app::run(lab, args.fps).context("the terminal cannot be used")?;
     Ok(ExitCode::SUCCESS)
 }

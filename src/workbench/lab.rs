@@ -1,6 +1,7 @@
 //! The lab's state, and what every action does to it. It draws nothing and reads no clock: time comes in.
 
 use super::action::{Action, Direction};
+use super::advisor::Advisor;
 use super::browser::Browser;
 use super::keymap::{Key, Mode};
 use super::layout::Layout;
@@ -11,6 +12,7 @@ use super::pace::Speed;
 use super::playback::{Halt, Playback};
 use super::readouts::{self, Readouts};
 use super::view::{Pane, View};
+use crate::analysis::health::Advice;
 use crate::run::NotFinite;
 use crate::scenario::{Document, Scenario};
 use ratatui::layout::Rect;
@@ -49,6 +51,9 @@ pub struct Lab {
     /// How the scenario was changed from its file, where it was.
     changed_from_file: Option<String>,
     playback: Playback,
+    /// Whether to look for what would mend a run.
+    is_advised: bool,
+    advisor: Option<Advisor>,
     readouts: Readouts,
     read_at: Duration,
     view: View,
@@ -70,6 +75,8 @@ impl Lab {
         Self {
             name: name.to_owned(),
             changed_from_file: None,
+            is_advised: false,
+            advisor: None,
             readouts: playback.read(),
             playback,
             read_at: Duration::ZERO,
@@ -88,6 +95,16 @@ impl Lab {
     /// Says that its scenario was `file` before it was changed: the file's note is shown only where it still holds.
     pub fn set_file(&mut self, file: &Scenario) {
         self.changed_from_file = note::changed(file, self.run().scenario());
+    }
+
+    /// From now on looks in the background for what would mend a run that is not to be believed.
+    pub fn take_advice(&mut self) {
+        self.is_advised = true;
+    }
+
+    /// What would mend the run, where that is known.
+    pub fn advice(&self) -> Option<&Advice> {
+        self.advisor.as_ref()?.advice()
     }
 
     /// Takes the run to `step` at once, before anything is shown.
@@ -115,6 +132,7 @@ impl Lab {
             self.playback.follow_exact(clock);
             self.changed = true;
         }
+        self.changed |= self.advisor.as_mut().is_some_and(Advisor::has_news);
         let is_due = self.is_fast() || now >= self.read_at + readouts::EVERY;
         if self.changed && is_due {
             self.read_now();
@@ -328,6 +346,7 @@ impl Lab {
         self.mode = Mode::Lab;
         self.name = name;
         self.changed_from_file = None;
+        self.advisor = None;
         self.view.fit(&scenario);
         self.playback = Playback::new(scenario, true);
         self.playback.set_exact(shows_exact);
@@ -370,6 +389,12 @@ impl Lab {
         self.readouts = self.playback.read();
         self.read_at = self.now;
         self.changed = true;
+        if self.is_advised
+            && self.advisor.is_none()
+            && self.readouts.health.is_believed() == Some(false)
+        {
+            self.advisor = Some(Advisor::ask(Arc::clone(self.run().scenario())));
+        }
     }
 
     /// The screen has this size now.

@@ -60,7 +60,7 @@ fn clock(readouts: &Readouts, time_step_s: f64) -> String {
 /// What the time step makes of the numbers, in words: at length if all of it fits, else in short, as much as fits.
 pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let remarks = remarks(&lab.readouts().health);
+    let remarks = remarks(&lab.readouts().health, lab.advice());
     let length = |text: &String| text.chars().count() + SEPARATOR.chars().count();
     let whole: usize = remarks.iter().map(|remark| length(&remark.long)).sum();
     let mut x = 1;
