@@ -328,7 +328,7 @@ fn the_browser_opens_what_the_filter_finds() {
         .shows("nothing is selected");
     stage
         .press("\u{1b}")
-        .shows("> method-1")
+        .shows("> method-2")
         .press("/loo")
         .shows("> loops")
         .press("\n");
