@@ -384,6 +384,7 @@ fn what_is_wrong_on_the_command_line_is_refused_in_words() {
         (vec!["show"], 2, "SCENARIO"),
         (vec!["show", "cusps", "--size", "0x9"], 2, "80x24"),
         (vec!["--scheme", "euler"], 2, "report"),
+        (vec!["--at", "x"], 2, "a whole number of steps"),
         (
             vec!["--set", "motion.time_step_s=-1"],
             1,

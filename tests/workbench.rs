@@ -5,7 +5,8 @@
 
 use gyrolab::scenario::Document;
 use gyrolab::scenario::presets::PRESETS;
-use gyrolab::workbench::keymap::{self, BINDINGS, Key, Mode};
+use gyrolab::workbench::app;
+use gyrolab::workbench::keymap::{BINDINGS, Key, Mode};
 use gyrolab::workbench::lab::{Lab, Request};
 use gyrolab::workbench::markers::Marker;
 use gyrolab::workbench::screen;
@@ -41,6 +42,7 @@ struct Stage {
 impl Stage {
     fn open(scenario: &str, set: &[&str], size: Rect) -> Self {
         let mut document = Document::open(scenario).unwrap();
+        let file = document.scenario().unwrap();
         set.iter().for_each(|set| document.set(set).unwrap());
         let scenario_numbers = Arc::new(document.scenario().unwrap());
         let theme = Theme {
@@ -49,6 +51,7 @@ impl Stage {
         };
         let view = View::new(&scenario_numbers, Marker::Braille, theme);
         let mut lab = Lab::new(scenario, scenario_numbers, view, true);
+        lab.set_file(&file);
         lab.resize(size);
         Self {
             lab,
@@ -58,7 +61,7 @@ impl Stage {
     }
 
     fn key(&mut self, key: Key) -> Option<Request> {
-        keymap::action(self.lab.mode(), key).and_then(|action| self.lab.update(action))
+        app::press(key, &mut self.lab)
     }
 
     fn press(&mut self, keys: &str) -> &mut Self {
@@ -185,7 +188,7 @@ fn a_teacher_stops_steps_and_goes_on() {
     assert_eq!(stage.step(), 201);
     stage
         .press("10")
-        .shows("10 times: which key?")
+        .shows("10: now the key")
         .press(".")
         .wait(0.1);
     assert_eq!(stage.step(), 211);
@@ -197,6 +200,19 @@ fn a_teacher_stops_steps_and_goes_on() {
     assert_eq!(stage.step(), 411);
     stage.press("r").wait(0.0);
     assert!(stage.step() < 30);
+}
+
+#[test]
+fn a_note_that_may_not_hold_any_more_is_not_shown() {
+    let set = ["motion.time_step_s=0.01", "start.tilt_deg=30"];
+    let mut stage = Stage::open("method-2", &set, SMALL);
+    stage
+        .shows("changed from the file: dt 0.01 s, not 0.1, another start")
+        .shows_no("almost a circle");
+    stage.press("o\n").shows("almost a circle");
+    Stage::open("method-2", &["motion.steps=50", "view.speed=2"], SMALL).shows("almost a circle");
+    let set = ["motion.time_step_s=0.01", "view.look_at=\"mine\""];
+    Stage::open("method-2", &set, SMALL).shows("mine");
 }
 
 #[test]
@@ -236,11 +252,19 @@ fn top_speed_is_as_fast_as_there_is_time_for() {
 #[test]
 fn steps_asked_for_by_the_million_do_not_hold_up_the_keys() {
     let mut stage = Stage::open("method-2", &["motion.steps=1000"], SMALL);
-    stage.press("9000000.").wait(0.1);
-    let underway = stage.step();
-    assert!((1000..9_000_000).contains(&underway), "{underway}");
-    stage.press(" ");
-    stage.press(" ").wait(0.2).shows("paused");
+    for stop in ["\u{1b}", " "] {
+        stage
+            .press("r9000000.")
+            .wait(0.1)
+            .shows("stepping: 8 ")
+            .shows("to go, Esc stops");
+        let underway = stage.step();
+        assert!((1000..9_000_000).contains(&underway), "{underway}");
+        stage.press(stop).shows("paused").shows("stopped with 8 ");
+        let stopped = stage.step();
+        stage.wait(1.0).shows("paused");
+        assert_eq!(stage.step(), stopped);
+    }
 }
 
 #[test]
@@ -304,7 +328,7 @@ fn the_browser_opens_what_the_filter_finds() {
         .shows("nothing is selected");
     stage
         .press("\u{1b}")
-        .shows("> method-1")
+        .shows("> method-2")
         .press("/loo")
         .shows("> loops")
         .press("\n");
@@ -364,6 +388,79 @@ fn nothing_changes_while_it_stands_still() {
     stage.lab.take_changed();
     stage.wait(10.0);
     assert!(!stage.lab.take_changed());
+}
+
+#[test]
+fn a_notice_goes_with_time_and_at_the_next_key() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.press(" b").shows("colours for a light").wait(5.2);
+    stage.shows_no("colours for").shows("almost a circle");
+    stage.press("b").shows("colours for a dark").press("f");
+    stage
+        .shows_no("colours for")
+        .press("f↑")
+        .shows("arrows turn");
+    stage.press("o").shows_no("arrows turn").press("/zzz\n");
+    stage.shows("nothing is selected").press("\u{1b}");
+    stage.shows_no("nothing is selected");
+}
+
+#[test]
+fn what_does_nothing_says_why() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.press("!").shows("no key ! here; ? lists them");
+    stage.press("\n").shows("Enter opens what is selected");
+    stage.press("/").shows("/ filters the list");
+    stage
+        .press("99+")
+        .shows_no("this is")
+        .press("+")
+        .shows("this is the top speed");
+    stage
+        .press("99-")
+        .shows("a step takes 1000 s")
+        .press("-")
+        .shows("this is the lowest speed");
+}
+
+#[test]
+fn at_speed_numbers_and_pictures_are_of_one_moment() {
+    for keys in ["+++++", "99+", "9000000."] {
+        let mut stage = Stage::open("method-2", &["motion.steps=100000000"], SMALL);
+        stage.press(keys);
+        for _ in 0..7 {
+            stage.wait(0.1);
+            assert_eq!(stage.lab.readouts().sample.step, stage.step(), "{keys}");
+        }
+    }
+}
+
+#[test]
+fn a_precession_is_shown_once_it_is_measured() {
+    let mut stage = Stage::open("cusps", &[], SMALL);
+    stage.press(" 5.").wait(0.1);
+    assert_eq!(stage.lab.readouts().precession_deg_per_s, None);
+    stage.press(" ").wait(6.0);
+    assert!(stage.lab.readouts().precession_deg_per_s.is_some());
+}
+
+#[test]
+fn what_would_mend_a_run_is_found_on_the_side() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.shows("0 m off exact");
+    stage.lab.take_advice();
+    stage.wait(5.0).press(" ");
+    for _ in 0..600 {
+        std::thread::sleep(Duration::from_millis(100));
+        if stage.wait(0.0).lab.advice().is_some() {
+            break;
+        }
+    }
+    stage
+        .shows("m off exact")
+        .shows(" mends it")
+        .press("oj\n")
+        .shows_no(" mends it");
 }
 
 #[test]

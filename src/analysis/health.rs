@@ -22,7 +22,7 @@ pub const BELIEVED_WITHIN: f64 = 0.01;
 /// Steps that a search for a better time step may take, of the report's 14 points; of more points as many fewer.
 const SEARCH_STEPS: u64 = 2_000_000;
 /// Where a time step is not to be mended, this scheme is tried.
-const BETTER_SCHEME: &str = "srkn11b";
+pub const BETTER_SCHEME: &str = "srkn11b";
 /// Radians a step beyond which no scheme that follows the rotation by polynomials keeps up.
 const TOO_FAR_RAD: f64 = 1.0;
 

@@ -99,7 +99,7 @@ pub(super) struct WorkbenchArgs {
     pub(super) paused: bool,
 
     /// Open at this step
-    #[arg(long, value_name = "STEP")]
+    #[arg(long, value_name = "STEP", value_parser = steps)]
     pub(super) at: Option<u64>,
 
     #[command(flatten)]
@@ -156,7 +156,7 @@ pub(super) struct ShowArgs {
     pub(super) scenario: ScenarioArgs,
 
     /// Show this step instead of the run's end
-    #[arg(long, value_name = "STEP")]
+    #[arg(long, value_name = "STEP", value_parser = steps)]
     pub(super) at: Option<u64>,
 
     /// Columns and lines of the picture
@@ -233,6 +233,11 @@ pub(super) struct CompareArgs {
 fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
     text.parse()
         .map_err(|_| "must be a whole number, 1 or more".to_owned())
+}
+
+fn steps(text: &str) -> Result<u64, String> {
+    text.parse()
+        .map_err(|_| "must be a whole number of steps".to_owned())
 }
 
 fn setting(text: &str) -> Result<String, String> {

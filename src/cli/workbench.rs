@@ -2,7 +2,7 @@
 
 use super::args::{Changes, Color, Look, Markers, Screen, ShowArgs, WorkbenchArgs};
 use super::scenario::changed;
-use crate::scenario::Scenario;
+use crate::scenario::Document;
 use crate::workbench::lab::Lab;
 use crate::workbench::markers::Marker;
 use crate::workbench::surroundings::{self, ColourChoice};
@@ -28,12 +28,17 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
         )?;
         return print(name, &args.changes, args.at, (80, 24), args.look.markers);
     }
-    let scenario = scenario(name, &args.changes)?;
-    let view = View::new(&scenario, marker(args.look.markers), theme(args.look));
-    let mut lab = Lab::new(name, scenario, view, !args.paused);
+    let mut lab = lab(
+        name,
+        &args.changes,
+        args.look.markers,
+        theme(args.look),
+        !args.paused,
+    )?;
     if let Some(step) = args.at {
         lab.begin_at(step).with_context(|| name.to_owned())?;
     }
+    lab.take_advice();
     app::run(lab, args.fps).context("the terminal cannot be used")?;
     Ok(ExitCode::SUCCESS)
 }
@@ -56,14 +61,12 @@ fn print(
     (width, height): (u16, u16),
     markers: Option<Markers>,
 ) -> anyhow::Result<ExitCode> {
-    let scenario = scenario(name, changes)?;
-    let end = at.unwrap_or(scenario.steps);
     let plain = Theme {
         colour: false,
         background: Background::Dark,
     };
-    let view = View::new(&scenario, marker(markers), plain);
-    let mut lab = Lab::new(name, scenario, view, false);
+    let mut lab = lab(name, changes, markers, plain, false)?;
+    let end = at.unwrap_or(lab.run().scenario().steps);
     let ended = lab.begin_at(end);
     let picture = screen::text(&lab, false, Rect::new(0, 0, width, height));
     let mut stdout = io::stdout().lock();
@@ -73,8 +76,22 @@ fn print(
     Ok(ExitCode::SUCCESS)
 }
 
-fn scenario(name: &str, changes: &Changes) -> anyhow::Result<Arc<Scenario>> {
-    Ok(Arc::new(changed(name, changes)?.scenario()?))
+/// A lab with what `name` names, changed.
+fn lab(
+    name: &str,
+    changes: &Changes,
+    markers: Option<Markers>,
+    theme: Theme,
+    running: bool,
+) -> anyhow::Result<Lab> {
+    let scenario = Arc::new(changed(name, changes)?.scenario()?);
+    let view = View::new(&scenario, marker(markers), theme);
+    let mut lab = Lab::new(name, scenario, view, running);
+    // What a change has mended is no scenario before it, and has no note to lose.
+    if let Ok(file) = Document::open(name).and_then(|document| document.scenario()) {
+        lab.set_file(&file);
+    }
+    Ok(lab)
 }
 
 fn variable(name: &str) -> Option<String> {

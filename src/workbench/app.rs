@@ -1,6 +1,6 @@
 //! The loop: events to actions, time to steps, and a frame where something has changed.
 
-use super::keymap;
+use super::keymap::{self, Key};
 use super::lab::{Lab, Request};
 use super::screen;
 use super::terminal::{Event, Screen};
@@ -54,7 +54,7 @@ fn wait(lab: &Lab, to_frame: Duration) -> Duration {
 
 fn handle(event: Event, lab: &mut Lab, screen: &mut Screen) -> io::Result<ControlFlow<()>> {
     let request = match event {
-        Event::Key(key) => keymap::action(lab.mode(), key).and_then(|action| lab.update(action)),
+        Event::Key(key) => press(key, lab),
         Event::Suspend => Some(Request::Suspend),
         Event::Resized => {
             lab.resize(screen.size()?);
@@ -74,4 +74,15 @@ fn handle(event: Event, lab: &mut Lab, screen: &mut Screen) -> io::Result<Contro
     }
     lab.resize(screen.size()?); // all of it is to be drawn, at the size there is now
     Ok(ControlFlow::Continue(()))
+}
+
+/// Carries out what `key` means, or says that it means nothing.
+pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
+    match keymap::action(lab.mode(), key) {
+        Some(action) => lab.update(action),
+        None => {
+            lab.refuse(key);
+            None
+        }
+    }
 }

@@ -21,6 +21,8 @@ pub struct Entry {
 #[derive(Clone, Debug, Default)]
 pub struct Browser {
     entries: Vec<Entry>,
+    /// What the lab has open.
+    open: String,
     filter: String,
     selected: usize,
     preview: Option<(String, Result<Scenario, String>)>,
@@ -38,16 +40,12 @@ impl Browser {
             is_file: true,
         });
         let entries: Vec<_> = presets.chain(files).collect();
-        let selected = entries
-            .iter()
-            .position(|entry| entry.name == name)
-            .unwrap_or(0);
         let mut browser = Self {
             entries,
-            selected,
+            open: name.to_owned(),
             ..Self::default()
         };
-        browser.load_preview();
+        browser.refilter();
         browser
     }
 
@@ -105,8 +103,16 @@ impl Browser {
         self.refilter();
     }
 
+    /// Selects the first that the filter lets through; without a filter what is open.
     fn refilter(&mut self) {
-        self.selected = 0;
+        let open = match self.filter.is_empty() {
+            true => self
+                .entries
+                .iter()
+                .position(|entry| entry.name == self.open),
+            false => None,
+        };
+        self.selected = open.unwrap_or(0);
         self.load_preview();
     }
 

@@ -2,7 +2,10 @@
 //! important first.
 
 use crate::analysis::Health;
-use crate::analysis::health::Picture;
+use crate::analysis::health::{Advice, BETTER_SCHEME, Nutation, Picture};
+
+/// Distances smaller than this are what decimals leave over, m.
+const ROUNDING_M: f64 = 1e-12;
 
 /// One thing to say, at length where there is room, and in short.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,29 +18,56 @@ pub struct Remark {
     pub warns: bool,
 }
 
-/// What there is to say of `health`.
-pub fn remarks(health: &Health) -> Vec<Remark> {
-    let mut remarks = vec![turns(health), distance(health), energy(health)];
-    if let Some(nutation) = health.nutation {
-        let ratio = nutation.lag_ratio();
-        remarks.push(Remark {
-            long: format!("lag ×{ratio:.1} the true one"),
-            short: format!("lag ×{ratio:.0}"),
-            warns: !(0.5..2.0).contains(&ratio),
-        });
-        let multiplier = nutation.multiplier;
-        remarks.push(Remark {
-            long: format!("nutation ×{multiplier:.6} a step"),
-            short: format!("nutation ×{multiplier:.4}"),
-            warns: false,
-        });
+/// What there is to say of `health`, and of what would mend it, where that is known.
+pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
+    let mut remarks = vec![turns(health), distance(health)];
+    if health.is_believed() == Some(false) {
+        remarks.extend(advice.and_then(mend));
     }
+    remarks.push(energy(health));
+    remarks.extend(health.nutation.iter().flat_map(swing));
     remarks
+}
+
+fn mend(advice: &Advice) -> Option<Remark> {
+    let (long, short) = match advice {
+        Advice::TimeStep(step) => (
+            format!("--time-step {step} would mend it"),
+            format!("dt {step} s mends it"),
+        ),
+        Advice::Scheme { time_step_s, .. } => (
+            format!("--scheme {BETTER_SCHEME} --time-step {time_step_s} would mend it"),
+            format!("{BETTER_SCHEME}, dt {time_step_s} s mends it"),
+        ),
+        Advice::Holds | Advice::Nothing => return None,
+    };
+    Some(Remark {
+        long,
+        short,
+        warns: false,
+    })
+}
+
+fn swing(nutation: &Nutation) -> [Remark; 2] {
+    let (ratio, multiplier) = (nutation.lag_ratio(), nutation.multiplier);
+    let (lag, warns) = match ratio {
+        0.5..2.0 => ("axle lags L as far as it should".to_owned(), false),
+        2.0.. => (format!("axle lags L {} times too far", times(ratio)), true),
+        _ => (
+            format!("axle lags L {} of what it should", times(ratio)),
+            true,
+        ),
+    };
+    let nutation = format!("nutation ×{multiplier:.4} a step");
+    [(lag, warns), (nutation, false)].map(|(text, warns)| Remark {
+        long: text.clone(),
+        short: text,
+        warns,
+    })
 }
 
 fn turns(health: &Health) -> Remark {
     let turns = significant(health.turns_per_step);
-    let swing = "the swing is the time step's";
     let (long, short, warns) = match (health.picture, health.nutation) {
         (Picture::Right, _) => (String::new(), String::new(), false),
         (Picture::Strobed, _) => (
@@ -46,7 +76,11 @@ fn turns(health: &Health) -> Remark {
             false,
         ),
         (picture, None) => (format!(": {picture}"), ": aliased".to_owned(), true),
-        (_, Some(_)) => (format!(", so that {swing}"), format!(": {swing}"), true),
+        (_, Some(_)) => (
+            ", so that the swing is the time step's".to_owned(),
+            " make the swing".to_owned(),
+            true,
+        ),
     };
     Remark {
         long: format!("the wheel turns {turns} times a step{long}"),
@@ -74,7 +108,7 @@ fn distance(health: &Health) -> Remark {
 
 fn energy(health: &Health) -> Remark {
     let text = match health.energy_drift {
-        Some(drift) => format!("energy drift {drift:+.4}"),
+        Some(drift) => format!("energy drift {drift:+.4} mgl"),
         None => "energy n/a".to_owned(),
     };
     Remark {
@@ -93,11 +127,17 @@ fn significant(number: f64) -> String {
     }
 }
 
-/// A length from metres down to nothing.
+/// How many times, without digits that only flicker.
+fn times(ratio: f64) -> String {
+    let digits = if ratio < 10.0 { 1 } else { 0 };
+    format!("{ratio:.digits$}")
+}
+
+/// A distance in metres, as many characters whatever its size; rounding is no distance.
 fn length(metres: f64) -> String {
     match metres {
-        m if m >= 0.01 => format!("{m:.4} m"),
-        m if m >= 1e-5 => format!("{:.4} mm", m * 1e3),
+        m if m < ROUNDING_M => "0 m".to_owned(),
+        m if m >= 1e-3 => format!("{m:.4} m"),
         m => format!("{m:.1e} m"),
     }
 }

@@ -1,14 +1,18 @@
 //! The lab's state, and what every action does to it. It draws nothing and reads no clock: time comes in.
 
 use super::action::{Action, Direction};
+use super::advisor::Advisor;
 use super::browser::Browser;
-use super::keymap::Mode;
+use super::keymap::{Key, Mode};
 use super::layout::Layout;
 use super::live::LiveRun;
+use super::note;
 use super::notice::Notice;
+use super::pace::Speed;
 use super::playback::{Halt, Playback};
 use super::readouts::{self, Readouts};
 use super::view::{Pane, View};
+use crate::analysis::health::Advice;
 use crate::run::NotFinite;
 use crate::scenario::{Document, Scenario};
 use ratatui::layout::Rect;
@@ -20,6 +24,10 @@ use std::time::Duration;
 const PAGE: isize = 10;
 /// Degrees the camera turns at a key.
 const TURN_DEG: f64 = 10.0;
+/// Part of the traces' time that may pass between two readings.
+const FAST: f64 = 0.1;
+/// A step that takes longer than this is announced, s.
+const LONG_STEP_S: f64 = 3.0;
 /// The longest count that can be typed.
 const MOST_COUNTED: u64 = 999_999_999;
 /// Repeating something on the screen more often than this shows nothing new.
@@ -40,7 +48,12 @@ pub enum Request {
 pub struct Lab {
     /// SCENARIO as it was opened.
     name: String,
+    /// How the scenario was changed from its file, where it was.
+    changed_from_file: Option<String>,
     playback: Playback,
+    /// Whether to look for what would mend a run.
+    is_advised: bool,
+    advisor: Option<Advisor>,
     readouts: Readouts,
     read_at: Duration,
     view: View,
@@ -61,6 +74,9 @@ impl Lab {
         let mut playback = Playback::new(scenario, running);
         Self {
             name: name.to_owned(),
+            changed_from_file: None,
+            is_advised: false,
+            advisor: None,
             readouts: playback.read(),
             playback,
             read_at: Duration::ZERO,
@@ -74,6 +90,21 @@ impl Lab {
             size: Rect::new(0, 0, 80, 24),
             changed: true,
         }
+    }
+
+    /// Says that its scenario was `file` before it was changed: the file's note is shown only where it still holds.
+    pub fn set_file(&mut self, file: &Scenario) {
+        self.changed_from_file = note::changed(file, self.run().scenario());
+    }
+
+    /// From now on looks in the background for what would mend a run that is not to be believed.
+    pub fn take_advice(&mut self) {
+        self.is_advised = true;
+    }
+
+    /// What would mend the run, where that is known.
+    pub fn advice(&self) -> Option<&Advice> {
+        self.advisor.as_ref()?.advice()
     }
 
     /// Takes the run to `step` at once, before anything is shown.
@@ -101,9 +132,19 @@ impl Lab {
             self.playback.follow_exact(clock);
             self.changed = true;
         }
-        if self.changed && now >= self.read_at + readouts::EVERY {
+        self.changed |= self.advisor.as_mut().is_some_and(Advisor::has_news);
+        let is_due = self.is_fast() || now >= self.read_at + readouts::EVERY;
+        if self.changed && is_due {
             self.read_now();
         }
+    }
+
+    /// Whether the pictures run away from numbers that are read off a few times a second.
+    fn is_fast(&self) -> bool {
+        let window_s = self.view.window_s;
+        let passes_s = readouts::EVERY.as_secs_f64();
+        self.playback.is_flat_out()
+            || matches!(self.playback.speed(), Speed::Times(speed) if speed * passes_s > FAST * window_s)
     }
 
     fn halted(&mut self, halt: Halt) {
@@ -126,13 +167,14 @@ impl Lab {
     /// Carries out `action`; what only the loop can do comes back.
     pub fn update(&mut self, action: Action) -> Option<Request> {
         let count = self.count.take();
+        let closed = self.notice.take_back() || count.is_some();
         match action {
             Action::TogglePause => self.toggle_pause(),
             Action::Step => self.playback.take_steps(count.unwrap_or(1)),
             Action::Digit(digit) => self.count = Some(counted(count, digit)),
-            Action::Faster => self.playback.shift_speed(repeated(count)),
-            Action::Slower => self.playback.shift_speed(-repeated(count)),
-            Action::Restart => self.restart(),
+            Action::Faster => self.shift_speed(repeated(count)),
+            Action::Slower => self.shift_speed(-repeated(count)),
+            Action::Restart => self.playback.restart(),
             Action::ToggleExact => self.toggle_exact(),
             Action::NextPane => self.view.shift_focus(&self.layout().focusable(), true),
             Action::PreviousPane => self.view.shift_focus(&self.layout().focusable(), false),
@@ -150,7 +192,7 @@ impl Lab {
             Action::Type(typed) => self.browser.type_char(typed),
             Action::Erase => self.browser.erase(),
             Action::Help => self.toggle_help(),
-            Action::Close => self.close(),
+            Action::Close => self.close(closed),
             Action::Redraw => return Some(Request::Redraw),
             Action::Suspend => return Some(Request::Suspend),
             Action::Quit => return Some(Request::Quit),
@@ -161,13 +203,57 @@ impl Lab {
     }
 
     fn toggle_pause(&mut self) {
-        self.notice.take_back();
-        self.playback.set_running(!self.playback.is_running());
+        if !self.stop_steps() {
+            self.playback.set_running(!self.playback.is_running());
+        }
     }
 
-    fn restart(&mut self) {
-        self.notice.take_back();
-        self.playback.restart();
+    /// Stops on the way through the steps that were asked for; gives whether it was there.
+    fn stop_steps(&mut self) -> bool {
+        let Some(left) = self.playback.steps_to_go() else {
+            return false;
+        };
+        self.playback.set_running(false);
+        self.say(format!("stopped with {} steps to go", grouped(left)));
+        true
+    }
+
+    /// Another speed; says so where there is none, or where it lets nothing be seen for a while.
+    fn shift_speed(&mut self, notches: i32) {
+        let before = self.playback.speed();
+        self.playback.shift_speed(notches);
+        match self.playback.speed() {
+            now if now == before && notches > 0 => self.say("this is the top speed"),
+            now if now == before => self.say("this is the lowest speed; . takes a single step"),
+            Speed::Times(speed) => self.announce_step(speed),
+            Speed::Top => {}
+        }
+    }
+
+    fn announce_step(&mut self, speed: f64) {
+        let wall_s = self.run().simulation().motion().time_step_s / speed;
+        if wall_s > LONG_STEP_S {
+            self.say(format!(
+                "a step takes {wall_s:.0} s at this speed; . takes one now"
+            ));
+        }
+    }
+
+    /// Says that `key` means nothing here.
+    pub fn refuse(&mut self, key: Key) {
+        self.count = None;
+        let text = match (self.mode, key) {
+            (Mode::Lab, Key::Enter) => {
+                "Enter opens what is selected in a list: o shows the list".to_owned()
+            }
+            (Mode::Lab, Key::Char('/')) => {
+                "/ filters the list of presets and files: o shows it".to_owned()
+            }
+            (Mode::Filter, _) => format!("no key {key} here; Enter opens, Esc clears the filter"),
+            _ => format!("no key {key} here; ? lists them"),
+        };
+        self.say(text);
+        self.changed = true;
     }
 
     fn toggle_exact(&mut self) {
@@ -259,7 +345,8 @@ impl Lab {
         let shows_exact = self.run().overlay().is_some();
         self.mode = Mode::Lab;
         self.name = name;
-        self.notice.take_back();
+        self.changed_from_file = None;
+        self.advisor = None;
         self.view.fit(&scenario);
         self.playback = Playback::new(scenario, true);
         self.playback.set_exact(shows_exact);
@@ -275,8 +362,9 @@ impl Lab {
         }
     }
 
-    /// Closes what lies on top, one thing at a time; with nothing to close it says how to leave.
-    fn close(&mut self) {
+    /// Closes what lies on top, one thing at a time; with nothing to close, and nothing `closed` already, it says how
+    /// to leave.
+    fn close(&mut self, closed: bool) {
         match self.mode {
             Mode::Help => self.toggle_help(),
             Mode::Filter => {
@@ -284,8 +372,11 @@ impl Lab {
                 self.mode = Mode::Browser;
             }
             Mode::Browser => self.mode = Mode::Lab,
+            Mode::Lab if self.playback.steps_to_go().is_some() => {
+                self.stop_steps();
+            }
             Mode::Lab if self.view.filled => self.view.filled = false,
-            Mode::Lab if self.notice.take_back() => {}
+            Mode::Lab if closed => {}
             Mode::Lab => self.say("nothing to close; q leaves"),
         }
     }
@@ -298,6 +389,12 @@ impl Lab {
         self.readouts = self.playback.read();
         self.read_at = self.now;
         self.changed = true;
+        if self.is_advised
+            && self.advisor.is_none()
+            && self.readouts.health.is_believed() == Some(false)
+        {
+            self.advisor = Some(Advisor::ask(Arc::clone(self.run().scenario())));
+        }
     }
 
     /// The screen has this size now.
@@ -362,14 +459,38 @@ impl Lab {
         self.count
     }
 
-    /// What is to be said now, if anything.
-    pub fn notice(&self) -> Option<&str> {
-        self.notice.text()
+    /// What there is to see in the run.
+    pub fn note(&self) -> &str {
+        let file = || note::look_at(self.run().scenario());
+        let note = self.changed_from_file.as_deref().or_else(file);
+        note.unwrap_or("r begins the run again, o opens another")
+    }
+
+    /// What is to be said now, if anything: what keeps the lab busy, or else what has happened.
+    pub fn notice(&self) -> Option<String> {
+        let stepping = self
+            .playback
+            .steps_to_go()
+            .map(|left| format!("stepping: {} to go, Esc stops", grouped(left)));
+        stepping.or_else(|| self.notice.text().map(str::to_owned))
     }
 }
 
 fn counted(count: Option<u64>, digit: u8) -> u64 {
     (count.unwrap_or(0) * 10 + u64::from(digit)).min(MOST_COUNTED)
+}
+
+/// `number` with its digits in groups of three.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
 }
 
 /// How often to repeat what needs no more than `MOST_REPEATED` repetitions.

@@ -10,11 +10,14 @@
 //!   environment says about it.
 //! - [`keymap`] is the one table of keys, [`action`] what they can mean, [`lab`] the state that actions change.
 //! - [`live`] plays a run; [`recording`] and [`path`] keep what the pictures need of it, [`overlay`] the exact motion
-//!   beside it; [`pace`] says how fast it is played, [`playback`] plays it as far as its next stop; [`readouts`] and [`health`] read numbers off it.
+//!   beside it; [`pace`] says how fast it is played, [`playback`] plays it as far as its next stop; [`readouts`] and [`health`] read numbers off it, [`advisor`] finds what
+//!   would mend them.
+//! - [`note`] says what there is to see, [`notice`] what has just happened.
 //! - [`view`] is how it is looked at, [`layout`] where the panes stand, [`screen`] puts them there, [`panes`] draw.
 //!   [`sweep`] and [`camera`] are their geometry, [`dots`], [`markers`] and [`theme`] their ink.
 
 pub mod action;
+pub mod advisor;
 pub mod app;
 pub mod browser;
 pub mod camera;
@@ -25,6 +28,7 @@ pub mod lab;
 pub mod layout;
 pub mod live;
 pub mod markers;
+pub mod note;
 pub mod notice;
 pub mod overlay;
 pub mod pace;

@@ -1,4 +1,4 @@
-//! What is to be said in one line, and for how long.
+//! What is to be said in one line, and for how long: for a while, and no longer than until the next key.
 
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ impl Notice {
         self.said = Some((text.into(), Some(now + STANDS)));
     }
 
-    /// Says `text` until something else happens.
+    /// Says `text` until the next key: it says why the lab stands as it does.
     pub fn keep_saying(&mut self, text: impl Into<String>) {
         self.said = Some((text.into(), None));
     }

@@ -136,9 +136,20 @@ impl Playback {
         self.hurries = true;
     }
 
+    /// How many of the steps that were asked for are still to be taken, if it is on its way through them.
+    pub fn steps_to_go(&self) -> Option<u64> {
+        self.hurries
+            .then(|| self.stop.saturating_sub(self.step_number()))
+    }
+
     /// Goes `notches` up the ladder of speeds, or down.
     pub fn shift_speed(&mut self, notches: i32) {
         self.pace.shift(notches);
+    }
+
+    /// The speed that is set.
+    pub fn speed(&self) -> Speed {
+        self.pace.speed()
     }
 
     /// Shows the exact motion beside the run, or does not.

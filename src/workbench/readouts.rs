@@ -3,12 +3,15 @@
 
 use super::live::LiveRun;
 use super::pace::{Pace, Speed};
-use crate::analysis::Health;
+use crate::analysis::{Health, Measured};
 use crate::run::Sample;
 use std::time::Duration;
 
 /// Time between two readings while the run goes on.
 pub const EVERY: Duration = Duration::from_millis(250);
+
+/// A precession without nutations counts as measured from this relative uncertainty on.
+const SETTLED: f64 = 0.05;
 
 /// One reading.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +43,9 @@ impl Readouts {
         let predicted = theory.and_then(|theory| theory.precession);
         Self {
             sample: run.simulation().sample(),
-            precession_deg_per_s: precession.map(|measured| measured.value.to_degrees()),
+            precession_deg_per_s: precession
+                .filter(is_settled)
+                .map(|measured| measured.value.to_degrees()),
             predicted_precession_deg_per_s: predicted.map(f64::to_degrees),
             nutation_s: nutation.map(|measured| measured.value),
             predicted_nutation_s: theory.and_then(|theory| theory.nutation_period_s),
@@ -48,6 +53,11 @@ impl Readouts {
             pace: pace_in_words(pace),
         }
     }
+}
+
+/// Whether `measured` is more than the beginning of a swing.
+fn is_settled(measured: &Measured) -> bool {
+    measured.nutations > 0 || measured.uncertainty < SETTLED * measured.value.abs()
 }
 
 fn pace_in_words(pace: &Pace) -> String {

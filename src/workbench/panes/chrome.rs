@@ -60,7 +60,7 @@ fn clock(readouts: &Readouts, time_step_s: f64) -> String {
 /// What the time step makes of the numbers, in words: at length if all of it fits, else in short, as much as fits.
 pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let remarks = remarks(&lab.readouts().health);
+    let remarks = remarks(&lab.readouts().health, lab.advice());
     let length = |text: &String| text.chars().count() + SEPARATOR.chars().count();
     let whole: usize = remarks.iter().map(|remark| length(&remark.long)).sum();
     let mut x = 1;
@@ -87,28 +87,19 @@ pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
 
 /// What is to be said now; else what there is to see; on a small screen, that there would be more.
 pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
-    let look_at = lab
-        .run()
-        .scenario()
-        .file
-        .view
-        .as_ref()
-        .and_then(|view| view.look_at.as_deref());
     let cramped = format!(
         "{}x{}: 80x24 shows all panes; Tab goes through them",
         lab.size().width,
         lab.size().height
     );
     let (text, role) = match (lab.count(), lab.notice(), is_cramped) {
-        (Some(count), ..) => (format!("{count} times: which key?"), Role::Focus),
-        (_, Some(notice), _) => (notice.to_owned(), Role::Focus),
-        (_, _, true) => (cramped, Role::Quiet),
-        (_, _, false) => (
-            look_at
-                .unwrap_or("r begins the run again, o opens another")
-                .to_owned(),
-            Role::Text,
+        (Some(count), ..) => (
+            format!("{count}: now the key, such as . for that many steps; Esc forgets it"),
+            Role::Focus,
         ),
+        (_, Some(notice), _) => (notice, Role::Focus),
+        (_, _, true) => (cramped, Role::Quiet),
+        (_, _, false) => (lab.note().to_owned(), Role::Text),
     };
     let style = lab.view().theme.style(role);
     for (line, y) in wrapped(&text, area.width.saturating_sub(2) as usize)

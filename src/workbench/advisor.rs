@@ -1,0 +1,43 @@
+//! What would mend a run that is not to be believed: found by trial in the background, for it may take a second.
+
+use crate::analysis::health::{Advice, advise};
+use crate::scenario::Scenario;
+use std::sync::{Arc, OnceLock};
+use std::thread;
+
+/// A question under way, or answered. Dropped, nobody hears the answer.
+pub struct Advisor {
+    answer: Arc<OnceLock<Advice>>,
+    is_heard: bool,
+}
+
+impl Advisor {
+    /// Asks what would mend `scenario`.
+    pub fn ask(scenario: Arc<Scenario>) -> Self {
+        let answer = Arc::new(OnceLock::new());
+        let told = Arc::clone(&answer);
+        let search = move || {
+            let _ = told.set(advise(&scenario)); // the first answer, so it is taken
+        };
+        // Where there is no thread to be had, there is no advice.
+        let _ = thread::Builder::new()
+            .name("advice".to_owned())
+            .spawn(search);
+        Self {
+            answer,
+            is_heard: false,
+        }
+    }
+
+    /// The answer, once there is one.
+    pub fn advice(&self) -> Option<&Advice> {
+        self.answer.get()
+    }
+
+    /// Whether the answer has come since this was asked last.
+    pub fn has_news(&mut self) -> bool {
+        let is_news = !self.is_heard && self.answer.get().is_some();
+        self.is_heard |= is_news;
+        is_news
+    }
+}

@@ -1,0 +1,58 @@
+//! The line that says what to look at; where the scenario was changed from its file, what was changed instead, for
+//! what the file says of it may then be false.
+
+use crate::scenario::Scenario;
+use crate::scenario::rescale::at_time_step;
+
+/// What there is to see in `scenario`, as its file says.
+pub fn look_at(scenario: &Scenario) -> Option<&str> {
+    scenario.file.view.as_ref()?.look_at.as_deref()
+}
+
+/// Says how `now` moves otherwise than `before`; `None` where its file's note still holds, or is a new one.
+pub fn changed(before: &Scenario, now: &Scenario) -> Option<String> {
+    let changes = changes(before, now);
+    if changes.is_empty() || look_at(before) != look_at(now) {
+        return None;
+    }
+    Some(format!("changed from the file: {}", changes.join(", ")))
+}
+
+fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
+    let (old, new) = (&before.motion, &now.motion);
+    let mut changes = Vec::new();
+    if new.time_step_s != old.time_step_s {
+        changes.push(format!("dt {} s, not {}", new.time_step_s, old.time_step_s));
+    }
+    if new.scheme.name != old.scheme.name {
+        changes.push(format!(
+            "{} scheme, not {}",
+            new.scheme.name, old.scheme.name
+        ));
+    }
+    if new.gravity != old.gravity {
+        changes.push(format!("gravity {} m/s2, not {}", new.gravity, old.gravity));
+    }
+    let others = [
+        (now.file.body != before.file.body, "another body"),
+        (now.file.start != before.file.start, "another start"),
+        (are_pushes_changed(before, now), "other pushes"),
+        (now.file.edit != before.file.edit, "other edits"),
+    ];
+    changes.extend(
+        others
+            .iter()
+            .filter(|(is, _)| *is)
+            .map(|(_, what)| (*what).to_owned()),
+    );
+    changes
+}
+
+/// Whether the pushes are others, not only the same at another time step.
+fn are_pushes_changed(before: &Scenario, now: &Scenario) -> bool {
+    let (old, new) = (&before.file, &now.file);
+    let is_resampled = || {
+        at_time_step(old, now.motion.time_step_s).is_ok_and(|resampled| resampled.push == new.push)
+    };
+    new.push != old.push && !is_resampled()
+}
