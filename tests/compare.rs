@@ -373,7 +373,7 @@ fn a_signal_ends_it_with_130_and_leaves_no_file() {
             "--schemes",
             "report",
             "--time-steps",
-            "1e-8",
+            "1e-12",
             "-o",
             "t.csv",
         ][..],
