@@ -1,12 +1,16 @@
-//! The report's step with its record against the same loop in plain C (`report_step.c`, gcc -O3), by turns in one run,
-//! and the ratio of the two. Whatever else the machine does only adds time: of many short rounds the fastest counts. Run: cargo bench --bench against_c
+//! The report's step with its record, and the splittings' steps by themselves, against the same loops in plain C
+//! (`report_step.c`, `splitting.c`, gcc -O3), by turns in one run, and the ratios. Whatever else the machine does only
+//! adds time: of many short rounds the fastest counts. Run: cargo bench --bench against_c
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
+use gyrolab::physics::{Body, Loads, PointMass, SchemeInfo, State, rotation};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Document;
+use nalgebra::Vector3;
+use std::f64::consts::{FRAC_PI_4, TAU};
 use std::hint::black_box;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::sync::Arc;
 use std::time::Instant;
@@ -14,7 +18,7 @@ use std::time::Instant;
 const STEPS: u64 = 100_000;
 const ROUNDS: usize = 60;
 
-fn nanoseconds_in_rust() -> f64 {
+fn report_in_rust() -> f64 {
     let scenario = Document::open("method-2").unwrap().scenario().unwrap();
     let mut simulation = Simulation::new(Arc::new(scenario));
     let begin = Instant::now();
@@ -25,8 +29,41 @@ fn nanoseconds_in_rust() -> f64 {
     begin.elapsed().as_nanos() as f64 / STEPS as f64
 }
 
-fn nanoseconds_in_c(program: &Path) -> f64 {
+/// A wheel of ten points and four of 0.5 kg on its axle: I1 = 8.35, I3 = 3.2, mgl = 63.7, as in `splitting.c`.
+fn wheel() -> Body {
+    let rim = (0..10).map(|j| {
+        let angle = TAU * f64::from(j) / 10.0;
+        Vector3::new(0.8 * angle.cos(), 0.8 * angle.sin(), 1.0)
+    });
+    let axle = [1.0, 1.5, 0.0, 0.5].map(|height| Vector3::new(0.0, 0.0, height));
+    let points = rim.chain(axle).map(|at| PointMass { at, mass: 0.5 });
+    Body::new(points.collect()).unwrap()
+}
+
+fn splitting_in_rust(name: &str) -> f64 {
+    let mut scheme = SchemeInfo::find(name).unwrap().make(&wheel());
+    let orientation = rotation::about(&Vector3::x(), FRAC_PI_4);
+    let momentum = orientation * Vector3::new(0.0, 0.0, 100.0);
+    let mut state = State {
+        time_s: 0.0,
+        orientation,
+        momentum,
+    };
+    scheme.load(&Loads {
+        gravity: 9.8,
+        pushes: Vec::new(),
+    });
+    scheme.start(&state);
+    let begin = Instant::now();
+    for _ in 0..STEPS {
+        scheme.step(1.0 / 60.0, black_box(&mut state));
+    }
+    begin.elapsed().as_nanos() as f64 / STEPS as f64
+}
+
+fn in_c(program: &Path, args: &[&str]) -> f64 {
     let output = Command::new(program)
+        .args(args)
         .arg(STEPS.to_string())
         .output()
         .unwrap();
@@ -37,28 +74,55 @@ fn nanoseconds_in_c(program: &Path) -> f64 {
         .unwrap()
 }
 
-fn main() -> ExitCode {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/report_step.c");
-    let program = std::env::temp_dir().join(format!("gyrolab-report-step-{}", std::process::id()));
+/// The program made of a source beside this one; `None` without a compiler.
+fn compiled(source: &str) -> Option<PathBuf> {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("benches")
+        .join(source);
+    let name = source.file_stem()?.to_str()?;
+    let program = std::env::temp_dir().join(format!("gyrolab-{name}-{}", std::process::id()));
     let gcc = Command::new("gcc")
         .args(["-O3", "-o"])
         .arg(&program)
         .arg(&source)
         .arg("-lm")
         .status();
-    if !gcc.is_ok_and(|status| status.success()) {
-        eprintln!("gcc is needed to build {}", source.display());
-        return ExitCode::FAILURE;
+    if gcc.is_ok_and(|status| status.success()) {
+        return Some(program);
     }
-    let (mut c, mut rust) = (f64::INFINITY, f64::INFINITY);
+    eprintln!("gcc is needed to build {}", source.display());
+    None
+}
+
+fn compare(what: &str, c: impl Fn() -> f64, rust: impl Fn() -> f64) {
+    let (mut least_c, mut least_rust) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..ROUNDS {
-        c = c.min(nanoseconds_in_c(&program));
-        rust = rust.min(nanoseconds_in_rust());
+        least_c = least_c.min(c());
+        least_rust = least_rust.min(rust());
     }
-    let ratio = rust / c;
-    println!(
-        "report, 14 points, with its record: C {c:.0} ns, gyrolab {rust:.0} ns a step, ratio {ratio:.3}"
+    let ratio = least_rust / least_c;
+    println!("{what}: C {least_c:.1} ns, gyrolab {least_rust:.1} ns a step, ratio {ratio:.3}");
+}
+
+fn main() -> ExitCode {
+    let (Some(report), Some(splitting)) = (compiled("report_step.c"), compiled("splitting.c"))
+    else {
+        return ExitCode::FAILURE;
+    };
+    compare(
+        "report, 14 points, with its record",
+        || in_c(&report, &[]),
+        report_in_rust,
     );
-    let _ = std::fs::remove_file(program);
+    for name in ["strang", "srkn11b"] {
+        compare(
+            name,
+            || in_c(&splitting, &[name]),
+            || splitting_in_rust(name),
+        );
+    }
+    for program in [report, splitting] {
+        let _ = std::fs::remove_file(program);
+    }
     ExitCode::SUCCESS
 }

@@ -20,10 +20,13 @@ pub struct Row {
     pub time_step_s: f64,
     /// Steps taken; fewer than asked for where the numbers stopped being finite.
     pub steps: u64,
-    /// Largest distance of the traced point from the exact motion, m.
-    pub error_m: f64,
+    /// Largest distance of the traced point from the exact motion, m; `None` where the numbers stopped being finite, its
+    /// own or those of the exact motion.
+    #[serde(serialize_with = "or_na")]
+    pub error_m: Option<f64>,
     /// The same at the end, m.
-    pub error_at_end_m: f64,
+    #[serde(serialize_with = "or_na")]
+    pub error_at_end_m: Option<f64>,
     /// Order measured against the row before of the same scheme, from `error_m`: ln(error ratio)/ln(time step ratio);
     /// `None` where the error is down at rounding.
     #[serde(serialize_with = "or_na")]
@@ -90,12 +93,13 @@ pub fn compare(
 impl Row {
     fn new(cell: &Scenario, trial: &Trial) -> Self {
         let wall_s = trial.stepping.as_secs_f64();
+        let known = |error: f64| (trial.broke.is_none() && error.is_finite()).then_some(error);
         Self {
             scheme: cell.motion.scheme.name,
             time_step_s: cell.motion.time_step_s,
             steps: trial.steps,
-            error_m: trial.most_distance_m,
-            error_at_end_m: trial.end_distance_m,
+            error_m: known(trial.most_distance_m),
+            error_at_end_m: known(trial.end_distance_m),
             order: None,
             energy_drift: trial.energy_drift,
             spin_drift: trial.spin_drift,
@@ -111,13 +115,18 @@ const ROUNDING: f64 = 1e-12;
 
 fn with_orders(mut rows: Vec<Row>, least_m: f64) -> Vec<Row> {
     for index in 1..rows.len() {
-        let (coarse, fine) = (rows[index - 1].clone(), &mut rows[index]);
-        let order =
-            (coarse.error_m / fine.error_m).ln() / (coarse.time_step_s / fine.time_step_s).ln();
-        let known = coarse.scheme == fine.scheme && fine.error_m > least_m && order.is_finite();
-        fine.order = known.then_some(order);
+        let (coarse, fine) = (&rows[index - 1], &rows[index]);
+        rows[index].order = (coarse.scheme == fine.scheme)
+            .then(|| order(coarse, fine, least_m))
+            .flatten();
     }
     rows
+}
+
+fn order(coarse: &Row, fine: &Row, least_m: f64) -> Option<f64> {
+    let (larger, smaller) = (coarse.error_m?, fine.error_m?);
+    let order = (larger / smaller).ln() / (coarse.time_step_s / fine.time_step_s).ln();
+    (smaller > least_m && order.is_finite()).then_some(order)
 }
 
 /// The rows as a table for reading.
@@ -137,19 +146,17 @@ impl fmt::Display for Table<'_> {
             let order = row
                 .order
                 .map_or("-".to_owned(), |order| format!("{order:.2}"));
-            let energy = row
-                .energy_drift
-                .map_or("n/a".to_owned(), |drift| format!("{drift:.1e}"));
+            let number = |number: Option<f64>| {
+                number.map_or("n/a".to_owned(), |number| format!("{number:.1e}"))
+            };
+            let (error, at_end) = (number(row.error_m), number(row.error_at_end_m));
+            let energy = number(row.energy_drift);
             write!(
                 f,
                 "{:<8} {:>10} {:>10}",
                 row.scheme, row.time_step_s, row.steps
             )?;
-            write!(
-                f,
-                " {:>9.1e} {:>9.1e} {order:>6}",
-                row.error_m, row.error_at_end_m
-            )?;
+            write!(f, " {error:>9} {at_end:>9} {order:>6}")?;
             write!(
                 f,
                 " {energy:>9} {:>9.1e} {:>9.1e}",
