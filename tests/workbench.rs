@@ -378,7 +378,10 @@ fn resizing_at_any_moment_shows_what_there_is_room_for() {
         stage.lab.resize(stage.size);
         stage.shows(shown).shows_no(hidden);
     }
-    stage.shows("60x20: 80x24 shows all panes");
+    stage.shows("almost a circle").shows("makes that swing");
+    stage.size = Rect::new(0, 0, 79, 23);
+    stage.lab.resize(stage.size);
+    stage.shows("almost a circle").shows("80x24 shows more");
 }
 
 #[test]
@@ -496,6 +499,73 @@ fn ascii_is_ascii_to_the_last_cell() {
     assert!(stage.picture().is_ascii(), "{}", stage.picture());
     stage.press("?");
     assert!(stage.picture().is_ascii());
+}
+
+#[test]
+fn every_number_is_on_the_screen_once_the_parameters_fill_it() {
+    let mut stage = Stage::open("wobble-push", &[], SMALL);
+    stage.wait(5.0).press(" ").shows("f: all of them");
+    let unfilled = stage.picture();
+    assert_eq!(unfilled.matches("predicted").count(), 2, "{unfilled}");
+    stage.press("\t\tf").shows_no("all of them");
+    for label in [
+        "rim radius",
+        "gravity",
+        "nutation",
+        "|L|",
+        "Lz",
+        "energy",
+        "push",
+        "acts",
+        "E drift",
+    ] {
+        stage.shows(label);
+    }
+}
+
+#[test]
+fn the_header_keeps_the_clock_before_the_title() {
+    for (width, height) in [(80, 24), (79, 23), (60, 18), (50, 14), (40, 10), (30, 8)] {
+        let mut stage = Stage::open("wobble-push", &[], Rect::new(0, 0, width, height));
+        stage.wait(1.0).press(" ");
+        let header = stage.picture().lines().next().unwrap().to_owned();
+        for word in ["20.0 s", "step 200", "paused"] {
+            assert!(header.contains(word), "{header}");
+        }
+        assert!(
+            width < 79 || header.contains("report scheme · dt 0.1 s"),
+            "{header}"
+        );
+    }
+}
+
+#[test]
+fn the_help_says_everything_at_every_size() {
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for (width, height) in [(200, 50), (80, 24), (60, 18), (40, 10), (24, 60)] {
+        let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, width, height));
+        stage.press("?");
+        let mut seen = String::new();
+        for _ in 0..120 {
+            let picture = stage.picture();
+            let inside = |line: &str| line.trim_matches('│').trim().to_owned() + " ";
+            seen.extend(
+                picture
+                    .lines()
+                    .filter(|line| line.contains('│'))
+                    .map(inside),
+            );
+            stage.press("↓");
+        }
+        let seen = words(&seen);
+        for word in ["Backspace Ctrl-H", "Shift-Tab"] {
+            assert!(seen.contains(word), "{word} at {width}x{height}");
+        }
+        for word in BINDINGS.iter().flat_map(|row| row.help.split(' ')) {
+            assert!(seen.contains(word), "{word} at {width}x{height}");
+        }
+        assert!(!seen.contains(".."), "cut at {width}x{height}");
+    }
 }
 
 /// The Linux console's fonts have the 256 characters of the old PC, and some of Latin 1.

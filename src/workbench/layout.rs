@@ -20,6 +20,8 @@ const ONE_LINE_FROM: u16 = 140;
 const PARAMETERS: u16 = 26;
 /// The height the whole lab wants.
 const HEIGHT: u16 = 24;
+/// From this height on a hint may have two lines.
+const TWO_LINES_FROM: u16 = 18;
 
 /// Where everything stands; what has no place has an empty area.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -45,7 +47,7 @@ impl Layout {
         let title = cut(&mut rest, area.height >= 3, false);
         let keys = cut(&mut rest, keys && area.height >= 7, true);
         let hint = cut(&mut rest, area.height >= 6, true);
-        let hint = match area.height >= HEIGHT && area.width < ONE_LINE_FROM {
+        let hint = match area.height >= TWO_LINES_FROM && area.width < ONE_LINE_FROM {
             true => hint.union(cut(&mut rest, true, true)),
             false => hint,
         };

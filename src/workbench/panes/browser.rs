@@ -106,8 +106,26 @@ impl BrowserPane<'_> {
             Some(Err(problem)) => refused(problem, width),
             None => Vec::new(),
         };
+        let more = lines.len() > area.height as usize;
         for ((text, role), y) in lines.iter().zip(0..area.height) {
-            write(area, (1, y), text, self.theme.style(*role), buf);
+            let last = more && y + 1 == area.height;
+            let text = if last {
+                format!("{text} ...")
+            } else {
+                text.clone()
+            };
+            let room = area.width - 1;
+            let line = Rect {
+                width: room,
+                ..area
+            };
+            write(
+                line,
+                (1, y),
+                text.trim_start(),
+                self.theme.style(*role),
+                buf,
+            );
         }
     }
 }

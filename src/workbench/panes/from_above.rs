@@ -9,8 +9,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 
-/// Dots of the path's raster from one dash of the exact motion to the next: without colours, dashes tell it from the run.
-const DASH: usize = 12;
+/// Dots of a dash of the exact motion, and as many are left out: without colours, dashes tell it from the run.
+const DASH: usize = 2;
 
 /// The least radius shown, m: a path that never leaves the vertical has none of its own.
 const LEAST: f64 = 1e-6;
@@ -69,13 +69,8 @@ impl FromAbove<'_> {
     fn path(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
         let mut dots = Dots::new(picture, self.view.marker);
         if let Some(overlay) = self.run.overlay() {
-            let dashed = overlay
-                .path()
-                .dots()
-                .enumerate()
-                .filter(|(dot, _)| dot % DASH < DASH / 2);
-            for (_, (x, y)) in dashed {
-                let (x, y) = plan.dot(x, y);
+            let exact = overlay.path().dots().map(|(x, y)| plan.dot(x, y));
+            for (x, y) in dashed(exact) {
                 dots.set(x, y, Ink::Faint(Role::Exact));
             }
         }
@@ -105,24 +100,16 @@ impl FromAbove<'_> {
             theme.style(Role::Quiet),
             buf,
         );
+        let at = self.run.now().position;
+        let here = plan.cell(at.x, at.y);
+        let mut mark = "o";
         if let Some(overlay) = self.run.overlay() {
             let at = overlay.now().position;
-            write(
-                picture,
-                plan.cell(at.x, at.y),
-                "e",
-                theme.style(Role::Exact),
-                buf,
-            );
+            let exact = plan.cell(at.x, at.y);
+            write(picture, exact, "e", theme.style(Role::Exact), buf);
+            mark = if exact == here { "*" } else { mark };
         }
-        let at = self.run.now().position;
-        write(
-            picture,
-            plan.cell(at.x, at.y),
-            "o",
-            theme.style(Role::Focus),
-            buf,
-        );
+        write(picture, here, mark, theme.style(Role::Focus), buf);
     }
 
     /// What a metre is, and what the marks mean, where there is room for it.
@@ -139,7 +126,7 @@ impl FromAbove<'_> {
         let bar = format!("├{}┤ {length_m} m", "─".repeat(cells.saturating_sub(2)));
         let end = write(area, (0, 0), &bar, theme.style(Role::Quiet), buf);
         let legends: &[&str] = match self.run.overlay() {
-            Some(_) => &["o now e exact", "e exact"],
+            Some(_) => &["o now e exact * both", "o now e exact", "e exact"],
             None => &["o now"],
         };
         let place = |legend: &&str| {
@@ -203,6 +190,16 @@ impl Plan {
         let row = inside(row, self.height) / self.dots.1;
         (column as u16, row as u16)
     }
+}
+
+/// Every second dash of the screen's dots that a path goes through one after the other.
+fn dashed(path: impl Iterator<Item = (f64, f64)>) -> impl Iterator<Item = (f64, f64)> {
+    let (mut passed, mut last) = (0, None);
+    path.filter(move |&(x, y)| {
+        let dot = (x.floor(), y.floor());
+        passed += usize::from(last.replace(dot) != Some(dot));
+        passed % (2 * DASH) < DASH
+    })
 }
 
 /// The largest of 1, 2, 5 times a power of ten that is not above `value` (> 0).

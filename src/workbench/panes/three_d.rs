@@ -41,10 +41,25 @@ impl Widget for ThreeD<'_> {
         self.body(&mut scene);
         let labels = self.vectors(&mut scene);
         scene.dots.render(theme, buf);
-        for (name, role, at) in labels {
-            write(inside, scene.cell(&at), name, theme.style(role), buf);
+        let mut taken = Vec::with_capacity(labels.len());
+        for (name, role, at) in labels.iter().rev() {
+            let cell = beside(scene.cell(at), &taken);
+            write(inside, cell, name, theme.style(*role), buf);
+            taken.push(cell);
         }
     }
+}
+
+/// `cell`, or the next one to its right that keeps off those that are `taken`.
+fn beside(cell: (u16, u16), taken: &[(u16, u16)]) -> (u16, u16) {
+    let (mut x, y) = cell;
+    while taken
+        .iter()
+        .any(|&(other, row)| row.abs_diff(y) <= 1 && other.abs_diff(x) <= 1)
+    {
+        x += 2;
+    }
+    (x, y)
 }
 
 type Label = (&'static str, Role, Vector3<f64>);
@@ -185,9 +200,10 @@ impl<'a> Scene<'a> {
     fn cell(&self, point: &Vector3<f64>) -> (u16, u16) {
         let (x, y) = self.dot(point);
         let (in_x, in_y) = self.view.marker.dots();
+        let inside = |dot: f64, dots: usize| dot.clamp(0.0, dots.saturating_sub(1) as f64);
         (
-            (x / in_x as f64).max(0.0) as u16,
-            (y / in_y as f64).max(0.0) as u16,
+            (inside(x, self.dots.width()) / in_x as f64) as u16,
+            (inside(y, self.dots.height()) / in_y as f64) as u16,
         )
     }
 

@@ -121,7 +121,7 @@ impl Traces<'_> {
         match curve {
             Curve::X | Curve::Y => {
                 let both = extent(Curve::X).and(extent(Curve::Y));
-                Scale::about_zero(both.max.max(-both.min))
+                Scale::about_zero(both.max.max(-both.min).max(PLANE_LEAST * self.reach()))
             }
             Curve::Z => Scale::around(extent(curve), Z_LEAST * self.reach()),
             Curve::Tilt => Scale::around(extent(curve), TILT_LEAST),
@@ -161,10 +161,7 @@ impl Traces<'_> {
 
     fn time_axis(&self, sweep: &Sweep, area: Rect, buf: &mut Buffer) {
         let style = self.view.theme.style(Role::Quiet);
-        let (begin, end) = (
-            short(sweep.begin_s),
-            format!("{} s", short(sweep.begin_s + sweep.window_s)),
-        );
+        let (begin, end) = ends(sweep, area.width as usize);
         write(area, (0, 0), &begin, style, buf);
         let room = area.width as usize;
         if begin.len() + end.len() < room {
@@ -175,8 +172,12 @@ impl Traces<'_> {
 
 /// Least range of z, of the distance between pivot and traced point: a swing below it is small, and shall look small.
 const Z_LEAST: f64 = 0.05;
-/// Least range of the tilt, degrees.
-const TILT_LEAST: f64 = 1e-6;
+/// Least range of the tilt, degrees: below it there is rounding to see, and no end to the digits of its ends.
+const TILT_LEAST: f64 = 0.02;
+/// Least reach of x and y, of the same distance.
+const PLANE_LEAST: f64 = 1e-4;
+/// Times below this, s, are written with all their digits.
+const LONG_TIME_S: f64 = 1e6;
 
 struct Look {
     name: &'static str,
@@ -214,20 +215,12 @@ impl Scale {
     /// Round numbers around `extent`, at least `least` apart; they change seldom while the extent grows.
     fn around(extent: Extent, least: f64) -> Self {
         let unit = nice_above((extent.max - extent.min).max(least)) / 4.0;
+        let (low, high) = ((extent.min / unit).floor(), (extent.max / unit).ceil());
+        let missing = (least / unit - (high - low)).ceil().max(0.0);
+        let below = (0.5 * missing).floor();
         Self {
-            low: (extent.min / unit).floor() * unit,
-            high: (extent.max / unit).ceil() * unit,
-        }
-        .opened(unit)
-    }
-
-    fn opened(self, unit: f64) -> Self {
-        match self.high > self.low {
-            true => self,
-            false => Self {
-                low: self.low - unit,
-                high: self.high + unit,
-            },
+            low: (low - below) * unit,
+            high: (high + missing - below) * unit,
         }
     }
 
@@ -274,10 +267,57 @@ fn nice_above(value: f64) -> f64 {
     step.unwrap_or(10.0) * unit
 }
 
+/// What stands at both ends of the time axis: both times, or how much later the right one is where they have too many
+/// digits for `width` columns.
+fn ends(sweep: &Sweep, width: usize) -> (String, String) {
+    let (begin_s, end_s) = (sweep.begin_s, sweep.begin_s + sweep.window_s);
+    if end_s < LONG_TIME_S {
+        return (short(begin_s), format!("{} s", short(end_s)));
+    }
+    let digits = (1.0 - sweep.window_s.log10()).ceil().clamp(0.0, 6.0) as usize;
+    let begin = format!("{begin_s:.digits$}");
+    let end = format!("{end_s:.digits$} s");
+    if begin.len() + end.len() < width {
+        return (begin, end);
+    }
+    let later = format!("+ {} s", short(sweep.window_s));
+    let whole = format!("{begin} s");
+    if whole.len() + later.len() < width {
+        return (whole, later);
+    }
+    (format!("{begin_s:.3e} s"), later)
+}
+
 /// A time without digits it does not need.
 fn short(time_s: f64) -> String {
     match time_s {
-        t if t >= 1e6 => format!("{t:.3e}"),
+        t if t >= LONG_TIME_S => format!("{t:.3e}"),
         t => format!("{}", (t * 1e6).round() / 1e6),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_calm_tilt_needs_few_digits() {
+        let extent = Extent::of(29.999_999_75).and(Extent::of(30.000_000_02));
+        assert_eq!(
+            Scale::around(extent, TILT_LEAST).in_words(),
+            "29.990 .. 30.010"
+        );
+        let constant = Scale::around(Extent::of(30.0), TILT_LEAST);
+        assert_eq!(constant.in_words(), "29.990 .. 30.010");
+    }
+
+    #[test]
+    fn both_ends_of_the_time_axis_differ() {
+        let at = |now_s, width| ends(&Sweep::new(230.0, now_s, 50, 4), width);
+        let pair = |begin: &str, end: &str| (begin.to_owned(), end.to_owned());
+        assert_eq!(at(240.0, 25), pair("230", "460 s"));
+        assert_eq!(at(1_130_300.0, 25), pair("1130220", "1130450 s"));
+        assert_eq!(at(1.1303e12, 25).1, "+ 230 s");
+        assert_eq!(at(1.1303e12, 18).0, "1.130e12 s");
     }
 }
