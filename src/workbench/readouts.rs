@@ -55,9 +55,11 @@ impl Readouts {
     }
 }
 
-/// Whether `measured` is more than the beginning of a swing.
+/// Whether `measured` says something: known to a half from whole nutations, or settled without any. An axle that passes
+/// through the vertical has nutations and no azimuth to speak of.
 fn is_settled(measured: &Measured) -> bool {
-    measured.nutations > 0 || measured.uncertainty < SETTLED * measured.value.abs()
+    let within = if measured.nutations > 0 { 0.5 } else { SETTLED };
+    measured.uncertainty <= within * measured.value.abs()
 }
 
 fn pace_in_words(pace: &Pace) -> String {

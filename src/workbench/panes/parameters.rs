@@ -330,7 +330,7 @@ fn now_rows(readouts: &Readouts) -> Vec<Row> {
                 .health
                 .energy_drift
                 .map_or("n/a".to_owned(), |drift| signed("E drift", drift, 4)),
-            "",
+            "mgl",
         ),
         number(3, "|L|", sample.momentum.norm(), 3, "J s"),
         number(4, "Lz", sample.momentum.z, 3, "J s"),
