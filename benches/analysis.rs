@@ -138,7 +138,7 @@ fn billionth(criterion: &mut Criterion) {
     let steps = (50..2000).find(|&steps| error(steps) < 1e-9).unwrap();
     println!("1e-9 m over 10 s takes {steps} steps of srkn11b");
     criterion.bench_function("10 s to 1e-9 m by srkn11b", |bencher| {
-        bencher.iter(|| run(black_box(steps), &mut |_, _| ()))
+        bencher.iter(|| run(black_box(steps), &mut |_, _| ()));
     });
 }
 

@@ -41,7 +41,9 @@ fn followed(scenario: &Arc<Scenario>) -> (Simulation, Monitor) {
 
 /// Preset, tilt range (degrees), L3 (J s), nutation period (s), mean precession (rad/s), cusp tilt (degrees), path: from
 /// elliptic integrals and from L_z / L3.
-const TABLE: [(&str, [f64; 2], f64, f64, f64, Option<f64>, Path); 8] = [
+type Row = (&'static str, [f64; 2], f64, f64, f64, Option<f64>, Path);
+
+const TABLE: [Row; 8] = [
     (
         "cusps",
         [30.0, 36.689122],

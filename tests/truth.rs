@@ -51,6 +51,9 @@ enum Window {
     Steps(u64, u64),
 }
 
+/// A place in the upright pose (m) and the force on it (N).
+type Acting = (Vector3<f64>, Vector3<f64>);
+
 #[derive(Clone)]
 struct Edited {
     step: u64,
@@ -167,7 +170,7 @@ impl Told {
     }
 
     /// Gravity, and the forces beside it with the places on which they act, at a moment at which none changes.
-    fn forces(&self, time: f64) -> (f64, Vec<(Vector3<f64>, Vector3<f64>)>) {
+    fn forces(&self, time: f64) -> (f64, Vec<Acting>) {
         let mut gravity = self.gravity;
         let mut pushes = self.pushes.clone();
         for (edit, at) in self.edits.iter().zip(self.edit_times()) {
@@ -200,7 +203,7 @@ struct Turning<'a> {
     inverse: Matrix3<f64>,
     first_moment: Vector3<f64>,
     gravity: f64,
-    pushes: Vec<(Vector3<f64>, Vector3<f64>)>,
+    pushes: Vec<Acting>,
 }
 
 impl<'a> Turning<'a> {
