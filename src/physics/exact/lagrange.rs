@@ -251,6 +251,7 @@ fn quaternion(orientation: Matrix3<f64>) -> UnitQuaternion<f64> {
 }
 
 /// The frame along the vertical, with the exact vector `up` that it is rounded from.
+#[derive(Clone, Copy)]
 struct InFrame {
     vertical: UnitQuaternion<f64>,
     up: Vector3<f64>,
