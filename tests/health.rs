@@ -183,6 +183,20 @@ fn the_advice_is_right_for_every_preset_under_every_scheme() {
     assert_eq!(count(|advice| *advice == Advice::Nothing), 0);
 }
 
+#[test]
+fn a_scheme_is_advised_at_a_time_step_at_which_it_holds() {
+    // Where the report's scheme cannot be mended, and at the run's own time step the better one does not hold either.
+    for name in ["falling", "sleeping-unstable"] {
+        let scenario = resampled(&preset(name, &[]), 2.0, find("report"));
+        assert!(strays(resampled(&scenario, 2.0, find("srkn11b"))) > BELIEVED_WITHIN);
+        let advice = advice_is_right(name, &scenario);
+        assert!(
+            matches!(advice, Advice::Scheme { time_step_s, .. } if time_step_s < 2.0),
+            "{name}: {advice:?}"
+        );
+    }
+}
+
 /// A wheel or a few points anywhere, spinning, with a push or none.
 fn random(dice: &mut Dice) -> Scenario {
     let body = match dice.unit() < 0.6 {
