@@ -129,8 +129,8 @@ impl Scheme for Report {
         };
     }
 
-    fn workings(&self, _: &State, _: &State, _: f64) -> Workings {
-        self.last
+    fn workings(&self) -> Option<Workings> {
+        Some(self.last)
     }
 
     fn boxed(&self) -> Box<dyn Scheme> {

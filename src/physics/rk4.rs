@@ -4,13 +4,12 @@
 //! equation is smooth off the rotations too, and pulls it back to a rotation once, at the end of the step: that
 //! changes the result by no more than the step's own error.
 
-use super::{Body, Loads, Scheme, State, Workings, loads::torque, rotation};
+use super::{Body, Loads, Scheme, State, loads::torque, rotation};
 use nalgebra::{Matrix3, Vector3};
 
 /// Runge-Kutta of order 4; see the module's text.
 #[derive(Clone, Debug)]
 pub struct Rk4 {
-    inertia: Matrix3<f64>,
     inverse_inertia: Matrix3<f64>,
     moment: Matrix3<f64>,
     body: Body,
@@ -26,7 +25,6 @@ impl Rk4 {
     /// The scheme for `body`.
     pub fn new(body: &Body) -> Self {
         Self {
-            inertia: body.inertia(),
             inverse_inertia: body.inverse_inertia(),
             moment: Matrix3::zeros(),
             body: body.clone(),
@@ -64,10 +62,6 @@ impl Scheme for Rk4 {
         let torque = k1.momentum + (k2.momentum + k3.momentum) * 2.0 + k4.momentum;
         state.orientation = rotation::straightened(&(state.orientation + turned * (dt / 6.0)));
         state.momentum += torque * (dt / 6.0);
-    }
-
-    fn workings(&self, before: &State, after: &State, dt: f64) -> Workings {
-        Workings::between(&self.inertia, &self.inverse_inertia, before, after, dt)
     }
 
     fn boxed(&self) -> Box<dyn Scheme> {

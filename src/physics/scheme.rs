@@ -18,8 +18,11 @@ pub trait Scheme: Send {
     /// Takes `state` `dt` seconds further, its time left as it is: time is the run's, which counts steps.
     fn step(&mut self, dt: f64, state: &mut State);
 
-    /// What the scheme computed on the way from `before` to `after`, the step it took last.
-    fn workings(&self, before: &State, after: &State, dt: f64) -> Workings;
+    /// What the scheme computed on the way of the step it took last, where it goes that way: for the others it follows
+    /// from the step's two ends ([`Workings::between`]).
+    fn workings(&self) -> Option<Workings> {
+        None
+    }
 
     /// What there is to say of how the run was computed, beyond the scheme's name.
     fn remark(&self) -> Option<String> {

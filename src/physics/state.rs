@@ -1,5 +1,6 @@
 //! How the body stands and moves, and what one time step did to it.
 
+use super::Body;
 use nalgebra::{Matrix3, Vector3};
 
 /// What passes from step to step and from scheme to scheme: time, orientation and angular momentum, no more.
@@ -43,19 +44,13 @@ pub struct Workings {
 }
 
 impl Workings {
-    /// The workings of a step as they follow from its two ends alone, for schemes that have no such numbers of their
-    /// own. `inertia` (kg m²) and its inverse are about the pivot, in the body frame.
-    pub fn between(
-        inertia: &Matrix3<f64>,
-        inverse_inertia: &Matrix3<f64>,
-        before: &State,
-        after: &State,
-        dt: f64,
-    ) -> Self {
+    /// The workings of a step of `body` as they follow from its two ends alone, for schemes that have no such numbers of
+    /// their own.
+    pub fn between(body: &Body, before: &State, after: &State, dt: f64) -> Self {
         let q = &before.orientation;
         Self {
-            inertia: q * inertia * q.transpose(),
-            angular_velocity: q * (inverse_inertia * q.tr_mul(&before.momentum)),
+            inertia: q * body.inertia() * q.transpose(),
+            angular_velocity: q * (body.inverse_inertia() * q.tr_mul(&before.momentum)),
             rotation: after.orientation * q.transpose(),
             torque: (after.momentum - before.momentum) / dt,
         }

@@ -3,7 +3,7 @@
 use super::pushes::{self, Counting, Stretch};
 use super::{Clock, Sample};
 use crate::physics::observables::{self, Azimuth};
-use crate::physics::{Loads, PointForce, Scheme, State, StepRecord};
+use crate::physics::{Loads, PointForce, Scheme, State, StepRecord, Workings};
 use crate::scenario::{Edit, Motion, Push, Scenario};
 use std::sync::Arc;
 
@@ -282,13 +282,14 @@ impl Simulation {
 
     /// The whole of the step taken last; `None` at step 0.
     pub fn record(&self) -> Option<StepRecord> {
+        let body = &self.scenario.body.mechanics;
         (self.step > 0).then(|| StepRecord {
             step: self.step,
             time_step_s: self.motion.time_step_s,
             before: self.before,
-            workings: self
-                .scheme
-                .workings(&self.before, &self.state, self.motion.time_step_s),
+            workings: self.scheme.workings().unwrap_or_else(|| {
+                Workings::between(body, &self.before, &self.state, self.motion.time_step_s)
+            }),
             after: self.state,
         })
     }

@@ -1,7 +1,7 @@
 //! The exact motion as a scheme: the time step only says where the rows stand.
 
 use super::{ExactMotion, Kind};
-use crate::physics::{Body, Loads, Scheme, State, Workings};
+use crate::physics::{Body, Loads, Scheme, State};
 
 /// Exact motion, anew from every change of the loads; see [`super`].
 #[derive(Clone, Debug)]
@@ -82,16 +82,6 @@ impl Scheme for Exact {
         }
         let now = motion.at(self.pace.advance(dt));
         (state.orientation, state.momentum) = (now.orientation, now.momentum);
-    }
-
-    fn workings(&self, before: &State, after: &State, dt: f64) -> Workings {
-        Workings::between(
-            &self.body.inertia(),
-            &self.body.inverse_inertia(),
-            before,
-            after,
-            dt,
-        )
     }
 
     fn remark(&self) -> Option<String> {

@@ -1,7 +1,7 @@
 //! A composition as a scheme.
 
 use super::{Kind, Splitting};
-use crate::physics::{Body, Loads, Scheme, State, Workings};
+use crate::physics::{Body, Loads, Scheme, State};
 
 /// A splitting of one kind for one body; see [`super`].
 #[derive(Clone, Debug)]
@@ -32,16 +32,6 @@ impl Scheme for SplittingScheme {
 
     fn step(&mut self, dt: f64, state: &mut State) {
         self.splitting.step(state, dt);
-    }
-
-    fn workings(&self, before: &State, after: &State, dt: f64) -> Workings {
-        Workings::between(
-            &self.body.inertia(),
-            &self.body.inverse_inertia(),
-            before,
-            after,
-            dt,
-        )
     }
 
     fn boxed(&self) -> Box<dyn Scheme> {
