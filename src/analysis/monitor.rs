@@ -38,6 +38,11 @@ impl Monitor {
         }
     }
 
+    /// Goes on with a run of `scenario`, whose past is the same.
+    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+        self.truth = is_affordable(scenario).then(|| Truth::new(Arc::clone(scenario)));
+    }
+
     /// Takes in the step that `simulation` stands at; to be shown every step.
     #[inline]
     pub fn follow(&mut self, simulation: &Simulation) {

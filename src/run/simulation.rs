@@ -143,6 +143,25 @@ impl Simulation {
         Ok(())
     }
 
+    /// Goes on in `scenario` from here. It must have the same past: what differs in it acts on the steps to come, and the
+    /// steps taken so far are those it would have led to. A run that has [ended](Self::has_ended) cannot go on.
+    pub fn go_on_in(&mut self, scenario: Arc<Scenario>) {
+        self.edits_made = scenario.edits.partition_point(|edit| edit.step < self.step);
+        self.next_edit = step_of_edit(&scenario, self.edits_made);
+        let made = self
+            .edits_made
+            .checked_sub(1)
+            .map(|last| &scenario.edits[last]);
+        let pushes = made.map_or(&scenario.pushes, |edit| &edit.pushes);
+        self.pushes = pushes.as_slice().into();
+        self.scenario = scenario;
+    }
+
+    /// Whether the numbers of the next step are not finite.
+    pub fn has_ended(&self) -> bool {
+        self.ended.is_some()
+    }
+
     /// Whether every number read off the state is finite: squares leave the range of numbers before L itself does. A
     /// finite energy means a finite Omega too.
     fn can_be_read(&self) -> bool {

@@ -73,6 +73,24 @@ impl Path {
         ((share * SIDE as f64) as usize).min(SIDE - 1)
     }
 
+    /// Goes back to `step`, where the point stood at `position`.
+    ///
+    /// Cells that were first visited later are forgotten. The raster keeps its width, and the radius is known to a cell.
+    pub fn cut_back(&mut self, step: u64, position: &Vector3<f64>) {
+        // Cells stand in the order of their first visit.
+        let kept = self
+            .visited
+            .partition_point(|&cell| self.first_visit[cell as usize] <= step);
+        for cell in self.visited.drain(kept..) {
+            self.first_visit[cell as usize] = NEVER;
+        }
+        self.radius = self
+            .dots()
+            .map(|(x, y)| libm::hypot(x, y))
+            .fold(0.0, f64::max);
+        self.last = Some((position.x, position.y));
+    }
+
     /// Twice the width: four cells become one.
     fn double(&mut self) {
         let old = std::mem::replace(&mut self.first_visit, vec![NEVER; SIDE * SIDE]);
@@ -122,6 +140,33 @@ mod tests {
                 let near = path.dots().any(|(a, b)| (a - x).abs() <= cell && (b - y).abs() <= cell);
                 prop_assert!(near, "({}, {})", x, y);
             }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn cut_back_it_is_what_it_was(
+            positions in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64), 2..60), share in 0.0..1.0f64
+        ) {
+            let follow = |path: &mut Path, range: std::ops::Range<usize>| for step in range {
+                let (x, y) = positions[step];
+                path.follow(step as u64, &Vector3::new(x, y, 0.0));
+            };
+            let at = (share * positions.len() as f64) as usize;
+            let (mut short, mut long) = (Path::new(2.0), Path::new(2.0));
+            // Both rasters as wide as they will be: cells of another width are other cells.
+            (short.half_width, long.half_width) = (2.0, 2.0);
+            follow(&mut short, 0..at + 1);
+            follow(&mut long, 0..positions.len());
+            let (x, y) = positions[at];
+            long.cut_back(at as u64, &Vector3::new(x, y, 0.0));
+            prop_assert_eq!(&short.visited, &long.visited);
+            prop_assert_eq!(short.last, long.last);
+            let cell = 4.0 / SIDE as f64;
+            prop_assert!((short.radius - long.radius).abs() <= cell);
+            follow(&mut short, at + 1..positions.len());
+            follow(&mut long, at + 1..positions.len());
+            prop_assert_eq!(short.visited, long.visited);
         }
     }
 

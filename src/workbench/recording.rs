@@ -1,16 +1,27 @@
 //! What the traces are drawn from: every step's extremes, however long the run, in bounded memory.
 //!
-//! Blocks of one step, of two, of four and so on, a few thousand of each size. Two full blocks of one size make
-//! one of the next, so that any stretch of the run up to now is covered by blocks of some size, a thousand or more to
-//! a window, and no step's minimum or maximum is ever lost to the picture.
+//! Blocks of one step, of two, of four and so on. Two full blocks of one size make one of the next, so that no step's
+//! minimum or maximum is ever lost to the picture. Of the sizes that still reach back to the start there are up to
+//! [`WHOLE`] blocks, of the smaller ones the newest [`RECENT`]: any stretch of the run up to now is covered by a
+//! thousand blocks or more.
+//!
+//! A recording can be [cut back](Recording::cut_back) to an earlier moment. Its blocks there are coarser than they were
+//! when that moment was the newest; [`coarse_since`](Recording::coarse_since) says from where on it wants to be filled
+//! anew.
 
 use crate::physics::State;
 use crate::physics::observables;
 use nalgebra::Vector3;
 use std::collections::VecDeque;
 
-/// How many blocks of each size are kept.
-const KEPT: usize = 2048;
+/// How many blocks of one size are kept as long as they reach back to the start.
+const WHOLE: usize = 16_384;
+/// How many are kept once they do not.
+const RECENT: usize = 2048;
+/// No more blocks than this, but for twice as many, are given for one stretch.
+const FINEST: usize = 2048;
+/// A stretch of fewer blocks than this, and of more steps than blocks, is coarse.
+const COARSE: u64 = 512;
 
 /// The curves that are recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,39 +128,63 @@ impl Block {
     }
 }
 
-/// All blocks of one size.
+/// All blocks of one size: each follows the one before it without a gap.
 #[derive(Clone, Debug, Default)]
 struct Level {
     blocks: VecDeque<Block>,
-    /// The first half of the block of the next size.
-    waiting: Option<Block>,
-    /// Whether blocks have been dropped, so that this level no longer reaches back to the start.
-    dropped: bool,
+    /// How many blocks of this size came before the first one that is kept.
+    dropped: u64,
 }
 
 impl Level {
+    /// How many blocks of this size there have been.
+    fn count(&self) -> u64 {
+        self.dropped + self.blocks.len() as u64
+    }
+
+    /// The first half of the block of the next size, where there is no second half yet.
+    fn waiting(&self) -> Option<&Block> {
+        self.blocks
+            .back()
+            .filter(|_| !self.count().is_multiple_of(2))
+    }
+
     /// Takes `block`; gives a block of the next size where it completes one.
     fn push(&mut self, block: Block) -> Option<Block> {
-        if self.blocks.len() == KEPT {
-            self.blocks.pop_front();
-            self.dropped = true;
+        let pair = self.waiting().map(|first| first.and(&block));
+        let most = if self.dropped == 0 { WHOLE } else { RECENT };
+        if self.blocks.len() == most {
+            let excess = most + 1 - RECENT;
+            self.blocks.drain(..excess);
+            self.dropped += excess as u64;
         }
         self.blocks.push_back(block);
-        match self.waiting.take() {
-            Some(first) => Some(first.and(&block)),
-            None => {
-                self.waiting = Some(block);
-                None
-            }
-        }
+        pair
+    }
+
+    /// Whether it can be cut back to `count` blocks: the one that then waits for its second half must be there.
+    fn can_be_cut_to(&self, count: u64) -> bool {
+        count.is_multiple_of(2) || count > self.dropped
+    }
+
+    fn cut_to(&mut self, count: u64) {
+        let kept = count.saturating_sub(self.dropped);
+        self.blocks.truncate(kept as usize);
+        self.dropped = self.dropped.min(count);
+    }
+
+    fn is_whole(&self) -> bool {
+        self.dropped == 0
+    }
+
+    /// The place among those kept of the first block that ends at `time_s` or later.
+    fn first_since(&self, time_s: f64) -> usize {
+        self.blocks.partition_point(|block| block.end_s < time_s)
     }
 
     fn reaches(&self, time_s: f64) -> bool {
-        !self.dropped
-            || self
-                .blocks
-                .front()
-                .is_some_and(|block| block.begin_s <= time_s)
+        let front = self.blocks.front();
+        self.is_whole() || front.is_some_and(|block| block.begin_s <= time_s)
     }
 }
 
@@ -157,6 +192,7 @@ impl Level {
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     levels: Vec<Level>,
+    moments: u64,
     whole: Option<Block>,
 }
 
@@ -165,6 +201,7 @@ impl Recording {
     pub fn push(&mut self, moment: &Moment) {
         let block = Block::of(moment);
         self.whole = Some(self.whole.map_or(block, |whole| whole.and(&block)));
+        self.moments += 1;
         let mut carry = Some(block);
         let mut size = 0;
         while let Some(block) = carry {
@@ -176,31 +213,64 @@ impl Recording {
         }
     }
 
+    /// How many moments it has taken.
+    pub fn moments(&self) -> u64 {
+        self.moments
+    }
+
+    /// Goes back to where it had taken `moments` of them, or to a little earlier: where blocks that small are no longer
+    /// kept. Gives how many it has then; those that are missing are to be pushed again.
+    pub fn cut_back(&mut self, moments: u64) -> u64 {
+        let wanted = self.moments.min(moments);
+        let sizes = self.levels.iter().enumerate().rev();
+        let mut stuck = sizes.filter(|(size, level)| !level.can_be_cut_to(wanted >> size));
+        let size = stuck.next().map_or(0, |(size, _)| size + 1);
+        self.moments = wanted >> size << size;
+        for (size, level) in self.levels.iter_mut().enumerate() {
+            level.cut_to(self.moments >> size);
+        }
+        self.levels.retain(|level| level.count() > 0);
+        self.whole = self
+            .since(f64::NEG_INFINITY)
+            .copied()
+            .reduce(|whole, block| whole.and(&block));
+        self.moments
+    }
+
+    /// The moment from which on it should be filled anew, if the blocks up to now are coarse for some stretch.
+    pub fn coarse_since(&self) -> Option<u64> {
+        let lengths = (0..u64::BITS).map(|power| 1 << power);
+        let coarse = lengths
+            .take_while(|&length| length < self.moments)
+            .filter(|&length| {
+                let begin = self.moments - length;
+                let reaches = |(size, level): &(usize, &Level)| {
+                    level.is_whole() || (!level.blocks.is_empty() && level.dropped << size <= begin)
+                };
+                let finest = self.levels.iter().enumerate().find(reaches);
+                finest.is_some_and(|(size, _)| size > 0 && length >> size < COARSE)
+            });
+        coarse.last().map(|length| self.moments - length)
+    }
+
     /// The whole of it as one block; `None` while nothing is recorded.
     pub fn whole(&self) -> Option<&Block> {
         self.whole.as_ref()
     }
 
-    /// Blocks in order of time that cover everything from `since_s` (s) to now, as fine as they are kept.
+    /// Blocks in order of time that cover everything from `since_s` (s) to now, as fine as they are kept and need be.
     ///
     /// A block size that reaches back so far may not have completed its newest block: smaller ones follow it.
     pub fn since(&self, since_s: f64) -> impl Iterator<Item = &Block> {
-        let size = self
-            .levels
-            .iter()
-            .position(|level| level.reaches(since_s))
-            .unwrap_or(0);
-        let covering = self
-            .levels
-            .get(size..=size)
-            .into_iter()
-            .flatten()
-            .flat_map(|level| &level.blocks);
+        let suits = |level: &Level| {
+            level.reaches(since_s) && level.blocks.len() - level.first_since(since_s) <= 2 * FINEST
+        };
+        let size = self.levels.iter().position(suits).unwrap_or(0);
+        let covering = self.levels.get(size..=size).into_iter().flatten();
+        let covering =
+            covering.flat_map(move |level| level.blocks.range(level.first_since(since_s)..));
         let newest = self.levels[..size.min(self.levels.len())].iter().rev();
-        let rest = newest.filter_map(|level| level.waiting.as_ref());
-        covering
-            .skip_while(move |block| block.end_s < since_s)
-            .chain(rest)
+        covering.chain(newest.filter_map(Level::waiting))
     }
 }
 
@@ -237,7 +307,7 @@ mod tests {
             for pair in blocks.windows(2) {
                 prop_assert_eq!(pair[0].end_s + 1.0, pair[1].begin_s);
             }
-            prop_assert!(blocks.len() <= KEPT + 16);
+            prop_assert!(blocks.len() <= 2 * FINEST + 16);
         }
 
         #[test]
@@ -250,6 +320,52 @@ mod tests {
         }
     }
 
+    /// Every moment up to the newest in exactly one block, in order, from `since` on.
+    fn covers(recording: &Recording, since: f64) -> Result<(), TestCaseError> {
+        let blocks: Vec<_> = recording.since(since).collect();
+        prop_assert!(blocks[0].begin_s <= since);
+        prop_assert_eq!(
+            blocks[blocks.len() - 1].end_s,
+            (recording.moments() - 1) as f64
+        );
+        for pair in blocks.windows(2) {
+            prop_assert_eq!(pair[0].end_s + 1.0, pair[1].begin_s);
+        }
+        Ok(())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn cut_back_and_filled_it_is_as_fine_as_ever(
+            length in 1u64..200_000, shares in prop::collection::vec(0.0..1.0f64, 1..4), at in 0.0..1.0f64
+        ) {
+            let value = |step: u64| if step == (at * length as f64) as u64 { 7.0 } else { (step as f64 * 0.01).sin() };
+            let mut recording = Recording::default();
+            (0..length).for_each(|step| recording.push(&moment(step, value(step))));
+            prop_assert_eq!(recording.coarse_since(), None);
+            for share in shares {
+                let wanted = 1 + (share * (length - 1) as f64) as u64;
+                let mut kept = recording.cut_back(wanted);
+                prop_assert!(kept <= wanted);
+                if let Some(from) = recording.coarse_since() {
+                    prop_assert!(wanted - from <= length / 8, "{} of {}", wanted - from, length);
+                    kept = recording.cut_back(from);
+                }
+                (kept..wanted).for_each(|step| recording.push(&moment(step, value(step))));
+                prop_assert_eq!(recording.moments(), wanted);
+                prop_assert_eq!(recording.coarse_since(), None);
+                for since in [0.0, 0.4, 0.9, 0.999] {
+                    covers(&recording, (since * wanted as f64).floor())?;
+                }
+                let largest = (0..wanted).map(value).fold(-1.0, f64::max);
+                prop_assert_eq!(recording.whole().unwrap().extents[0].max, largest);
+                (wanted..length).for_each(|step| recording.push(&moment(step, value(step))));
+                covers(&recording, 0.0)?;
+            }
+        }
+    }
+
     #[test]
     fn memory_is_bounded() {
         let mut recording = Recording::default();
@@ -259,6 +375,6 @@ mod tests {
             .iter()
             .map(|level| level.blocks.len())
             .sum();
-        assert!(kept <= KEPT * 11 + 1000, "{kept} blocks");
+        assert!(kept <= RECENT * 10 + 2 * WHOLE, "{kept} blocks");
     }
 }
