@@ -1,5 +1,10 @@
 //! A run as it is watched: the simulation, and what is kept of it for the pictures.
+//!
+//! Where it has been it can go back to, and forward again: to the last [checkpoint](Checkpoints) before that step, and
+//! from there step by step, with the same bits as the first time. What the pictures need of the steps that lie ahead of
+//! it then is kept [`Ahead`].
 
+use super::checkpoints::Checkpoints;
 use super::overlay::Overlay;
 use super::path::Path;
 use super::recording::{Moment, Recording};
@@ -7,6 +12,7 @@ use crate::analysis::{Health, Instruments, Monitor, Theory};
 use crate::run::{NotFinite, Simulation};
 use crate::scenario::Scenario;
 use nalgebra::Vector3;
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 /// Between two looks at the clock a body of one point takes this many steps; one of n points an n-th of it.
@@ -19,11 +25,22 @@ const ROUNDING: f64 = 1e-6;
 pub struct LiveRun {
     simulation: Simulation,
     monitor: Monitor,
+    checkpoints: Checkpoints,
     traced: Vector3<f64>,
     now: Moment,
     recording: Recording,
     path: Path,
+    /// The step that the path has been followed to: beyond now while the run is on its way back there.
+    followed_to: u64,
+    ahead: Option<Ahead>,
     overlay: Option<Overlay>,
+}
+
+/// The pictures of a run up to the furthest step it has been at, while it stands at an earlier one.
+struct Ahead {
+    step: u64,
+    recording: Recording,
+    path: Path,
 }
 
 /// How playing on came to its end.
@@ -54,16 +71,21 @@ impl LiveRun {
         let traced = scenario.body.mechanics.points()[scenario.trace].at;
         let now = Moment::new(&scenario.start, &traced);
         let simulation = Simulation::new(scenario);
+        let monitor = Monitor::new(&simulation);
         let mut run = Self {
-            monitor: Monitor::new(&simulation),
+            checkpoints: Checkpoints::new(&simulation, &monitor),
+            monitor,
             simulation,
             traced,
             now,
             recording: Recording::default(),
             path: Path::new(traced.norm()),
+            followed_to: 0,
+            ahead: None,
             overlay: None,
         };
-        run.keep();
+        run.recording.push(&run.now);
+        run.path.follow(0, &run.now.position);
         run
     }
 
@@ -74,15 +96,133 @@ impl LiveRun {
     pub fn step(&mut self) -> Result<(), NotFinite> {
         self.simulation.step()?;
         self.monitor.follow(&self.simulation);
+        self.checkpoints.offer(&self.simulation, &self.monitor);
         self.now = Moment::new(self.simulation.state(), &self.traced);
         self.keep();
         Ok(())
     }
 
+    /// Keeps for the pictures where it stands, as far as they have not been here.
     fn keep(&mut self) {
-        self.recording.push(&self.now);
-        self.path
-            .follow(self.simulation.step_number(), &self.now.position);
+        let step = self.simulation.step_number();
+        if step >= self.recording.moments() {
+            self.recording.push(&self.now);
+        }
+        match step.cmp(&self.followed_to) {
+            Ordering::Less => {}
+            Ordering::Equal => self.path.stand_at(&self.now.position),
+            Ordering::Greater => {
+                self.path.follow(step, &self.now.position);
+                self.followed_to = step;
+            }
+        }
+        if let Some(ahead) = self.ahead.take_if(|ahead| ahead.step == step) {
+            (self.recording, self.path) = (ahead.recording, ahead.path);
+        }
+    }
+
+    /// The furthest step it has been at.
+    pub fn furthest(&self) -> u64 {
+        let ahead = self.ahead.as_ref().map_or(0, |ahead| ahead.step);
+        ahead.max(self.followed_to)
+    }
+
+    /// Where it has set out for, if it is not there yet: [`step`](Self::step) leads there.
+    pub fn destination(&self) -> Option<u64> {
+        let step = self.simulation.step_number();
+        (step < self.followed_to).then_some(self.followed_to)
+    }
+
+    /// Sets out for `step`, or for the furthest it has been at: it stands then there or at an earlier step, and has a
+    /// [`destination`](Self::destination).
+    pub fn set_out_for(&mut self, step: u64) {
+        self.stay();
+        let here = self.simulation.step_number();
+        let step = step.min(self.furthest());
+        if step == here {
+            return;
+        }
+        let ahead = self.ahead.get_or_insert_with(|| Ahead {
+            step: here,
+            recording: self.recording.clone(),
+            path: self.path.clone(),
+        });
+        if step > here {
+            self.recording.clone_from(&ahead.recording);
+            self.path.clone_from(&ahead.path);
+        } else if self.overlay.is_some() {
+            self.set_overlay(true);
+        }
+        self.path.cut_back(step);
+        self.followed_to = step;
+        let recorded = self.cut_back_recording(step + 1);
+        self.stand_before(step.min(recorded.saturating_sub(1)), here);
+        if self.recording.moments() == 0 {
+            self.recording.push(&self.now);
+        }
+        self.keep();
+    }
+
+    /// Cuts the recording back to where it can be filled from again, and so that it is not coarse in the end.
+    fn cut_back_recording(&mut self, moments: u64) -> u64 {
+        let kept = self.recording.cut_back(moments);
+        match self.recording.coarse_since() {
+            Some(from) => self.recording.cut_back(from),
+            None => kept,
+        }
+    }
+
+    /// Stands at the latest step not beyond `latest` that is at hand: `here`, or a checkpoint.
+    fn stand_before(&mut self, latest: u64, here: u64) {
+        let checkpoint = self.checkpoints.before(latest);
+        if (checkpoint.step()..=latest).contains(&here) && !self.simulation.has_ended() {
+            return;
+        }
+        let scenario = Arc::clone(self.simulation.scenario());
+        (self.simulation, self.monitor) =
+            (checkpoint.simulation.clone(), checkpoint.monitor.clone());
+        self.now = Moment::new(self.simulation.state(), &self.traced);
+        self.adopt(&scenario);
+    }
+
+    fn adopt(&mut self, scenario: &Arc<Scenario>) {
+        if !Arc::ptr_eq(self.simulation.scenario(), scenario) {
+            self.simulation.go_on_in(Arc::clone(scenario));
+            self.monitor.go_on_in(scenario);
+        }
+    }
+
+    /// Stays where it stands, wherever it has set out for. The steps that it has not come to again are missing in the
+    /// recording.
+    pub fn stay(&mut self) {
+        if self.destination().is_none() {
+            return;
+        }
+        let step = self.simulation.step_number();
+        self.path.cut_back(step);
+        self.path.stand_at(&self.now.position);
+        self.followed_to = step;
+        for _ in self.recording.cut_back(step + 1)..=step {
+            self.recording.push(&self.now);
+        }
+    }
+
+    /// Goes on in `scenario`, which has the same past up to here and to where it has set out for. What lay ahead is no
+    /// longer where it leads.
+    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+        self.ahead = None;
+        self.checkpoints.cut_back(self.followed_to);
+        if self.simulation.has_ended() {
+            let here = self.simulation.step_number();
+            self.stand_before(here, here);
+        }
+        self.adopt(scenario);
+        self.set_overlay(self.overlay.is_some());
+    }
+
+    /// Is called and looked at otherwise: `scenario` leads to the same numbers at every step.
+    pub fn describe_as(&mut self, scenario: &Arc<Scenario>) {
+        self.adopt(scenario);
     }
 
     /// Plays on for `time_s` simulated seconds (whole steps of them), no further than the step `stop`, until `enough`

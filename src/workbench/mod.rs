@@ -21,6 +21,7 @@ pub mod advisor;
 pub mod app;
 pub mod browser;
 pub mod camera;
+pub mod checkpoints;
 pub mod dots;
 pub mod health;
 pub mod keymap;

@@ -73,10 +73,9 @@ impl Path {
         ((share * SIDE as f64) as usize).min(SIDE - 1)
     }
 
-    /// Goes back to `step`, where the point stood at `position`.
-    ///
-    /// Cells that were first visited later are forgotten. The raster keeps its width, and the radius is known to a cell.
-    pub fn cut_back(&mut self, step: u64, position: &Vector3<f64>) {
+    /// Forgets the cells that were first visited after `step`. The raster keeps its width, and the radius is known to a
+    /// cell. Where the point [stands](Self::stand_at) then is to be said before it goes on.
+    pub fn cut_back(&mut self, step: u64) {
         // Cells stand in the order of their first visit.
         let kept = self
             .visited
@@ -88,6 +87,10 @@ impl Path {
             .dots()
             .map(|(x, y)| libm::hypot(x, y))
             .fold(0.0, f64::max);
+    }
+
+    /// Goes on from `position`.
+    pub fn stand_at(&mut self, position: &Vector3<f64>) {
         self.last = Some((position.x, position.y));
     }
 
@@ -159,7 +162,8 @@ mod tests {
             follow(&mut short, 0..at + 1);
             follow(&mut long, 0..positions.len());
             let (x, y) = positions[at];
-            long.cut_back(at as u64, &Vector3::new(x, y, 0.0));
+            long.cut_back(at as u64);
+            long.stand_at(&Vector3::new(x, y, 0.0));
             prop_assert_eq!(&short.visited, &long.visited);
             prop_assert_eq!(short.last, long.last);
             let cell = 4.0 / SIDE as f64;

@@ -14,6 +14,10 @@ const STEPPING: Duration = Duration::from_millis(12);
 /// The exact motion's share of that, and of a frame of 15 a second: a tenth.
 const FOLLOWING_FLAT_OUT: Duration = Duration::from_micros(1200);
 const FOLLOWING: Duration = Duration::from_millis(6);
+/// What may be stepped at once, before the next picture, on the way to a step where the run has been before: points,
+/// and so many more for what a step costs beside them, times steps. It takes about 0.2 s.
+const AT_ONCE: u64 = 100_000_000;
+const BESIDE_POINTS: u64 = 60;
 /// Playback speed where the scenario names none, simulated seconds a second.
 const SPEED: f64 = 1.0;
 
@@ -65,11 +69,61 @@ impl Playback {
 
     /// Back to step 0; speed, running or not, and the exact motion's being shown stay as they are.
     pub fn restart(&mut self) {
-        let shows_exact = self.run.overlay().is_some();
-        self.run = LiveRun::new(Arc::clone(self.run.scenario()));
-        self.run.set_overlay(shows_exact);
-        self.hurries = false;
-        self.stop = self.next_stop();
+        let running = self.pace.is_running();
+        self.go_to(0);
+        self.set_running(running);
+    }
+
+    /// Goes to `step` and stops there: where the run has been before at once, unless the body is large; beyond, as fast
+    /// as it can.
+    pub fn go_to(&mut self, step: u64) {
+        self.set_running(false);
+        self.run.set_out_for(step);
+        self.arrive();
+        if step > self.run.furthest() {
+            self.take_steps(step - self.step_number());
+        }
+    }
+
+    /// Goes on in `scenario`, which has the same past up to `step`, and stops there.
+    pub fn turn_at(&mut self, step: u64, scenario: &Arc<Scenario>) {
+        self.set_running(false);
+        self.run.set_out_for(step);
+        self.run.go_on_in(scenario);
+        self.arrive();
+        if step > self.run.furthest() {
+            self.take_steps(step - self.step_number());
+        }
+    }
+
+    /// Goes on in `scenario` from here, running or not as it was.
+    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+        let running = self.pace.is_running();
+        self.set_running(running);
+        self.run.go_on_in(scenario);
+        self.arrive();
+        if !self.hurries {
+            self.set_running(running);
+        }
+    }
+
+    /// Shows `scenario`, which leads to the same numbers.
+    pub fn describe_as(&mut self, scenario: &Arc<Scenario>) {
+        self.run.describe_as(scenario);
+        if !self.hurries {
+            self.stop = self.next_stop();
+        }
+    }
+
+    /// Takes the run to where it has set out for: at once, or as fast as it can where that takes longer.
+    fn arrive(&mut self) {
+        let points = self.run.scenario().body.mechanics.points().len() as u64;
+        let way = |to: u64| (to - self.step_number()).saturating_mul(points + BESIDE_POINTS);
+        if self.run.destination().is_some_and(|to| way(to) <= AT_ONCE) {
+            while self.run.destination().is_some() && self.run.step().is_ok() {}
+        }
+        self.stop = self.run.destination().unwrap_or(self.next_stop());
+        self.hurries = self.run.destination().is_some();
     }
 
     /// Plays what `wall` has earned since `now` (as `clock` tells it), as far as there is time for it. Gives why it
@@ -125,7 +179,11 @@ impl Playback {
 
     /// Goes on, or stops where it is.
     pub fn set_running(&mut self, running: bool) {
-        self.hurries = false;
+        if self.hurries {
+            self.run.stay();
+            self.hurries = false;
+            self.stop = self.next_stop();
+        }
         self.pace.set_running(running);
     }
 

@@ -21,7 +21,7 @@ const RECENT: usize = 2048;
 /// No more blocks than this, but for twice as many, are given for one stretch.
 const FINEST: usize = 2048;
 /// A stretch of fewer blocks than this, and of more steps than blocks, is coarse.
-const COARSE: u64 = 512;
+const COARSE: u64 = 256;
 
 /// The curves that are recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,0 +1,78 @@
+//! How long it takes to go to a step where a run has been before, and how much memory the run takes: prints a table.
+//!
+//! `cargo bench --bench time_travel`, or with `-- 1000000` for a run of that many steps alone.
+
+#![allow(clippy::unwrap_used)]
+
+use gyrolab::scenario::Document;
+use gyrolab::workbench::playback::Playback;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Shares of the run to go to, one after the other: far back, a little back, forward, and near the end.
+const SHARES: [f64; 7] = [0.5, 0.499, 0.93, 0.07, 0.999, 1.0, 0.0];
+
+fn main() {
+    let asked = std::env::args()
+        .skip(1)
+        .find_map(|argument| argument.parse().ok());
+    let lengths = asked.map_or(vec![1_000_000, 10_000_000], |steps| vec![steps]);
+    println!(
+        "{:<12} {:>9} {:<9} {:>9} {:>9} {:>9} {:>9}",
+        "steps", "points", "scheme", "play s", "worst s", "back one", "MB"
+    );
+    for steps in lengths {
+        for (points, scheme) in [
+            (10, "report"),
+            (96, "report"),
+            (10, "srkn11b"),
+            (10, "exact"),
+        ] {
+            travel(steps, points, scheme);
+        }
+    }
+}
+
+fn travel(steps: u64, points: u64, scheme: &str) {
+    let mut document = Document::open("method-2").unwrap();
+    for set in [
+        format!("body.rim.points={points}"),
+        format!("motion.scheme={scheme}"),
+        format!("motion.steps={steps}"),
+        "motion.time_step_s=0.001".to_owned(),
+    ] {
+        document.set(&set).unwrap();
+    }
+    let mut playback = Playback::new(Arc::new(document.scenario().unwrap()), false);
+    let seconds = |playback: &mut Playback, step: u64| {
+        let begin = Instant::now();
+        playback.go_to(step);
+        assert_eq!(playback.step_number(), step);
+        playback.read();
+        begin.elapsed().as_secs_f64()
+    };
+    let begin = Instant::now();
+    playback.begin_at(steps).unwrap();
+    let play = begin.elapsed().as_secs_f64();
+    let mut worst: f64 = 0.0;
+    for share in SHARES {
+        let step = (share * steps as f64) as u64;
+        worst = worst.max(seconds(&mut playback, step));
+    }
+    playback.go_to(steps / 3);
+    let back = (1..100)
+        .map(|back| seconds(&mut playback, steps / 3 - back))
+        .fold(0.0, f64::max);
+    println!(
+        "{steps:<12} {points:>9} {scheme:<9} {play:>9.3} {worst:>9.4} {back:>9.4} {:>9.1}",
+        resident_mb()
+    );
+}
+
+/// The memory of this process now, MB; 0 where the system does not say.
+fn resident_mb() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    line.and_then(|line| line.trim().trim_end_matches(" kB").parse().ok())
+        .map_or(0.0, |kb: f64| kb / 1024.0)
+}
