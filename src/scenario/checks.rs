@@ -2,13 +2,11 @@
 
 use super::edits::edits;
 use super::file::ScenarioFile;
+use super::keys::TOP;
 use super::model::{Body, Scenario};
 use super::parts::{body, motion, pushes, start};
 use super::problem::{Problem, listed};
 use crate::physics::{State, observables};
-
-/// The traced point where a scenario names none.
-const TOP: &str = "top";
 
 /// Makes a scenario of `file`.
 ///

@@ -1,7 +1,7 @@
 //! A scenario's text, where it came from, and what `--set` changed in it.
 
 use super::checks;
-use super::dotted::{is_in, is_written, set_key};
+use super::dotted::{find, is_in, set_key};
 use super::problem::{Problem, Problems, brief, nearest, printable};
 use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale};
 use std::fs::File;
@@ -131,6 +131,14 @@ impl Document {
         Ok(())
     }
 
+    /// Writes `value` at the dotted `key`, of which no problem's place will speak.
+    ///
+    /// # Errors
+    /// When the key leads nowhere.
+    pub(super) fn write(&mut self, key: &str, value: Value) -> Result<(), Problems> {
+        set_key(&mut self.table, key, value).map_err(|problem| self.placed(vec![problem]))
+    }
+
     /// Takes the scenario to another time step (s), holding its seconds: see [`rescale`].
     ///
     /// # Errors
@@ -170,7 +178,7 @@ impl Document {
         };
         last(&|set| is_in(key, set) || is_in(set, key)).or_else(|| {
             let table = key.rsplit_once('.')?.0;
-            let is_new = !is_written(written?, table);
+            let is_new = find(written?, table).is_none();
             last(&|set| is_new && is_in(set, table))
         })
     }

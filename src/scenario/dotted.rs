@@ -78,17 +78,15 @@ impl<'a> Place<'a> {
     }
 }
 
-/// Whether a value is `written` at the dotted key.
-pub fn is_written(written: &toml::Table, key: &str) -> bool {
+/// The value written at the dotted key.
+pub fn find<'a>(written: &'a toml::Table, key: &str) -> Option<&'a Value> {
     let mut names = key.split('.');
     let first = names.next().and_then(|name| written.get(name));
-    names
-        .fold(first, |value, name| match value? {
-            Value::Table(table) => table.get(name),
-            Value::Array(array) => array.get(name.parse::<usize>().ok()?),
-            _ => None,
-        })
-        .is_some()
+    names.fold(first, |value, name| match value? {
+        Value::Table(table) => table.get(name),
+        Value::Array(array) => array.get(name.parse::<usize>().ok()?),
+        _ => None,
+    })
 }
 
 /// Whether the dotted `key` is `table` or lies in it.

@@ -8,7 +8,7 @@ use crate::physics::scheme;
 use toml::Value;
 
 /// One key a scenario or run file may hold.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub struct Key {
     /// Dotted path; `*` stands for any place in an array.
     pub path: &'static str,
@@ -18,6 +18,67 @@ pub struct Key {
     pub required: bool,
     /// Meaning, unit and default, in one line.
     pub about: &'static str,
+    /// How the lab shows and changes it; `None` where it does not.
+    pub lab: Option<InLab>,
+}
+
+/// How the lab shows and changes the value of a key.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InLab {
+    /// Short name; of a vector the stem to which x, y or z is added.
+    pub label: &'static str,
+    /// Unit, or empty.
+    pub unit: &'static str,
+    /// What a nudge does to it.
+    pub nudge: Nudge,
+    /// What is assumed where the key is absent.
+    pub absent: Absent,
+}
+
+/// What one nudge does to a value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Nudge {
+    /// Adds so much.
+    By(f64),
+    /// Adds the largest of 1, 2 and 5 times a power of ten that is not above a hundredth of the size (of a vector: of
+    /// its norm), or so much where the size is 0.
+    Hundredth(f64),
+    /// The same in whole numbers, 1 at the least.
+    WholeHundredth,
+    /// To the next of ..., 1, 2, 5, 10, 20, ...
+    Ladder,
+    /// To the next choice, after the last one the first again.
+    Turn,
+    /// Nothing: it is typed.
+    Typed,
+}
+
+/// What a scenario means that lacks a key.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Absent {
+    /// Nothing that a value could tell.
+    Nothing,
+    /// This number.
+    Number(f64),
+    /// This whole number.
+    Whole(i64),
+    /// This word or name.
+    Word(&'static str),
+    /// true or false.
+    Flag(bool),
+}
+
+impl Absent {
+    /// The value that is meant.
+    pub fn value(self) -> Option<Value> {
+        match self {
+            Self::Nothing => None,
+            Self::Number(number) => Some(Value::Float(number)),
+            Self::Whole(whole) => Some(Value::Integer(whole)),
+            Self::Word(word) => Some(Value::String(word.to_owned())),
+            Self::Flag(flag) => Some(Value::Boolean(flag)),
+        }
+    }
 }
 
 /// What a key may hold.
@@ -52,7 +113,18 @@ pub enum Range {
     NotNegative,
 }
 
+/// The traced point where a scenario names none.
+pub const TOP: &str = "top";
+
+/// Gravity where a scenario gives none, m/s² (the report's figure).
+pub const GRAVITY: f64 = 9.8;
+
+/// Playback speed where a scenario gives none, simulated seconds a second.
+pub const SPEED: f64 = 1.0;
+
+use Absent::Word;
 use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole};
+use Nudge::{By, Hundredth, Ladder, Turn, Typed, WholeHundredth};
 use Range::{Any, NotNegative, Positive};
 
 const fn must(path: &'static str, kind: Kind, about: &'static str) -> Key {
@@ -61,6 +133,7 @@ const fn must(path: &'static str, kind: Kind, about: &'static str) -> Key {
         kind,
         required: true,
         about,
+        lab: None,
     }
 }
 
@@ -70,6 +143,28 @@ const fn may(path: &'static str, kind: Kind, about: &'static str) -> Key {
         kind,
         required: false,
         about,
+        lab: None,
+    }
+}
+
+impl Key {
+    const fn lab(mut self, label: &'static str, unit: &'static str, nudge: Nudge) -> Self {
+        let absent = Absent::Nothing;
+        self.lab = Some(InLab {
+            label,
+            unit,
+            nudge,
+            absent,
+        });
+        self
+    }
+
+    /// What is meant where it is absent.
+    const fn or(mut self, absent: Absent) -> Self {
+        if let Some(lab) = self.lab {
+            self.lab = Some(InLab { absent, ..lab });
+        }
+        self
     }
 }
 
@@ -80,33 +175,33 @@ pub const MOST_POINTS: i64 = 100_000;
 #[rustfmt::skip]
 pub static KEYS: &[Key] = &[
     may("gyrolab", Line, "version of gyrolab that wrote the run file"),
-    must("title", Line, "name of the scenario"),
-    may("about", Paragraph, "one paragraph for the list of presets"),
-    may("source", Paragraph, "where the set-up comes from"),
-    may("trace", Line, "name of the point whose path is shown (default: top)"),
-    must("body.rim.points", Whole(1, MOST_POINTS), "equal masses on a circle across the axle; point j at angle 2 pi j/n from +x towards +y"),
-    must("body.rim.radius_m", Number(Positive), "radius of the circle, m"),
-    must("body.rim.height_m", Number(Any), "height of the circle above the pivot, m"),
-    must("body.rim.point_mass_kg", Number(Positive), "mass of each point, kg"),
-    must("body.point.*.name", Line, "the point's name, its own"),
-    must("body.point.*.at_m", Vector, "position in the upright pose, m, pivot at the origin"),
-    may("body.point.*.mass_kg", Number(NotNegative), "mass, kg (default: 0)"),
-    may("start.tilt_deg", Number(Any), "turns the upright body about +x, degrees (default: 0)"),
-    must("start.momentum_Js", Vector, "angular momentum L about the pivot, J s"),
-    may("start.momentum_frame", OneOf(&["world", "body"]), "\"body\": L is turned with the body (default: world)"),
-    may("motion.gravity_m_per_s2", Number(Any), "acceleration of gravity along -z, m/s^2 (default: 9.8)"),
-    may("motion.scheme", OneOf(&SCHEME_NAMES), "the numerical scheme (default: report)"),
-    must("motion.time_step_s", Number(Positive), "time step dt, s"),
-    must("motion.steps", Whole(1, i64::MAX), "length of the run in steps"),
-    must("push.*.point", Line, "name of the pushed point"),
-    must("push.*.force_N", Vector, "force, world frame, N"),
-    may("push.*.first_step", Whole(1, i64::MAX), "first step on which it acts; step 1 ends at t = dt"),
-    may("push.*.steps", Whole(1, i64::MAX), "on how many steps it acts"),
-    may("push.*.from_s", Number(NotNegative), "or, instead: from this time, s"),
-    may("push.*.for_s", Number(Positive), "for so long, s"),
-    may("push.*.accumulates", Flag, "true: j times the force on its j-th step, then steps times it to the end (default: false)"),
-    may("view.speed", Number(Positive), "what the workbench starts with: simulated seconds a second"),
-    may("view.look_at", Line, "one line: what there is to see"),
+    must("title", Line, "name of the scenario").lab("title", "", Typed),
+    may("about", Paragraph, "one paragraph for the list of presets").lab("about", "", Typed),
+    may("source", Paragraph, "where the set-up comes from").lab("source", "", Typed),
+    may("trace", Line, "name of the point whose path is shown (default: top)").lab("traced point", "", Turn).or(Word(TOP)),
+    must("body.rim.points", Whole(1, MOST_POINTS), "equal masses on a circle across the axle; point j at angle 2 pi j/n from +x towards +y").lab("rim points", "", WholeHundredth),
+    must("body.rim.radius_m", Number(Positive), "radius of the circle, m").lab("rim radius", "m", Hundredth(0.01)),
+    must("body.rim.height_m", Number(Any), "height of the circle above the pivot, m").lab("rim height", "m", Hundredth(0.01)),
+    must("body.rim.point_mass_kg", Number(Positive), "mass of each point, kg").lab("mass each", "kg", Hundredth(0.01)),
+    must("body.point.*.name", Line, "the point's name, its own").lab("name", "", Typed),
+    must("body.point.*.at_m", Vector, "position in the upright pose, m, pivot at the origin").lab("", "m", Hundredth(0.01)),
+    may("body.point.*.mass_kg", Number(NotNegative), "mass, kg (default: 0)").lab("mass", "kg", Hundredth(0.01)).or(Absent::Number(0.0)),
+    may("start.tilt_deg", Number(Any), "turns the upright body about +x, degrees (default: 0)").lab("tilt", "deg", By(1.0)).or(Absent::Number(0.0)),
+    must("start.momentum_Js", Vector, "angular momentum L about the pivot, J s").lab("L", "J s", Hundredth(1.0)),
+    may("start.momentum_frame", OneOf(&["world", "body"]), "\"body\": L is turned with the body (default: world)").lab("L given in", "", Turn).or(Word("world")),
+    may("motion.gravity_m_per_s2", Number(Any), "acceleration of gravity along -z, m/s^2 (default: 9.8)").lab("gravity", "m/s2", By(0.1)).or(Absent::Number(GRAVITY)),
+    may("motion.scheme", OneOf(&SCHEME_NAMES), "the numerical scheme (default: report)").lab("scheme", "", Turn).or(Word(scheme::SCHEMES[0].name)),
+    must("motion.time_step_s", Number(Positive), "time step dt, s").lab("dt", "s", Ladder),
+    must("motion.steps", Whole(1, i64::MAX), "length of the run in steps").lab("steps", "", WholeHundredth),
+    must("push.*.point", Line, "name of the pushed point").lab("point", "", Turn),
+    must("push.*.force_N", Vector, "force, world frame, N").lab("F", "N", Hundredth(1.0)),
+    may("push.*.first_step", Whole(1, i64::MAX), "first step on which it acts; step 1 ends at t = dt (default: 1)").lab("first step", "", WholeHundredth).or(Absent::Whole(1)),
+    may("push.*.steps", Whole(1, i64::MAX), "on how many steps it acts").lab("steps", "", WholeHundredth),
+    may("push.*.from_s", Number(NotNegative), "or, instead: from this time, s (default: 0)").lab("from", "s", Hundredth(0.1)).or(Absent::Number(0.0)),
+    may("push.*.for_s", Number(Positive), "for so long, s").lab("for", "s", Hundredth(0.1)),
+    may("push.*.accumulates", Flag, "true: j times the force on its j-th step, then steps times it to the end (default: false)").lab("accumulates", "", Turn).or(Absent::Flag(false)),
+    may("view.speed", Number(Positive), "what the workbench starts with: simulated seconds a second (default: 1)").lab("speed", "s/s", Ladder).or(Absent::Number(SPEED)),
+    may("view.look_at", Line, "one line: what there is to see").lab("look at", "", Typed),
     must("expected.*.readout", Line, "a column of the CSV that the preset's test checks"),
     must("expected.*.at_step", Whole(0, i64::MAX), "at which step"),
     must("expected.*.value", Number(Any), "its value there"),
@@ -404,6 +499,41 @@ mod tests {
         let found = problems(&format!("'motion.steps' = 3\n{WHOLE}"));
         assert_eq!(found.len(), 1, "{found:?}");
         assert!(found[0].contains("unknown key"), "{found:?}");
+    }
+
+    #[test]
+    fn labels_are_short_and_defaults_are_those_told() {
+        for key in KEYS {
+            let Some(lab) = key.lab else { continue };
+            assert!(lab.label.len() <= 12, "{}", key.path);
+            let told = key
+                .about
+                .split_once("(default: ")
+                .map(|(_, rest)| rest.trim_end_matches(')'));
+            let meant = match lab.absent {
+                Absent::Nothing => None,
+                Absent::Number(number) => Some(number.to_string()),
+                Absent::Whole(whole) => Some(whole.to_string()),
+                Word(word) => Some(word.to_owned()),
+                Absent::Flag(flag) => Some(flag.to_string()),
+            };
+            assert_eq!(told, meant.as_deref(), "{}", key.path);
+            assert!(
+                lab.absent
+                    .value()
+                    .is_none_or(|value| key.kind.check(&value).is_ok()),
+                "{}",
+                key.path
+            );
+            let is_told = lab.unit.is_empty()
+                || key
+                    .about
+                    .replace("^2", "2")
+                    .replace("degrees", "deg")
+                    .contains(lab.unit)
+                || lab.unit == "s/s";
+            assert!(is_told, "{}: {}", key.path, lab.unit);
+        }
     }
 
     #[test]

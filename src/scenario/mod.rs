@@ -2,7 +2,7 @@
 //!
 //! A [`Document`] is the text with its `--set` overrides; [`keys`] is the one table of every key a file may hold;
 //! [`file`](mod@file) is the file's shape as serde reads and writes it; `parts` and `edits` make checked numbers of
-//! its tables, and `checks` a [`Scenario`] of those. What is refused comes back as [`Problems`], each with place, key, value and rule.
+//! its tables, and `checks` a [`Scenario`] of those; [`parameters`] lists and changes its values one at a time. What is refused comes back as [`Problems`], each with place, key, value and rule.
 
 mod checks;
 pub mod document;
@@ -11,6 +11,8 @@ mod edits;
 pub mod file;
 pub mod keys;
 mod model;
+mod nudge;
+pub mod parameters;
 mod parts;
 pub mod presets;
 pub mod problem;
@@ -19,4 +21,5 @@ pub mod rescale;
 pub use document::Document;
 pub use file::ScenarioFile;
 pub use model::{Body, Edit, Motion, Push, Scenario, Touches, Window};
+pub use parameters::Parameter;
 pub use problem::{Problem, Problems};

@@ -2,16 +2,13 @@
 //! that say how long they act.
 
 use super::file::{BodyFile, Frame, MotionFile, PushFile, StartFile};
-use super::keys::MOST_POINTS;
+use super::keys::{GRAVITY, MOST_POINTS};
 use super::model::{Body, Motion, Push, Window};
 use super::problem::Problem;
 use crate::physics::{self, PointMass, SchemeInfo, State, rotation};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
-
-/// Gravity where a scenario gives none, m/s² (the report's figure).
-const GRAVITY: f64 = 9.8;
 
 pub(super) fn body(file: &BodyFile) -> Result<Body, Vec<Problem>> {
     let rim = file.rim.as_ref().map_or(0, |rim| rim.points);

@@ -63,6 +63,24 @@ pub struct Problems {
     pub list: Vec<Problem>,
 }
 
+impl Problems {
+    /// The first of them in one line, without file, line or `--set`: `motion.time_step_s (-0.1) must be greater than zero`.
+    pub fn in_one_line(&self) -> String {
+        let bare = |problem: &Problem| {
+            Problem {
+                place: None,
+                ..problem.clone()
+            }
+            .to_string()
+        };
+        self.list
+            .first()
+            .map(bare)
+            .unwrap_or_default()
+            .replace('\n', " ")
+    }
+}
+
 /// How many problems are printed before the rest is only counted.
 const SHOWN: usize = 12;
 

@@ -1,0 +1,204 @@
+//! Numbers as they are nudged and typed: steps of 1, 2 and 5 times a power of ten, free of binary noise, and units.
+
+use super::keys::Nudge;
+
+/// Relative differences below this are rounding: 0.01 · 100 is 1.
+const ROUNDING: f64 = 1e-12;
+
+/// `value` nudged `times` times by the rule `nudge`, its size being `size`; `None` where the rule is not one for numbers.
+pub(super) fn number(value: f64, size: f64, nudge: Nudge, times: i32) -> Option<f64> {
+    match nudge {
+        Nudge::By(step) => Some(added(value, step, times)),
+        Nudge::Hundredth(zero) => Some(added(value, hundredth(size).unwrap_or(zero), times)),
+        Nudge::Ladder => Some(climbed(value, times)),
+        Nudge::WholeHundredth | Nudge::Turn | Nudge::Typed => None,
+    }
+}
+
+/// `value` nudged `times` times in whole numbers.
+pub(super) fn whole(value: i64, times: i32) -> i64 {
+    let step = hundredth(value.unsigned_abs() as f64)
+        .unwrap_or(1.0)
+        .max(1.0) as i64;
+    value.saturating_add(step.saturating_mul(i64::from(times)))
+}
+
+/// `value` + `times` · `step`, with no more decimals than the two have: 0.1 + 0.2 is 0.3.
+fn added(value: f64, step: f64, times: i32) -> f64 {
+    let sum = value + step * f64::from(times);
+    let decimals = decimals(value).max(decimals(step));
+    let clean: f64 = format!("{sum:.decimals$}").parse().unwrap_or(sum);
+    clean + 0.0 // no -0
+}
+
+/// Decimals of the shortest number that is read back as `value`.
+fn decimals(value: f64) -> usize {
+    let text = value.to_string();
+    text.split_once('.').map_or(0, |(_, behind)| behind.len())
+}
+
+/// The largest rung not above a hundredth of `size`; `None` where that is nothing.
+fn hundredth(size: f64) -> Option<f64> {
+    let step = rung(rung_below(size / 100.0));
+    (step > 0.0).then_some(step)
+}
+
+/// `value` moved `times` rungs up the ladder; a value between two rungs goes to the next.
+fn climbed(value: f64, times: i32) -> f64 {
+    let below = rung_below(value);
+    let is_between = value > rung(below) * (1.0 + ROUNDING);
+    rung(below + i64::from(times) + i64::from(is_between && times < 0))
+}
+
+/// Number of the largest rung that is not above `value`.
+fn rung_below(value: f64) -> i64 {
+    const FARTHEST: i64 = 400; // decades; beyond them there are no numbers
+    let decade = (value.log10().floor() as i64).clamp(-FARTHEST, FARTHEST);
+    let top = 3 * decade + 3;
+    let is_above = |number: &i64| rung(*number) <= value * (1.0 + ROUNDING);
+    (top - 4..=top).rev().find(is_above).unwrap_or(top - 4)
+}
+
+/// Rung `number` of the ladder ..., 1, 2, 5, 10, ...; rung 0 is 1.
+fn rung(number: i64) -> f64 {
+    let digit = ["1", "2", "5"][number.rem_euclid(3) as usize];
+    let text = format!("{digit}e{}", number.div_euclid(3));
+    text.parse().unwrap_or_default()
+}
+
+/// The shortest text that is read back as `number`.
+pub(super) fn shown(number: f64) -> String {
+    let text = format!("{number:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+/// The number at the beginning of `text`, which may be followed by its unit `unit`.
+///
+/// # Errors
+/// What is wrong with it, to be read after the name of the value.
+pub(super) fn typed(text: &str, unit: &str) -> Result<f64, String> {
+    let text = text.trim();
+    let wrong = || match text.is_empty() {
+        true => "must be a number".to_owned(),
+        false => format!(
+            "must be a number, not \"{}\"",
+            super::problem::brief(text, 20)
+        ),
+    };
+    let ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
+    let read = |end: usize| Some((text[..end].trim_end().parse().ok()?, text[end..].trim()));
+    let (number, rest) = ends.take(LONGEST).find_map(read).ok_or_else(wrong)?;
+    if rest.is_empty() || plain(rest) == plain(unit) {
+        return Ok(number);
+    }
+    if rest.starts_with(',') {
+        return Err("must be a number with a point: 0.5, not 0,5".to_owned());
+    }
+    match unit {
+        "" => Err(wrong()),
+        _ => Err(format!(
+            "is in {unit}, not in \"{}\"",
+            super::problem::brief(rest, 20)
+        )),
+    }
+}
+
+/// Characters of a typed number that are looked at: its unit is not longer.
+const LONGEST: usize = 400;
+
+/// A unit whichever way it is written.
+fn plain(unit: &str) -> String {
+    unit.replace([' ', '^', '*', '·'], "")
+        .replace('²', "2")
+        .replace('°', "deg")
+        .replace("×", "s/s")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_have_no_binary_noise() {
+        assert_eq!(added(0.1, 0.2, 1), 0.3);
+        assert_eq!(added(8.41, 0.01, 1), 8.42);
+        assert_eq!(added(9.8, 0.1, -98), 0.0);
+        assert!(added(-0.1, 0.1, 1).is_sign_positive());
+        assert_eq!(added(0.565685424949238, 0.005, 1), 0.570685424949238);
+    }
+
+    #[test]
+    fn a_hundredth_is_a_rung() {
+        let cases = [
+            (1000.0, 10.0),
+            (999.0, 5.0),
+            (1.0, 0.01),
+            (0.8, 0.005),
+            (0.1, 0.001),
+            (7.0, 0.05),
+            (3e-9, 2e-11),
+        ];
+        for (size, step) in cases {
+            assert_eq!(hundredth(size), Some(step), "{size}");
+        }
+        assert_eq!(hundredth(0.0), None);
+        assert_eq!(hundredth(f64::MIN_POSITIVE / 1e15), None);
+        assert_eq!(number(0.0, 0.0, Nudge::Hundredth(0.5), -1), Some(-0.5));
+        assert_eq!(number(0.0, 1000.0, Nudge::Hundredth(0.5), 1), Some(10.0));
+    }
+
+    #[test]
+    fn the_ladder_has_1_2_and_5_in_every_decade() {
+        let up = |value, times| number(value, value, Nudge::Ladder, times);
+        for (value, times, next) in [
+            (0.1, 1, 0.2),
+            (0.1, -1, 0.05),
+            (0.5, 1, 1.0),
+            (0.03, 1, 0.05),
+            (0.03, -1, 0.02),
+            (0.03, 2, 0.1),
+            (0.03, -2, 0.01),
+            (1.0 / 60.0, -1, 0.01),
+            (1e-3, 3, 1e-2),
+            (5.0, -3, 0.5),
+            (1.0, 0, 1.0),
+        ] {
+            assert_eq!(up(value, times), Some(next), "{value} {times}");
+        }
+        assert_eq!(up(1e300, i32::MAX), Some(f64::INFINITY));
+        assert_eq!(up(1e-300, i32::MIN), Some(0.0));
+    }
+
+    #[test]
+    fn whole_numbers_move_by_one_at_least() {
+        assert_eq!(
+            (whole(3, 1), whole(3, -3), whole(2300, 1), whole(2300, -10)),
+            (4, 0, 2320, 2100)
+        );
+        assert_eq!(whole(i64::MAX, i32::MAX), i64::MAX);
+        assert_eq!(whole(i64::MIN, i32::MIN), i64::MIN);
+    }
+
+    #[test]
+    fn a_typed_number_may_have_its_own_unit() {
+        for text in ["0.05", " 0.05 s ", "5e-2", "0.05s", "+.05 s"] {
+            assert_eq!(typed(text, "s"), Ok(0.05), "{text}");
+        }
+        assert_eq!(typed("3 m/s^2", "m/s2"), Ok(3.0));
+        assert_eq!(typed("3 °", "deg"), Ok(3.0));
+        assert_eq!(typed("3 Js", "J s"), Ok(3.0));
+        assert_eq!(typed("3 ms", "s").unwrap_err(), "is in s, not in \"ms\"");
+        assert_eq!(
+            typed("ten", "s").unwrap_err(),
+            "must be a number, not \"ten\""
+        );
+        assert_eq!(
+            typed("3 s", "").unwrap_err(),
+            "must be a number, not \"3 s\""
+        );
+        assert!(typed("0,5", "s").unwrap_err().contains("with a point"));
+        assert!(
+            typed("", "s").is_err() && typed("é", "s").is_err() && typed("\u{1b}[2J", "").is_err()
+        );
+    }
+}

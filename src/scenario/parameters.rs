@@ -1,0 +1,343 @@
+//! The values of a scenario one at a time: what the lab lists, nudges and lets the user type. Labels, units, nudges and
+//! defaults are in the one table of [`keys`](super::keys).
+
+use super::dotted::{find, set_key};
+use super::file::{BodyFile, ScenarioFile};
+use super::keys::{InLab, KEYS, Key, Kind, Nudge, Range, join};
+use super::problem::brief;
+use super::{Document, Problems, Scenario, nudge};
+use toml::{Table, Value};
+
+/// Points and pushes beyond so many are not listed: nobody changes them one at a time.
+const MOST_LISTED: usize = 50;
+
+/// One value of a scenario, as it can be changed one at a time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Dotted, as `--set` takes it: `start.momentum_Js.2`, `push.0.force_N.0`.
+    pub key: String,
+    /// Its row in the table of keys; of a vector's number, the vector's row.
+    pub spec: &'static Key,
+    /// What it stands with: `scenario`, `body`, `point top`, `start`, `motion`, `push 1`, `view`.
+    pub group: String,
+    /// Short name, not above 12 characters.
+    pub label: String,
+    /// Its value, or what is assumed where the scenario has none. Numbers are floats, whole numbers integers.
+    pub value: Value,
+    /// Whether the scenario has none.
+    pub is_default: bool,
+    /// The words it may hold, or names of points; else empty.
+    pub choices: Vec<String>,
+    kind: Kind,
+    lab: InLab,
+    /// What a hundredth is taken of: the value's size, or the norm of its vector.
+    size: f64,
+}
+
+/// All values of the scenario file `table`, in the order of the table of keys; a vector gives three, each element of an
+/// array of tables a group (the first 50 of them). `scenario` is what the table makes: it tells the present spin and momentum.
+pub fn parameters(table: &Table, scenario: &Scenario) -> Vec<Parameter> {
+    let names = point_names(table);
+    let mut list = Vec::with_capacity(64);
+    for keys in KEYS.chunk_by(|one, next| array_of(one) == array_of(next)) {
+        let Some(array) = array_of(&keys[0]) else {
+            list.extend(
+                keys.iter()
+                    .flat_map(|key| rows(key, key.path, table, &names, scenario)),
+            );
+            continue;
+        };
+        for index in 0..length(table, array) {
+            let inside = |key: &Key| key.path.replacen('*', &index.to_string(), 1);
+            list.extend(
+                keys.iter()
+                    .flat_map(|key| rows(key, &inside(key), table, &names, scenario)),
+            );
+        }
+    }
+    list
+}
+
+/// What [`parameters`] lists of `file`, as a table; cheap however many points the body has.
+pub fn table_of(file: &ScenarioFile) -> Table {
+    let point = file.body.point.iter().take(MOST_LISTED).cloned().collect();
+    let listed = ScenarioFile {
+        gyrolab: None,
+        title: file.title.clone(),
+        about: file.about.clone(),
+        source: file.source.clone(),
+        trace: file.trace.clone(),
+        body: BodyFile {
+            rim: file.body.rim.clone(),
+            point,
+        },
+        start: file.start.clone(),
+        motion: file.motion.clone(),
+        push: file.push.clone(),
+        view: file.view.clone(),
+        expected: Vec::new(),
+        edit: Vec::new(),
+    };
+    Table::try_from(&listed).unwrap_or_default() // a checked file holds nothing that TOML cannot write
+}
+
+/// [`table_of`] the scenario as its edits have made it by `step`.
+pub fn table_at(scenario: &Scenario, step: u64) -> Table {
+    let mut table = table_of(&scenario.file);
+    let made = scenario.file.edit.iter().filter(|edit| edit.step <= step);
+    for (key, value) in made.flat_map(|edit| &edit.set) {
+        let _ = set_key(&mut table, key, value.clone()); // checked when the scenario was read
+    }
+    table
+}
+
+/// `file` with `value` at `key`, checked as a whole: what `--set key=value` would make of it.
+///
+/// # Errors
+/// What is wrong with it then; [`Problems::in_one_line`] says it in short.
+pub fn changed(file: &ScenarioFile, key: &str, value: Value) -> Result<Scenario, Problems> {
+    let mut document = Document::from_file("scenario", file)?;
+    document.write(key, value)?;
+    document.scenario()
+}
+
+/// The array of tables that `key` stands in.
+fn array_of(key: &Key) -> Option<&'static str> {
+    key.path.split_once(".*.").map(|(array, _)| array)
+}
+
+/// How many elements of the array of tables are listed.
+fn length(table: &Table, array: &str) -> usize {
+    let elements = find(table, array).and_then(Value::as_array);
+    elements.map_or(0, |elements| elements.len().min(MOST_LISTED))
+}
+
+fn point_names(table: &Table) -> Vec<String> {
+    let name = |index| find(table, &format!("body.point.{index}.name"))?.as_str();
+    let names = (0..length(table, "body.point")).filter_map(name);
+    names.map(str::to_owned).collect()
+}
+
+/// The rows of one key, at its `place` in `table`: none, one, or the three of a vector.
+fn rows(
+    key: &'static Key,
+    place: &str,
+    table: &Table,
+    names: &[String],
+    _scenario: &Scenario,
+) -> Vec<Parameter> {
+    let Some(lab) = key.lab.filter(|_| is_offered(place, table)) else {
+        return Vec::new();
+    };
+    let written = find(table, place);
+    let Some(value) = written.cloned().or_else(|| lab.absent.value()) else {
+        return Vec::new();
+    };
+    let row = Parameter {
+        key: place.to_owned(),
+        spec: key,
+        group: group(place, table),
+        label: lab.label.to_owned(),
+        size: size(&value),
+        value: as_kind(value, key.kind),
+        is_default: written.is_none(),
+        choices: choices(key, names),
+        kind: key.kind,
+        lab,
+    };
+    match key.kind {
+        Kind::Vector => row.components(),
+        _ => vec![row],
+    }
+}
+
+/// Whether the key at `place` can be set as the rest of its table stands: of a push, only the way its time is written.
+fn is_offered(place: &str, table: &Table) -> bool {
+    let Some((push, name)) = place
+        .rsplit_once('.')
+        .filter(|(push, _)| push.starts_with("push."))
+    else {
+        return true;
+    };
+    let is_in_seconds = ["from_s", "for_s"]
+        .iter()
+        .any(|name| find(table, &join(push, name)).is_some());
+    match name {
+        "first_step" | "steps" | "accumulates" => !is_in_seconds,
+        "from_s" | "for_s" => is_in_seconds,
+        _ => true,
+    }
+}
+
+fn group(place: &str, table: &Table) -> String {
+    let names: Vec<&str> = place.split('.').collect();
+    let number = |index: &str| index.parse().map_or(0, |index: usize| index + 1);
+    match names[..] {
+        [_] => "scenario".to_owned(),
+        ["body", "point", index, ..] => {
+            let name = find(table, &format!("body.point.{index}.name")).and_then(Value::as_str);
+            name.map_or(format!("point {}", number(index)), |name| {
+                format!("point {}", brief(name, 40))
+            })
+        }
+        ["push", index, ..] => format!("push {}", number(index)),
+        [table, ..] => table.to_owned(),
+        [] => String::new(),
+    }
+}
+
+fn choices(key: &Key, names: &[String]) -> Vec<String> {
+    match (key.kind, key.path) {
+        (Kind::OneOf(words), _) => words.iter().map(|&word| word.to_owned()).collect(),
+        (_, "trace" | "push.*.point") => names.to_vec(),
+        _ => Vec::new(),
+    }
+}
+
+/// The size of a number, the norm of a vector.
+fn size(value: &Value) -> f64 {
+    match value {
+        Value::Array(items) => items.iter().filter_map(float).fold(0.0, f64::hypot),
+        other => float(other).unwrap_or_default().abs(),
+    }
+}
+
+fn float(value: &Value) -> Option<f64> {
+    let whole = || value.as_integer().map(|whole| whole as f64);
+    value.as_float().or_else(whole)
+}
+
+/// `value` with numbers as floats where `kind` is no whole number.
+fn as_kind(value: Value, kind: Kind) -> Value {
+    match (kind, float(&value)) {
+        (Kind::Number(_), Some(number)) => Value::Float(number),
+        _ => value,
+    }
+}
+
+impl Parameter {
+    /// Its unit, or empty.
+    pub fn unit(&self) -> &'static str {
+        self.lab.unit
+    }
+
+    /// The value with all its digits; text without quotes, its line ends as `\n`.
+    pub fn shown(&self) -> String {
+        match &self.value {
+            Value::Float(number) => nudge::shown(*number),
+            Value::String(text) if self.kind == Kind::Paragraph => {
+                text.replace('\\', "\\\\").replace('\n', "\\n")
+            }
+            Value::String(text) => text.clone(),
+            other => other.to_string(),
+        }
+    }
+
+    /// The value nudged up `times` times, or down where that is negative.
+    ///
+    /// # Errors
+    /// Why it cannot be, in words to be read after the label.
+    pub fn nudged(&self, times: i32) -> Result<Value, String> {
+        let value = match (&self.value, self.lab.nudge) {
+            (_, Nudge::Typed) => return Err("is text: type it".to_owned()),
+            (Value::Boolean(flag), Nudge::Turn) => Value::Boolean(*flag ^ (times % 2 != 0)),
+            (_, Nudge::Turn) => Value::String(self.turned(times)?),
+            (Value::Integer(value), _) => Value::Integer(nudge::whole(*value, times)),
+            (value, rule) => {
+                let number =
+                    float(value).and_then(|number| nudge::number(number, self.size, rule, times));
+                Value::Float(number.ok_or("cannot be nudged: type it")?)
+            }
+        };
+        self.checked(value)
+    }
+
+    /// The choice `times` further on.
+    fn turned(&self, times: i32) -> Result<String, String> {
+        let count = self.choices.len() as i64;
+        let is_now = |choice: &String| Some(choice.as_str()) == self.value.as_str();
+        let now = self.choices.iter().position(is_now).map(|now| now as i64);
+        if count == 0 || (count == 1 && now.is_some()) {
+            return Err("has no other choice".to_owned());
+        }
+        // From what is no choice the way leads to the first one, or backwards to the last.
+        let now = now.unwrap_or(if times < 0 { 0 } else { -1 });
+        let next = (now + i64::from(times)).rem_euclid(count);
+        Ok(self.choices[next as usize].clone())
+    }
+
+    /// The value that the user typed: a number, after which its unit may stand, a word, a flag, text.
+    ///
+    /// # Errors
+    /// Why it cannot be, in words to be read after the label.
+    pub fn typed(&self, text: &str) -> Result<Value, String> {
+        let value = match self.kind {
+            Kind::Number(_) => Value::Float(nudge::typed(text, self.unit())?),
+            Kind::Whole(..) => Value::Integer(typed_whole(text)?),
+            Kind::Flag => Value::Boolean(typed_flag(text)?),
+            Kind::OneOf(_) => Value::String(text.trim().to_owned()),
+            Kind::Paragraph => Value::String(unescaped(text)),
+            Kind::Line | Kind::Vector | Kind::Settings => Value::String(text.to_owned()),
+        };
+        self.checked(value)
+    }
+
+    fn checked(&self, value: Value) -> Result<Value, String> {
+        self.kind.check(&value).map(|()| value)
+    }
+
+    /// The three numbers of a vector, each a parameter.
+    fn components(self) -> Vec<Parameter> {
+        let numbers = self
+            .value
+            .as_array()
+            .into_iter()
+            .flatten()
+            .filter_map(float);
+        let component = |(index, number)| Parameter {
+            key: join(&self.key, &format!("{index}")),
+            label: format!("{}{}", self.label, ["x", "y", "z"][index]),
+            value: Value::Float(number),
+            kind: Kind::Number(Range::Any),
+            ..self.clone()
+        };
+        numbers.take(3).enumerate().map(component).collect()
+    }
+}
+
+fn typed_whole(text: &str) -> Result<i64, String> {
+    /// Floats are exact whole numbers up to here.
+    const EXACT: f64 = 9e15;
+    if let Ok(whole) = text.trim().parse() {
+        return Ok(whole);
+    }
+    let number = nudge::typed(text, "")?;
+    match number.fract() == 0.0 && number.abs() <= EXACT {
+        true => Ok(number as i64),
+        false => Err("must be a whole number".to_owned()),
+    }
+}
+
+fn typed_flag(text: &str) -> Result<bool, String> {
+    match text.trim().to_lowercase().as_str() {
+        "true" | "yes" | "on" => Ok(true),
+        "false" | "no" | "off" => Ok(false),
+        _ => Err("must be true or false".to_owned()),
+    }
+}
+
+/// `text` with its `\n` as line ends.
+fn unescaped(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    let mut characters = text.chars();
+    while let Some(c) = characters.next() {
+        match (c, characters.as_str().chars().next()) {
+            ('\\', Some(next @ ('n' | '\\'))) => {
+                characters.next();
+                plain.push(if next == 'n' { '\n' } else { '\\' });
+            }
+            _ => plain.push(c),
+        }
+    }
+    plain
+}

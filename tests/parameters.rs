@@ -1,0 +1,295 @@
+//! The values of a scenario one at a time: listed, nudged, typed, changed.
+
+use gyrolab::scenario::file::ScenarioFile;
+use gyrolab::scenario::parameters::{changed, parameters, table_at, table_of};
+use gyrolab::scenario::presets::PRESETS;
+use gyrolab::scenario::{Document, Parameter, Scenario};
+use toml::Value;
+
+fn preset(name: &str) -> Scenario {
+    Document::open(name).unwrap().scenario().unwrap()
+}
+
+fn scenario(text: &str) -> Scenario {
+    Document::parse("test.toml", text)
+        .unwrap()
+        .scenario()
+        .unwrap()
+}
+
+fn listed(scenario: &Scenario) -> Vec<Parameter> {
+    parameters(&table_of(&scenario.file), scenario)
+}
+
+fn named(scenario: &Scenario, key: &str) -> Parameter {
+    let mut list = listed(scenario).into_iter();
+    list.find(|row| row.key == key)
+        .unwrap_or_else(|| panic!("no {key}"))
+}
+
+fn keys(scenario: &Scenario, group: &str) -> Vec<String> {
+    let rows = listed(scenario).into_iter();
+    rows.filter(|row| row.group == group)
+        .map(|row| row.key)
+        .collect()
+}
+
+fn refusal(file: &ScenarioFile, key: &str, value: impl Into<Value>) -> String {
+    changed(file, key, value.into()).unwrap_err().in_one_line()
+}
+
+const TWO_PUSHES: &str = "title = 'x'
+[body.rim]
+points = 4
+radius_m = 1
+height_m = 1
+point_mass_kg = 1
+[[body.point]]
+name = 'top'
+at_m = [0, 0, 2]
+[[body.point]]
+name = 'side'
+at_m = [3, 0, 4]
+[start]
+momentum_Js = [0, 0, 60]
+[motion]
+time_step_s = 0.1
+steps = 100
+[[push]]
+point = 'top'
+force_N = [0, 3, 4]
+steps = 5
+[[push]]
+point = 'side'
+force_N = [0, 0, 0]
+for_s = 2
+";
+
+#[test]
+fn what_is_nudged_shows_or_is_refused_in_words() {
+    let mut nudged = 0;
+    for preset in PRESETS {
+        let scenario = self::preset(preset.name);
+        for row in listed(&scenario) {
+            for times in [1, -1, 10] {
+                let value = match row.nudged(times) {
+                    Ok(value) => value,
+                    Err(why) => {
+                        assert!(!why.is_empty());
+                        continue;
+                    }
+                };
+                match changed(&scenario.file, &row.key, value.clone()) {
+                    Ok(other) => {
+                        assert_eq!(
+                            named(&other, &row.key).value,
+                            value,
+                            "{} {}",
+                            preset.name,
+                            row.key
+                        );
+                        nudged += 1;
+                    }
+                    Err(problems) => assert!(problems.in_one_line().len() > 10),
+                }
+            }
+        }
+    }
+    assert!(nudged > 800, "{nudged}");
+}
+
+#[test]
+fn what_is_shown_can_be_typed() {
+    for preset in PRESETS {
+        for row in listed(&self::preset(preset.name)) {
+            let shown = row.shown();
+            assert!(!shown.contains('\n'), "{shown}");
+            assert_eq!(
+                row.typed(&shown),
+                Ok(row.value.clone()),
+                "{} {}",
+                preset.name,
+                row.key
+            );
+            if !row.unit().is_empty() {
+                let with_unit = format!("{shown} {}", row.unit());
+                assert_eq!(row.typed(&with_unit), Ok(row.value.clone()), "{}", row.key);
+            }
+        }
+    }
+}
+
+#[test]
+fn every_value_of_a_file_is_listed_in_groups() {
+    let scenario = scenario(TWO_PUSHES);
+    let rows = listed(&scenario);
+    let mut groups: Vec<_> = rows.iter().map(|row| row.group.as_str()).collect();
+    groups.dedup();
+    let all = [
+        "scenario",
+        "body",
+        "point top",
+        "point side",
+        "start",
+        "motion",
+        "push 1",
+        "push 2",
+        "view",
+    ];
+    assert_eq!(groups, all);
+    assert_eq!(
+        keys(&scenario, "push 1"),
+        [
+            "push.0.point",
+            "push.0.force_N.0",
+            "push.0.force_N.1",
+            "push.0.force_N.2",
+            "push.0.first_step",
+            "push.0.steps",
+            "push.0.accumulates"
+        ]
+    );
+    assert_eq!(
+        keys(&scenario, "push 2"),
+        [
+            "push.1.point",
+            "push.1.force_N.0",
+            "push.1.force_N.1",
+            "push.1.force_N.2",
+            "push.1.from_s",
+            "push.1.for_s"
+        ]
+    );
+    let first = named(&scenario, "push.0.first_step");
+    assert_eq!((first.value, first.is_default), (Value::Integer(1), true));
+    assert_eq!(named(&scenario, "push.1.point").choices, ["top", "side"]);
+    assert_eq!(named(&scenario, "body.point.1.at_m.0").label, "x");
+}
+
+#[test]
+fn no_rim_no_rows_of_it() {
+    let rimless = TWO_PUSHES
+        .replace(
+            "[body.rim]\npoints = 4\nradius_m = 1\nheight_m = 1\npoint_mass_kg = 1\n",
+            "",
+        )
+        .replace("at_m = [3, 0, 4]", "at_m = [3, 0, 4]\nmass_kg = 1");
+    let rimless = rimless.replace("at_m = [0, 0, 2]", "at_m = [0, 1, 2]\nmass_kg = 1");
+    assert_eq!(keys(&scenario(&rimless), "body"), Vec::<String>::new());
+}
+
+#[test]
+fn nudges_follow_the_size() {
+    let scenario = scenario(TWO_PUSHES);
+    let next = |key: &str, times| named(&scenario, key).nudged(times);
+    assert_eq!(next("push.0.force_N.0", 1), Ok(Value::Float(0.05))); // norm 5
+    assert_eq!(next("push.1.force_N.0", -1), Ok(Value::Float(-1.0))); // norm 0
+    assert_eq!(next("start.momentum_Js.2", 10), Ok(Value::Float(65.0)));
+    assert_eq!(next("start.tilt_deg", -1), Ok(Value::Float(-1.0)));
+    assert_eq!(next("motion.gravity_m_per_s2", 2), Ok(Value::Float(10.0)));
+    assert_eq!(next("motion.time_step_s", 1), Ok(Value::Float(0.2)));
+    assert_eq!(next("motion.steps", 1), Ok(Value::Integer(101)));
+    assert_eq!(
+        next("push.0.first_step", -1),
+        Err("must be 1 or more".to_owned())
+    );
+    assert_eq!(next("motion.scheme", -1), Ok(Value::from("exact")));
+    assert_eq!(next("push.1.point", 1), Ok(Value::from("top")));
+    assert_eq!(next("push.0.accumulates", 1), Ok(Value::from(true)));
+    assert_eq!(next("title", 1), Err("is text: type it".to_owned()));
+}
+
+#[test]
+fn what_is_typed_is_held_against_the_rule() {
+    let scenario = scenario(TWO_PUSHES);
+    let typed = |key: &str, text| named(&scenario, key).typed(text);
+    assert_eq!(
+        typed("motion.time_step_s", "0.05 s"),
+        Ok(Value::Float(0.05))
+    );
+    assert_eq!(typed("motion.steps", "2e3"), Ok(Value::Integer(2000)));
+    assert_eq!(typed("push.0.accumulates", "yes"), Ok(Value::Boolean(true)));
+    let refused = |key: &str, text| typed(key, text).unwrap_err();
+    assert_eq!(
+        refused("motion.time_step_s", "-0.1"),
+        "must be greater than zero"
+    );
+    assert_eq!(
+        refused("motion.time_step_s", "nan"),
+        "must be a finite number"
+    );
+    assert_eq!(
+        refused("motion.time_step_s", "1 kg"),
+        "is in s, not in \"kg\""
+    );
+    assert_eq!(refused("motion.steps", "0"), "must be 1 or more");
+    assert_eq!(refused("motion.steps", "1.5"), "must be a whole number");
+    assert!(refused("motion.scheme", "rk5").contains("did you mean rk4?"));
+    assert_eq!(refused("title", " "), "must not be empty");
+    assert!(refused("title", "a\u{1b}b").contains("control"));
+}
+
+#[test]
+fn a_refused_change_is_told_in_one_line() {
+    let file = scenario(TWO_PUSHES).file;
+    assert_eq!(
+        refusal(&file, "motion.time_step_s", -0.1),
+        "motion.time_step_s (-0.1) must be greater than zero"
+    );
+    assert_eq!(
+        refusal(&file, "trace", "tip"),
+        "trace (\"tip\") is no point of this body: did you mean top?"
+    );
+    for (key, value) in [
+        ("body.rim.radius_m", Value::from("x")),
+        ("motion.stepz", Value::from(1)),
+        ("motion.steps.3", Value::from(1)),
+    ] {
+        let line = refusal(&file, key, value);
+        assert!(line.starts_with(key.trim_end_matches(".3")), "{line}");
+        assert!(
+            !line.contains("--set") && !line.contains("line ") && !line.contains('\n'),
+            "{line}"
+        );
+    }
+}
+
+#[test]
+fn the_values_of_a_run_are_those_after_its_edits() {
+    let text = format!(
+        "{TWO_PUSHES}[[edit]]\nstep = 7\nset = {{ 'motion.time_step_s' = 0.02, 'push.1.for_s' = 9 }}\n"
+    );
+    let run = scenario(&text);
+    let at = |step, key: &str| {
+        let rows = parameters(&table_at(&run, step), &run).into_iter();
+        rows.filter(|row| row.key == key)
+            .map(|row| row.value)
+            .next()
+    };
+    assert_eq!(at(6, "motion.time_step_s"), Some(Value::Float(0.1)));
+    assert_eq!(at(7, "motion.time_step_s"), Some(Value::Float(0.02)));
+    assert_eq!(at(7, "push.1.for_s"), Some(Value::Float(9.0)));
+}
+
+#[test]
+fn of_many_points_the_first_fifty_are_listed() {
+    let point = |index: usize| {
+        format!("[[body.point]]\nname = 'p{index}'\nat_m = [0, {index}, 1]\nmass_kg = 1\n")
+    };
+    let points: String = (0..120).map(point).collect();
+    let text = format!(
+        "title = 'x'\ntrace = 'p99'\n{points}[start]\nmomentum_Js = [0, 0, 1]\n[motion]\ntime_step_s = 0.1\nsteps = 1\n"
+    );
+    let scenario = scenario(&text);
+    let count = listed(&scenario)
+        .iter()
+        .filter(|row| row.key.ends_with(".name"))
+        .count();
+    assert_eq!(count, 50);
+    let trace = named(&scenario, "trace");
+    assert_eq!(trace.nudged(1), Ok(Value::from("p0")));
+    assert_eq!(trace.nudged(-1), Ok(Value::from("p49")));
+    assert_eq!(trace.typed("p70"), Ok(Value::from("p70")));
+    let whole = toml::Table::try_from(&scenario.file).unwrap();
+    assert_eq!(parameters(&whole, &scenario).len(), listed(&scenario).len());
+}
