@@ -159,14 +159,18 @@ impl Document {
         if !problems.is_empty() {
             return Err(self.placed(problems));
         }
-        let file: ScenarioFile =
-            self.table
-                .clone()
-                .try_into()
-                .map_err(|error: toml::de::Error| {
-                    self.placed(vec![Problem::at("", error.message().to_owned())])
-                })?;
-        checks::scenario(file).map_err(|problems| self.placed(problems))
+        checks::scenario(self.file()?).map_err(|problems| self.placed(problems))
+    }
+
+    /// The file's shape; its numbers are not checked.
+    ///
+    /// # Errors
+    /// When it has another shape.
+    pub(super) fn file(&self) -> Result<ScenarioFile, Problems> {
+        let file = self.table.clone().try_into();
+        file.map_err(|error: toml::de::Error| {
+            self.placed(vec![Problem::at("", error.message().to_owned())])
+        })
     }
 
     /// The last `--set` that wrote what a problem at `key` is about: the value, something in it or around it, or the

@@ -9,6 +9,7 @@ pub mod document;
 mod dotted;
 mod edits;
 pub mod file;
+pub mod journal;
 pub mod keys;
 mod model;
 mod nudge;

@@ -1,0 +1,331 @@
+//! A run: a scenario, and the journal of what the user did to it at which step.
+//!
+//! Everything else, any earlier state and any export, is computed from it again. What is done at a step acts from the
+//! next one on; doing something earlier than what was done before drops the later entries. The last entry can be taken
+//! back, and brought again.
+
+use super::file::{EditFile, PushFile, ScenarioFile};
+use super::{Document, Problems, Scenario, parameters, rescale};
+use serde::{Deserialize, Serialize};
+use toml::{Table, Value};
+
+/// A scenario and what was done to it, in the order of the steps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Journal {
+    /// The scenario before anything was done to it.
+    base: ScenarioFile,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    done: Vec<Entry>,
+    /// What was taken back, the last one first to be brought again.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    undone: Vec<Entry>,
+}
+
+/// Something that was done.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Entry {
+    /// The step at which it was done.
+    pub step: u64,
+    /// What it was.
+    pub act: Act,
+    /// Whether it stood in the file the run was opened from.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    from_file: bool,
+    /// The later entries that it dropped.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    dropped: Vec<Entry>,
+}
+
+/// What can be done to a run without beginning a new one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Act {
+    /// A push from then on.
+    Push(PushFile),
+    /// Keys of motion or push and their new values from then on.
+    Edit(Table),
+    /// Keys that no number depends on: title, length of the run, what the lab starts with.
+    Describe(Table),
+}
+
+/// What setting a key does to a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// It acts from the next step on.
+    FromHere,
+    /// A new run begins.
+    NewRun,
+    /// No number depends on it.
+    None,
+}
+
+impl Effect {
+    /// What setting the dotted `key` does.
+    pub fn of(key: &str) -> Self {
+        const LIVE: [&str; 4] = [
+            "motion.gravity_m_per_s2",
+            "motion.scheme",
+            "motion.time_step_s",
+            "push.",
+        ];
+        const IDLE: [&str; 6] = [
+            "title",
+            "about",
+            "source",
+            "view.",
+            "motion.steps",
+            "expected.",
+        ];
+        let is_one_of = |keys: &[&str]| {
+            keys.iter()
+                .any(|known| key == *known || (known.ends_with('.') && key.starts_with(known)))
+        };
+        if is_one_of(&LIVE) {
+            Self::FromHere
+        } else if is_one_of(&IDLE) {
+            Self::None
+        } else {
+            Self::NewRun
+        }
+    }
+}
+
+impl Act {
+    /// `value` at `key`; of a key that has no effect, a description.
+    pub fn set(key: &str, value: Value) -> Self {
+        let set = Table::from_iter([(key.to_owned(), value)]);
+        match Effect::of(key) {
+            Effect::None => Self::Describe(set),
+            Effect::FromHere | Effect::NewRun => Self::Edit(set),
+        }
+    }
+
+    /// What was done, for a line that says so.
+    pub fn in_words(&self) -> String {
+        match self {
+            Self::Push(push) => format!("the push on {}", push.point),
+            Self::Edit(set) | Self::Describe(set) => {
+                let words = set.iter().map(|(key, value)| format!("{key} = {value}"));
+                words.collect::<Vec<_>>().join(", ")
+            }
+        }
+    }
+}
+
+impl Journal {
+    /// The run that `file` holds: its edits are what was done.
+    pub fn of(mut file: ScenarioFile) -> Self {
+        let entry = |edit: EditFile| Entry {
+            step: edit.step,
+            act: Act::Edit(edit.set),
+            from_file: true,
+            dropped: Vec::new(),
+        };
+        Self {
+            done: std::mem::take(&mut file.edit)
+                .into_iter()
+                .map(entry)
+                .collect(),
+            base: file,
+            undone: Vec::new(),
+        }
+    }
+
+    /// The run file.
+    pub fn file(&self) -> ScenarioFile {
+        self.made_of(&self.done)
+    }
+
+    /// The run, checked.
+    ///
+    /// # Errors
+    /// What is wrong with it; nothing, where [`act`](Self::act) made it.
+    pub fn scenario(&self) -> Result<Scenario, Problems> {
+        checked(&self.file())
+    }
+
+    /// The run file of the run up to `step`: as long, and without what was done later.
+    pub fn file_until(&self, step: u64) -> ScenarioFile {
+        let earlier: Vec<_> = self
+            .done
+            .iter()
+            .filter(|entry| entry.step <= step)
+            .cloned()
+            .collect();
+        let mut file = self.made_of(&earlier);
+        file.motion.steps = step.max(1);
+        file
+    }
+
+    /// How many entries stand later than `step`.
+    pub fn later_than(&self, step: u64) -> usize {
+        self.done
+            .iter()
+            .filter(|entry| entry.is_later_than(step))
+            .count()
+    }
+
+    fn made_of(&self, done: &[Entry]) -> ScenarioFile {
+        let mut file = self.base.clone();
+        let mut may_join = false;
+        for entry in done {
+            match &entry.act {
+                Act::Describe(set) => file = with(&file, set).unwrap_or(file), // checked when it was done
+                Act::Push(push) => file.push.push(push.clone()),
+                Act::Edit(set) => match file.edit.last_mut() {
+                    // Edits of one moment are one edit, unless they were two in the file.
+                    Some(last) if may_join && last.step == entry.step => {
+                        last.set.extend(set.clone())
+                    }
+                    _ => file.edit.push(EditFile {
+                        step: entry.step,
+                        set: set.clone(),
+                    }),
+                },
+            }
+            may_join |= !entry.from_file;
+        }
+        file
+    }
+
+    /// Does `act` at `step`; gives what the run is then.
+    ///
+    /// # Errors
+    /// Why it cannot be done; nothing has changed then.
+    pub fn act(&mut self, step: u64, act: Act) -> Result<Scenario, Problems> {
+        if let Act::Describe(set) = &act {
+            let file = self.file();
+            set.iter().try_for_each(|(key, value)| {
+                parameters::changed(&file, key, value.clone()).map(drop)
+            })?;
+        }
+        let mut next = self.clone();
+        let act = match act {
+            Act::Push(push) => next.push_at_the_end(push),
+            act => act,
+        };
+        let is_drop = |entry: &Entry| entry.is_later_than(step) && !matches!(act, Act::Describe(_));
+        let (dropped, done) = next.done.into_iter().partition(is_drop);
+        next.done = done;
+        next.done.push(Entry {
+            step,
+            act,
+            from_file: false,
+            dropped,
+        });
+        next.undone.clear();
+        let scenario = next.scenario()?;
+        *self = next;
+        Ok(scenario)
+    }
+
+    /// A push as a table of its own; where edits have added pushes, whose numbers must stay, as one more edit.
+    fn push_at_the_end(&self, push: PushFile) -> Act {
+        let file = self.file();
+        let number = |key: &String| key.split('.').nth(1)?.parse::<usize>().ok();
+        let set = file.edit.iter().flat_map(|edit| edit.set.keys());
+        let added = set
+            .filter(|key| key.starts_with("push."))
+            .filter_map(number)
+            .max();
+        match (added, Table::try_from(&push)) {
+            (Some(last), Ok(table)) if last >= file.push.len() => Act::Edit(Table::from_iter([(
+                format!("push.{}", last + 1),
+                Value::Table(table),
+            )])),
+            _ => Act::Push(push),
+        }
+    }
+
+    /// Takes the last entry back.
+    pub fn undo(&mut self) -> Option<&Entry> {
+        let entry = self.done.pop()?;
+        self.done.extend(entry.dropped.iter().cloned());
+        self.undone.push(entry);
+        self.undone.last()
+    }
+
+    /// Brings the entry again that was taken back last.
+    pub fn redo(&mut self) -> Option<&Entry> {
+        let entry = self.undone.pop()?;
+        self.done.truncate(self.done.len() - entry.dropped.len());
+        self.done.push(entry);
+        self.done.last()
+    }
+
+    /// A new run with `value` at `key`: nothing is done to it yet, and it moves from the start as this one does at `step`.
+    ///
+    /// # Errors
+    /// Why it cannot begin so.
+    pub fn begun_with(
+        &self,
+        step: u64,
+        key: &str,
+        value: Value,
+    ) -> Result<(Self, Scenario), Problems> {
+        let scenario = parameters::changed(&self.as_it_moves_at(step)?, key, value)?;
+        Ok((Self::of(scenario.file.clone()), scenario))
+    }
+
+    /// The scenario with gravity, scheme, time step and pushes as they are at `step`, without the pushes that were
+    /// added on the way. The time step is taken over where that changes no push.
+    fn as_it_moves_at(&self, step: u64) -> Result<ScenarioFile, Problems> {
+        let mut file = self.base.clone();
+        let mut time_step_s = file.motion.time_step_s;
+        for entry in self.done.iter().filter(|entry| entry.step <= step) {
+            let (Act::Edit(set) | Act::Describe(set)) = &entry.act else {
+                continue;
+            };
+            let mut lasting = set.clone();
+            lasting.retain(|key, _| !self.is_of_an_added_push(key));
+            if let Some(value) = lasting.remove("motion.time_step_s") {
+                time_step_s = number(&value).unwrap_or(time_step_s);
+            }
+            file = with(&file, &lasting)?;
+        }
+        Ok(match time_step_s == file.motion.time_step_s {
+            true => file,
+            false => rescale::at_time_step(&file, time_step_s).unwrap_or(file),
+        })
+    }
+
+    fn is_of_an_added_push(&self, key: &str) -> bool {
+        let number = key
+            .strip_prefix("push.")
+            .and_then(|rest| rest.split('.').next());
+        number
+            .and_then(|number| number.parse().ok())
+            .is_some_and(|number: usize| number >= self.base.push.len())
+    }
+}
+
+impl Entry {
+    /// Whether it acts on steps after the one that follows `step`. What no number depends on has no time.
+    fn is_later_than(&self, step: u64) -> bool {
+        self.step > step && !matches!(self.act, Act::Describe(_))
+    }
+}
+
+fn number(value: &Value) -> Option<f64> {
+    value
+        .as_float()
+        .or_else(|| Some(value.as_integer()? as f64))
+}
+
+fn checked(file: &ScenarioFile) -> Result<Scenario, Problems> {
+    Document::from_file("the run", file)?.scenario()
+}
+
+/// `file` with every key of `set` written; not yet checked.
+fn with(file: &ScenarioFile, set: &Table) -> Result<ScenarioFile, Problems> {
+    if set.is_empty() {
+        return Ok(file.clone());
+    }
+    let mut document = Document::from_file("the run", file)?;
+    for (key, value) in set {
+        document.write(key, value.clone())?;
+    }
+    document.file()
+}
