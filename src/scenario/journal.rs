@@ -133,6 +133,11 @@ impl Journal {
         }
     }
 
+    /// The scenario before anything was done to it.
+    pub fn base(&self) -> &ScenarioFile {
+        &self.base
+    }
+
     /// The run file.
     pub fn file(&self) -> ScenarioFile {
         self.made_of(&self.done)
@@ -328,4 +333,124 @@ fn with(file: &ScenarioFile, set: &Table) -> Result<ScenarioFile, Problems> {
         document.write(key, value.clone())?;
     }
     document.file()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn journal(name: &str) -> Journal {
+        Journal::of(Document::open(name).unwrap().scenario().unwrap().file)
+    }
+
+    fn push(from_s: f64) -> Act {
+        Act::Push(PushFile {
+            point: "top".to_owned(),
+            force_N: [10.0, 0.0, 0.0],
+            first_step: None,
+            steps: None,
+            from_s: Some(from_s),
+            for_s: Some(1.0),
+            accumulates: None,
+        })
+    }
+
+    fn gravity(value: f64) -> Act {
+        Act::set("motion.gravity_m_per_s2", Value::Float(value))
+    }
+
+    #[test]
+    fn doing_something_earlier_drops_what_came_later_until_it_is_undone() {
+        let mut journal = journal("method-2");
+        journal.act(10, gravity(1.0)).unwrap();
+        journal.act(50, push(5.0)).unwrap();
+        journal
+            .act(60, Act::set("title", Value::String("Mine".to_owned())))
+            .unwrap();
+        journal.act(20, gravity(2.0)).unwrap();
+        let file = journal.file();
+        assert_eq!(
+            (file.edit.len(), file.push.len(), file.title.as_str()),
+            (2, 0, "Mine")
+        );
+        assert_eq!(journal.undo().unwrap().step, 20);
+        let file = journal.file();
+        assert_eq!((file.edit.len(), file.push.len()), (1, 1));
+        journal.redo().unwrap();
+        assert_eq!(
+            (journal.file().edit.len(), journal.file().push.len()),
+            (2, 0)
+        );
+        assert_eq!(journal.file_until(15).edit.len(), 1);
+        assert_eq!(journal.later_than(15), 1);
+    }
+
+    #[test]
+    fn edits_of_one_moment_are_one_edit_but_for_those_of_a_file() {
+        let mut journal = journal("method-2");
+        journal.act(10, gravity(1.0)).unwrap();
+        journal.act(10, gravity(2.0)).unwrap();
+        journal
+            .act(
+                10,
+                Act::set("motion.scheme", Value::String("rk4".to_owned())),
+            )
+            .unwrap();
+        assert_eq!(journal.file().edit.len(), 1);
+        assert_eq!(journal.file().edit[0].set.len(), 2);
+        let mut file = journal.file();
+        file.edit.push(EditFile {
+            step: 10,
+            set: Table::from_iter([("motion.gravity_m_per_s2".to_owned(), Value::Float(3.0))]),
+        });
+        assert_eq!(Journal::of(file.clone()).file(), file);
+    }
+
+    #[test]
+    fn a_push_beside_pushes_that_edits_have_added_takes_no_number_away() {
+        let mut file = journal("method-2").file();
+        let added = "[edit]\npoint = 'top'\nforce_N = [0, 1, 0]\nfor_s = 2"
+            .parse::<Table>()
+            .unwrap();
+        file.edit.push(EditFile {
+            step: 3,
+            set: Table::from_iter([("push.0".to_owned(), added["edit"].clone())]),
+        });
+        let mut journal = Journal::of(file);
+        let scenario = journal.act(9, push(0.9)).unwrap();
+        assert_eq!(scenario.edits.last().unwrap().pushes.len(), 2);
+        assert_eq!(scenario.edits[0].pushes.len(), 1);
+        assert_eq!(scenario.pushes.len(), 0);
+    }
+
+    #[test]
+    fn a_new_run_moves_as_the_old_one_did() {
+        let mut journal = journal("wobble-push");
+        journal
+            .act(40, Act::set("motion.time_step_s", Value::Float(0.05)))
+            .unwrap();
+        journal.act(50, push(4.5)).unwrap();
+        journal
+            .act(55, Act::set("push.1.force_N.0", Value::Float(3.0)))
+            .unwrap();
+        journal.act(60, gravity(1.6)).unwrap();
+        let (begun, scenario) = journal
+            .begun_with(60, "start.tilt_deg", Value::Float(10.0))
+            .unwrap();
+        assert_eq!(
+            (scenario.motion.time_step_s, scenario.motion.gravity),
+            (0.05, 1.6)
+        );
+        assert_eq!((scenario.pushes.len(), scenario.edits.len()), (1, 0));
+        let push = &begun.base().push[0];
+        assert_eq!(
+            (push.from_s, push.for_s),
+            (Some(0.0), Some(20.0)),
+            "its seconds are held"
+        );
+        let (_, earlier) = journal
+            .begun_with(39, "start.tilt_deg", Value::Float(10.0))
+            .unwrap();
+        assert_eq!(earlier.motion.time_step_s, 0.1);
+    }
 }

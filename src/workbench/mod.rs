@@ -24,6 +24,7 @@ pub mod camera;
 pub mod checkpoints;
 pub mod dots;
 pub mod health;
+pub mod history;
 pub mod keymap;
 pub mod lab;
 pub mod layout;
