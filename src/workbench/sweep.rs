@@ -297,4 +297,40 @@ mod tests {
             assert!(pair[0].unwrap().max >= pair[1].unwrap().min - 1e-12);
         }
     }
+
+    #[test]
+    fn a_run_that_is_over_fills_the_window_and_no_more() {
+        // A value a second, from 0 to 299; the window from 100 to 200 on 50 columns, the pen near its left end.
+        let values: Vec<f64> = (0..300).map(f64::from).collect();
+        let over = recorded(&values, 1.0);
+        let drawn = Sweep::new(100.0, 103.0, 50, 2).extents_of_window(&over, Curve::X, &[]);
+        assert_eq!(drawn[0].unwrap().min, 100.0);
+        assert_eq!(drawn[49].unwrap().max, 199.5);
+        assert!(drawn.iter().all(Option::is_some));
+        let short = recorded(&values[..151], 1.0);
+        let drawn = Sweep::new(100.0, 103.0, 50, 2).extents_of_window(&short, Curve::X, &[]);
+        assert_eq!(drawn.iter().rposition(Option::is_some), Some(25));
+        assert_eq!(drawn[25].unwrap().max, 150.0);
+        let none = Sweep::new(100.0, 203.0, 50, 2).extents_of_window(&short, Curve::X, &[]);
+        assert!(none.iter().all(Option::is_none));
+    }
+
+    #[test]
+    fn stretches_are_shown_where_the_curves_are() {
+        // The pen stands at column 24, and columns 25 and 26 are empty; from 27 on there is the sweep before.
+        let sweep = Sweep::new(100.0, 149.0, 50, 2);
+        assert_eq!((sweep.pen(), sweep.shown(100.0, 104.0)), (24, vec![0, 1]));
+        assert_eq!(sweep.shown(140.0, 500.0), [20, 21, 22, 23, 24]);
+        assert_eq!(sweep.shown(150.0, 500.0), []);
+        assert_eq!(sweep.shown(40.0, 60.0), [27, 28, 29]);
+        assert_eq!(sweep.shown(98.0, 102.0), [0, 49]);
+        assert_eq!(sweep.shown(120.0, 120.0 + 1e-9), [10]);
+        let place = |time_s| sweep.place_of(time_s);
+        assert_eq!(place(120.0), Some(10));
+        assert_eq!(place(149.0), Some(24));
+        assert_eq!(place(149.1), None);
+        assert_eq!(place(60.0), Some(30));
+        assert_eq!(place(50.0), None);
+        assert_eq!(place(40.0), None);
+    }
 }
