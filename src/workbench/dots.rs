@@ -12,12 +12,15 @@ pub enum Ink {
     Strong(Role),
     /// The exact motion, axes, what is old.
     Faint(Role),
+    /// The run before, under everything else.
+    Ghost,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
     strong: u8,
     faint: u8,
+    ghost: u8,
     strong_role: Role,
     faint_role: Role,
 }
@@ -69,6 +72,7 @@ impl Dots {
                 cell.faint |= bit;
                 cell.faint_role = role;
             }
+            Ink::Ghost => cell.ghost |= bit,
         }
     }
 
@@ -100,10 +104,11 @@ impl Dots {
     /// Puts the dots on the screen; cells without dots are left as they are.
     pub fn render(&self, theme: &Theme, buf: &mut Buffer) {
         for (cell, position) in self.cells.iter().zip(self.area.positions()) {
-            let (symbol, role) = match (cell.strong, cell.faint) {
-                (0, 0) => continue,
-                (0, faint) => (self.marker.faint(faint), cell.faint_role),
-                (strong, _) => (self.marker.strong(strong), cell.strong_role),
+            let (symbol, role) = match (cell.strong, cell.faint, cell.ghost) {
+                (0, 0, 0) => continue,
+                (0, 0, ghost) => (self.marker.ghost(ghost), Role::Ghost),
+                (0, faint, _) => (self.marker.faint(faint), cell.faint_role),
+                (strong, _, _) => (self.marker.strong(strong), cell.strong_role),
             };
             if let Some(target) = buf.cell_mut(position) {
                 target.set_char(symbol).set_style(theme.style(role));

@@ -3,6 +3,7 @@
 use super::action::{Action, Direction};
 use super::advisor::Advisor;
 use super::browser::Browser;
+use super::ghost::Ghost;
 use super::keymap::{Key, Mode};
 use super::layout::Layout;
 use super::live::LiveRun;
@@ -432,6 +433,11 @@ impl Lab {
     /// The run.
     pub fn run(&self) -> &LiveRun {
         self.playback.run()
+    }
+
+    /// The run before, where a restart by an edit has left one.
+    pub fn ghost(&self) -> Option<&Ghost> {
+        None
     }
 
     /// How it is looked at.

@@ -80,6 +80,15 @@ impl Marker {
             Self::Ascii => '.',
         }
     }
+
+    /// The character of a cell with these `bits` of the run before, under all others.
+    pub fn ghost(self, bits: u8) -> char {
+        match self {
+            Self::Braille => braille(bits),
+            Self::HalfBlock | Self::Dot => '°',
+            Self::Ascii => ',',
+        }
+    }
 }
 
 fn braille(bits: u8) -> char {
@@ -101,6 +110,8 @@ pub fn ascii(symbol: &str) -> &'static str {
         "│" => "|",
         "┌" | "┐" | "└" | "┘" | "├" | "┤" => "+",
         "×" => "x",
+        "═" => "=",
+        "°" => ",",
         "·" | "•" => ".",
         "►" => ">",
         "Ω" => "W",

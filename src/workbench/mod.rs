@@ -12,6 +12,7 @@
 //! - [`live`] plays a run; [`recording`] and [`path`] keep what the pictures need of it, [`overlay`] the exact motion
 //!   beside it; [`pace`] says how fast it is played, [`playback`] plays it as far as its next stop; [`readouts`] and [`health`] read numbers off it, [`advisor`] finds what
 //!   would mend them.
+//! - [`marks`] are the times at which something is done to a run, [`ghost`] what is kept of the run before.
 //! - [`note`] says what there is to see, [`notice`] what has just happened.
 //! - [`view`] is how it is looked at, [`layout`] where the panes stand, [`screen`] puts them there, [`panes`] draw.
 //!   [`sweep`] and [`camera`] are their geometry, [`dots`], [`markers`] and [`theme`] their ink.
@@ -23,6 +24,7 @@ pub mod browser;
 pub mod camera;
 pub mod checkpoints;
 pub mod dots;
+pub mod ghost;
 pub mod health;
 pub mod history;
 pub mod keymap;
@@ -30,6 +32,7 @@ pub mod lab;
 pub mod layout;
 pub mod live;
 pub mod markers;
+pub mod marks;
 pub mod note;
 pub mod notice;
 pub mod overlay;

@@ -35,9 +35,10 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
 /// Draws one pane of `lab` on `area`.
 pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
     let (run, view, readouts) = (lab.run(), lab.view(), lab.readouts());
+    let ghost = lab.ghost();
     match pane {
-        Pane::Traces => Traces { run, view }.render(area, buf),
-        Pane::FromAbove => FromAbove { run, view }.render(area, buf),
+        Pane::Traces => Traces { run, ghost, view }.render(area, buf),
+        Pane::FromAbove => FromAbove { run, ghost, view }.render(area, buf),
         Pane::ThreeD => ThreeD { run, view }.render(area, buf),
         Pane::Parameters => Parameters {
             scenario: run.scenario(),

@@ -5,6 +5,9 @@
 
 use super::recording::{Block, Curve, Extent, Recording};
 
+/// Parts of a column smaller than this are rounding, not time.
+const ROUNDING: f64 = 1e-6;
+
 /// A window of time on a number of columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sweep {
@@ -78,36 +81,136 @@ impl Sweep {
         Some((first, last))
     }
 
-    /// What `curve` does in each column: the extremes of every step in it, and of the straight way to the next.
-    pub fn extents(&self, recording: &Recording, curve: Curve) -> Vec<Option<Extent>> {
-        let mut columns = vec![None; self.columns];
-        let mut before: Option<(usize, Extent)> = None;
-        for block in recording.since(self.since_s()) {
-            let Some((first, last)) = self.place(block) else {
-                before = None;
-                continue;
-            };
-            let extent = block.extents[curve as usize];
-            if let Some((column, from)) = before.filter(|&(column, _)| column < first) {
-                join(&mut columns, (column, from), (first, extent));
-            }
-            for slot in columns.iter_mut().take(last + 1).skip(first) {
-                *slot = Some(slot.map_or(extent, |old: Extent| old.and(extent)));
-            }
-            before = Some((last, extent));
-        }
+    /// The columns in which some of the time from `begin_s` to `end_s` (s) is shown.
+    pub fn shown(&self, begin_s: f64, end_s: f64) -> Vec<usize> {
+        let mut columns = self.clipped(begin_s, end_s, self.begin_s, self.now_s);
+        let before = self.clipped(begin_s, end_s, self.begin_s - self.window_s, self.begin_s);
+        columns.extend(before.into_iter().filter(|&column| self.keeps(column)));
         columns
+    }
+
+    /// The columns of what of `begin_s` to `end_s` lies between `low_s` and `high_s`, which are of one sweep.
+    fn clipped(&self, begin_s: f64, end_s: f64, low_s: f64, high_s: f64) -> Vec<usize> {
+        let (begin_s, end_s) = (begin_s.max(low_s), end_s.min(high_s));
+        if low_s < 0.0 || begin_s >= end_s {
+            return Vec::new();
+        }
+        let share = |time_s: f64| (time_s - low_s) / self.window_s * self.columns as f64;
+        let first = ((share(begin_s) + ROUNDING) as usize).min(self.columns.saturating_sub(1));
+        // What ends where a column begins has no part in it; however short, it has its own.
+        let end = ((share(end_s) - ROUNDING).ceil() as usize).max(first + 1);
+        (first..end.min(self.columns)).collect()
+    }
+
+    /// The column of `time_s` (s), `None` where it is not shown.
+    pub fn place_of(&self, time_s: f64) -> Option<usize> {
+        let column = self.column(time_s);
+        let present = time_s >= self.begin_s && time_s <= self.now_s;
+        let before = time_s >= self.since_s() && time_s < self.begin_s && self.keeps(column);
+        (present || before).then_some(column)
+    }
+
+    /// What `curve` of a run that is over does in each column of the present window, the pen wherever it is: ahead of
+    /// the pen too, and nowhere after the run's own end.
+    pub fn extents_of_window(
+        &self,
+        recording: &Recording,
+        curve: Curve,
+        cuts: &[f64],
+    ) -> Vec<Option<Extent>> {
+        let end_s = self.begin_s + self.window_s;
+        let mut pen = Pen::new(self.columns, curve, cuts);
+        for block in recording.since(self.begin_s) {
+            let (from_s, to_s) = (block.begin_s.max(self.begin_s), block.end_s.min(end_s));
+            pen.draw(block, self.ahead(from_s), self.ahead(to_s));
+            if block.end_s >= end_s {
+                break;
+            }
+        }
+        pen.columns
+    }
+
+    /// The column of `time_s` (s) if the present sweep's window had no end.
+    fn ahead(&self, time_s: f64) -> usize {
+        let column = (time_s - self.begin_s) / self.window_s * self.columns as f64;
+        (column as usize).min(usize::MAX / 2)
+    }
+
+    /// What `curve` does in each column: the extremes of every step in it, and of the straight way to the next, but
+    /// not across the times of `cuts` (s).
+    pub fn extents(
+        &self,
+        recording: &Recording,
+        curve: Curve,
+        cuts: &[f64],
+    ) -> Vec<Option<Extent>> {
+        let mut pen = Pen::new(self.columns, curve, cuts);
+        for block in recording.since(self.since_s()) {
+            match self.place(block) {
+                Some((first, last)) => pen.draw(block, first, last),
+                None => pen.lift(),
+            }
+        }
+        pen.columns
     }
 }
 
-/// The straight way from one block to the next, over the columns between them and half of it in each of their own.
+/// What draws a curve from block to block.
+struct Pen<'a> {
+    columns: Vec<Option<Extent>>,
+    curve: Curve,
+    cuts: &'a [f64],
+    /// The end of the block before, s, its last column and what the curve did in it.
+    before: Option<(f64, usize, Extent)>,
+}
+
+impl<'a> Pen<'a> {
+    fn new(columns: usize, curve: Curve, cuts: &'a [f64]) -> Self {
+        Self {
+            columns: vec![None; columns],
+            curve,
+            cuts,
+            before: None,
+        }
+    }
+
+    /// Draws `block` from column `first` to `last`, of which those beyond the right edge are not there.
+    fn draw(&mut self, block: &Block, first: usize, last: usize) {
+        let extent = block.extents[self.curve as usize];
+        if let Some((end_s, column, from)) = self.before
+            && column < first
+            && !self.is_cut(end_s, block.begin_s)
+        {
+            join(&mut self.columns, (column, from), (first, extent));
+        }
+        for slot in self.columns.iter_mut().take(last + 1).skip(first) {
+            *slot = Some(slot.map_or(extent, |old: Extent| old.and(extent)));
+        }
+        self.before = Some((block.end_s, last, extent));
+    }
+
+    /// The next block is not joined to those before.
+    fn lift(&mut self) {
+        self.before = None;
+    }
+
+    /// Whether something was changed at `from_s` or later, and before `to_s`.
+    fn is_cut(&self, from_s: f64, to_s: f64) -> bool {
+        let next = self.cuts.partition_point(|&cut| cut < from_s);
+        self.cuts.get(next).is_some_and(|&cut| cut < to_s)
+    }
+}
+
+/// The straight way from one block to the next, over the columns between them and half of it in each of their own; it
+/// may lead beyond the right edge.
 fn join(columns: &mut [Option<Extent>], from: (usize, Extent), to: (usize, Extent)) {
     let ((begin, from), (end, to)) = (from, to);
     let (leave, arrive) = nearest(from, to);
     let length = (end - begin) as f64;
     let (low, high) = (leave.min(arrive), leave.max(arrive));
     let at = |place: f64| (leave + (arrive - leave) * (place / length)).clamp(low, high);
-    for (place, slot) in columns[begin..=end].iter_mut().enumerate() {
+    let way = columns.iter_mut().take(end + 1).skip(begin);
+    for (place, slot) in way.enumerate() {
         let place = place as f64;
         let way = Extent::of(at(place - 0.5)).and(Extent::of(at(place + 0.5)));
         *slot = Some(slot.map_or(way, |old| old.and(way)));
@@ -153,7 +256,7 @@ mod tests {
         ) {
             let recording = recorded(&values, 1.0);
             let now = (values.len() - 1) as f64;
-            let drawn = Sweep::new(now, now, columns, 2).extents(&recording, Curve::X);
+            let drawn = Sweep::new(now, now, columns, 2).extents(&recording, Curve::X, &[]);
             let of = |pick: fn(&Extent) -> f64| drawn.iter().flatten().map(pick).collect::<Vec<_>>();
             let (lowest, highest) = (of(|e| e.min), of(|e| e.max));
             prop_assert_eq!(lowest.into_iter().fold(2.0, f64::min), values.iter().copied().fold(2.0, f64::min));
@@ -168,7 +271,7 @@ mod tests {
             let recording = recorded(&vec![0.5; steps], 0.1);
             let sweep = Sweep::new(window, (steps - 1) as f64 * 0.1, columns, gap);
             prop_assert!(sweep.pen() < columns);
-            prop_assert_eq!(sweep.extents(&recording, Curve::X).len(), columns);
+            prop_assert_eq!(sweep.extents(&recording, Curve::X, &[]).len(), columns);
         }
     }
 
@@ -176,7 +279,7 @@ mod tests {
     fn the_picture_stays_and_the_pen_moves() {
         let values: Vec<f64> = (0..150).map(f64::from).collect();
         let recording = recorded(&values, 1.0);
-        let extents = Sweep::new(100.0, 149.0, 100, 4).extents(&recording, Curve::X);
+        let extents = Sweep::new(100.0, 149.0, 100, 4).extents(&recording, Curve::X, &[]);
         assert_eq!(extents[10].unwrap().max, 110.5);
         assert_eq!(extents[60].unwrap().max, 60.5);
         assert!(
@@ -189,9 +292,45 @@ mod tests {
     #[test]
     fn neighbours_are_joined() {
         let recording = recorded(&[0.0, 10.0], 1.0);
-        let extents = Sweep::new(1.0, 1.0, 6, 0).extents(&recording, Curve::X);
+        let extents = Sweep::new(1.0, 1.0, 6, 0).extents(&recording, Curve::X, &[]);
         for pair in extents.windows(2) {
             assert!(pair[0].unwrap().max >= pair[1].unwrap().min - 1e-12);
         }
+    }
+
+    #[test]
+    fn a_run_that_is_over_fills_the_window_and_no_more() {
+        // A value a second, from 0 to 299; the window from 100 to 200 on 50 columns, the pen near its left end.
+        let values: Vec<f64> = (0..300).map(f64::from).collect();
+        let over = recorded(&values, 1.0);
+        let drawn = Sweep::new(100.0, 103.0, 50, 2).extents_of_window(&over, Curve::X, &[]);
+        assert_eq!(drawn[0].unwrap().min, 100.0);
+        assert_eq!(drawn[49].unwrap().max, 199.5);
+        assert!(drawn.iter().all(Option::is_some));
+        let short = recorded(&values[..151], 1.0);
+        let drawn = Sweep::new(100.0, 103.0, 50, 2).extents_of_window(&short, Curve::X, &[]);
+        assert_eq!(drawn.iter().rposition(Option::is_some), Some(25));
+        assert_eq!(drawn[25].unwrap().max, 150.0);
+        let none = Sweep::new(100.0, 203.0, 50, 2).extents_of_window(&short, Curve::X, &[]);
+        assert!(none.iter().all(Option::is_none));
+    }
+
+    #[test]
+    fn stretches_are_shown_where_the_curves_are() {
+        // The pen stands at column 24, and columns 25 and 26 are empty; from 27 on there is the sweep before.
+        let sweep = Sweep::new(100.0, 149.0, 50, 2);
+        assert_eq!((sweep.pen(), sweep.shown(100.0, 104.0)), (24, vec![0, 1]));
+        assert_eq!(sweep.shown(140.0, 500.0), [20, 21, 22, 23, 24]);
+        assert_eq!(sweep.shown(150.0, 500.0), []);
+        assert_eq!(sweep.shown(40.0, 60.0), [27, 28, 29]);
+        assert_eq!(sweep.shown(98.0, 102.0), [0, 49]);
+        assert_eq!(sweep.shown(120.0, 120.0 + 1e-9), [10]);
+        let place = |time_s| sweep.place_of(time_s);
+        assert_eq!(place(120.0), Some(10));
+        assert_eq!(place(149.0), Some(24));
+        assert_eq!(place(149.1), None);
+        assert_eq!(place(60.0), Some(30));
+        assert_eq!(place(50.0), None);
+        assert_eq!(place(40.0), None);
     }
 }

@@ -26,6 +26,10 @@ pub enum Role {
     Path,
     /// The exact motion.
     Exact,
+    /// The run before.
+    Ghost,
+    /// What pushes the body, and when.
+    Push,
     /// The one accent: what has the focus.
     Focus,
     /// What is selected in a list.
@@ -65,8 +69,8 @@ impl Theme {
 
 fn modifier(role: Role) -> Modifier {
     match role {
-        Role::Heading | Role::Focus | Role::Warning => Modifier::BOLD,
-        Role::Quiet => Modifier::DIM,
+        Role::Heading | Role::Focus | Role::Push | Role::Warning => Modifier::BOLD,
+        Role::Quiet | Role::Ghost => Modifier::DIM,
         Role::Selected => Modifier::REVERSED,
         _ => Modifier::empty(),
     }
@@ -80,6 +84,7 @@ fn colour(role: Role, background: Background) -> Color {
         Role::Y => choose(Color::Yellow, Color::Red),
         Role::Z => choose(Color::Magenta, Color::Cyan),
         Role::Exact | Role::Warning => choose(Color::LightRed, Color::Red),
+        Role::Push => Color::Green,
         Role::Focus => choose(Color::LightBlue, Color::Blue),
         _ => Color::Reset,
     }

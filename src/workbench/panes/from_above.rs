@@ -2,15 +2,30 @@
 
 use super::{frame, write};
 use crate::workbench::dots::{Dots, Ink};
+use crate::workbench::ghost::Ghost;
 use crate::workbench::live::LiveRun;
+use crate::workbench::markers::Marker;
+use crate::workbench::overlay::Overlay;
+use crate::workbench::path::Path;
 use crate::workbench::theme::Role;
 use crate::workbench::view::{Pane, View};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 
-/// Dots of a dash of the exact motion, and as many are left out: without colours, dashes tell it from the run.
-const DASH: usize = 2;
+/// Dots that are drawn of the exact motion and of the run before, and out of how many: without colours, dashes and
+/// dots tell them from the run.
+const DASH: (usize, usize) = (2, 4);
+const DOT: (usize, usize) = (1, 3);
+/// The run before where dots are as large as cells.
+const LARGE_DOT: (usize, usize) = (1, 2);
+
+/// Length of a push's line, of the radius shown: its direction is what there is to see.
+const ARROW: f64 = 0.35;
+/// A force with less than this part of it in the plane is straight up or down as far as one sees from above.
+const UPRIGHT: f64 = 0.1;
+/// More pushes than this at one time are no picture.
+const MOST_PUSHES: usize = 20;
 
 /// The least radius shown, m: a path that never leaves the vertical has none of its own.
 const LEAST: f64 = 1e-6;
@@ -22,6 +37,8 @@ const STEP: f64 = 0.05;
 pub struct FromAbove<'a> {
     /// The run.
     pub run: &'a LiveRun,
+    /// The run before, faint under it.
+    pub ghost: Option<&'a Ghost>,
     /// How it is looked at.
     pub view: &'a View,
 }
@@ -45,6 +62,7 @@ impl Widget for FromAbove<'_> {
         };
         let plan = Plan::new(picture, self.radius(), self.view);
         self.path(&plan, picture, buf);
+        self.pushes(&plan, picture, buf);
         self.marks(&plan, picture, buf);
         let scale = Rect {
             y: picture.bottom(),
@@ -57,20 +75,33 @@ impl Widget for FromAbove<'_> {
 
 impl FromAbove<'_> {
     fn radius(&self) -> f64 {
-        let exact = self
-            .run
-            .overlay()
-            .map_or(0.0, |overlay| overlay.path().radius());
-        let radius = self.run.path().radius().max(exact).max(LEAST);
+        let exact = self.run.overlay().map(Overlay::path);
+        let before = self.ghost.map(Ghost::path);
+        let paths = [Some(self.run.path()), exact, before];
+        let radius = paths
+            .into_iter()
+            .flatten()
+            .map(Path::radius)
+            .fold(LEAST, f64::max);
         // In steps of 5 %: the picture shall not breathe with every millimetre.
         libm::exp((libm::log(radius) / STEP).ceil() * STEP) * 1.02
     }
 
     fn path(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
         let mut dots = Dots::new(picture, self.view.marker);
+        if let Some(ghost) = self.ghost {
+            let before = ghost.path().dots().map(|(x, y)| plan.dot(x, y));
+            let dotted = match self.view.marker {
+                Marker::Braille => DOT,
+                _ => LARGE_DOT,
+            };
+            for (x, y) in on_and_off(before, dotted) {
+                dots.set(x, y, Ink::Ghost);
+            }
+        }
         if let Some(overlay) = self.run.overlay() {
             let exact = overlay.path().dots().map(|(x, y)| plan.dot(x, y));
-            for (x, y) in dashed(exact) {
+            for (x, y) in on_and_off(exact, DASH) {
                 dots.set(x, y, Ink::Faint(Role::Exact));
             }
         }
@@ -79,6 +110,34 @@ impl FromAbove<'_> {
             dots.set(x, y, Ink::Strong(Role::Path));
         }
         dots.render(&self.view.theme, buf);
+    }
+
+    /// Each push that acts: a line from the pushed point with a head, or a word where it is straight up or down.
+    fn pushes(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
+        let simulation = self.run.simulation();
+        let points = self.run.scenario().body.mechanics.points();
+        let mut dots = Dots::new(picture, self.view.marker);
+        let mut signs = Vec::new();
+        for push in simulation.loads().pushes.iter().take(MOST_PUSHES) {
+            let at = simulation.state().orientation * points[push.point].at;
+            let plane = push.force.xy();
+            match plane.try_normalize(UPRIGHT * push.force.norm()) {
+                Some(direction) => {
+                    let tip = at.xy() + direction * (ARROW * plan.radius_m);
+                    dots.line(
+                        plan.dot(at.x, at.y),
+                        plan.dot(tip.x, tip.y),
+                        Ink::Strong(Role::Push),
+                    );
+                    signs.push((plan.cell(tip.x, tip.y), head(direction.x, direction.y)));
+                }
+                None => signs.push(upright(plan.cell(at.x, at.y), push.force.z, picture)),
+            }
+        }
+        dots.render(&self.view.theme, buf);
+        for (cell, sign) in signs {
+            write(picture, cell, sign, self.view.theme.style(Role::Push), buf);
+        }
     }
 
     /// The pivot, the axes' names, and where the point is now.
@@ -127,6 +186,7 @@ impl FromAbove<'_> {
         let end = write(area, (0, 0), &bar, theme.style(Role::Quiet), buf);
         let legends: &[&str] = match self.run.overlay() {
             Some(_) => &["o now e exact * both", "o now e exact", "e exact"],
+            None if self.ghost.is_some() => &["o now, dotted: the run before", "dotted: before"],
             None => &["o now"],
         };
         let place = |legend: &&str| {
@@ -143,6 +203,30 @@ impl FromAbove<'_> {
     }
 }
 
+/// The head of an arrow that points to the right by `x` and up by `y`.
+fn head(x: f64, y: f64) -> &'static str {
+    match (x.abs() > y.abs(), x > 0.0, y > 0.0) {
+        (true, true, _) => ">",
+        (true, false, _) => "<",
+        (false, _, true) => "^",
+        (false, _, false) => "v",
+    }
+}
+
+/// What says that a force at `cell` is straight up or down, beside that cell and inside `picture`.
+fn upright((x, y): (u16, u16), up: f64, picture: Rect) -> ((u16, u16), &'static str) {
+    let sign = if up < 0.0 { "F down" } else { "F up" };
+    let width = sign.len() as u16;
+    let right = x + 2;
+    let left = x.saturating_sub(width + 1);
+    let place = if right + width <= picture.width {
+        right
+    } else {
+        left
+    };
+    ((place, y), sign)
+}
+
 /// From metres to dots and cells, the pivot in the middle.
 struct Plan {
     width: f64,
@@ -152,6 +236,7 @@ struct Plan {
     down: f64,
     dots: (f64, f64),
     cell_width_m: f64,
+    radius_m: f64,
 }
 
 impl Plan {
@@ -173,6 +258,7 @@ impl Plan {
             down,
             dots: (in_x as f64, in_y as f64),
             cell_width_m,
+            radius_m,
         }
     }
 
@@ -192,13 +278,16 @@ impl Plan {
     }
 }
 
-/// Every second dash of the screen's dots that a path goes through one after the other.
-fn dashed(path: impl Iterator<Item = (f64, f64)>) -> impl Iterator<Item = (f64, f64)> {
+/// The first `drawn` of every `out_of` dots of the screen that a path goes through one after the other.
+fn on_and_off(
+    path: impl Iterator<Item = (f64, f64)>,
+    (drawn, out_of): (usize, usize),
+) -> impl Iterator<Item = (f64, f64)> {
     let (mut passed, mut last) = (0, None);
     path.filter(move |&(x, y)| {
         let dot = (x.floor(), y.floor());
         passed += usize::from(last.replace(dot) != Some(dot));
-        passed % (2 * DASH) < DASH
+        passed % out_of < drawn
     })
 }
 

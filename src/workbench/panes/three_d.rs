@@ -17,6 +17,13 @@ const VECTOR: f64 = 1.15;
 /// for one that has hung.
 const STANDING: (f64, f64) = (-0.45, 1.25);
 const HANGING: (f64, f64) = (-1.25, 1.25);
+/// Length of a push's arrow, and of the two strokes of its head, of the same: its direction is what there is to see.
+const ARROW: f64 = 0.45;
+const HEAD: f64 = 0.12;
+/// Half the angle between the strokes of a head, radians.
+const HEAD_ANGLE: f64 = 0.5;
+/// More pushes than this at one time are no picture.
+const MOST_PUSHES: usize = 20;
 /// Points of the body beyond this many are not drawn as a wheel.
 const MOST_SPOKES: usize = 400;
 
@@ -39,7 +46,8 @@ impl Widget for ThreeD<'_> {
         self.axes(&mut scene);
         self.paths(&mut scene);
         self.body(&mut scene);
-        let labels = self.vectors(&mut scene);
+        let mut labels = self.vectors(&mut scene);
+        labels.extend(self.pushes(&mut scene));
         scene.dots.render(theme, buf);
         let mut taken = Vec::with_capacity(labels.len());
         for (name, role, at) in labels.iter().rev() {
@@ -147,6 +155,24 @@ impl ThreeD<'_> {
     }
 }
 
+impl ThreeD<'_> {
+    /// An arrow for each push that acts, from the pushed point along the force.
+    fn pushes(&self, scene: &mut Scene<'_>) -> Vec<Label> {
+        let simulation = self.run.simulation();
+        let points = self.run.scenario().body.mechanics.points();
+        let mut labels = Vec::new();
+        for push in simulation.loads().pushes.iter().take(MOST_PUSHES) {
+            let from = simulation.state().orientation * points[push.point].at;
+            if let Some(direction) = push.force.try_normalize(f64::MIN_POSITIVE) {
+                let tip = from + direction * (ARROW * self.reach());
+                scene.arrow(&from, &tip, HEAD * self.reach(), Ink::Strong(Role::Push));
+                labels.push(("F", Role::Push, tip));
+            }
+        }
+        labels
+    }
+}
+
 /// The sheet of dots with the camera's eye on it.
 struct Scene<'a> {
     view: &'a View,
@@ -210,6 +236,30 @@ impl<'a> Scene<'a> {
     fn line(&mut self, from: &Vector3<f64>, to: &Vector3<f64>, ink: Ink) {
         let (from, to) = (self.dot(from), self.dot(to));
         self.dots.line(from, to, ink);
+    }
+
+    /// A line with a head of two strokes, each `head_m` long, at its tip.
+    fn arrow(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, head_m: f64, ink: Ink) {
+        self.line(from, tip, ink);
+        let (begin, end) = (
+            self.view.camera.project(from),
+            self.view.camera.project(tip),
+        );
+        let (right, up) = (begin.0 - end.0, begin.1 - end.1);
+        let length = right.hypot(up);
+        if length < head_m {
+            return; // seen along itself, it has no head
+        }
+        for (sin, cos) in [HEAD_ANGLE, -HEAD_ANGLE].map(f64::sin_cos) {
+            let stroke = (right * cos - up * sin, right * sin + up * cos);
+            let share = head_m / length;
+            let end_dot = self.dot(tip);
+            let stroke_end = (
+                end_dot.0 + share * stroke.0 * self.across,
+                end_dot.1 - share * stroke.1 * self.down,
+            );
+            self.dots.line(end_dot, stroke_end, ink);
+        }
     }
 
     fn path(&mut self, recording: &Recording, ink: Ink) {

@@ -2,9 +2,12 @@
 
 use super::{frame, write};
 use crate::workbench::dots::{Dots, Ink};
+use crate::workbench::ghost::Ghost;
 use crate::workbench::live::LiveRun;
 use crate::workbench::markers::Marker;
-use crate::workbench::recording::{Curve, Extent};
+use crate::workbench::marks::Marks;
+use crate::workbench::overlay::Overlay;
+use crate::workbench::recording::{Curve, Extent, Recording};
 use crate::workbench::sweep::Sweep;
 use crate::workbench::theme::Role;
 use crate::workbench::view::{Pane, View};
@@ -21,6 +24,8 @@ const STRIP: u16 = 2;
 pub struct Traces<'a> {
     /// The run.
     pub run: &'a LiveRun,
+    /// The run before, faint under it.
+    pub ghost: Option<&'a Ghost>,
     /// How it is looked at.
     pub view: &'a View,
 }
@@ -40,6 +45,7 @@ impl Widget for Traces<'_> {
             return;
         }
         let sweep = self.sweep(inside);
+        let marks = Marks::of(self.run.scenario());
         let heights = (inside.height - 1) / strips;
         let spare = (inside.height - 1) % strips;
         let mut y = inside.y;
@@ -59,8 +65,9 @@ impl Widget for Traces<'_> {
                 height: height - 1,
                 ..inside
             };
-            self.curve(curve, &sweep, sheet, buf);
+            self.curve(curve, &sweep, &marks, sheet, buf);
             self.pen(&sweep, sheet, buf);
+            self.edits(&marks, &sweep, sheet, buf);
             y += height;
         }
         self.time_axis(
@@ -72,6 +79,12 @@ impl Widget for Traces<'_> {
             },
             buf,
         );
+        let border = Rect {
+            y: area.bottom() - 1,
+            height: 1,
+            ..inside
+        };
+        self.pushes(&marks, &sweep, border, buf);
     }
 }
 
@@ -98,14 +111,20 @@ impl Traces<'_> {
         write(area, (name, 0), &range, theme.style(Role::Quiet), buf);
     }
 
-    fn curve(&self, curve: Curve, sweep: &Sweep, area: Rect, buf: &mut Buffer) {
+    fn curve(&self, curve: Curve, sweep: &Sweep, marks: &Marks, area: Rect, buf: &mut Buffer) {
         let scale = self.scale(curve);
         let mut dots = Dots::new(area, self.view.marker);
+        if let Some(ghost) = self.ghost {
+            let cuts = &ghost.marks().edits;
+            let before = sweep.extents_of_window(ghost.recording(), curve, cuts);
+            dotted(&mut dots, &before, &scale, self.view.marker);
+        }
         if let Some(overlay) = self.run.overlay() {
-            let exact = dashed(sweep.extents(overlay.recording(), curve), self.view.marker);
+            let exact = sweep.extents(overlay.recording(), curve, &[]);
+            let exact = dashed(exact, self.view.marker);
             draw(&mut dots, &exact, &scale, Ink::Faint(Role::Exact));
         }
-        let extents = sweep.extents(self.run.recording(), curve);
+        let extents = sweep.extents(self.run.recording(), curve, &marks.edits);
         draw(
             &mut dots,
             &extents,
@@ -128,13 +147,16 @@ impl Traces<'_> {
         }
     }
 
-    /// Everything the strip of `curve` has to show: the run, and the exact motion where it is shown.
+    /// Everything the strip of `curve` has to show: the run, and where they are shown the exact motion and the run
+    /// before: the whole of it at once, so that the picture stays while the run comes after it.
     fn extent(&self, curve: Curve) -> Extent {
-        let exact = self
-            .run
-            .overlay()
-            .and_then(|overlay| overlay.recording().whole());
-        let blocks = self.run.recording().whole().into_iter().chain(exact);
+        let exact = self.run.overlay().map(Overlay::recording);
+        let before = self.ghost.map(Ghost::recording);
+        let recordings = [Some(self.run.recording()), exact, before];
+        let blocks = recordings
+            .into_iter()
+            .flatten()
+            .filter_map(Recording::whole);
         let extents = blocks.map(|block| block.extents[curve as usize]);
         extents.reduce(Extent::and).unwrap_or(Extent::of(0.0))
     }
@@ -159,16 +181,110 @@ impl Traces<'_> {
         }
     }
 
+    /// A dotted line where an edit was made.
+    fn edits(&self, marks: &Marks, sweep: &Sweep, area: Rect, buf: &mut Buffer) {
+        let across = self.view.marker.dots().0;
+        let style = self.view.theme.style(Role::Quiet);
+        let places = marks.edits.iter().filter_map(|&at_s| sweep.place_of(at_s));
+        for x in places.map(|column| area.x + (column / across) as u16) {
+            for y in area.top()..area.bottom() {
+                let cell = buf.cell_mut((x, y));
+                if let Some(cell) = cell.filter(|cell| cell.symbol() == " ") {
+                    cell.set_char(EDIT).set_style(style);
+                }
+            }
+        }
+    }
+
+    /// Where pushes act: on the border below the strips, with the word beside it where there is room.
+    fn pushes(&self, marks: &Marks, sweep: &Sweep, border: Rect, buf: &mut Buffer) {
+        let across = self.view.marker.dots().0;
+        let mut pushed = vec![false; border.width as usize];
+        let shown = |&(begin_s, end_s): &(f64, f64)| sweep.shown(begin_s, end_s);
+        for column in marks.pushes.iter().flat_map(shown) {
+            if let Some(cell) = pushed.get_mut(column / across) {
+                *cell = true;
+            }
+        }
+        let style = self.view.theme.style(Role::Push);
+        let signs = pushed.iter().map(|&pushed| if pushed { PUSH } else { " " });
+        for (x, sign) in (0..).zip(signs).filter(|(_, sign)| *sign == PUSH) {
+            write(border, (x, 0), sign, style, buf);
+        }
+        for x in words(&pushed) {
+            write(border, (x as u16, 0), WORD, style, buf);
+        }
+    }
+
     fn time_axis(&self, sweep: &Sweep, area: Rect, buf: &mut Buffer) {
         let style = self.view.theme.style(Role::Quiet);
         let (begin, end) = ends(sweep, area.width as usize);
-        write(area, (0, 0), &begin, style, buf);
+        let after_begin = write(area, (0, 0), &begin, style, buf);
         let room = area.width as usize;
-        if begin.len() + end.len() < room {
-            write(area, ((room - end.len()) as u16, 0), &end, style, buf);
+        if begin.len() + end.len() >= room {
+            return;
+        }
+        let end_at = (room - end.len()) as u16;
+        write(area, (end_at, 0), &end, style, buf);
+        let between = (end_at - after_begin) as usize;
+        let legend = LEGENDS
+            .into_iter()
+            .find(|legend| legend.len() + 2 <= between);
+        if let Some(legend) = legend.filter(|_| self.ghost.is_some()) {
+            let x = after_begin + (between - legend.len()) as u16 / 2;
+            write(
+                area,
+                (x, 0),
+                legend,
+                self.view.theme.style(Role::Ghost),
+                buf,
+            );
         }
     }
 }
+
+/// The columns at which [`WORD`] stands for the stretches of `pushed` columns: in the stretch, or beside it.
+fn words(pushed: &[bool]) -> Vec<usize> {
+    let mut places = Vec::new();
+    let mut begin = 0;
+    for stretch in pushed.chunk_by(|a, b| a == b) {
+        let end = begin + stretch.len();
+        if stretch[0] {
+            places.extend(word(pushed, begin, end));
+        }
+        begin = end;
+    }
+    places
+}
+
+/// The column of [`WORD`] for the pushed columns from `begin` to before `end`.
+fn word(pushed: &[bool], begin: usize, end: usize) -> Option<usize> {
+    let is_free = |from: usize, to: usize| {
+        pushed
+            .get(from..to)
+            .is_some_and(|columns| !columns.contains(&true))
+    };
+    let inside = end - begin >= WORD.len() + 2;
+    let before = begin.checked_sub(WORD.len());
+    match before {
+        _ if inside => Some(begin + (end - begin - WORD.len()) / 2),
+        // A free column at its end, lest it seem to belong to the next stretch.
+        _ if is_free(end, end + WORD.len() + 1) => Some(end),
+        Some(before) if is_free(before.saturating_sub(1), begin) => Some(before),
+        _ => None,
+    }
+}
+
+/// What marks the time of an edit, and time with a push.
+const EDIT: char = ':';
+const PUSH: &str = "═";
+const WORD: &str = "push";
+/// What the dots of the run before mean, at length and in short.
+const LEGENDS: [&str; 3] = [
+    "dotted: the run before",
+    "dotted: run before",
+    "dotted: before",
+];
 
 /// Least range of z, of the distance between pivot and traced point: a swing below it is small, and shall look small.
 const Z_LEAST: f64 = 0.05;
@@ -243,6 +359,21 @@ fn dashed(columns: Vec<Option<Extent>>, marker: Marker) -> Vec<Option<Extent>> {
     let dash =
         |(x, extent): (usize, Option<Extent>)| extent.filter(|_| (x / across).is_multiple_of(2));
     columns.into_iter().enumerate().map(dash).collect()
+}
+
+/// Single dots of `columns`, the run before: without colours, they tell it from the run and from the exact motion.
+fn dotted(dots: &mut Dots, columns: &[Option<Extent>], scale: &Scale, marker: Marker) {
+    let (rows, (across, down)) = (dots.height(), marker.dots());
+    if rows == 0 {
+        return;
+    }
+    for (x, extent) in columns.iter().enumerate().step_by(across.max(2)) {
+        let Some(extent) = extent else { continue };
+        let (top, bottom) = (scale.row(extent.max, rows), scale.row(extent.min, rows));
+        for y in (top as usize..=bottom as usize).step_by((down / 2).max(1)) {
+            dots.set(x as f64, y as f64, Ink::Ghost);
+        }
+    }
 }
 
 fn draw(dots: &mut Dots, extents: &[Option<Extent>], scale: &Scale, ink: Ink) {

@@ -1,0 +1,135 @@
+//! What was done to a run and when: the pushes that act on it, and the edits made during it.
+
+use crate::run::Clock;
+use crate::run::pushes::{self, Counting};
+use crate::scenario::{Push, Scenario, Window};
+
+/// Times at which something is done to a run, in their order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Marks {
+    /// From when to when some push acts, s. Stretches do not touch; the last may be without an end.
+    pub pushes: Vec<(f64, f64)>,
+    /// When an edit was made, s.
+    pub edits: Vec<f64>,
+}
+
+impl Marks {
+    /// The marks of the run of `scenario`.
+    pub fn of(scenario: &Scenario) -> Self {
+        let counting = Counting::Seconds {
+            written_for_s: scenario.written_for_s,
+        };
+        let mut clock = Clock::new(scenario.motion.time_step_s);
+        let mut edits = Vec::new();
+        let mut stretches = Vec::new();
+        let (mut begin_s, mut acting) = (0.0, &scenario.pushes);
+        for edit in &scenario.edits {
+            let time_s = clock.time_s(edit.step);
+            if edit.touches.time_step {
+                clock.change(edit.step, edit.motion.time_step_s);
+            }
+            if edits.last() != Some(&time_s) {
+                edits.push(time_s);
+            }
+            stretches.extend(between(acting, counting, (begin_s, time_s)));
+            (begin_s, acting) = (time_s, &edit.pushes);
+        }
+        stretches.extend(between(acting, counting, (begin_s, f64::INFINITY)));
+        Self {
+            pushes: joined(stretches),
+            edits,
+        }
+    }
+}
+
+/// From when to when each of `pushes` acts inside `era`, s.
+fn between(
+    pushes: &[Push],
+    counting: Counting,
+    era: (f64, f64),
+) -> impl Iterator<Item = (f64, f64)> {
+    let seconds = move |push: &Push| {
+        let (begin, end) = window_s(push, counting);
+        (begin.max(era.0), end.min(era.1))
+    };
+    pushes
+        .iter()
+        .filter(|push| push.force.norm() > 0.0)
+        .map(seconds)
+        .filter(|(begin, end)| begin < end)
+}
+
+/// From when to when `push` acts, s: an accumulating one does not end.
+fn window_s(push: &Push, counting: Counting) -> (f64, f64) {
+    let (begin, end) = pushes::seconds(push.window, counting);
+    let grows = push.accumulates && matches!(push.window, Window::Steps { .. });
+    (begin, if grows { f64::INFINITY } else { end })
+}
+
+/// `stretches` in order, those that touch made one.
+fn joined(mut stretches: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    stretches.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut joined: Vec<(f64, f64)> = Vec::with_capacity(stretches.len());
+    for (begin, end) in stretches {
+        match joined.last_mut() {
+            Some(last) if begin <= last.1 => last.1 = last.1.max(end),
+            _ => joined.push((begin, end)),
+        }
+    }
+    joined
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Document;
+
+    fn marks(preset: &str, more: &str) -> Marks {
+        let text = crate::scenario::presets::find(preset).unwrap().text;
+        let text = format!("{text}\n{more}");
+        let document = Document::parse("marks.toml", &text).unwrap();
+        Marks::of(&document.scenario().unwrap())
+    }
+
+    fn near(stretch: (f64, f64), begin: f64, end: f64) -> bool {
+        (stretch.0 - begin).abs() < 1e-9 && (stretch.1 - end).abs() < 1e-9
+    }
+
+    #[test]
+    fn a_push_of_steps_has_the_seconds_of_its_steps() {
+        let marks = marks("wobble-push", "");
+        assert_eq!(marks.pushes.len(), 1);
+        assert!(near(marks.pushes[0], 0.0, 20.0), "{marks:?}");
+        assert!(marks.edits.is_empty());
+    }
+
+    #[test]
+    fn an_accumulating_push_does_not_end() {
+        let marks = marks("wobble-push-accumulating", "");
+        assert_eq!(marks.pushes, [(0.0, f64::INFINITY)]);
+    }
+
+    #[test]
+    fn pushes_keep_their_seconds_over_an_edit_of_the_time_step() {
+        // Step 40 is at 4 s; from there on a step is 0.05 s long.
+        let edits = "[[edit]]\nstep = 40\nset = { 'motion.time_step_s' = 0.05 }\n\
+                     [[edit]]\nstep = 60\nset = { 'motion.gravity_m_per_s2' = 9 }";
+        let marks = marks("wobble-push", edits);
+        assert_eq!(marks.pushes.len(), 1);
+        assert!(near(marks.pushes[0], 0.0, 20.0), "{marks:?}");
+        assert_eq!(marks.edits, [4.0, 5.0]);
+    }
+
+    #[test]
+    fn an_edit_of_a_push_acts_from_its_step_on() {
+        // Taken away at 5 s; another one at 6 to 8 s.
+        let edits = "[[edit]]\nstep = 50\nset = { 'push.0.force_N' = [0, 0, 0] }\n\
+                     [[edit]]\nstep = 55\nset = { 'push.0' = \
+                     { point = 'top', force_N = [1, 0, 0], from_s = 6, for_s = 2 } }";
+        let marks = marks("wobble-push", edits);
+        assert_eq!(marks.pushes.len(), 2);
+        assert!(near(marks.pushes[0], 0.0, 5.0), "{marks:?}");
+        assert!(near(marks.pushes[1], 6.0, 8.0), "{marks:?}");
+        assert_eq!(marks.edits, [5.0, 5.5]);
+    }
+}

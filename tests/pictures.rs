@@ -1,0 +1,229 @@
+//! Single panes on a sheet of their own: the run before, pushes and edits.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use gyrolab::scenario::{Document, presets};
+use gyrolab::workbench::ghost::Ghost;
+use gyrolab::workbench::live::LiveRun;
+use gyrolab::workbench::markers::Marker;
+use gyrolab::workbench::panes::from_above::FromAbove;
+use gyrolab::workbench::panes::three_d::ThreeD;
+use gyrolab::workbench::panes::traces::Traces;
+use gyrolab::workbench::theme::{Background, Theme};
+use gyrolab::workbench::view::View;
+use proptest::prelude::*;
+use ratatui::buffer::{Buffer, Cell};
+use ratatui::layout::Rect;
+use ratatui::widgets::Widget;
+use std::sync::Arc;
+
+/// The traces of an 80x24 screen.
+const STRIPS: (u16, u16) = (40, 19);
+/// The view from above of one.
+const ROUND: (u16, u16) = (36, 19);
+
+/// The run of a preset with `set` and `more` at its end, `steps` on.
+fn run(preset: &str, set: &[&str], more: &str, steps: u64) -> LiveRun {
+    let text = presets::find(preset).unwrap().text;
+    let mut document = Document::parse("test.toml", &format!("{text}\n{more}")).unwrap();
+    set.iter().for_each(|set| document.set(set).unwrap());
+    let mut run = LiveRun::new(Arc::new(document.scenario().unwrap()));
+    (0..steps).for_each(|_| run.step().unwrap());
+    run
+}
+
+fn view(run: &LiveRun, marker: Marker) -> View {
+    let theme = Theme {
+        colour: true,
+        background: Background::Dark,
+    };
+    View::new(run.scenario(), marker, theme)
+}
+
+fn drawn(widget: impl Widget, (width, height): (u16, u16)) -> String {
+    let mut buf = Buffer::empty(Rect::new(0, 0, width, height));
+    widget.render(buf.area, &mut buf);
+    let lines = buf.content.chunks(width.into());
+    let line = |cells: &[Cell]| cells.iter().map(Cell::symbol).collect::<String>();
+    lines
+        .map(|cells| line(cells).trim_end().to_owned() + "\n")
+        .collect()
+}
+
+fn traces(run: &LiveRun, ghost: Option<&Ghost>, window_s: Option<f64>, marker: Marker) -> String {
+    let mut view = view(run, marker);
+    view.window_s = window_s.unwrap_or(view.window_s);
+    let view = &view;
+    drawn(Traces { run, ghost, view }, STRIPS)
+}
+
+fn from_above(run: &LiveRun, ghost: Option<&Ghost>, marker: Marker) -> String {
+    let view = &view(run, marker);
+    drawn(FromAbove { run, ghost, view }, ROUND)
+}
+
+/// A run that was edited, `steps` on, and what it was before: tilted less, for 7 s.
+fn edited(steps: u64) -> (LiveRun, Ghost) {
+    let before = run("loops", &[], "", 7000);
+    let now = run("loops", &["start.tilt_deg=45"], "", steps);
+    (now, Ghost::of(&before))
+}
+
+#[test]
+fn the_run_before_lies_under_the_run() {
+    let (now, ghost) = edited(4000);
+    for marker in [Marker::Braille, Marker::Dot, Marker::Ascii] {
+        let name = marker.name();
+        insta::assert_snapshot!(
+            format!("ghost_traces_{name}"),
+            traces(&now, Some(&ghost), None, marker)
+        );
+        insta::assert_snapshot!(
+            format!("ghost_from_above_{name}"),
+            from_above(&now, Some(&ghost), marker)
+        );
+    }
+}
+
+/// The cells of `picture` that hold one of `signs`, without the border.
+fn columns_with(picture: &str, signs: &str) -> Vec<usize> {
+    let inside = |line: &str| -> Vec<usize> {
+        let cells = line.chars().enumerate();
+        cells
+            .filter(|(_, c)| signs.contains(*c))
+            .map(|(x, _)| x - 1)
+            .collect()
+    };
+    let lines = picture.lines().filter(|line| line.starts_with(['│', '|']));
+    let mut columns: Vec<_> = lines.flat_map(inside).collect();
+    columns.sort_unstable();
+    columns.dedup();
+    columns
+}
+
+#[test]
+fn the_run_before_is_ahead_of_the_pen_and_ends_where_it_ended() {
+    let (now, ghost) = edited(100);
+    // 10 s on 38 columns; it ended at 7 s.
+    let columns = columns_with(&traces(&now, Some(&ghost), None, Marker::Dot), "°");
+    assert_eq!(columns.last(), Some(&26), "{columns:?}");
+    // The first 5 s of it, to the edge of the window, and no heap of what came later.
+    let picture = traces(&now, Some(&ghost), Some(5.0), Marker::Dot);
+    assert_eq!(columns_with(&picture, "°").last(), Some(&36), "{picture}");
+    let at = |column: usize| {
+        let lines = picture.lines();
+        let cells = lines.filter(|line| line.chars().nth(column + 1) == Some('°'));
+        cells.count()
+    };
+    assert!(at(36) <= at(34) + 2, "{picture}");
+}
+
+#[test]
+fn the_strips_stand_still_while_the_run_comes_after_the_one_before() {
+    let ranges = |picture: &str| -> Vec<String> {
+        let lines = picture.lines().filter(|line| line.contains(" .. "));
+        lines.map(str::to_owned).collect()
+    };
+    let before = run("loops", &[], "", 7000);
+    let ghost = Ghost::of(&before);
+    let at = |steps| {
+        let now = run("loops", &[], "", steps);
+        ranges(&traces(&now, Some(&ghost), None, Marker::Braille))
+    };
+    assert_eq!(at(0), at(6999));
+    assert_eq!(at(0), ranges(&traces(&before, None, None, Marker::Braille)));
+}
+
+const EDITS: &str = "[[edit]]\nstep = 150\nset = { 'motion.time_step_s' = 0.05 }\n\
+                     [[edit]]\nstep = 450\nset = { 'motion.gravity_m_per_s2' = 5 }";
+
+#[test]
+fn pushes_and_edits_are_marked_where_they_were() {
+    let now = run("wobble-push", &[], EDITS, 500);
+    for marker in [Marker::Braille, Marker::Ascii] {
+        let name = marker.name();
+        let picture = traces(&now, None, Some(40.0), marker);
+        insta::assert_snapshot!(format!("marks_{name}"), picture);
+        // 40 s on 38 columns: pushed for the first 20 s; edits at 15 s and at 30 s.
+        let border = picture.lines().last().unwrap();
+        let pushed = border.chars().skip(1).take_while(|c| !"─-".contains(*c));
+        let pushed: String = pushed.collect();
+        assert_eq!(pushed.chars().count(), 19, "{border}");
+        assert!(pushed.contains("push"), "{border}");
+        assert_eq!(columns_with(&picture, ":"), [14, 28], "{picture}");
+    }
+    // A minute on, the sweep before is to be seen from the pen on: the edit at 30 s, and no longer the push.
+    let now = run("wobble-push", &[], EDITS, 1150);
+    assert_eq!(now.now().time_s, 65.0);
+    let picture = traces(&now, None, Some(40.0), Marker::Braille);
+    assert_eq!(columns_with(&picture, ":"), [28], "{picture}");
+    assert!(!picture.contains("push"), "{picture}");
+}
+
+#[test]
+fn the_shortest_push_has_a_mark_and_its_word() {
+    let now = run("wobble-push", &["push.0.steps=1"], "", 10);
+    let picture = traces(&now, None, Some(400.0), Marker::Braille);
+    assert!(picture.contains("└═push─"), "{picture}");
+}
+
+#[test]
+fn no_curve_crosses_an_edit() {
+    // Two steps a window: what is drawn between them is the way from one to the other.
+    let cut = "[[edit]]\nstep = 1\nset = { 'motion.gravity_m_per_s2' = 5 }";
+    let columns = |more| {
+        let now = run("cusps", &["motion.time_step_s=0.1"], more, 2);
+        columns_with(&traces(&now, None, Some(0.25), Marker::Dot), "•")
+    };
+    let (whole, parts) = (columns(""), columns(cut));
+    assert_eq!(whole.len(), 31, "{whole:?}");
+    assert!(parts.len() < 20, "{parts:?}");
+}
+
+#[test]
+fn a_push_that_acts_is_an_arrow() {
+    let sideways = &["push.0.force_N=[100, 50, 0]"][..];
+    for (name, set) in [("down", &[][..]), ("sideways", sideways)] {
+        let now = run("wobble-push", set, "", 120);
+        let above = from_above(&now, None, Marker::Braille);
+        insta::assert_snapshot!(format!("push_{name}_from_above"), above);
+        let view = &view(&now, Marker::Braille);
+        let scene = drawn(ThreeD { run: &now, view }, ROUND);
+        assert!(scene.contains('F'), "{scene}");
+        insta::assert_snapshot!(format!("push_{name}_3d"), scene);
+    }
+    let over = run("wobble-push", &[], "", 201);
+    assert!(!from_above(&over, None, Marker::Braille).contains('F'));
+    let view = &view(&over, Marker::Braille);
+    assert!(!drawn(ThreeD { run: &over, view }, ROUND).contains('F'));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn panes_with_everything_on_them_stay_inside(
+        width in 0u16..80, height in 0u16..30, marker in 0..4usize, steps in 0u64..900, ghosts in 0u64..2000,
+        window_s in 0.2..300.0f64, force in prop::array::uniform3(-100.0..100.0f64),
+    ) {
+        let set = format!("push.0.force_N={force:?}");
+        let now = run("wobble-push", &[&set], EDITS, steps);
+        let ghost = Ghost::of(&run("wobble-push", &[], "", ghosts));
+        let mut view = view(&now, Marker::ALL[marker]);
+        view.window_s = window_s;
+        let around = Rect::new(0, 0, width + 6, height + 6);
+        let inside = Rect::new(3, 3, width, height);
+        let (run, view, ghost) = (&now, &view, Some(&ghost));
+        for pane in 0..3 {
+            let mut buf = Buffer::filled(around, Cell::new("#"));
+            match pane {
+                0 => Traces { run, ghost, view }.render(inside, &mut buf),
+                1 => FromAbove { run, ghost, view }.render(inside, &mut buf),
+                _ => ThreeD { run, view }.render(inside, &mut buf),
+            }
+            for position in around.positions().filter(|position| !inside.contains(*position)) {
+                prop_assert_eq!(buf[position].symbol(), "#", "{:?} of pane {}", position, pane);
+            }
+        }
+    }
+}
