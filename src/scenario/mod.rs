@@ -12,7 +12,7 @@ pub mod file;
 pub mod journal;
 pub mod keys;
 mod model;
-mod nudge;
+pub mod nudge;
 pub mod parameters;
 mod parts;
 pub mod presets;

@@ -6,7 +6,7 @@ use super::keys::Nudge;
 const ROUNDING: f64 = 1e-12;
 
 /// `value` nudged `times` times by the rule `nudge`, its size being `size`; `None` where the rule is not one for numbers.
-pub(super) fn number(value: f64, size: f64, nudge: Nudge, times: i32) -> Option<f64> {
+pub fn number(value: f64, size: f64, nudge: Nudge, times: i32) -> Option<f64> {
     match nudge {
         Nudge::By(step) => Some(added(value, step, times)),
         Nudge::Hundredth(zero) => Some(added(value, hundredth(size).unwrap_or(zero), times)),
@@ -67,7 +67,7 @@ fn rung(number: i64) -> f64 {
 }
 
 /// The shortest text that is read back as `number`.
-pub(super) fn shown(number: f64) -> String {
+pub fn shown(number: f64) -> String {
     let text = format!("{number:?}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
@@ -76,7 +76,7 @@ pub(super) fn shown(number: f64) -> String {
 ///
 /// # Errors
 /// What is wrong with it, to be read after the name of the value.
-pub(super) fn typed(text: &str, unit: &str) -> Result<f64, String> {
+pub fn typed(text: &str, unit: &str) -> Result<f64, String> {
     let text = text.trim();
     let wrong = || match text.is_empty() {
         true => "must be a number".to_owned(),

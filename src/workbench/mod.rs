@@ -33,6 +33,7 @@ pub mod layout;
 pub mod live;
 pub mod markers;
 pub mod marks;
+pub mod next_push;
 pub mod note;
 pub mod notice;
 pub mod overlay;

@@ -1,0 +1,419 @@
+//! The push that is to come: on which point, how hard, which way, how long.
+
+use crate::physics::{State, observables};
+use crate::scenario::file::PushFile;
+use crate::scenario::keys::Nudge;
+use crate::scenario::{Scenario, Window, nudge};
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// Part of the run that a push lasts where the scenario has none to go by.
+const SHARE: f64 = 0.1;
+/// How hard it is then, in weights of the body.
+const WEIGHTS: f64 = 2.0;
+/// A point nearer to the vertical than this part of its distance has no way out.
+const UPRIGHT: f64 = 1e-9;
+
+/// A push before it is given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case, reason = "keys carry their unit as it is written")]
+pub struct NextPush {
+    /// Name of the pushed point.
+    pub point: String,
+    /// Size of the force, N.
+    pub size_N: f64,
+    /// Where to.
+    pub toward: Toward,
+    /// For how long, s.
+    pub for_s: f64,
+}
+
+/// Where a push leads to.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Toward {
+    /// Along the weight.
+    Down,
+    /// Against it.
+    Up,
+    /// Away from the vertical through the pivot.
+    Out,
+    /// Towards it.
+    In,
+    /// Around it, counterclockwise seen from above.
+    Around,
+    /// The other way around.
+    Back,
+    /// A direction in the world frame.
+    Along([f64; 3]),
+}
+
+/// One of its four values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "they say it")]
+pub enum Field {
+    Point,
+    Size,
+    Toward,
+    Length,
+}
+
+impl Field {
+    /// All of them, in the order in which they are listed.
+    pub const ALL: [Self; 4] = [Self::Point, Self::Size, Self::Toward, Self::Length];
+
+    /// What it is called, and its unit.
+    pub fn label(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Point => ("point", ""),
+            Self::Size => ("force", "N"),
+            Self::Toward => ("toward", ""),
+            Self::Length => ("for", "s"),
+        }
+    }
+}
+
+impl Toward {
+    const NAMED: [(&'static str, Self); 12] = [
+        ("down", Self::Down),
+        ("up", Self::Up),
+        ("out", Self::Out),
+        ("in", Self::In),
+        ("around", Self::Around),
+        ("back", Self::Back),
+        ("+x", Self::Along([1.0, 0.0, 0.0])),
+        ("-x", Self::Along([-1.0, 0.0, 0.0])),
+        ("+y", Self::Along([0.0, 1.0, 0.0])),
+        ("-y", Self::Along([0.0, -1.0, 0.0])),
+        ("+z", Self::Along([0.0, 0.0, 1.0])),
+        ("-z", Self::Along([0.0, 0.0, -1.0])),
+    ];
+
+    fn name(self) -> Option<&'static str> {
+        Self::NAMED
+            .iter()
+            .find(|(_, toward)| *toward == self)
+            .map(|(name, _)| *name)
+    }
+
+    fn shown(self) -> String {
+        match (self.name(), self) {
+            (Some(name), _) => name.to_owned(),
+            (None, Self::Along(direction)) => direction.map(nudge::shown).join(" "),
+            (None, _) => String::new(),
+        }
+    }
+
+    /// A name, or three numbers.
+    fn typed(text: &str) -> Result<Self, String> {
+        let text = text.trim().trim_matches(['[', ']']);
+        if let Some((_, toward)) = Self::NAMED.iter().find(|(name, _)| *name == text) {
+            return Ok(*toward);
+        }
+        let numbers: Vec<f64> = text
+            .split([' ', ','])
+            .filter(|part| !part.is_empty())
+            .map_while(|part| part.parse().ok().filter(|number: &f64| number.is_finite()))
+            .collect();
+        match <[f64; 3]>::try_from(numbers) {
+            Ok(direction) if Vector3::from(direction).norm() > 0.0 => Ok(Self::Along(direction)),
+            _ => {
+                let names: Vec<_> = Self::NAMED.iter().map(|(name, _)| *name).collect();
+                Err(format!(
+                    "must be one of {}, or three numbers",
+                    names.join(", ")
+                ))
+            }
+        }
+    }
+
+    /// The direction in the world frame, of length 1, for a point that stands at `at` (world frame, m).
+    ///
+    /// # Errors
+    /// Where there is none.
+    fn direction(self, at: &Vector3<f64>) -> Result<Vector3<f64>, String> {
+        let out = Vector3::new(at.x, at.y, 0.0);
+        let around = Vector3::new(-at.y, at.x, 0.0);
+        let direction = match self {
+            Self::Down => -Vector3::z(),
+            Self::Up => Vector3::z(),
+            Self::Along(direction) => Vector3::from(direction),
+            _ if out.norm() <= UPRIGHT * at.norm() => {
+                return Err("the point stands on the vertical, from where all ways lead out: push along x or y".to_owned());
+            }
+            Self::Out => out,
+            Self::In => -out,
+            Self::Around => around,
+            Self::Back => -around,
+        };
+        direction
+            .try_normalize(0.0)
+            .ok_or_else(|| "the push needs a direction".to_owned())
+    }
+}
+
+impl NextPush {
+    /// A push as `scenario` has one, or one that its body can be seen to answer.
+    pub fn of(scenario: &Scenario) -> Self {
+        let own = scenario.file.push.first().zip(scenario.pushes.first());
+        let Some((file, push)) = own else {
+            return Self::felt(scenario);
+        };
+        let size = push.force.norm();
+        let unit = push.force / size;
+        let named = Toward::NAMED.iter().find_map(|(_, toward)| {
+            let direction = toward.direction(&Vector3::zeros()).ok()?;
+            (direction == unit).then_some(*toward)
+        });
+        let for_s = match push.window {
+            Window::Steps { count, .. } => count as f64 * scenario.written_for_s,
+            Window::Time { for_s, .. } => for_s,
+        };
+        match size > 0.0 {
+            true => Self {
+                point: file.point.clone(),
+                size_N: size,
+                toward: named.unwrap_or(Toward::Along(unit.into())),
+                for_s,
+            },
+            false => Self::felt(scenario),
+        }
+    }
+
+    fn felt(scenario: &Scenario) -> Self {
+        let body = &scenario.body.mechanics;
+        let weight = body.mass() * scenario.motion.gravity.abs().max(1.0);
+        let length_s = scenario.steps as f64 * scenario.motion.time_step_s;
+        let names = scenario.body.names();
+        let traced = names
+            .iter()
+            .find(|name| scenario.body.point(name) == Some(scenario.trace));
+        Self {
+            point: traced
+                .or(names.first())
+                .copied()
+                .unwrap_or_default()
+                .to_owned(),
+            size_N: round(WEIGHTS * weight),
+            toward: Toward::Down,
+            for_s: round(SHARE * length_s),
+        }
+    }
+
+    /// Keeps it where `scenario` has its point; else another point of the body.
+    pub fn suited_to(self, scenario: &Scenario) -> Self {
+        match scenario.body.point(&self.point) {
+            Some(_) => self,
+            None => Self {
+                point: Self::felt(scenario).point,
+                ..self
+            },
+        }
+    }
+
+    /// The value of `field`, as it is shown and typed.
+    pub fn shown(&self, field: Field) -> String {
+        match field {
+            Field::Point => self.point.clone(),
+            Field::Size => nudge::shown(self.size_N),
+            Field::Toward => self.toward.shown(),
+            Field::Length => nudge::shown(self.for_s),
+        }
+    }
+
+    /// With `field` nudged `times` times.
+    ///
+    /// # Errors
+    /// Why it cannot be.
+    pub fn nudged(&self, field: Field, times: i32, scenario: &Scenario) -> Result<Self, String> {
+        let names = scenario.body.names();
+        let climbed =
+            |number: f64| nudge::number(number, number, Nudge::Ladder, times).unwrap_or(number);
+        let next = match field {
+            Field::Point => Self {
+                point: turned(&names, |name| **name == *self.point, times)
+                    .copied()
+                    .unwrap_or_default()
+                    .to_owned(),
+                ..self.clone()
+            },
+            Field::Toward => Self {
+                toward: turned(&Toward::NAMED, |(_, toward)| *toward == self.toward, times)
+                    .map_or(self.toward, |(_, toward)| *toward),
+                ..self.clone()
+            },
+            Field::Size => Self {
+                size_N: climbed(self.size_N),
+                ..self.clone()
+            },
+            Field::Length => Self {
+                for_s: climbed(self.for_s),
+                ..self.clone()
+            },
+        };
+        next.checked()
+    }
+
+    /// With the value of `field` that the user typed.
+    ///
+    /// # Errors
+    /// Why it cannot be.
+    pub fn typed(&self, field: Field, text: &str, scenario: &Scenario) -> Result<Self, String> {
+        let (label, unit) = field.label();
+        let number = || nudge::typed(text, unit);
+        let mut next = self.clone();
+        match field {
+            Field::Point => {
+                let point = text.trim();
+                scenario.body.point(point).ok_or_else(|| {
+                    format!("{label} must be one of {}", listed(&scenario.body.names()))
+                })?;
+                next.point = point.to_owned();
+            }
+            Field::Size => next.size_N = number()?,
+            Field::Toward => next.toward = Toward::typed(text)?,
+            Field::Length => {
+                next.for_s = match text.trim().split_once(" step") {
+                    Some((steps, _)) => nudge::typed(steps, "")? * scenario.motion.time_step_s,
+                    None => number()?,
+                }
+            }
+        }
+        next.checked()
+    }
+
+    fn checked(self) -> Result<Self, String> {
+        let is_good = |number: f64| number > 0.0 && number.is_finite();
+        match (is_good(self.size_N), is_good(self.for_s)) {
+            (true, true) => Ok(self),
+            (false, _) => {
+                Err("force must be greater than zero: the direction says where to".to_owned())
+            }
+            (_, false) => Err("must last longer than zero".to_owned()),
+        }
+    }
+
+    /// The push from `state` on, as a run file has it: in seconds, so that it lasts as long at any time step.
+    ///
+    /// # Errors
+    /// Why it cannot be given.
+    pub fn given(&self, scenario: &Scenario, state: &State) -> Result<PushFile, String> {
+        let body = &scenario.body;
+        let point = body
+            .point(&self.point)
+            .ok_or("this body has no named point to push: add a [[body.point]]")?;
+        let at = observables::position(&body.mechanics, state, point);
+        let force = self.size_N * self.toward.direction(&at)?;
+        Ok(PushFile {
+            point: self.point.clone(),
+            force_N: force.map(|component| component + 0.0).into(), // no -0
+            first_step: None,
+            steps: None,
+            from_s: Some(state.time_s),
+            for_s: Some(self.for_s),
+            accumulates: None,
+        })
+    }
+
+    /// What it is, for a line that says so.
+    pub fn in_words(&self) -> String {
+        let [point, size, toward, length] = Field::ALL.map(|field| self.shown(field));
+        format!("{size} N on {point}, {toward}, for {length} s")
+    }
+}
+
+/// The largest rung of 1, 2, 5 times a power of ten that is not above `number`.
+fn round(number: f64) -> f64 {
+    let step = |times| move |number| nudge::number(number, number, Nudge::Ladder, times);
+    step(1)(number).and_then(step(-1)).unwrap_or(number)
+}
+
+/// The element `times` further on than the one that `is_now`, around the end.
+fn turned<T>(list: &[T], is_now: impl Fn(&T) -> bool, times: i32) -> Option<&T> {
+    let now = list.iter().position(is_now).map_or(-1, |now| now as i64);
+    let count = i64::try_from(list.len()).ok().filter(|count| *count > 0)?;
+    list.get((now + i64::from(times)).rem_euclid(count) as usize)
+}
+
+fn listed(names: &[&str]) -> String {
+    crate::scenario::problem::listed(names.iter().copied())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Document;
+
+    fn scenario(name: &str) -> Scenario {
+        Document::open(name).unwrap().scenario().unwrap()
+    }
+
+    #[test]
+    fn the_first_choice_is_the_scenarios_own_push_or_one_that_is_felt() {
+        let own = NextPush::of(&scenario("wobble-push"));
+        assert_eq!(own.in_words(), "100 N on top, down, for 20 s");
+        let felt = NextPush::of(&scenario("method-2"));
+        assert_eq!((felt.point.as_str(), felt.toward), ("top", Toward::Down));
+        assert!(felt.size_N >= 49.0 && felt.for_s > 0.0, "{felt:?}");
+    }
+
+    #[test]
+    fn every_direction_has_length_one_and_leads_where_it_says() {
+        let at = Vector3::new(3.0, 4.0, 1.0);
+        for (name, toward) in Toward::NAMED {
+            let direction = toward.direction(&at).unwrap();
+            assert!((direction.norm() - 1.0).abs() < 1e-15, "{name}");
+            assert_eq!(Toward::typed(name), Ok(toward));
+        }
+        assert_eq!(
+            Toward::Out.direction(&at).unwrap(),
+            Vector3::new(0.6, 0.8, 0.0)
+        );
+        assert!(
+            Toward::Around
+                .direction(&at)
+                .unwrap()
+                .dot(&Vector3::new(-0.8, 0.6, 0.0))
+                > 0.999
+        );
+        assert!(Toward::Out.direction(&Vector3::z()).is_err());
+        assert_eq!(
+            Toward::typed("[1, -2, 0.5]"),
+            Ok(Toward::Along([1.0, -2.0, 0.5]))
+        );
+        for bad in ["", "sideways", "1 2", "1 2 3 4", "0 0 0", "nan 0 0"] {
+            assert!(Toward::typed(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn what_is_shown_can_be_typed_and_what_makes_no_push_is_refused() {
+        let scenario = scenario("method-2");
+        let push = NextPush::of(&scenario);
+        for field in Field::ALL {
+            assert_eq!(
+                push.typed(field, &push.shown(field), &scenario),
+                Ok(push.clone())
+            );
+            let nudged = push.nudged(field, 1, &scenario).unwrap();
+            let back = nudged.nudged(field, -1, &scenario).unwrap();
+            assert_eq!(back, push, "{field:?}");
+        }
+        for (field, text) in [
+            (Field::Size, "-3"),
+            (Field::Size, "0"),
+            (Field::Length, "0"),
+            (Field::Length, "nan"),
+            (Field::Point, "hub 7"),
+        ] {
+            assert!(push.typed(field, text, &scenario).is_err(), "{text}");
+        }
+        assert_eq!(
+            push.typed(Field::Length, "20 steps", &scenario)
+                .unwrap()
+                .for_s,
+            2.0
+        );
+    }
+}
