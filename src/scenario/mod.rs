@@ -17,6 +17,7 @@ mod parts;
 pub mod presets;
 pub mod problem;
 pub mod rescale;
+mod start;
 
 pub use document::Document;
 pub use file::ScenarioFile;
