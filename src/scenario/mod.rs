@@ -14,6 +14,7 @@ mod model;
 mod nudge;
 pub mod parameters;
 mod parts;
+pub mod present;
 pub mod presets;
 pub mod problem;
 pub mod rescale;
