@@ -12,7 +12,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// The scenario that starts with `state`, which the run of `scenario` has at `step`, under the settings and pushes in
 /// force there: an edit made at this very step counts. Pushes keep their times: those over are left out, one under way
-/// is shortened, later ones come earlier; what was moved is told in seconds.
+/// is shortened, later ones come earlier; what was moved is told in seconds. Edits still to come are not in it.
 ///
 /// # Errors
 /// Where a push that accumulates has begun, or counts the steps of another time step.
@@ -182,13 +182,13 @@ impl Now<'_> {
 
     /// From when, counted from now, and for how long `window` lasts yet, s; `None` where it is over.
     fn seconds(&self, window: Window) -> Option<(f64, f64)> {
-        let (from, to) = self.from_now(window);
+        let (from, to) = self.span(window);
         let begin = from.max(0.0);
         (to - begin > ROUNDING * self.motion.time_step_s).then_some((begin, to - begin))
     }
 
     /// Beginning and end of `window`, counted from now, s.
-    fn from_now(&self, window: Window) -> (f64, f64) {
+    fn span(&self, window: Window) -> (f64, f64) {
         let dt = self.scenario.written_for_s;
         let now_s = self.state.time_s;
         match window {

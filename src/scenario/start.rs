@@ -32,8 +32,7 @@ pub(super) fn start(file: &StartFile, body: &Body, gravity: f64) -> Result<State
             let mut velocity = Vector3::new(0.0, 0.0, spin);
             if file.steady == Some(true) {
                 let precession = steady(body, &orientation, spin, gravity);
-                velocity +=
-                    precession.map_err(|rule| refused("steady", Value::Boolean(true), rule))?;
+                velocity += precession.map_err(|rule| refused("steady", true, rule))?;
             }
             orientation * (body.inertia() * velocity)
         }
@@ -76,8 +75,12 @@ fn spin(file: &StartFile) -> Option<f64> {
     file.spin_rad_per_s.or(file.spin_rpm.map(|rpm| rpm * RPM))
 }
 
-fn refused(name: &str, value: Value, rule: impl Into<String>) -> Vec<Problem> {
-    vec![Problem::with_value(format!("start.{name}"), &value, rule)]
+fn refused(name: &str, value: impl Into<Value>, rule: impl Into<String>) -> Vec<Problem> {
+    vec![Problem::with_value(
+        format!("start.{name}"),
+        &value.into(),
+        rule,
+    )]
 }
 
 fn is_told_once(file: &StartFile) -> Result<(), Vec<Problem>> {
@@ -89,21 +92,21 @@ fn is_told_once(file: &StartFile) -> Result<(), Vec<Problem>> {
         (Some(_), Some(spin), _) => {
             return Err(refused(
                 "spin_rpm",
-                spin.into(),
+                spin,
                 "is given beside momentum_Js: keep one of the two",
             ));
         }
         (Some(_), _, Some(spin)) => {
             return Err(refused(
                 "spin_rad_per_s",
-                spin.into(),
+                spin,
                 "is given beside momentum_Js: keep one of the two",
             ));
         }
         (_, Some(_), Some(spin)) => {
             return Err(refused(
                 "spin_rad_per_s",
-                spin.into(),
+                spin,
                 "is given beside spin_rpm: keep one of the two",
             ));
         }
@@ -117,7 +120,7 @@ fn is_told_once(file: &StartFile) -> Result<(), Vec<Problem>> {
         }
         (_, Some(true)) if !is_spun => {
             let rule = "goes with a spin: give spin_rpm or spin_rad_per_s instead of momentum_Js";
-            Err(refused("steady", true.into(), rule))
+            Err(refused("steady", true, rule))
         }
         _ => Ok(()),
     }
