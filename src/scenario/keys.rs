@@ -260,7 +260,7 @@ fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Vec<
     let is_there = |name: &&str| table.contains_key(*name);
     for missing in required_under(under).filter(|name| !is_there(name)) {
         let key = KEYS.iter().find(|key| key.path == join(under, missing));
-        if key.is_some_and(|key| key.instead.iter().any(|name| is_there(name))) {
+        if key.is_some_and(|key| key.instead.iter().any(is_there)) {
             continue;
         }
         let rule = match key {

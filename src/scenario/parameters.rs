@@ -211,7 +211,7 @@ fn choices(key: &Key, names: &[String]) -> Vec<String> {
 /// The size of a number, the norm of a vector.
 fn size(value: &Value) -> f64 {
     match value {
-        Value::Array(items) => items.iter().filter_map(float).fold(0.0, f64::hypot),
+        Value::Array(items) => items.iter().filter_map(float).fold(0.0, libm::hypot),
         other => float(other).unwrap_or_default().abs(),
     }
 }
