@@ -2,6 +2,7 @@
 //!
 //! Source: H. Goldstein, Classical Mechanics, section 5.7 (the heavy symmetrical top with one point fixed).
 
+use crate::physics::symmetry::steady_precession;
 use crate::physics::{LagrangeTop, State, SymmetricTop};
 use std::f64::consts::PI;
 use std::fmt;
@@ -94,7 +95,7 @@ impl Theory {
         let is_through_vertical = low <= PASSES_RAD || high >= PI - PASSES_RAD;
         let tilt_range_deg = (low.to_degrees(), high.to_degrees());
         let (slow, fast) = match spins {
-            true => steady(top.across * axle.dot(&up), spin, size),
+            true => steady_precession(top.across * axle.dot(&up), spin, size),
             false => (None, None),
         };
         let cusp_cosine = state.momentum.dot(&up) / spin;
@@ -124,17 +125,6 @@ impl Theory {
     pub fn sleeps(&self) -> bool {
         self.spin.abs() > self.sleeping_limit
     }
-}
-
-/// The roots of `across_cos` w² − `spin` w + `load` = 0, the slow and the fast one; neither as a small difference.
-fn steady(across_cos: f64, spin: f64, load: f64) -> (Option<f64>, Option<f64>) {
-    let discriminant = spin * spin - 4.0 * across_cos * load;
-    if discriminant < 0.0 {
-        return (None, None);
-    }
-    let larger = 0.5 * (spin + discriminant.sqrt().copysign(spin));
-    let fast = larger / across_cos;
-    (Some(load / larger), fast.is_finite().then_some(fast))
 }
 
 fn path((low, high): (f64, f64), cusp: Option<f64>) -> Path {

@@ -67,11 +67,16 @@ pub(super) fn keys() -> anyhow::Result<ExitCode> {
     for Key {
         path,
         required,
+        instead,
         about,
         ..
     } in KEYS
     {
-        let must = if *required { " (required)" } else { "" };
+        let must = match (required, instead.is_empty()) {
+            (false, _) => String::new(),
+            (true, true) => " (required)".to_owned(),
+            (true, false) => format!(" (required, or {})", instead.join(" or ")),
+        };
         writeln!(text, "{path}{must}\n    {about}")?;
     }
     text.push_str("\nA * stands for a number from 0: [[body.point]], [[push]], [[expected]] and [[edit]] may be repeated.\n");

@@ -45,6 +45,19 @@ impl SymmetricTop {
     }
 }
 
+/// The rates of steady precession, rad/s, the slow and the fast one: the roots of `across_cos` w² − `spin` w + `load` = 0,
+/// of I1 cos θ, L3 = I3 ω3 and M g l; neither as a small difference. No slow one where the top spins too slowly, no fast
+/// one for a level axle either.
+pub fn steady_precession(across_cos: f64, spin: f64, load: f64) -> (Option<f64>, Option<f64>) {
+    let discriminant = spin * spin - 4.0 * across_cos * load;
+    if discriminant < 0.0 {
+        return (None, None);
+    }
+    let larger = 0.5 * (spin + discriminant.sqrt().copysign(spin));
+    let fast = larger / across_cos;
+    (Some(load / larger), fast.is_finite().then_some(fast))
+}
+
 impl Loads {
     /// Σ s F, N m, world frame, over all forces, s the height along the axle at which each acts: the torque is the axle
     /// times this. `None` where a force acts off the axle. `body` must be symmetric.

@@ -4,8 +4,9 @@ use super::edits::edits;
 use super::file::ScenarioFile;
 use super::keys::TOP;
 use super::model::{Body, Scenario};
-use super::parts::{body, motion, pushes, start};
+use super::parts::{body, motion, pushes};
 use super::problem::{Problem, listed};
+use super::start::start;
 use crate::physics::{State, observables};
 
 /// Makes a scenario of `file`.
@@ -18,8 +19,8 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Vec<Problem>> {
         Some(name) => body.find("trace", name)?,
         None => body.point(TOP).ok_or_else(|| no_top(&body))?,
     };
-    let start = start(&file.start);
     let motion = motion(&file.motion);
+    let start = start(&file.start, &body.mechanics, motion.gravity)?;
     let pushes = pushes(&file.push, &body, "push")?;
     let edits = edits(&file, &body)?;
     if !is_readable(&body, trace, &start, motion.gravity) {

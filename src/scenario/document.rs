@@ -3,7 +3,7 @@
 use super::checks;
 use super::dotted::{find, is_in, set_key};
 use super::problem::{Problem, Problems, brief, nearest, printable};
-use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale};
+use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, start};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -124,6 +124,7 @@ impl Document {
             .trim()
             .parse()
             .unwrap_or_else(|_| Value::String(value.to_owned()));
+        start::make_room(&mut self.table, key.trim());
         if let Err(problem) = set_key(&mut self.table, key.trim(), value) {
             return Err(fail(problem));
         }
@@ -131,11 +132,23 @@ impl Document {
         Ok(())
     }
 
-    /// Writes `value` at the dotted `key`, of which no problem's place will speak.
+    /// Writes `value` at the dotted `key`, of which no problem's place will speak. What the value is about is first told
+    /// so that it can be changed: a momentum where there is a spin, a spin that is to be steady where there is a momentum.
     ///
     /// # Errors
-    /// When the key leads nowhere.
+    /// When the key leads nowhere, or the scenario is wrong before it has the value.
     pub(super) fn write(&mut self, key: &str, value: Value) -> Result<(), Problems> {
+        start::make_room(&mut self.table, key);
+        if start::is_other_way(&self.table, key, &value) {
+            let now = self.scenario()?;
+            start::tell_other_way(
+                &mut self.table,
+                key,
+                &value,
+                &now.body.mechanics,
+                &now.start,
+            );
+        }
         set_key(&mut self.table, key, value).map_err(|problem| self.placed(vec![problem]))
     }
 

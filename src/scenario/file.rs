@@ -64,16 +64,27 @@ pub struct PointFile {
 }
 
 /// `[start]`
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 #[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct StartFile {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tilt_deg: Option<f64>,
-    pub momentum_Js: [f64; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turn_deg: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub roll_deg: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub momentum_Js: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub momentum_frame: Option<Frame>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spin_rpm: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spin_rad_per_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steady: Option<bool>,
 }
 
 /// The frame in which the start's momentum is given.

@@ -16,6 +16,8 @@ pub struct Key {
     pub kind: Kind,
     /// Whether its table is incomplete without it.
     pub required: bool,
+    /// Names in its table any of which stands for it: with one of them it is not required.
+    pub instead: &'static [&'static str],
     /// Meaning, unit and default, in one line.
     pub about: &'static str,
     /// How the lab shows and changes it; `None` where it does not.
@@ -132,6 +134,7 @@ const fn must(path: &'static str, kind: Kind, about: &'static str) -> Key {
         path,
         kind,
         required: true,
+        instead: &[],
         about,
         lab: None,
     }
@@ -142,6 +145,7 @@ const fn may(path: &'static str, kind: Kind, about: &'static str) -> Key {
         path,
         kind,
         required: false,
+        instead: &[],
         about,
         lab: None,
     }
@@ -159,6 +163,12 @@ impl Key {
         self
     }
 
+    /// Not required beside one of `names`.
+    const fn unless(mut self, names: &'static [&'static str]) -> Self {
+        self.instead = names;
+        self
+    }
+
     /// What is meant where it is absent.
     const fn or(mut self, absent: Absent) -> Self {
         if let Some(lab) = self.lab {
@@ -170,6 +180,10 @@ impl Key {
 
 /// The most points a body may have.
 pub const MOST_POINTS: i64 = 100_000;
+
+/// What `start.momentum_Js` is, and what may stand for it.
+pub(super) const STATED: &str =
+    "angular momentum L about the pivot, J s; or give spin_rpm or spin_rad_per_s instead";
 
 /// Every key there is, in the order in which files are written.
 #[rustfmt::skip]
@@ -187,8 +201,13 @@ pub static KEYS: &[Key] = &[
     must("body.point.*.at_m", Vector, "position in the upright pose, m, pivot at the origin").lab("", "m", Hundredth(0.01)),
     may("body.point.*.mass_kg", Number(NotNegative), "mass, kg (default: 0)").lab("mass", "kg", Hundredth(0.01)).or(Absent::Number(0.0)),
     may("start.tilt_deg", Number(Any), "turns the upright body about +x, degrees (default: 0)").lab("tilt", "deg", By(1.0)).or(Absent::Number(0.0)),
-    must("start.momentum_Js", Vector, "angular momentum L about the pivot, J s").lab("L", "J s", Hundredth(1.0)),
+    may("start.turn_deg", Number(Any), "then turns the tilted body about +z, degrees (default: 0)").lab("turn", "deg", By(1.0)).or(Absent::Number(0.0)),
+    may("start.roll_deg", Number(Any), "first turns the upright body about its own axle, degrees (default: 0)").lab("roll", "deg", By(1.0)).or(Absent::Number(0.0)),
+    must("start.momentum_Js", Vector, STATED).unless(&["spin_rpm", "spin_rad_per_s"]).lab("L", "J s", Hundredth(1.0)),
     may("start.momentum_frame", OneOf(&["world", "body"]), "\"body\": L is turned with the body (default: world)").lab("L given in", "", Turn).or(Word("world")),
+    may("start.spin_rpm", Number(Any), "instead of momentum_Js: the body turns about its axle, revolutions a minute (rpm); omega = spin * axle").lab("spin", "rpm", Hundredth(1.0)),
+    may("start.spin_rad_per_s", Number(Any), "the same in rad/s").lab("spin", "rad/s", Hundredth(0.1)),
+    may("start.steady", Flag, "true, with a spin: L is such that the top precesses steadily at this tilt, the slow way; pushes do not count (default: false)").lab("steady", "", Turn).or(Absent::Flag(false)),
     may("motion.gravity_m_per_s2", Number(Any), "acceleration of gravity along -z, m/s^2 (default: 9.8)").lab("gravity", "m/s2", By(0.1)).or(Absent::Number(GRAVITY)),
     may("motion.scheme", OneOf(&SCHEME_NAMES), "the numerical scheme (default: report)").lab("scheme", "", Turn).or(Word(scheme::SCHEMES[0].name)),
     must("motion.time_step_s", Number(Positive), "time step dt, s").lab("dt", "s", Ladder),
@@ -238,13 +257,16 @@ fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Vec<
             check_value(value, &pattern, &key, problems);
         }
     }
-    for missing in required_under(under).filter(|name| !table.contains_key(*name)) {
-        let rule = KEYS
-            .iter()
-            .find(|key| key.path == join(under, missing))
-            .map_or(format!("is missing: add a table [{missing}]"), |key| {
-                format!("is missing ({})", key.about)
-            });
+    let is_there = |name: &&str| table.contains_key(*name);
+    for missing in required_under(under).filter(|name| !is_there(name)) {
+        let key = KEYS.iter().find(|key| key.path == join(under, missing));
+        if key.is_some_and(|key| key.instead.iter().any(is_there)) {
+            continue;
+        }
+        let rule = match key {
+            Some(key) => format!("is missing ({})", key.about),
+            None => format!("is missing: add a table [{missing}]"),
+        };
         problems.push(Problem::at(join(path, missing), rule));
     }
 }

@@ -1,8 +1,10 @@
 //! Scenarios: from a TOML file, or a run's own CSV, to numbers that have been checked.
 //!
 //! A [`Document`] is the text with its `--set` overrides; [`keys`] is the one table of every key a file may hold;
-//! [`file`](mod@file) is the file's shape as serde reads and writes it; `parts` and `edits` make checked numbers of
-//! its tables, and `checks` a [`Scenario`] of those; [`parameters`] lists and changes its values one at a time. What is refused comes back as [`Problems`], each with place, key, value and rule.
+//! [`file`](mod@file) is the file's shape as serde reads and writes it; `parts`, `start` and `edits` make checked numbers
+//! of its tables, and `checks` a [`Scenario`] of those. What is refused comes back as [`Problems`], each with place, key,
+//! value and rule. [`parameters`] lists and changes the values of a scenario one at a time, [`present`] makes one that
+//! starts where a run stands.
 
 mod checks;
 pub mod document;
@@ -15,9 +17,11 @@ mod model;
 pub mod nudge;
 pub mod parameters;
 mod parts;
+pub mod present;
 pub mod presets;
 pub mod problem;
 pub mod rescale;
+mod start;
 
 pub use document::Document;
 pub use file::ScenarioFile;

@@ -53,7 +53,7 @@ fn climbed(value: f64, times: i32) -> f64 {
 /// Number of the largest rung that is not above `value`.
 fn rung_below(value: f64) -> i64 {
     const FARTHEST: i64 = 400; // decades; beyond them there are no numbers
-    let decade = (value.log10().floor() as i64).clamp(-FARTHEST, FARTHEST);
+    let decade = (libm::log10(value).floor() as i64).clamp(-FARTHEST, FARTHEST);
     let top = 3 * decade + 3;
     let is_above = |number: &i64| rung(*number) <= value * (1.0 + ROUNDING);
     (top - 4..=top).rev().find(is_above).unwrap_or(top - 4)

@@ -5,7 +5,7 @@ use super::dotted::{find, set_key};
 use super::file::{BodyFile, ScenarioFile};
 use super::keys::{InLab, KEYS, Key, Kind, Nudge, Range, join};
 use super::problem::brief;
-use super::{Document, Problems, Scenario, nudge};
+use super::{Document, Problems, Scenario, nudge, start};
 use toml::{Table, Value};
 
 /// Points and pushes beyond so many are not listed: nobody changes them one at a time.
@@ -92,6 +92,8 @@ pub fn table_at(scenario: &Scenario, step: u64) -> Table {
 }
 
 /// `file` with `value` at `key`, checked as a whole: what `--set key=value` would make of it.
+/// A number of the momentum where a spin is written makes of the spin the present momentum, world frame, first; `steady`
+/// makes of a momentum the present spin.
 ///
 /// # Errors
 /// What is wrong with it then; [`Problems::in_one_line`] says it in short.
@@ -124,13 +126,14 @@ fn rows(
     place: &str,
     table: &Table,
     names: &[String],
-    _scenario: &Scenario,
+    scenario: &Scenario,
 ) -> Vec<Parameter> {
     let Some(lab) = key.lab.filter(|_| is_offered(place, table)) else {
         return Vec::new();
     };
     let written = find(table, place);
-    let Some(value) = written.cloned().or_else(|| lab.absent.value()) else {
+    let unwritten = || present(key, scenario).or_else(|| lab.absent.value());
+    let Some(value) = written.cloned().or_else(unwritten) else {
         return Vec::new();
     };
     let row = Parameter {
@@ -148,6 +151,17 @@ fn rows(
     match key.kind {
         Kind::Vector => row.components(),
         _ => vec![row],
+    }
+}
+
+/// What the start is in words that its file does not use.
+fn present(key: &Key, scenario: &Scenario) -> Option<Value> {
+    let (body, state) = (&scenario.body.mechanics, &scenario.start);
+    match key.path {
+        "start.momentum_Js" => Some(start::vector(&state.momentum)),
+        "start.spin_rpm" => Some(start::rpm(start::spin_of(body, state)).into()),
+        "start.spin_rad_per_s" => Some(start::spin_of(body, state).into()),
+        _ => None,
     }
 }
 
@@ -197,7 +211,7 @@ fn choices(key: &Key, names: &[String]) -> Vec<String> {
 /// The size of a number, the norm of a vector.
 fn size(value: &Value) -> f64 {
     match value {
-        Value::Array(items) => items.iter().filter_map(float).fold(0.0, f64::hypot),
+        Value::Array(items) => items.iter().filter_map(float).fold(0.0, libm::hypot),
         other => float(other).unwrap_or_default().abs(),
     }
 }

@@ -1,11 +1,11 @@
 //! The parts of a scenario, each from its table in the file: points that exist, an inertia that can be inverted, pushes
 //! that say how long they act.
 
-use super::file::{BodyFile, Frame, MotionFile, PushFile, StartFile};
+use super::file::{BodyFile, MotionFile, PushFile};
 use super::keys::{GRAVITY, MOST_POINTS};
 use super::model::{Body, Motion, Push, Window};
 use super::problem::Problem;
-use crate::physics::{self, PointMass, SchemeInfo, State, rotation};
+use crate::physics::{self, PointMass, SchemeInfo};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -58,21 +58,6 @@ fn rim_points(file: &BodyFile) -> Vec<PointMass> {
         }
     };
     (0..rim.points).map(point).collect()
-}
-
-pub(super) fn start(file: &StartFile) -> State {
-    let tilt = file.tilt_deg.unwrap_or(0.0).to_radians();
-    let orientation = rotation::about(&Vector3::x(), tilt);
-    let momentum = Vector3::from(file.momentum_Js);
-    let momentum = match file.momentum_frame.unwrap_or_default() {
-        Frame::World => momentum,
-        Frame::Body => orientation * momentum,
-    };
-    State {
-        time_s: 0.0,
-        orientation,
-        momentum,
-    }
 }
 
 pub(super) fn motion(file: &MotionFile) -> Motion {

@@ -239,7 +239,8 @@ fn body_rows(scenario: &Scenario) -> Vec<Row> {
 
 fn start_rows(scenario: &Scenario) -> Vec<Row> {
     let tilt = scenario.file.start.tilt_deg.unwrap_or(0.0);
-    let [x, y, z] = scenario.file.start.momentum_Js;
+    let momentum = scenario.file.start.momentum_Js;
+    let [x, y, z] = momentum.unwrap_or(scenario.start.momentum.into());
     let frame = match scenario.file.start.momentum_frame {
         Some(crate::scenario::file::Frame::Body) => "body",
         _ => "world",

@@ -1,0 +1,240 @@
+//! A scenario that starts where a run stands: the present state, loads and settings, told as a start of its own.
+
+use super::file::{MotionFile, PushFile, ScenarioFile, StartFile, ViewFile};
+use super::model::{Motion, Push, Scenario, Window};
+use super::problem::{Problem, Problems};
+use super::{Document, nudge};
+use crate::physics::{State, rotation};
+use nalgebra::{Matrix3, Vector3};
+
+/// A push that lasts less than this part of a time step from now on is over but for rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// The scenario that starts with `state`, which the run of `scenario` has at `step`, under the settings and pushes in
+/// force there: an edit made at this very step counts. Pushes keep their times: those over are left out, one under way
+/// is shortened, later ones come earlier; what was moved is told in seconds. Edits still to come are not in it.
+///
+/// # Errors
+/// Where a push that accumulates has begun, or counts the steps of another time step.
+pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Scenario, Problems> {
+    let origin = "the scenario from here";
+    let (motion, pushes) = in_force(scenario, step);
+    let now = Now {
+        scenario,
+        state,
+        step,
+        motion: &motion,
+    };
+    let moved = pushes
+        .iter()
+        .enumerate()
+        .filter_map(|(index, push)| now.push(index, push).transpose());
+    let push = moved
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(|problem| Problems {
+            origin: origin.to_owned(),
+            list: vec![problem],
+        })?;
+    let old = &scenario.file;
+    let speed = old.view.as_ref().and_then(|view| view.speed);
+    let file = ScenarioFile {
+        gyrolab: None,
+        title: format!("{}, from t = {} s", old.title, short(state.time_s)),
+        about: None,
+        source: None,
+        trace: old.trace.clone(),
+        body: old.body.clone(),
+        start: start(state),
+        motion: MotionFile {
+            gravity_m_per_s2: Some(motion.gravity),
+            scheme: Some(motion.scheme.name.to_owned()),
+            time_step_s: motion.time_step_s,
+            steps: scenario.steps,
+        },
+        push,
+        view: speed.map(|speed| ViewFile {
+            speed: Some(speed),
+            look_at: None,
+        }),
+        expected: Vec::new(),
+        edit: Vec::new(),
+    };
+    Document::from_file(origin, &file)?.scenario()
+}
+
+/// Gravity, scheme, time step and pushes of the step after `step`.
+pub fn in_force(scenario: &Scenario, step: u64) -> (Motion, &[Push]) {
+    let last = scenario.edits.iter().rev().find(|edit| edit.step <= step);
+    last.map_or((scenario.motion, &scenario.pushes), |edit| {
+        (edit.motion, &edit.pushes)
+    })
+}
+
+/// The orientation and the momentum of `state` as a start.
+fn start(state: &State) -> StartFile {
+    let [tilt, turn, roll] = angles_deg(&state.orientation);
+    StartFile {
+        tilt_deg: Some(tilt),
+        turn_deg: Some(turn),
+        roll_deg: Some(roll),
+        momentum_Js: Some(state.momentum.into()),
+        ..StartFile::default()
+    }
+}
+
+/// Tilt, turn and roll, degrees, of `orientation` = Rz(turn) Rx(tilt) Rz(roll). Near the vertical turn and roll are each
+/// a matter of rounding, but together they are not: the roll is what the other two leave.
+fn angles_deg(orientation: &Matrix3<f64>) -> [f64; 3] {
+    let axle = orientation.column(2);
+    let tilt = libm::atan2(libm::hypot(axle.x, axle.y), axle.z);
+    let turn = match axle.x == 0.0 && axle.y == 0.0 {
+        true => 0.0,
+        false => libm::atan2(axle.x, -axle.y),
+    };
+    let upright = rotation::about(&Vector3::z(), turn) * rotation::about(&Vector3::x(), tilt);
+    let rolled = upright.tr_mul(orientation);
+    let roll = libm::atan2(rolled[(1, 0)], rolled[(0, 0)]);
+    [tilt, turn, roll].map(f64::to_degrees)
+}
+
+/// A time for reading, s.
+fn short(time_s: f64) -> String {
+    nudge::shown(format!("{time_s:.6e}").parse().unwrap_or(time_s))
+}
+
+/// The moment from which the new scenario counts.
+struct Now<'a> {
+    scenario: &'a Scenario,
+    state: &'a State,
+    step: u64,
+    motion: &'a Motion,
+}
+
+impl Now<'_> {
+    /// Push number `index` as it goes on from now; `None` where it is over.
+    fn push(&self, index: usize, push: &Push) -> Result<Option<PushFile>, Problem> {
+        let file = PushFile {
+            point: self.name(push.point).to_owned(),
+            force_N: push.force.into(),
+            first_step: None,
+            steps: None,
+            from_s: None,
+            for_s: None,
+            accumulates: push.accumulates.then_some(true),
+        };
+        match push.window {
+            Window::Steps { first, count } if push.accumulates || self.moves_nothing() => {
+                let first = self.first_step(first, push.accumulates).map_err(|rule| {
+                    Problem::at(
+                        format!("push.{index}"),
+                        format!("on \"{}\" {rule}", file.point),
+                    )
+                })?;
+                Ok(Some(PushFile {
+                    first_step: Some(first),
+                    steps: Some(count),
+                    ..file
+                }))
+            }
+            window => Ok(self.seconds(window).map(|(from_s, for_s)| PushFile {
+                from_s: Some(from_s),
+                for_s: Some(for_s),
+                ..file
+            })),
+        }
+    }
+
+    fn name(&self, point: usize) -> &str {
+        let mut names = self.scenario.body.names.iter();
+        names
+            .find(|(_, index)| **index == point)
+            .map_or("", |(name, _)| name)
+    }
+
+    /// Whether the new scenario counts from the old one's start, in its steps.
+    fn moves_nothing(&self) -> bool {
+        self.step == 0 && self.counts_steps()
+    }
+
+    /// Whether steps are steps: no edit has changed the time step for which they were written.
+    fn counts_steps(&self) -> bool {
+        let mut made = self
+            .scenario
+            .edits
+            .iter()
+            .filter(|edit| edit.step <= self.step);
+        let is_edited = made.any(|edit| edit.touches.time_step);
+        !is_edited && self.scenario.written_for_s == self.motion.time_step_s
+    }
+
+    /// The first step of a push that goes on counting steps.
+    fn first_step(&self, first: u64, accumulates: bool) -> Result<u64, &'static str> {
+        match first.checked_sub(self.step).filter(|&first| first > 0) {
+            _ if accumulates && !self.counts_steps() => Err(
+                "accumulates by the steps of another time step: it cannot be moved to a new start; take the push out first",
+            ),
+            None => Err(
+                "accumulates and has begun: it cannot be moved to a new start; go back to before it, or take the push out first",
+            ),
+            Some(first) => Ok(first),
+        }
+    }
+
+    /// From when, counted from now, and for how long `window` lasts yet, s; `None` where it is over.
+    fn seconds(&self, window: Window) -> Option<(f64, f64)> {
+        let (from, to) = self.span(window);
+        let begin = from.max(0.0);
+        (to - begin > ROUNDING * self.motion.time_step_s).then_some((begin, to - begin))
+    }
+
+    /// Beginning and end of `window`, counted from now, s.
+    fn span(&self, window: Window) -> (f64, f64) {
+        let dt = self.scenario.written_for_s;
+        let now_s = self.state.time_s;
+        match window {
+            Window::Time { from_s, for_s } => (from_s - now_s, from_s + for_s - now_s),
+            Window::Steps { first, count } => {
+                // Whole steps first: their difference has no rounding.
+                let begin = first as f64 - 1.0;
+                let end = begin + count as f64;
+                match self.counts_steps() {
+                    true => [begin, end]
+                        .map(|steps| (steps - self.step as f64) * dt)
+                        .into(),
+                    false => [begin, end].map(|steps| steps * dt - now_s).into(),
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn from_angles([tilt, turn, roll]: [f64; 3]) -> Matrix3<f64> {
+        let about = |axis: Vector3<f64>, deg: f64| rotation::about(&axis, deg.to_radians());
+        about(Vector3::z(), turn) * about(Vector3::x(), tilt) * about(Vector3::z(), roll)
+    }
+
+    proptest! {
+        #[test]
+        fn the_angles_give_the_orientation_back(
+            tilt in prop_oneof![Just(0.0), Just(180.0), Just(1e-7), Just(1e-14), Just(179.9999999), 0.0..180.0f64],
+            turn in -180.0..180.0f64,
+            roll in -180.0..180.0f64,
+        ) {
+            let orientation = from_angles([tilt, turn, roll]);
+            let back = from_angles(angles_deg(&orientation));
+            prop_assert!((back - orientation).amax() < 4e-15, "{}", (back - orientation).amax());
+        }
+    }
+
+    #[test]
+    fn times_are_short() {
+        assert_eq!(short(421.0 * 0.1), "42.1");
+        assert_eq!(short(0.0), "0");
+        assert_eq!(short(1e-9 / 3.0), "3.333333e-10");
+    }
+}

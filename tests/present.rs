@@ -1,0 +1,190 @@
+//! A scenario that starts where a run stands goes on as the run does.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use gyrolab::physics::State;
+use gyrolab::physics::observables::position;
+use gyrolab::run::Simulation;
+use gyrolab::scenario::present::{in_force, scenario_from};
+use gyrolab::scenario::{Document, Scenario};
+use proptest::prelude::*;
+use std::sync::Arc;
+
+/// A ring with a top; `lump` is a mass off the axle, kg.
+fn text(scheme: &str, lump: f64, start: &str, more: &str) -> String {
+    format!(
+        "title = 'x'\nabout = 'y'\n[body.rim]\npoints = 7\nradius_m = 0.8\nheight_m = 1\npoint_mass_kg = 0.5\n[[body.point]]\nname = 'top'\nat_m = [0, 0, 1.5]\n[[body.point]]\nname = 'side'\nat_m = [0.4, 0.2, 0.7]\nmass_kg = {lump}\n[start]\n{start}\n[motion]\nscheme = '{scheme}'\ntime_step_s = 0.05\nsteps = 400\n{more}\n"
+    )
+}
+
+fn read(text: &str) -> Arc<Scenario> {
+    let scenario = Document::parse("x.toml", text).and_then(|document| document.scenario());
+    Arc::new(scenario.unwrap_or_else(|problems| panic!("{problems}\n{text}")))
+}
+
+fn at(scenario: &Arc<Scenario>, step: u64) -> Simulation {
+    let mut simulation = Simulation::new(Arc::clone(scenario));
+    simulation.step_to(step).unwrap();
+    simulation
+}
+
+fn here(simulation: &Simulation) -> Result<Scenario, String> {
+    let (state, step) = (simulation.state(), simulation.step_number());
+    scenario_from(simulation.scenario(), state, step).map_err(|problems| problems.to_string())
+}
+
+/// The farthest that the traced point is from where the run has it, m, over the next `steps`.
+fn farthest_m(mut run: Simulation, steps: u64) -> f64 {
+    let saved = here(&run).unwrap();
+    // What is saved is what is written.
+    let mut saved = Simulation::new(read(&saved.to_toml()));
+    let point = |state: &State, scenario: &Scenario| {
+        position(&scenario.body.mechanics, state, scenario.trace)
+    };
+    let mut farthest = 0.0f64;
+    for _ in 0..steps {
+        run.step().unwrap();
+        saved.step().unwrap();
+        let there = point(run.state(), run.scenario());
+        farthest = farthest.max((point(saved.state(), saved.scenario()) - there).norm());
+    }
+    farthest
+}
+
+const PUSHES: &str = "[[push]]\npoint = 'top'\nforce_N = [3, -1, 2]\nfirst_step = 20\nsteps = 60
+[[push]]\npoint = 'top'\nforce_N = [0, 2, 0]\nfrom_s = 2.52\nfor_s = 1.51
+[[push]]\npoint = 'side'\nforce_N = [1, 0, 0]\nfirst_step = 2\nsteps = 3
+";
+const EDITS: &str = "[[edit]]\nstep = 12\nset = { 'motion.time_step_s' = 0.03 }
+[[edit]]\nstep = 30\nset = { 'motion.gravity_m_per_s2' = 7.0, 'push.1.force_N' = [0, 4, 0] }
+";
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 48, ..ProptestConfig::default() })]
+    #[test]
+    fn the_saved_scenario_goes_on_as_the_run(
+        tilt in 0.0..180.0f64,
+        momentum in prop::array::uniform3(-40.0..40.0f64),
+        lump in prop_oneof![Just(0.0), 0.1..2.0f64],
+        step in 0u64..120,
+        more in prop_oneof![Just(String::new()), Just(PUSHES.to_owned()), Just(format!("{PUSHES}{EDITS}"))],
+    ) {
+        let start = format!("tilt_deg = {tilt:?}\nmomentum_Js = {momentum:?}\nturn_deg = 33");
+        let edited = step < 30 && more.contains("edit");
+        let exact = read(&text("exact", lump, &start, &more));
+        // Edits still to come are not saved.
+        prop_assume!(!edited);
+        prop_assert!(farthest_m(at(&exact, step), 100) < 1e-9);
+        let report = read(&text("report", lump, &start, &more));
+        prop_assert!(farthest_m(at(&report, step), 20) < 1e-9);
+    }
+}
+
+#[test]
+fn near_the_vertical_it_goes_on_as_well() {
+    for tilt in [0.0, 1e-9, 1e-5, 180.0, 179.99999] {
+        let start =
+            format!("tilt_deg = {tilt:?}\nmomentum_Js = [0, 0, 60]\nmomentum_frame = 'body'");
+        for (lump, scheme) in [(0.0, "exact"), (0.0, "report"), (0.0, "rk4")] {
+            let run = at(&read(&text(scheme, lump, &start, "")), 50);
+            let farthest = farthest_m(run, 20);
+            assert!(farthest < 1e-9, "{tilt} {scheme}: {farthest}");
+        }
+    }
+}
+
+#[test]
+fn what_it_says_and_what_it_leaves_out() {
+    let view = format!(
+        "{PUSHES}[view]\nspeed = 5\nlook_at = 'z'\n[[expected]]\nreadout = 'z_m'\nat_step = 3\nvalue = 1\ntolerance = 9\n"
+    );
+    let run = at(
+        &read(&text("rk4", 0.0, "momentum_Js = [0, 1, 60]", &view)),
+        42,
+    );
+    let saved = here(&run).unwrap();
+    let file = &saved.file;
+    assert_eq!(file.title, "x, from t = 2.1 s");
+    assert_eq!(
+        (&file.about, file.expected.len(), file.motion.steps),
+        (&None, 0, 400)
+    );
+    let view = file.view.as_ref().unwrap();
+    assert_eq!((view.speed, &view.look_at), (Some(5.0), &None));
+    let times: Vec<_> = file
+        .push
+        .iter()
+        .map(|push| (push.from_s.unwrap(), push.for_s.unwrap()))
+        .collect();
+    // Steps 20 to 79 last until t = 3.95 s; the last push is over.
+    let expected = [(0.0, 3.95 - 2.1), (2.52 - 2.1, 1.51)];
+    assert_eq!(times.len(), 2);
+    for ((from, long), (from_s, for_s)) in times.into_iter().zip(expected) {
+        assert!(
+            (from - from_s).abs() < 1e-12 && (long - for_s).abs() < 1e-12,
+            "{from} {long}"
+        );
+    }
+}
+
+#[test]
+fn at_the_start_steps_stay_steps() {
+    let saved = here(&at(
+        &read(&text("report", 0.0, "momentum_Js = [0, 1, 60]", PUSHES)),
+        0,
+    ))
+    .unwrap();
+    assert_eq!(
+        (saved.file.push[0].first_step, saved.file.push[0].steps),
+        (Some(20), Some(60))
+    );
+    assert_eq!(saved.file.push[1].from_s, Some(2.52));
+}
+
+#[test]
+fn a_push_that_accumulates_moves_only_before_it_begins() {
+    let push = "[[push]]\npoint = 'top'\nforce_N = [0, 0.1, 0]\nfirst_step = 20\nsteps = 6\naccumulates = true\n";
+    let scenario = read(&text("report", 0.0, "momentum_Js = [0, 1, 60]", push));
+    assert_eq!(
+        here(&at(&scenario, 5)).unwrap().file.push[0].first_step,
+        Some(15)
+    );
+    assert!(farthest_m(at(&scenario, 19), 20) < 1e-9);
+    for step in [20, 21, 300] {
+        let refused = here(&at(&scenario, step)).unwrap_err();
+        assert!(
+            refused.contains("push.0: on \"top\" accumulates and has begun"),
+            "{refused}"
+        );
+    }
+    let edited = read(&text(
+        "report",
+        0.0,
+        "momentum_Js = [0, 1, 60]",
+        &format!("{push}{EDITS}").replace("'push.1.force_N'", "'push.0.force_N'"),
+    ));
+    assert!(
+        here(&at(&edited, 13))
+            .unwrap_err()
+            .contains("another time step")
+    );
+}
+
+#[test]
+fn what_is_in_force_follows_the_edits() {
+    let run = read(&text(
+        "exact",
+        0.0,
+        "momentum_Js = [0, 1, 60]",
+        &format!("{PUSHES}{EDITS}"),
+    ));
+    let force = |step| in_force(&run, step).1[1].force.y;
+    assert_eq!((force(29), force(30)), (2.0, 4.0));
+    assert_eq!(
+        (
+            in_force(&run, 11).0.time_step_s,
+            in_force(&run, 12).0.time_step_s
+        ),
+        (0.05, 0.03)
+    );
+}

@@ -1,0 +1,341 @@
+//! The ways to state the start: tilt, turn and roll, momentum or spin, a steady precession.
+
+#![allow(clippy::unwrap_used, clippy::panic, non_snake_case)]
+
+use gyrolab::physics::observables::{angular_velocity, tilt_deg};
+use gyrolab::physics::rotation;
+use gyrolab::run::Simulation;
+use gyrolab::scenario::parameters::{changed, parameters, table_of};
+use gyrolab::scenario::{Document, Problems, Scenario};
+use nalgebra::{Rotation3, Vector3};
+use proptest::prelude::*;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+use toml::Value;
+
+/// The textbook's ring of 5 kg at 1 m (I1 = 6.6, I3 = 3.2 kg m², mgl = 49 N m) with `start` and `motion` more.
+fn text(start: &str, motion: &str) -> String {
+    format!(
+        "title = 'x'\n[body.rim]\npoints = 10\nradius_m = 0.8\nheight_m = 1\npoint_mass_kg = 0.5\n[[body.point]]\nname = 'top'\nat_m = [0, 0, 1.5]\n[start]\n{start}\n[motion]\nscheme = 'exact'\ntime_step_s = 0.01\nsteps = 1000\n{motion}\n"
+    )
+}
+
+fn read(text: &str) -> Result<Scenario, Problems> {
+    Document::parse("x.toml", text)?.scenario()
+}
+
+fn ring(start: &str) -> Scenario {
+    read(&text(start, "")).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn refusal(start: &str) -> String {
+    read(&text(start, "")).unwrap_err().to_string()
+}
+
+fn omega(scenario: &Scenario) -> Vector3<f64> {
+    angular_velocity(&scenario.body.mechanics, &scenario.start)
+}
+
+/// The farthest that the tilt goes from the start's, degrees.
+fn tilt_swing_deg(scenario: Scenario) -> f64 {
+    let (tilt, steps) = (tilt_deg(&scenario.start), scenario.steps);
+    let mut simulation = Simulation::new(Arc::new(scenario));
+    let mut swing = 0.0f64;
+    for _ in 0..steps {
+        simulation.step().unwrap();
+        swing = swing.max((tilt_deg(simulation.state()) - tilt).abs());
+    }
+    swing
+}
+
+#[test]
+fn a_spin_is_the_rate_about_the_axle() {
+    let scenario = ring("tilt_deg = 40\nspin_rad_per_s = 20");
+    assert!((omega(&scenario) - 20.0 * scenario.start.axle()).amax() < 1e-13);
+    assert!((scenario.start.momentum - 64.0 * scenario.start.axle()).amax() < 1e-12);
+    let same = ring(&format!(
+        "tilt_deg = 40\nspin_rpm = {:?}",
+        20.0 * 60.0 / TAU
+    ));
+    assert!((same.start.momentum - scenario.start.momentum).amax() < 1e-13);
+}
+
+#[test]
+fn a_lopsided_body_spins_about_its_axle_too() {
+    let lopsided = text("tilt_deg = 40\nspin_rad_per_s = 20", "")
+        .replace("at_m = [0, 0, 1.5]", "at_m = [0.3, 0, 1.5]\nmass_kg = 1");
+    let scenario = read(&lopsided).unwrap();
+    assert!((omega(&scenario) - 20.0 * scenario.start.axle()).amax() < 1e-13);
+    assert!(scenario.start.momentum.cross(&scenario.start.axle()).norm() > 1.0);
+}
+
+#[test]
+fn a_steady_start_keeps_its_tilt() {
+    let starts = [
+        "tilt_deg = 30\nspin_rad_per_s = 18.75",
+        "tilt_deg = 30\nspin_rpm = -300",
+        "tilt_deg = 90\nspin_rpm = 300",
+        "tilt_deg = 150\nspin_rpm = 100",
+        "tilt_deg = 150\nspin_rpm = 0",
+        "tilt_deg = -30\nturn_deg = 77\nroll_deg = 5\nspin_rpm = 300",
+        "spin_rpm = 300",
+        "tilt_deg = 180\nspin_rpm = 300",
+    ];
+    for start in starts {
+        for gravity in [9.8, -3.0, 0.0] {
+            let text = text(
+                &format!("{start}\nsteady = true"),
+                &format!("gravity_m_per_s2 = {gravity}"),
+            );
+            match read(&text) {
+                Ok(scenario) => {
+                    let swing = tilt_swing_deg(scenario);
+                    assert!(swing < 1e-9, "{start}, {gravity}: {swing}");
+                }
+                // Upside down for gravity, the hanging top that does not spin.
+                Err(problems) => assert!(start.contains("rpm = 0") && gravity < 0.0, "{problems}"),
+            }
+        }
+    }
+    assert!(tilt_swing_deg(ring("tilt_deg = 30\nspin_rad_per_s = 18.75")) > 1.0);
+}
+
+#[test]
+fn a_steady_start_is_the_preset_s() {
+    let preset = Document::open("steady-slow").unwrap().scenario().unwrap();
+    let axle = preset.start.axle();
+    let spin = omega(&preset).dot(&axle);
+    let scenario = ring(&format!(
+        "tilt_deg = 30\nspin_rad_per_s = {spin:?}\nsteady = true"
+    ));
+    assert!(
+        (scenario.start.momentum - preset.start.momentum).amax() < 1e-13,
+        "{}",
+        scenario.start.momentum
+    );
+}
+
+#[test]
+fn the_least_spin_that_is_told_is_enough() {
+    for tilt in [1.0, 30.0, 89.0] {
+        let refused = refusal(&format!("tilt_deg = {tilt}\nspin_rpm = 10\nsteady = true"));
+        let least = refused
+            .split("at least ")
+            .nth(1)
+            .unwrap_or_else(|| panic!("{refused}"));
+        let rpm: f64 = least.split(' ').next().unwrap().parse().unwrap();
+        assert!(
+            refused.contains("start.steady (true) has no steady precession at this tilt"),
+            "{refused}"
+        );
+        ring(&format!(
+            "tilt_deg = {tilt}\nspin_rpm = {rpm}\nsteady = true"
+        ));
+        refusal(&format!(
+            "tilt_deg = {tilt}\nspin_rpm = {}\nsteady = true",
+            rpm * 0.998
+        ));
+    }
+    assert!(
+        refusal("tilt_deg = 90\nspin_rpm = 0\nsteady = true").contains("the spin must not be zero")
+    );
+}
+
+#[test]
+fn two_ways_at_once_are_refused_with_the_remedy() {
+    for (start, told) in [
+        (
+            "momentum_Js = [0, 0, 1]\nspin_rpm = 3",
+            "start.spin_rpm (3.0) is given beside momentum_Js: keep one",
+        ),
+        (
+            "momentum_Js = [0, 0, 1]\nspin_rad_per_s = 3",
+            "start.spin_rad_per_s (3.0) is given beside momentum_Js",
+        ),
+        (
+            "spin_rpm = 2\nspin_rad_per_s = 3",
+            "start.spin_rad_per_s (3.0) is given beside spin_rpm",
+        ),
+        (
+            "spin_rpm = 2\nmomentum_frame = 'body'",
+            "start.momentum_frame: goes with momentum_Js",
+        ),
+        (
+            "momentum_Js = [0, 0, 1]\nsteady = true",
+            "start.steady (true) goes with a spin: give spin_rpm",
+        ),
+        (
+            "steady = true",
+            "start.momentum_Js: is missing (angular momentum L about the pivot, J s; or give spin_rpm",
+        ),
+        (
+            "spin_rpm = nan",
+            "start.spin_rpm (nan) must be a finite number",
+        ),
+    ] {
+        let refused = refusal(start);
+        assert!(refused.contains(told), "{refused}");
+        assert!(refused.starts_with("x.toml:1"), "{refused}");
+    }
+    let lopsided = text("spin_rpm = 3\nsteady = true", "")
+        .replace("at_m = [0, 0, 1.5]", "at_m = [0.3, 0, 1.5]\nmass_kg = 1");
+    assert!(
+        read(&lopsided)
+            .unwrap_err()
+            .to_string()
+            .contains("this one is lopsided")
+    );
+}
+
+#[test]
+fn set_takes_the_way_it_names() {
+    let set = |settings: &[&str]| {
+        let mut document = Document::open("method-2").unwrap();
+        settings
+            .iter()
+            .for_each(|setting| document.set(setting).unwrap());
+        document.scenario().unwrap()
+    };
+    let spun = set(&["start.spin_rpm=300"]);
+    assert_eq!(
+        (spun.file.start.momentum_Js, spun.file.start.momentum_frame),
+        (None, None)
+    );
+    let back = set(&[
+        "start.spin_rpm=300",
+        "start.steady=true",
+        "start.momentum_Js=[0,0,7]",
+    ]);
+    assert_eq!(
+        (back.file.start.spin_rpm, back.file.start.steady),
+        (None, None)
+    );
+    let last = set(&["start.spin_rpm=300", "start.spin_rad_per_s=7"]);
+    assert_eq!(
+        (last.file.start.spin_rpm, last.file.start.spin_rad_per_s),
+        (None, Some(7.0))
+    );
+    let written = read(&last.to_toml()).unwrap();
+    assert_eq!(written.start, last.start);
+}
+
+#[test]
+fn tilt_turn_and_roll_are_three_rotations() {
+    let tilt = rotation::about(&Vector3::x(), 40f64.to_radians());
+    let tilted = |more: &str| {
+        ring(&format!("tilt_deg = 40\nmomentum_Js = [0, 0, 1]\n{more}"))
+            .start
+            .orientation
+    };
+    assert_eq!(tilted(""), tilt);
+    assert_eq!(tilted("turn_deg = 0\nroll_deg = -0.0"), tilt);
+    let turn = |degrees: f64| Rotation3::from_axis_angle(&Vector3::z_axis(), degrees.to_radians());
+    let expected = turn(70.0).matrix() * tilt * turn(-20.0).matrix();
+    assert!((tilted("turn_deg = 70\nroll_deg = -20") - expected).amax() < 1e-15);
+}
+
+fn value(scenario: &Scenario, key: &str) -> (f64, bool) {
+    let rows = parameters(&table_of(&scenario.file), scenario);
+    let row = rows.into_iter().find(|row| row.key == key).unwrap();
+    (row.value.as_float().unwrap(), row.is_default)
+}
+
+fn assert_near((told, is_default): (f64, bool), number: f64, expected_default: bool) {
+    assert!(
+        (told - number).abs() < 1e-12 * number.abs().max(1.0),
+        "{told}, not {number}"
+    );
+    assert_eq!(is_default, expected_default);
+}
+
+#[test]
+fn spin_and_momentum_are_both_listed() {
+    let spun = ring("tilt_deg = 40\nspin_rad_per_s = 20");
+    assert_near(value(&spun, "start.spin_rad_per_s"), 20.0, false);
+    assert_near(value(&spun, "start.spin_rpm"), 1200.0 / TAU, true);
+    assert_near(
+        value(&spun, "start.momentum_Js.2"),
+        64.0 * 40f64.to_radians().cos(),
+        true,
+    );
+    let told = ring("tilt_deg = 40\nmomentum_Js = [0, 9, 64]\nmomentum_frame = 'body'");
+    assert_near(value(&told, "start.spin_rad_per_s"), 20.0, true);
+    assert_near(value(&told, "start.momentum_Js.1"), 9.0, false);
+}
+
+#[test]
+fn a_change_tells_the_momentum_the_way_it_needs() {
+    let told = ring("tilt_deg = 40\nmomentum_Js = [0, 9, 64]\nmomentum_frame = 'body'");
+    let spun = changed(&told.file, "start.spin_rpm", Value::Float(100.0)).unwrap();
+    let start = &spun.file.start;
+    assert_eq!(
+        (start.momentum_Js, start.momentum_frame, start.spin_rpm),
+        (None, None, Some(100.0))
+    );
+    let other = changed(&spun.file, "start.spin_rad_per_s", Value::Float(5.0)).unwrap();
+    assert_eq!(
+        (other.file.start.spin_rpm, other.file.start.spin_rad_per_s),
+        (None, Some(5.0))
+    );
+    // One number of L: the others stay as they are.
+    let back = changed(&other.file, "start.momentum_Js.0", Value::Float(3.0)).unwrap();
+    let momentum = other.start.momentum;
+    assert_eq!(
+        back.start.momentum,
+        Vector3::new(3.0, momentum.y, momentum.z)
+    );
+    assert_eq!(
+        (
+            back.file.start.spin_rad_per_s,
+            back.file.start.momentum_frame
+        ),
+        (None, None)
+    );
+    // The frame alone: the same L, told in it.
+    let turned = changed(&other.file, "start.momentum_frame", Value::from("body")).unwrap();
+    assert!((turned.start.momentum - momentum).amax() < 1e-13);
+    assert!(
+        (Vector3::from(turned.file.start.momentum_Js.unwrap()) - Vector3::new(0.0, 0.0, 16.0))
+            .amax()
+            < 1e-13
+    );
+    // Steady: the same spin.
+    let steady = changed(&told.file, "start.steady", Value::Boolean(true)).unwrap();
+    assert!((steady.file.start.spin_rad_per_s.unwrap() - 20.0).abs() < 1e-13);
+    assert!((omega(&steady).dot(&steady.start.axle()) - 20.0).abs() < 1e-13);
+    assert!(tilt_swing_deg(steady.clone()) < 1e-9);
+    let back = changed(&steady.file, "start.momentum_Js.1", Value::Float(1.0)).unwrap();
+    assert_eq!(
+        (back.file.start.steady, back.file.start.spin_rad_per_s),
+        (None, None)
+    );
+}
+
+#[test]
+fn a_steady_start_that_cannot_be_is_refused_by_a_change() {
+    let slow = ring("tilt_deg = 40\nspin_rpm = 10");
+    let problems = changed(&slow.file, "start.steady", Value::Boolean(true)).unwrap_err();
+    let line = problems.in_one_line();
+    assert!(
+        line.starts_with("start.steady (true) has no steady precession"),
+        "{line}"
+    );
+}
+
+proptest! {
+    #[test]
+    fn whatever_the_start_nothing_panics(
+        angles in prop::array::uniform3(prop_oneof![Just(0.0), Just(90.0), Just(180.0), -400.0..400.0f64]),
+        spin in prop_oneof![Just(0.0), Just(-0.0), Just(1e-308), Just(1e308), -1e4..1e4f64],
+        gravity in prop_oneof![Just(0.0), Just(1e-300), Just(1e308), -20.0..20.0f64],
+        radius in prop_oneof![Just(1e-5), Just(1e100), Just(0.8)],
+    ) {
+        let [tilt, turn, roll] = angles;
+        let start = format!("tilt_deg = {tilt:?}\nturn_deg = {turn:?}\nroll_deg = {roll:?}\nspin_rpm = {spin:?}\nsteady = true");
+        let text = text(&start, &format!("gravity_m_per_s2 = {gravity:?}")).replace("radius_m = 0.8", &format!("radius_m = {radius:?}"));
+        match read(&text) {
+            Ok(scenario) => prop_assert!(scenario.start.is_finite()),
+            Err(problems) => prop_assert!(!problems.to_string().contains("NaN") && !problems.to_string().contains("inf "), "{}", problems),
+        }
+    }
+}
