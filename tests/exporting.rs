@@ -9,10 +9,12 @@ use gyrolab::run::Simulation;
 use gyrolab::scenario::presets::PRESETS;
 use gyrolab::scenario::{Document, Scenario};
 use gyrolab::workbench::exporting::{Exporting, Written, estimate};
+use gyrolab::workbench::farewell::{self, Farewell};
 use std::fs;
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::process::Command;
 use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
@@ -167,7 +169,7 @@ fn one_that_comes_up_meanwhile_is_not_replaced() {
 fn what_cannot_be_written_is_refused_at_once_in_words() {
     let folder = tempfile::tempdir().unwrap();
     let fifo = folder.path().join("fifo");
-    let made = std::process::Command::new("mkfifo").arg(&fifo).status();
+    let made = Command::new("mkfifo").arg(&fifo).status();
     assert!(made.unwrap().success());
     let cases = [
         (fifo.as_path(), "not a regular file"),
@@ -222,4 +224,38 @@ fn a_dash_is_a_file_in_the_lab() {
     let is_part = |name: &String| name.starts_with(".gyrolab-") && name.ends_with(".part");
     assert!(names(Path::new(".")).iter().any(is_part));
     drop(exporting);
+}
+
+/// Names the folder for a process that exports into it.
+const CHILD: &str = "GYROLAB_TEST_EXPORTING";
+
+/// Not a test of its own: a process that begins an export, goes on with it after a stop, and ends.
+#[test]
+fn child() {
+    let Some(folder) = std::env::var_os(CHILD) else {
+        return;
+    };
+    let folder = Path::new(&folder);
+    let exporting = Exporting::begin(endless(), &folder.join("run.csv"), every(1000), false);
+    let mut exporting = exporting.unwrap();
+    farewell::say(Farewell::Stop);
+    let (step, _) = exporting.progress();
+    while exporting.progress().0 == step {
+        thread::sleep(Duration::from_millis(1));
+    }
+    assert!(!exporting.is_done() && exporting.outcome().is_none());
+    assert_eq!(names(folder).len(), 1, "the temporary file");
+    farewell::say(Farewell::End);
+    std::process::exit(42); // nothing is dropped
+}
+
+#[test]
+fn a_farewell_leaves_nothing_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let status = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "child"])
+        .env(CHILD, folder.path())
+        .status();
+    assert_eq!(status.unwrap().code(), Some(42));
+    assert!(names(folder.path()).is_empty());
 }

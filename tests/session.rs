@@ -3,6 +3,7 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use gyrolab::workbench::farewell::{self, Farewell};
 use gyrolab::workbench::session::{Content, Found, Session, resume};
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -15,6 +16,8 @@ use std::time::{Duration, Instant, SystemTime};
 use tempfile::TempDir;
 
 const PATIENCE: Duration = Duration::from_secs(20);
+/// Has such a process say farewell, as a signal would.
+const END: &str = "end";
 /// Names the folder for a process that keeps a session in it.
 const CHILD: &str = "GYROLAB_TEST_SESSION";
 
@@ -431,8 +434,12 @@ fn child() {
         ),
     };
     println!("\nbegins at {was}");
-    for line in std::io::stdin().lines() {
-        session.note(content("run", &line.unwrap()));
+    for line in std::io::stdin().lines().map(Result::unwrap) {
+        if line == END {
+            farewell::say(Farewell::End);
+            std::process::exit(0); // nothing is dropped
+        }
+        session.note(content("run", &line));
         println!("\nnoted");
     }
 }
@@ -501,6 +508,16 @@ fn a_process_that_is_killed_loses_a_second_at_most_and_frees_its_session() {
         "it is in use"
     );
     next.kill();
+}
+
+#[test]
+fn a_farewell_loses_nothing() {
+    let (_outer, folder) = folder();
+    let mut other = Other::begin(&folder);
+    (0..1000).for_each(|n| other.note(&n.to_string()));
+    writeln!(other.child.stdin.as_mut().unwrap(), "{END}").unwrap();
+    assert!(other.child.wait().unwrap().success());
+    assert_eq!(newest(&folder), Some(content("run", "999")));
 }
 
 #[test]

@@ -229,7 +229,7 @@ pub fn estimate(scenario: &Arc<Scenario>, every: NonZeroU64) -> Estimate {
     let row = few as f64 / lengths.len().max(1) as f64;
     Estimate {
         rows,
-        bytes: (text.len() - few) as u64 + (row * rows as f64).round() as u64,
+        bytes: ((row * rows as f64).round() as u64).saturating_add((text.len() - few) as u64),
     }
 }
 
@@ -241,17 +241,20 @@ fn rows(last: u64, every: u64) -> u64 {
 /// The CSV of a few rows: their numbers are those of the run's beginning, their steps and times are from all over it.
 fn few_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
     const ROWS: u64 = 64;
-    const APART: u64 = 8;
+    let points = scenario.body.mechanics.points().len() as u64;
+    let apart = ((1 << 15) / points).clamp(4, 32); // a larger body takes longer for a step
+    let apart = apart.min(scenario.steps / ROWS).max(1);
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut csv = CsvWriter::new(Vec::new(), scenario)?;
     for row in 0..ROWS {
-        let step = (scenario.steps / ROWS * row / every * every).min(scenario.steps);
+        let part = row as f64 / (ROWS - 1) as f64;
+        let step = (part * scenario.steps as f64) as u64 / every * every;
         csv.write(&Sample {
             step,
             time_s: Clock::at(scenario, step).time_s(step),
             ..simulation.sample()
         })?;
-        let _ = simulation.step_to((row + 1) * APART); // it stays where the numbers end
+        let _ = simulation.step_to(((row + 1) * apart).min(scenario.steps)); // it stays where the numbers end
     }
     csv.finish()
 }
