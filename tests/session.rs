@@ -526,8 +526,8 @@ fn killed_at_any_moment_it_leaves_a_whole_session() {
     for n in 0..20 {
         let mut other = Other::begin(&folder);
         other.hear("begins");
-        other.note(&n.to_string());
-        thread::sleep(Duration::from_millis(n * 3 % 20));
+        other.note(&n.to_string().repeat(1 << 22)); // takes a while to write
+        thread::sleep(Duration::from_millis(n % 10));
         other.kill();
         assert!(any(&folder).kept_aside.is_empty());
     }
