@@ -254,6 +254,42 @@ fn signals_to_end_give_the_terminal_back() {
 }
 
 #[test]
+#[cfg(debug_assertions)]
+fn a_panic_gives_the_terminal_back_and_is_told_there() {
+    let variables = [("TERM", "xterm"), ("GYROLAB_PANIC_AFTER_MS", "600")];
+    let mut session = Session::open_with(&[], &variables);
+    session.wait_for("q quit");
+    assert_eq!(session.wait_for_end().exit_code(), 101);
+    session.has_given_the_terminal_back();
+    session.wait_until("the message", |session| {
+        let sent = session.sent_text();
+        let farewell = sent.rfind(LEAVES_ALTERNATE_SCREEN).unwrap();
+        sent[farewell..].contains("a panic was asked for")
+    });
+    let sent = session.sent_text();
+    assert_eq!(sent.matches(LEAVES_ALTERNATE_SCREEN).count(), 1);
+}
+
+#[test]
+#[cfg(debug_assertions)]
+fn a_panic_in_the_background_waits_for_the_end_to_be_told() {
+    let variables = [("TERM", "xterm"), ("GYROLAB_PANIC_ASIDE_AFTER_MS", "300")];
+    let mut session = Session::open_with(&[], &variables);
+    session.wait_for("q quit");
+    thread::sleep(Duration::from_secs(1));
+    session.wait_for("q quit");
+    assert!(!session.sent_text().contains(LEAVES_ALTERNATE_SCREEN));
+    assert!(!session.sent_text().contains("asked for"));
+    session.press("q");
+    assert_eq!(session.wait_for_end().exit_code(), 0);
+    session.wait_until("the message", |session| {
+        let sent = session.sent_text();
+        let farewell = sent.rfind(LEAVES_ALTERNATE_SCREEN).unwrap();
+        sent[farewell..].contains("a panic was asked for aside")
+    });
+}
+
+#[test]
 fn a_lost_line_ends_it() {
     for _ in 0..3 {
         let mut session = Session::open(&[]);

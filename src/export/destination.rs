@@ -50,6 +50,16 @@ pub enum DestinationError {
     },
 }
 
+impl DestinationError {
+    /// What is wrong, without the remedy that only the command line has.
+    pub fn fact(&self) -> String {
+        match self {
+            Self::Exists(path) => format!("{} exists", path.display()),
+            other => other.to_string(),
+        }
+    }
+}
+
 impl Destination {
     /// Opens `path` for writing, before the long run begins; `-` is standard output. An existing regular file is
     /// replaced only if `replace`, and only by a whole one.
@@ -118,6 +128,17 @@ impl Destination {
     /// Whether this is standard output.
     pub fn is_stdout(&self) -> bool {
         matches!(self, Self::Stdout(_))
+    }
+
+    /// How long a file has become so far, bytes; 0 for a stream.
+    ///
+    /// # Errors
+    /// When the system does not tell.
+    pub fn bytes(&self) -> io::Result<u64> {
+        match self {
+            Self::File { temporary, .. } => Ok(temporary.as_file().metadata()?.len()),
+            Self::Stdout(_) | Self::Stream(_) => Ok(0),
+        }
     }
 
     /// Gives what has been written its name.

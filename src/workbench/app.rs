@@ -30,6 +30,8 @@ pub fn run(mut lab: Lab, frames: u32) -> io::Result<()> {
                 return Ok(());
             }
         }
+        #[cfg(debug_assertions)]
+        panic_if_asked(begin.elapsed());
         lab.advance(&mut || begin.elapsed());
         let now = begin.elapsed();
         // An action is answered at once, whenever the next frame would be.
@@ -37,6 +39,24 @@ pub fn run(mut lab: Lab, frames: u32) -> io::Result<()> {
             screen.draw(|area, buf| screen::draw(&lab, true, area, buf))?;
             next_frame = now + frame;
         }
+    }
+}
+
+/// For the tests of the end, which are built with debug assertions: `GYROLAB_PANIC_AFTER_MS=1000` makes this thread panic
+/// after a second, `GYROLAB_PANIC_ASIDE_AFTER_MS=1000` one in the background.
+#[cfg(debug_assertions)]
+#[expect(clippy::panic, reason = "it is what the tests ask for")]
+fn panic_if_asked(elapsed: Duration) {
+    static ASIDE: std::sync::Once = std::sync::Once::new();
+    let is_time = |name: &str| {
+        let after_ms = std::env::var(name).ok().and_then(|ms| ms.parse().ok());
+        after_ms.is_some_and(|ms| elapsed >= Duration::from_millis(ms))
+    };
+    if is_time("GYROLAB_PANIC_AFTER_MS") {
+        panic!("a panic was asked for");
+    }
+    if is_time("GYROLAB_PANIC_ASIDE_AFTER_MS") {
+        ASIDE.call_once(|| drop(std::thread::spawn(|| panic!("a panic was asked for aside"))));
     }
 }
 

@@ -1,8 +1,11 @@
 //! The terminal: taken over, drawn on, listened to, and given back once, whatever happens.
 //!
+//! Before it is given back, whoever has something to bring home is told ([`farewell`]).
+//!
 //! The one room that knows crossterm. Nothing here waits for an answer from the terminal: over slow lines, and in
 //! bare ptys, there may be none.
 
+use super::farewell::{self, Farewell};
 use super::keymap::Key;
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
@@ -15,13 +18,13 @@ use ratatui::layout::Rect;
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP};
 use signal_hook::iterator::Signals;
 use std::fs::File;
-use std::io::{self, BufWriter};
+use std::io::{self, BufWriter, Write};
 use std::mem::ManuallyDrop;
 use std::os::fd::AsFd;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
-use std::sync::{Mutex, MutexGuard, Once, PoisonError, TryLockError};
-use std::thread;
+use std::sync::{Mutex, MutexGuard, Once, OnceLock, PoisonError, TryLockError};
+use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 
 /// Whether the terminal is ours at the moment.
@@ -34,6 +37,11 @@ static ENDING: AtomicBool = AtomicBool::new(false);
 static SUSPEND: AtomicBool = AtomicBool::new(false);
 /// The shell resumed us.
 static RESUMED: AtomicBool = AtomicBool::new(false);
+
+/// The thread that draws: when it panics, the lab ends.
+static DRAWING: OnceLock<ThreadId> = OnceLock::new();
+/// What other threads had to say when they panicked, for the end: on the picture it would be gone with the next frame.
+static PANICS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 /// How long a terminal that takes no more bytes may hold up the end.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -77,7 +85,7 @@ impl Screen {
                 terminal: ManuallyDrop::new(terminal),
             }),
             Err(error) => {
-                leave();
+                give_back();
                 Err(error)
             }
         }
@@ -121,7 +129,8 @@ impl Screen {
     /// # Errors
     /// When the terminal cannot be taken over again.
     pub fn suspend(&mut self) -> io::Result<()> {
-        leave();
+        farewell::say(Farewell::Stop);
+        give_back();
         signal_hook::low_level::emulate_default_handler(SIGTSTP)?;
         RESUMED.store(false, Ordering::Relaxed);
         self.resume()
@@ -178,8 +187,23 @@ fn take_over() -> io::Result<()> {
     execute!(stdout()?, EnterAlternateScreen, Hide)
 }
 
-/// Gives the terminal back, once; the one way out for every end there is. What fails here has nobody left to be told.
+/// The one way out for every end there is: what others have to bring home first, then the terminal, then what
+/// could not be said while it was ours.
 pub fn leave() {
+    farewell::say(Farewell::End);
+    give_back();
+    tell_panics();
+}
+
+fn tell_panics() {
+    let panics = std::mem::take(&mut *PANICS.lock().unwrap_or_else(PoisonError::into_inner));
+    for panic in panics {
+        let _ = writeln!(io::stderr(), "gyrolab: in the background, {panic}");
+    }
+}
+
+/// Gives the terminal back, once. What fails here has nobody left to be told.
+fn give_back() {
     if !ENTERED.swap(false, Ordering::SeqCst) {
         return;
     }
@@ -193,11 +217,19 @@ pub fn leave() {
 fn guard() -> io::Result<()> {
     static GUARD: Once = Once::new();
     let mut result = Ok(());
+    let _ = DRAWING.set(thread::current().id()); // the first one stays
     GUARD.call_once(|| {
         let before = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
-            leave();
-            before(panic);
+            if DRAWING.get() == Some(&thread::current().id()) {
+                leave();
+                before(panic);
+            } else if ENTERED.load(Ordering::SeqCst) {
+                let mut panics = PANICS.lock().unwrap_or_else(PoisonError::into_inner);
+                panics.push(panic.to_string());
+            } else {
+                before(panic);
+            }
         }));
         result = Signals::new([SIGHUP, SIGTERM, SIGINT, SIGQUIT, SIGTSTP, SIGCONT])
             .and_then(|signals| {
@@ -218,6 +250,7 @@ fn listen(mut signals: Signals) {
             SIGTSTP => SUSPEND.store(true, Ordering::Relaxed),
             SIGCONT => RESUMED.store(true, Ordering::Relaxed),
             end => {
+                farewell::say(Farewell::End);
                 ENDING.store(true, Ordering::SeqCst);
                 let _pen = take_pen();
                 leave_in_time();
@@ -243,7 +276,8 @@ fn take_pen() -> Option<MutexGuard<'static, ()>> {
 fn leave_in_time() {
     let (done, left) = mpsc::channel();
     let spawned = thread::Builder::new().spawn(move || {
-        leave();
+        give_back();
+        tell_panics();
         let _ = done.send(());
     });
     if spawned.is_ok() {

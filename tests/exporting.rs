@@ -1,0 +1,261 @@
+//! An export in the background: the bytes of `gyrolab run -o`, whole or not at all.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use gyrolab::export::CsvWriter;
+use gyrolab::export::destination::DestinationError;
+use gyrolab::export::stream;
+use gyrolab::run::Simulation;
+use gyrolab::scenario::presets::PRESETS;
+use gyrolab::scenario::{Document, Scenario};
+use gyrolab::workbench::exporting::{Exporting, Written, estimate};
+use gyrolab::workbench::farewell::{self, Farewell};
+use std::fs;
+use std::num::NonZeroU64;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::Command;
+use std::sync::Arc;
+use std::thread;
+use std::time::Duration;
+
+fn scenario(name: &str, sets: &[&str]) -> Arc<Scenario> {
+    let mut document = Document::open(name).unwrap();
+    for set in sets {
+        document.set(set).unwrap();
+    }
+    Arc::new(document.scenario().unwrap())
+}
+
+fn every(every: u64) -> NonZeroU64 {
+    NonZeroU64::new(every).unwrap()
+}
+
+fn bytes(scenario: &Arc<Scenario>, every: u64) -> Vec<u8> {
+    let mut csv = CsvWriter::new(Vec::new(), scenario).unwrap();
+    let mut simulation = Simulation::new(Arc::clone(scenario));
+    let go_on = |_: &stream::Progress| ControlFlow::Continue(());
+    let steps = scenario.steps;
+    stream::play(&mut simulation, steps, every, Some(&mut csv), |_| {}, go_on).unwrap();
+    csv.finish().unwrap()
+}
+
+fn wait(exporting: &mut Exporting) -> Result<Written, String> {
+    while !exporting.is_done() {
+        thread::sleep(Duration::from_millis(1));
+    }
+    let outcome = exporting.outcome().unwrap();
+    assert!(exporting.outcome().is_none(), "told twice");
+    outcome
+}
+
+fn export(scenario: &Arc<Scenario>, path: &Path, n: u64, replace: bool) -> Result<Written, String> {
+    let begun = Exporting::begin(Arc::clone(scenario), path, every(n), replace);
+    wait(&mut begun.map_err(|error| error.fact())?)
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let names = fs::read_dir(folder).unwrap();
+    names
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect()
+}
+
+/// A run that takes longer than any test.
+fn endless() -> Arc<Scenario> {
+    scenario("method-2", &["motion.steps=1000000000000"])
+}
+
+#[test]
+fn the_file_is_the_one_that_run_writes() {
+    let folder = tempfile::tempdir().unwrap();
+    for (preset, n) in PRESETS.iter().flat_map(|preset| [(preset, 1), (preset, 7)]) {
+        let scenario = scenario(preset.name, &[]);
+        let path = folder.path().join("run.csv");
+        let written = export(&scenario, &path, n, true).unwrap();
+        let wanted = bytes(&scenario, n);
+        assert!(fs::read(&path).unwrap() == wanted, "{} {n}", preset.name);
+        let lines = wanted
+            .split(|byte| *byte == b'\n')
+            .filter(|line| !line.is_empty());
+        let rows = lines.filter(|line| !line.starts_with(b"#")).count() as u64 - 1;
+        let told = (written.rows, written.bytes, written.path);
+        assert_eq!(
+            told,
+            (rows, wanted.len() as u64, path),
+            "{} {n}",
+            preset.name
+        );
+        assert_eq!(written.not_finite, None);
+    }
+    assert_eq!(names(folder.path()), ["run.csv"]);
+}
+
+#[test]
+fn what_it_comes_to_is_told_before() {
+    for (preset, n) in PRESETS.iter().flat_map(|preset| [(preset, 1), (preset, 7)]) {
+        let scenario = scenario(preset.name, &[]);
+        let told = estimate(&scenario, every(n));
+        let wanted = bytes(&scenario, n).len() as f64;
+        let rows = scenario.steps.div_ceil(n) + 1;
+        assert_eq!(told.rows, rows, "{} {n}", preset.name);
+        let off = told.bytes as f64 / wanted - 1.0;
+        println!("{} every {n}: {:+.2} %", preset.name, off * 100.0);
+        assert!(off.abs() < 0.05, "{} {n}: off by {off}", preset.name);
+    }
+}
+
+#[test]
+fn the_estimate_of_no_rows_but_two_is_right() {
+    let scenario = scenario("cusps", &["motion.steps=1"]);
+    let told = estimate(&scenario, every(1000));
+    assert_eq!(told.rows, 2);
+    assert!((told.bytes as f64 / bytes(&scenario, 1000).len() as f64 - 1.0).abs() < 0.05);
+}
+
+#[test]
+fn it_shows_how_far_it_is_and_cancelled_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    let mut exporting = Exporting::begin(endless(), &path, every(1000), false).unwrap();
+    while exporting.progress().0 == 0 {
+        thread::sleep(Duration::from_millis(1));
+    }
+    assert_eq!(exporting.progress().1, 1_000_000_000_000);
+    assert_eq!(names(folder.path()).len(), 1, "the temporary file");
+    assert!(!exporting.is_done() && exporting.outcome().is_none());
+    exporting.cancel();
+    assert!(wait(&mut exporting).unwrap_err().contains("stopped"));
+    assert!(names(folder.path()).is_empty());
+}
+
+#[test]
+fn dropped_it_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    drop(Exporting::begin(endless(), &path, every(1000), false).unwrap());
+    assert!(names(folder.path()).is_empty());
+}
+
+#[test]
+fn a_file_that_is_there_is_told_of_and_replaced_only_when_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    fs::write(&path, "old").unwrap();
+    let scenario = scenario("cusps", &[]);
+    let refused = Exporting::begin(Arc::clone(&scenario), &path, every(1), false);
+    let error = refused.err().unwrap();
+    assert!(matches!(error, DestinationError::Exists(_)));
+    assert_eq!(error.fact(), format!("{} exists", path.display()));
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+    export(&scenario, &path, 1, true).unwrap();
+    assert!(fs::read(&path).unwrap() == bytes(&scenario, 1));
+}
+
+#[test]
+fn one_that_comes_up_meanwhile_is_not_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    let scenario = scenario("method-2", &["motion.steps=300000"]);
+    let mut exporting = Exporting::begin(scenario, &path, every(1), false).unwrap();
+    fs::write(&path, "other").unwrap();
+    let error = wait(&mut exporting).unwrap_err();
+    assert_eq!(error, format!("{} exists", path.display()));
+    assert_eq!(fs::read(&path).unwrap(), b"other");
+    assert_eq!(names(folder.path()), ["run.csv"]);
+}
+
+#[test]
+fn what_cannot_be_written_is_refused_at_once_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let fifo = folder.path().join("fifo");
+    let made = Command::new("mkfifo").arg(&fifo).status();
+    assert!(made.unwrap().success());
+    let cases = [
+        (fifo.as_path(), "not a regular file"),
+        (Path::new("/dev/full"), "not a regular file"),
+        (folder.path(), "is a folder"),
+        (
+            Path::new("/dev/null/run.csv"),
+            "cannot write /dev/null/run.csv",
+        ),
+        (
+            Path::new("/no/such/folder/run.csv"),
+            "there is no folder /no/such/folder",
+        ),
+        (Path::new("/proc/run.csv"), "cannot write /proc/run.csv"),
+        (Path::new(""), "folder"),
+        (Path::new("./"), "folder"),
+    ];
+    for (path, words) in cases {
+        for replace in [false, true] {
+            let refused = Exporting::begin(scenario("cusps", &[]), path, every(1), replace);
+            let fact = refused.err().unwrap().fact();
+            assert!(fact.contains(words) && !fact.contains("--force"), "{fact}");
+        }
+    }
+}
+
+#[test]
+fn the_rows_before_numbers_that_are_not_finite_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    let sets = [
+        "start.momentum_Js=[0,0,1e150]",
+        "push.0.force_N=[1e308,0,0]",
+    ];
+    let scenario = scenario("wobble-push", &sets);
+    let written = export(&scenario, &path, 7, false).unwrap();
+    let end = written.not_finite.unwrap();
+    assert!(fs::read(&path).unwrap() == bytes(&scenario, 7));
+    let text = fs::read_to_string(&path).unwrap();
+    let rows: Vec<_> = text.lines().filter(|line| !line.starts_with('#')).collect();
+    assert_eq!(written.rows, rows.len() as u64 - 1);
+    assert!(
+        rows.last()
+            .unwrap()
+            .starts_with(&format!("{},", end.step - 1))
+    );
+}
+
+#[test]
+fn a_dash_is_a_file_in_the_lab() {
+    let exporting = Exporting::begin(endless(), Path::new("-"), every(1000), false).unwrap();
+    let is_part = |name: &String| name.starts_with(".gyrolab-") && name.ends_with(".part");
+    assert!(names(Path::new(".")).iter().any(is_part));
+    drop(exporting);
+}
+
+/// Names the folder for a process that exports into it.
+const CHILD: &str = "GYROLAB_TEST_EXPORTING";
+
+/// Not a test of its own: a process that begins an export, goes on with it after a stop, and ends.
+#[test]
+fn child() {
+    let Some(folder) = std::env::var_os(CHILD) else {
+        return;
+    };
+    let folder = Path::new(&folder);
+    let exporting = Exporting::begin(endless(), &folder.join("run.csv"), every(1000), false);
+    let mut exporting = exporting.unwrap();
+    farewell::say(Farewell::Stop);
+    let (step, _) = exporting.progress();
+    while exporting.progress().0 == step {
+        thread::sleep(Duration::from_millis(1));
+    }
+    assert!(!exporting.is_done() && exporting.outcome().is_none());
+    assert_eq!(names(folder).len(), 1, "the temporary file");
+    farewell::say(Farewell::End);
+    std::process::exit(42); // nothing is dropped
+}
+
+#[test]
+fn a_farewell_leaves_nothing_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let status = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "child"])
+        .env(CHILD, folder.path())
+        .status();
+    assert_eq!(status.unwrap().code(), Some(42));
+    assert!(names(folder.path()).is_empty());
+}

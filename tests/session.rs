@@ -1,0 +1,534 @@
+//! Sessions on the disk, across processes that live, quit and are killed.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use gyrolab::workbench::farewell::{self, Farewell};
+use gyrolab::workbench::session::{Content, Found, Session, resume};
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdout, Command, Stdio};
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant, SystemTime};
+use tempfile::TempDir;
+
+const PATIENCE: Duration = Duration::from_secs(20);
+/// Has such a process say farewell, as a signal would.
+const END: &str = "end";
+/// Names the folder for a process that keeps a session in it.
+const CHILD: &str = "GYROLAB_TEST_SESSION";
+
+fn content(work: &str, place: &str) -> Content {
+    Content {
+        work: Arc::from(work),
+        place: place.to_owned(),
+    }
+}
+
+/// The sessions' folder, in one that goes.
+fn folder() -> (TempDir, PathBuf) {
+    let outer = tempfile::tempdir().unwrap();
+    let folder = outer.path().join("state/gyrolab");
+    (outer, folder)
+}
+
+fn any(folder: &Path) -> Found<Content> {
+    resume(folder, |content| Ok(content.clone())).unwrap()
+}
+
+/// What the newest free session holds; it is free again afterwards.
+fn newest(folder: &Path) -> Option<Content> {
+    let found = any(folder);
+    assert!(found.kept_aside.is_empty(), "{:?}", found.kept_aside);
+    found.resumed.map(|resumed| resumed.what)
+}
+
+/// A session that has been kept and is free.
+fn kept(folder: &Path, work: &str, place: &str) {
+    let session = Session::begin(folder).unwrap();
+    session.note(content(work, place));
+}
+
+fn names(folder: &Path, end: &str) -> Vec<PathBuf> {
+    let mut names: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.to_str().unwrap().ends_with(end))
+        .collect();
+    names.sort_unstable();
+    names
+}
+
+fn only(folder: &Path, end: &str) -> PathBuf {
+    let mut names = names(folder, end);
+    assert_eq!(names.len(), 1, "{names:?}");
+    names.pop().unwrap()
+}
+
+/// The file of the session that ends with that text: its place, then its work.
+fn file_of(folder: &Path, text: &str) -> PathBuf {
+    let mut names = names(folder, ".work").into_iter();
+    names
+        .find(|path| {
+            fs::read_to_string(path)
+                .unwrap()
+                .ends_with(&format!("\n{text}"))
+        })
+        .unwrap()
+}
+
+/// Puts the writing of `path` so many seconds into the past.
+fn age(path: &Path, seconds: u64) {
+    let time = SystemTime::now() - Duration::from_secs(seconds);
+    fs::File::options()
+        .append(true)
+        .open(path)
+        .unwrap()
+        .set_modified(time)
+        .unwrap();
+}
+
+#[track_caller]
+fn wait_until(is_so: impl Fn() -> bool) {
+    let begin = Instant::now();
+    while !is_so() {
+        assert!(begin.elapsed() < PATIENCE, "it does not come");
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn where_there_is_none_there_is_none() {
+    let (_outer, folder) = folder();
+    assert_eq!(newest(&folder), None);
+    let session = Session::begin(&folder).unwrap();
+    assert_eq!(newest(&folder), None);
+    drop(session);
+    assert_eq!(newest(&folder), None);
+    assert_eq!(
+        names(&folder, ".lock").len(),
+        0,
+        "an empty session leaves nothing"
+    );
+}
+
+#[test]
+fn what_was_noted_last_comes_back_and_is_gone_on_with() {
+    let (_outer, folder) = folder();
+    let session = Session::begin(&folder).unwrap();
+    let work: Arc<str> = Arc::from("the run: ω\nand its journal\n");
+    for step in 0..1000 {
+        let (work, place) = (Arc::clone(&work), format!("step {step}"));
+        session.note(Content { work, place });
+    }
+    drop(session);
+    let found = any(&folder).resumed.unwrap();
+    assert_eq!(found.what, content(&work, "step 999"));
+    found.session.note(content("another run", "step 5"));
+    found.session.flush();
+    found.session.note(content("another run", "step 6"));
+    drop(found);
+    assert_eq!(newest(&folder), Some(content("another run", "step 6")));
+    assert_eq!(names(&folder, ".work").len(), 1, "it is one session");
+}
+
+#[test]
+fn only_the_user_may_read_it() {
+    let (_outer, folder) = folder();
+    let session = Session::begin(&folder).unwrap();
+    for place in ["one", "two"] {
+        session.note(content("run", place));
+        session.flush();
+    }
+    let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
+    assert_eq!(mode(&folder), 0o700);
+    for end in [".work", ".place", ".lock"] {
+        assert_eq!(mode(&only(&folder, end)), 0o600, "{end}");
+    }
+}
+
+#[test]
+fn it_is_written_without_a_flush() {
+    let (_outer, folder) = folder();
+    let session = Session::begin(&folder).unwrap();
+    session.note(content("run", "one"));
+    wait_until(|| names(&folder, ".work").len() == 1);
+    session.note(content("run", "two"));
+    wait_until(|| names(&folder, ".place").len() == 1);
+    let work = fs::read_to_string(only(&folder, ".work")).unwrap();
+    let place = fs::read_to_string(only(&folder, ".place")).unwrap();
+    assert!(
+        work.contains("one") && !work.contains("two"),
+        "the work is left alone"
+    );
+    assert!(place.contains("two"));
+}
+
+#[test]
+fn a_flush_writes_at_once() {
+    let (_outer, folder) = folder();
+    let session = Session::begin(&folder).unwrap();
+    for step in 0..50 {
+        let place = format!("step {step}.");
+        session.note(content("run", &place));
+        session.flush();
+        let end = if step == 0 { ".work" } else { ".place" };
+        let text = fs::read_to_string(only(&folder, end)).unwrap();
+        assert!(text.ends_with(&format!("{place}{}", if step == 0 { "run" } else { "" })));
+    }
+}
+
+#[test]
+fn a_place_is_never_taken_with_another_work() {
+    let (_outer, folder) = folder();
+    let session = Session::begin(&folder).unwrap();
+    for (work, place) in [("first", "a"), ("first", "b"), ("second", "c")] {
+        session.note(content(work, place));
+        session.flush();
+    }
+    drop(session);
+    assert!(
+        fs::read_to_string(only(&folder, ".place"))
+            .unwrap()
+            .ends_with('b')
+    );
+    assert_eq!(newest(&folder), Some(content("second", "c")));
+}
+
+#[test]
+fn the_newest_that_is_not_in_use_is_taken() {
+    let (_outer, folder) = folder();
+    kept(&folder, "old", "");
+    age(&only(&folder, ".work"), 100);
+    let middle = Session::begin(&folder).unwrap();
+    middle.note(content("middle", "1"));
+    middle.flush();
+    age(&file_of(&folder, "1middle"), 200);
+    kept(&folder, "new", "");
+    assert_eq!(newest(&folder).unwrap().work.as_ref(), "new");
+    let new = any(&folder).resumed.unwrap();
+    assert_eq!(
+        newest(&folder).unwrap().work.as_ref(),
+        "old",
+        "two are in use"
+    );
+    middle.note(content("middle", "2"));
+    drop(middle);
+    drop(new);
+    assert_eq!(
+        newest(&folder),
+        Some(content("middle", "2")),
+        "its place is the newest"
+    );
+}
+
+#[test]
+fn those_who_come_at_once_get_different_sessions() {
+    let (_outer, folder) = folder();
+    (0..8).for_each(|n| kept(&folder, &n.to_string(), ""));
+    let folder = &folder;
+    let found: Vec<_> = thread::scope(|scope| {
+        let threads: Vec<_> = (0..8).map(|_| scope.spawn(|| any(folder))).collect();
+        threads
+            .into_iter()
+            .map(|thread| thread.join().unwrap())
+            .collect()
+    });
+    let mut works: Vec<_> = found
+        .iter()
+        .map(|found| found.resumed.as_ref().unwrap().what.work.to_string())
+        .collect();
+    works.sort_unstable();
+    assert_eq!(works, ["0", "1", "2", "3", "4", "5", "6", "7"]);
+}
+
+#[test]
+fn what_is_damaged_is_put_aside_and_told_of() {
+    let damages: [(fn(&Path), &str); 6] = [
+        (|path| cut(path, 3), "cut off"),
+        (|path| cut(path, 1000), "cut off"),
+        (|path| fs::write(path, [0; 100]).unwrap(), "cut off"),
+        (|path| fs::write(path, [0xff, 0xfe]).unwrap(), "UTF-8"),
+        (
+            |path| {
+                fs::write(
+                    path,
+                    "gyrolab session 1\nrevision 1\nplace 99999999999999999999\nwork 1\n",
+                )
+                .unwrap()
+            },
+            "changed",
+        ),
+        (
+            |path| {
+                fs::remove_file(path).unwrap();
+                fs::create_dir(path).unwrap();
+            },
+            "not a file",
+        ),
+    ];
+    for (damage, words) in damages {
+        let (_outer, folder) = folder();
+        kept(&folder, "the one before", "");
+        age(&only(&folder, ".work"), 100);
+        let before = only(&folder, ".work");
+        kept(&folder, "the newest", "here");
+        let newest = names(&folder, ".work")
+            .into_iter()
+            .find(|path| *path != before);
+        damage(&newest.unwrap());
+        let found = any(&folder);
+        assert_eq!(found.resumed.unwrap().what.work.as_ref(), "the one before");
+        let [aside] = found.kept_aside.as_slice() else {
+            panic!("{:?}", found.kept_aside);
+        };
+        assert!(aside.reason.contains(words), "{}", aside.reason);
+        assert!(aside.path.exists() && aside.path.to_str().unwrap().ends_with(".work.damaged"));
+        assert!(any(&folder).kept_aside.is_empty(), "it is told of once");
+    }
+}
+
+fn cut(path: &Path, bytes: u64) {
+    let file = fs::File::options().write(true).open(path).unwrap();
+    let length = file.metadata().unwrap().len();
+    file.set_len(length.saturating_sub(bytes)).unwrap();
+}
+
+#[test]
+fn what_the_reader_refuses_is_put_aside_too_and_none_is_lost() {
+    let (_outer, folder) = folder();
+    kept(&folder, "good", "");
+    age(&only(&folder, ".work"), 100);
+    kept(&folder, "bad", "");
+    let found = resume(&folder, |content| match content.work.as_ref() {
+        "bad" => Err("line 3: no such key".to_owned()),
+        work => Ok(work.to_owned()),
+    })
+    .unwrap();
+    assert_eq!(found.resumed.unwrap().what, "good");
+    assert_eq!(found.kept_aside[0].reason, "line 3: no such key");
+    assert!(
+        fs::read_to_string(&found.kept_aside[0].path)
+            .unwrap()
+            .ends_with("bad")
+    );
+}
+
+#[test]
+fn a_damaged_place_costs_the_place_alone() {
+    let (_outer, folder) = folder();
+    let session = Session::begin(&folder).unwrap();
+    for place in ["one", "two"] {
+        session.note(content("run", place));
+        session.flush();
+    }
+    drop(session);
+    cut(&only(&folder, ".place"), 1);
+    let found = any(&folder);
+    assert_eq!(found.resumed.unwrap().what, content("run", "one"));
+    assert!(
+        found.kept_aside[0]
+            .path
+            .to_str()
+            .unwrap()
+            .ends_with(".place.damaged")
+    );
+}
+
+#[test]
+fn the_oldest_are_cleared_away_but_none_in_use() {
+    let (_outer, folder) = folder();
+    let in_use = Session::begin(&folder).unwrap();
+    in_use.note(content("in use", ""));
+    in_use.flush();
+    age(&only(&folder, ".work"), 100_000);
+    for n in 0..30 {
+        kept(&folder, &n.to_string(), "");
+        age(&file_of(&folder, &n.to_string()), 1000 - n);
+    }
+    drop(Session::begin(&folder).unwrap());
+    assert_eq!(names(&folder, ".work").len(), 21);
+    assert_eq!(names(&folder, ".lock").len(), 21);
+    drop(in_use);
+    let mut found = Vec::new();
+    while let Some(resumed) = any(&folder).resumed {
+        found.push(resumed);
+    }
+    let works: Vec<_> = found
+        .iter()
+        .map(|resumed| resumed.what.work.to_string())
+        .collect();
+    let mut wanted: Vec<_> = (10..30).rev().map(|n| n.to_string()).collect();
+    wanted.push("in use".to_owned());
+    assert_eq!(works, wanted);
+}
+
+#[test]
+fn a_folder_that_cannot_be_had_is_an_error_in_words() {
+    let (outer, folder) = folder();
+    fs::write(outer.path().join("state"), "a file").unwrap();
+    let error = Session::begin(&folder).unwrap_err().to_string();
+    assert!(error.contains(folder.to_str().unwrap()), "{error}");
+    assert!(resume(&folder, |_| Ok(())).is_err());
+    fs::remove_file(outer.path().join("state")).unwrap();
+    fs::create_dir_all(folder.parent().unwrap()).unwrap();
+    fs::write(&folder, "a file").unwrap();
+    assert!(Session::begin(&folder).is_err());
+    assert!(resume(&folder, |_| Ok(())).is_err());
+    assert!(Session::begin(Path::new("/proc/gyrolab")).is_err());
+}
+
+#[test]
+fn trouble_is_told_once_and_it_is_tried_again() {
+    let (_outer, folder) = folder();
+    let session = Session::begin(&folder).unwrap();
+    session.note(content("run", "one"));
+    session.flush();
+    assert_eq!(session.new_trouble(), None);
+    // A folder in the way of the temporary file does for a full disk.
+    let in_the_way = only(&folder, ".work").with_extension("place.new");
+    fs::create_dir(&in_the_way).unwrap();
+    session.note(content("run", "two"));
+    session.flush();
+    assert!(session.new_trouble().unwrap().contains("cannot be kept"));
+    session.note(content("run", "three"));
+    session.flush();
+    assert_eq!(session.new_trouble(), None, "told twice");
+    fs::remove_dir(&in_the_way).unwrap();
+    wait_until(|| names(&folder, ".place").len() == 1);
+    fs::create_dir(&in_the_way).unwrap();
+    session.note(content("run", "four"));
+    session.flush();
+    assert!(session.new_trouble().is_some(), "it is new again");
+}
+
+#[test]
+fn a_folder_that_was_cleared_away_is_made_again() {
+    let (_outer, folder) = folder();
+    let session = Session::begin(&folder).unwrap();
+    session.note(content("run", "one"));
+    session.flush();
+    fs::remove_dir_all(&folder).unwrap();
+    session.note(content("run", "two"));
+    session.flush();
+    assert_eq!(newest(&folder), None, "it is in use");
+    drop(session);
+    assert_eq!(newest(&folder), Some(content("run", "two")));
+}
+
+/// Not a test of its own: a process that keeps a session, and notes what it is told on its input.
+#[test]
+fn child() {
+    let Some(folder) = std::env::var_os(CHILD) else {
+        return;
+    };
+    let found = any(Path::new(&folder));
+    let (session, was) = match found.resumed {
+        Some(resumed) => (resumed.session, resumed.what.place),
+        None => (
+            Session::begin(Path::new(&folder)).unwrap(),
+            "new".to_owned(),
+        ),
+    };
+    println!("\nbegins at {was}");
+    for line in std::io::stdin().lines().map(Result::unwrap) {
+        if line == END {
+            farewell::say(Farewell::End);
+            std::process::exit(0); // nothing is dropped
+        }
+        session.note(content("run", &line));
+        println!("\nnoted");
+    }
+}
+
+/// A process with a session of its own.
+struct Other {
+    child: Child,
+    says: BufReader<ChildStdout>,
+}
+
+impl Other {
+    fn begin(folder: &Path) -> Self {
+        let mut child = Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "child", "--nocapture"])
+            .env(CHILD, folder)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let says = BufReader::new(child.stdout.take().unwrap());
+        Self { child, says }
+    }
+
+    fn hear(&mut self, begin: &str) -> String {
+        let lines = self.says.by_ref().lines().map(Result::unwrap);
+        lines
+            .skip_while(|line| !line.starts_with(begin))
+            .next()
+            .unwrap()
+    }
+
+    fn note(&mut self, place: &str) {
+        writeln!(self.child.stdin.as_mut().unwrap(), "{place}").unwrap();
+        self.hear("noted");
+    }
+
+    fn kill(self) {
+        drop(self);
+    }
+}
+
+impl Drop for Other {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+#[test]
+fn a_process_that_is_killed_loses_a_second_at_most_and_frees_its_session() {
+    let (_outer, folder) = folder();
+    let mut other = Other::begin(&folder);
+    assert_eq!(other.hear("begins"), "begins at new");
+    for n in 0..100 {
+        other.note(&n.to_string());
+    }
+    thread::sleep(Duration::from_secs(1));
+    assert_eq!(newest(&folder), None, "it is in use");
+    other.kill();
+    assert_eq!(newest(&folder), Some(content("run", "99")));
+    let mut next = Other::begin(&folder);
+    assert_eq!(next.hear("begins"), "begins at 99");
+    assert_eq!(
+        Other::begin(&folder).hear("begins"),
+        "begins at new",
+        "it is in use"
+    );
+    next.kill();
+}
+
+#[test]
+fn a_farewell_loses_nothing() {
+    let (_outer, folder) = folder();
+    let mut other = Other::begin(&folder);
+    (0..1000).for_each(|n| other.note(&n.to_string()));
+    writeln!(other.child.stdin.as_mut().unwrap(), "{END}").unwrap();
+    assert!(other.child.wait().unwrap().success());
+    assert_eq!(newest(&folder), Some(content("run", "999")));
+}
+
+#[test]
+fn killed_at_any_moment_it_leaves_a_whole_session() {
+    let (_outer, folder) = folder();
+    for n in 0..20 {
+        let mut other = Other::begin(&folder);
+        other.hear("begins");
+        other.note(&n.to_string().repeat(1 << 22)); // takes a while to write
+        thread::sleep(Duration::from_millis(n % 10));
+        other.kill();
+        assert!(any(&folder).kept_aside.is_empty());
+    }
+}
