@@ -89,7 +89,7 @@ fn lab(
     let mut lab = Lab::new(name, scenario, view, running);
     // What a change has mended is no scenario before it, and has no note to lose.
     if let Ok(file) = Document::open(name).and_then(|document| document.scenario()) {
-        lab.set_file(&file);
+        lab.set_file(Arc::new(file));
     }
     Ok(lab)
 }

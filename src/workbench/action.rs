@@ -7,6 +7,28 @@ pub enum Action {
     TogglePause,
     /// One time step on, or as many as have been counted.
     Step,
+    /// One time step back, or as many as have been counted.
+    StepBack,
+    /// Asks for a step or a time to go to; with a count, goes to that step.
+    GoTo,
+    /// Takes the last thing back that was done.
+    Undo,
+    /// Brings it again.
+    Redo,
+    /// Gives the push that is chosen.
+    Push,
+    /// The focus on the push that is to come.
+    ChoosePush,
+    /// The focus on the values of the scenario.
+    Parameters,
+    /// Asks for the value that is selected.
+    Edit,
+    /// Asks where to export the run.
+    Export,
+    /// Asks where to save the run file.
+    SaveRun,
+    /// Asks where to save the present state as a scenario.
+    SavePresent,
     /// A digit of the count for the next action.
     Digit(u8),
     /// The next speed up.
@@ -25,8 +47,10 @@ pub enum Action {
     FillScreen,
     /// The 3-D view fills the screen, or no longer.
     ThreeD,
-    /// Moves what is in focus.
+    /// Moves what is in focus, or nudges it.
     Move(Direction),
+    /// The same, ten times.
+    MoveFar(Direction),
     /// The traces show twice the time.
     WiderWindow,
     /// The traces show half the time.
@@ -43,10 +67,14 @@ pub enum Action {
     Choose,
     /// Types a filter for the browser.
     Filter,
-    /// A character of it.
+    /// A character of it, or of what a dialog asks for.
     Type(char),
-    /// Takes its last character away.
+    /// Takes the last character away.
     Erase,
+    /// Something else in the field of a dialog.
+    InField(FieldEdit),
+    /// Takes what was typed into a dialog.
+    Accept,
     /// The list of keys.
     Help,
     /// Closes what lies on top.
@@ -57,6 +85,20 @@ pub enum Action {
     Suspend,
     /// Ends the program.
     Quit,
+}
+
+/// What can be done in a field beside typing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "they say it")]
+pub enum FieldEdit {
+    Delete,
+    Clear,
+    Left,
+    Right,
+    Home,
+    End,
+    Next,
+    Previous,
 }
 
 /// Where to.

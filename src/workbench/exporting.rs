@@ -20,6 +20,7 @@ const PATIENCE: Duration = Duration::from_millis(300);
 
 /// An export under way, or done. Dropped, it is cancelled, and nothing is left of it unless it was done.
 pub struct Exporting {
+    path: PathBuf,
     shared: Arc<Shared>,
     worker: Option<JoinHandle<Result<Written, String>>>,
     _at_end: Registered,
@@ -93,6 +94,7 @@ impl Exporting {
             has_ended: AtomicBool::new(false),
         });
         let (at_work, at_end) = (Arc::clone(&shared), Arc::clone(&shared));
+        let path = job.path.clone();
         let work = move || {
             let result = job.write(&at_work);
             at_work.has_ended.store(true, Ordering::SeqCst);
@@ -102,10 +104,16 @@ impl Exporting {
             .name("export".to_owned())
             .spawn(work)?;
         Ok(Self {
+            path,
             shared,
             worker: Some(worker),
             _at_end: farewell::hook(move |farewell| at_end.part(farewell)),
         })
+    }
+
+    /// The full name that the file will have.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// The step it has come to, and the one at which it ends.

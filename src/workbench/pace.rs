@@ -40,6 +40,14 @@ impl Pace {
         }
     }
 
+    /// Sets the speed, if it is one.
+    pub fn set_speed(&mut self, speed: Speed) {
+        match speed {
+            Speed::Times(times) if !(times > 0.0 && times.is_finite()) => {}
+            speed => self.speed = speed,
+        }
+    }
+
     /// The speed that is set.
     pub fn speed(&self) -> Speed {
         self.speed

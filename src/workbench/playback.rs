@@ -74,6 +74,15 @@ impl Playback {
         self.set_running(running);
     }
 
+    /// Begins the run of another `scenario`; speed, running or not, and the exact motion's being shown stay as they are.
+    pub fn begin(&mut self, scenario: Arc<Scenario>) {
+        let shows_exact = self.run.overlay().is_some();
+        self.run = LiveRun::new(scenario);
+        self.run.set_overlay(shows_exact);
+        self.hurries = false;
+        self.stop = self.next_stop();
+    }
+
     /// Goes to `step` and stops there: where the run has been before at once, unless the body is large; beyond, as fast
     /// as it can.
     pub fn go_to(&mut self, step: u64) {
@@ -198,6 +207,11 @@ impl Playback {
     pub fn steps_to_go(&self) -> Option<u64> {
         self.hurries
             .then(|| self.stop.saturating_sub(self.step_number()))
+    }
+
+    /// Sets the speed.
+    pub fn set_speed(&mut self, speed: Speed) {
+        self.pace.set_speed(speed);
     }
 
     /// Goes `notches` up the ladder of speeds, or down.

@@ -53,7 +53,7 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
 fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     match lab.mode() {
-        Mode::Lab => {}
+        Mode::Lab | Mode::Dialog => {}
         Mode::Browser | Mode::Filter => {
             BrowserPane {
                 browser: lab.browser(),

@@ -6,12 +6,14 @@ use super::markers::Marker;
 use super::theme::{Background, Theme};
 use crate::run::Clock;
 use crate::scenario::Scenario;
+use serde::{Deserialize, Serialize};
 
 /// A sweep that takes longer than this to be drawn, s, is no picture of the run.
 const LONGEST_SWEEP_S: f64 = 120.0;
 
 /// The panes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Pane {
     /// x, y, z and tilt over time.
     Traces,
@@ -98,6 +100,12 @@ impl View {
             self.focus = pane;
             self.scroll = 0;
         }
+    }
+
+    /// The focus on `pane`; it fills the screen where it is not among the panes `shown`.
+    pub fn turn_to(&mut self, pane: Pane, shown: &[Pane]) {
+        self.filled = (self.filled && self.focus == pane) || !shown.contains(&pane);
+        self.focus = pane;
     }
 
     /// The focus on one of `shown`.

@@ -1,12 +1,29 @@
 //! The lab's state, and what every action does to it. It draws nothing and reads no clock: time comes in.
+//!
+//! This file has the state, the dispatch of actions and the passing of time; the rooms beside it carry out what
+//! belongs together: [`travel`] through the run, [`editing`] it, [`opening`] another, [`dialogs`] and what they ask
+//! for, [`keeping`] all of it.
+
+mod dialogs;
+mod editing;
+mod keeping;
+mod opening;
+mod travel;
+
+pub use dialogs::Dialog;
+pub use keeping::Unreadable;
 
 use super::action::{Action, Direction};
 use super::advisor::Advisor;
 use super::browser::Browser;
+use super::editor::Editor;
+use super::exporting::{Exporting, Written};
 use super::ghost::Ghost;
+use super::history::History;
 use super::keymap::{Key, Mode};
 use super::layout::Layout;
 use super::live::LiveRun;
+use super::next_push::NextPush;
 use super::note;
 use super::notice::Notice;
 use super::pace::Speed;
@@ -15,9 +32,10 @@ use super::readouts::{self, Readouts};
 use super::view::{Pane, View};
 use crate::analysis::health::Advice;
 use crate::run::NotFinite;
-use crate::scenario::{Document, Scenario};
+use crate::scenario::Scenario;
+use crate::scenario::journal::Journal;
+use crate::scenario::parameters::Parameter;
 use ratatui::layout::Rect;
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -25,6 +43,8 @@ use std::time::Duration;
 const PAGE: isize = 10;
 /// Degrees the camera turns at a key.
 const TURN_DEG: f64 = 10.0;
+/// What is moved far is moved so often.
+const FAR: i32 = 10;
 /// Part of the traces' time that may pass between two readings.
 const FAST: f64 = 0.1;
 /// A step that takes longer than this is announced, s.
@@ -47,11 +67,26 @@ pub enum Request {
 
 /// The whole of what the user sees and steers.
 pub struct Lab {
-    /// SCENARIO as it was opened.
-    name: String,
-    /// How the scenario was changed from its file, where it was.
+    /// The run, what was done to it, and the runs before it.
+    history: History,
+    /// The scenario as it was opened, and how the run differs from it, where it does.
+    file: Arc<Scenario>,
     changed_from_file: Option<String>,
     playback: Playback,
+    ghost: Option<Ghost>,
+    /// What can be edited: every value of the scenario as it is now, and below them the push to come.
+    parameters: Vec<Parameter>,
+    editor: Editor,
+    next_push: NextPush,
+    /// How many of the run's edits are in force on what the editor lists.
+    edits_listed: usize,
+    dialog: Option<Dialog>,
+    exporting: Option<Exporting>,
+    written: Vec<Written>,
+    /// Whether the end was asked for while something was under way.
+    was_warned: bool,
+    /// The text of run and journal for the session, as long as it holds.
+    work: Option<Arc<str>>,
     /// Whether to look for what would mend a run.
     is_advised: bool,
     advisor: Option<Advisor>,
@@ -72,10 +107,22 @@ pub struct Lab {
 impl Lab {
     /// A lab with the run of `scenario`, opened as `name`, at step 0.
     pub fn new(name: &str, scenario: Arc<Scenario>, view: View, running: bool) -> Self {
-        let mut playback = Playback::new(scenario, running);
-        Self {
-            name: name.to_owned(),
+        let history = History::new(name, Journal::of(scenario.file.clone()));
+        let mut playback = Playback::new(Arc::clone(&scenario), running);
+        let mut lab = Self {
+            history,
             changed_from_file: None,
+            ghost: None,
+            parameters: Vec::new(),
+            editor: Editor::default(),
+            next_push: NextPush::of(&scenario),
+            edits_listed: 0,
+            file: scenario,
+            dialog: None,
+            exporting: None,
+            written: Vec::new(),
+            was_warned: false,
+            work: None,
             is_advised: false,
             advisor: None,
             readouts: playback.read(),
@@ -90,12 +137,15 @@ impl Lab {
             now: Duration::ZERO,
             size: Rect::new(0, 0, 80, 24),
             changed: true,
-        }
+        };
+        lab.list_parameters();
+        lab
     }
 
     /// Says that its scenario was `file` before it was changed: the file's note is shown only where it still holds.
-    pub fn set_file(&mut self, file: &Scenario) {
-        self.changed_from_file = note::changed(file, self.run().scenario());
+    pub fn set_file(&mut self, file: Arc<Scenario>) {
+        self.changed_from_file = note::changed(&file, self.run().scenario());
+        self.file = file;
     }
 
     /// From now on looks in the background for what would mend a run that is not to be believed.
@@ -134,6 +184,7 @@ impl Lab {
             self.changed = true;
         }
         self.changed |= self.advisor.as_mut().is_some_and(Advisor::has_news);
+        self.follow_export();
         let is_due = self.is_fast() || now >= self.read_at + readouts::EVERY;
         if self.changed && is_due {
             self.read_now();
@@ -169,19 +220,34 @@ impl Lab {
     pub fn update(&mut self, action: Action) -> Option<Request> {
         let count = self.count.take();
         let closed = self.notice.take_back() || count.is_some();
+        let was_warned = std::mem::take(&mut self.was_warned);
         match action {
             Action::TogglePause => self.toggle_pause(),
             Action::Step => self.playback.take_steps(count.unwrap_or(1)),
+            Action::StepBack => self.step_back(count.unwrap_or(1)),
             Action::Digit(digit) => self.count = Some(counted(count, digit)),
             Action::Faster => self.shift_speed(repeated(count)),
             Action::Slower => self.shift_speed(-repeated(count)),
             Action::Restart => self.playback.restart(),
+            Action::GoTo => self.ask_where_to_go(count),
+            Action::Undo => self.undo(repeated(count)),
+            Action::Redo => self.redo(repeated(count)),
+            Action::Push => self.push(),
+            Action::ChoosePush => self.choose_push(),
+            Action::Parameters => self.turn_to_parameters(),
+            Action::Edit => self.ask_for_value(),
+            Action::Export => self.ask_for_export(),
+            Action::SaveRun => self.ask_where_to_save_the_run(),
+            Action::SavePresent => self.ask_where_to_save_the_present(),
             Action::ToggleExact => self.toggle_exact(),
             Action::NextPane => self.view.shift_focus(&self.layout().focusable(), true),
             Action::PreviousPane => self.view.shift_focus(&self.layout().focusable(), false),
             Action::FillScreen => self.view.toggle_filled(),
             Action::ThreeD => self.view.toggle_three_d(),
             Action::Move(direction) => self.shift(direction, repeated(count)),
+            Action::MoveFar(direction) => {
+                self.shift(direction, repeated(count).saturating_mul(FAR))
+            }
             Action::WiderWindow => self.zoom(true),
             Action::NarrowerWindow => self.zoom(false),
             Action::NextMarker => self.next_marker(),
@@ -190,13 +256,19 @@ impl Lab {
             Action::Browse => self.browse(),
             Action::Choose => self.choose(),
             Action::Filter => self.mode = Mode::Filter,
-            Action::Type(typed) => self.browser.type_char(typed),
-            Action::Erase => self.browser.erase(),
+            Action::Type(typed) => self.type_char(typed),
+            Action::Erase => self.erase(),
+            Action::InField(edit) => self.edit_field(edit),
+            Action::Accept => self.accept(),
             Action::Help => self.toggle_help(),
             Action::Close => self.close(closed),
             Action::Redraw => return Some(Request::Redraw),
             Action::Suspend => return Some(Request::Suspend),
-            Action::Quit => return Some(Request::Quit),
+            Action::Quit => {
+                if self.may_quit(was_warned) {
+                    return Some(Request::Quit);
+                }
+            }
         }
         self.view.keep_focus(&self.layout().focusable());
         self.read_now();
@@ -244,13 +316,13 @@ impl Lab {
     pub fn refuse(&mut self, key: Key) {
         self.count = None;
         let text = match (self.mode, key) {
-            (Mode::Lab, Key::Enter) => {
-                "Enter opens what is selected in a list: o shows the list".to_owned()
-            }
             (Mode::Lab, Key::Char('/')) => {
                 "/ filters the list of presets and files: o shows it".to_owned()
             }
             (Mode::Filter, _) => format!("no key {key} here; Enter opens, Esc clears the filter"),
+            (Mode::Dialog, _) => {
+                format!("no key {key} here; Enter takes what is typed, Esc leaves it")
+            }
             _ => format!("no key {key} here; ? lists them"),
         };
         self.say(text);
@@ -271,8 +343,9 @@ impl Lab {
         match (self.mode, self.view.focus) {
             (Mode::Browser | Mode::Filter, _) => self.browser.shift(rows),
             (Mode::Lab, Pane::ThreeD) => self.turn_camera(direction, f64::from(times) * TURN_DEG),
+            (Mode::Lab, Pane::Parameters) => self.move_in_parameters(direction, times),
             (Mode::Lab, Pane::Traces | Pane::FromAbove) => {
-                self.say("arrows turn the 3-D view (d) and move in lists");
+                self.say("arrows change values (e), turn the 3-D view (d) and move in lists");
             }
             _ => self.view.scroll = self.view.scroll.saturating_add_signed(rows),
         }
@@ -316,43 +389,6 @@ impl Lab {
         });
     }
 
-    fn browse(&mut self) {
-        self.browser = Browser::new(Path::new("."), &self.name);
-        self.mode = Mode::Browser;
-    }
-
-    fn choose(&mut self) {
-        let Some(name) = self.browser.choice().map(|entry| entry.name.clone()) else {
-            return self.say("nothing is selected: Esc clears the filter");
-        };
-        match Document::open(&name).and_then(|document| document.scenario()) {
-            Ok(scenario) => self.open(name, Arc::new(scenario)),
-            Err(problems) => {
-                let first = problems
-                    .list
-                    .first()
-                    .map(ToString::to_string)
-                    .unwrap_or_default();
-                self.say(format!(
-                    "{}: {}",
-                    problems.origin,
-                    first.lines().next().unwrap_or_default()
-                ));
-            }
-        }
-    }
-
-    fn open(&mut self, name: String, scenario: Arc<Scenario>) {
-        let shows_exact = self.run().overlay().is_some();
-        self.mode = Mode::Lab;
-        self.name = name;
-        self.changed_from_file = None;
-        self.advisor = None;
-        self.view.fit(&scenario);
-        self.playback = Playback::new(scenario, true);
-        self.playback.set_exact(shows_exact);
-    }
-
     fn toggle_help(&mut self) {
         self.view.scroll = 0;
         if self.mode == Mode::Help {
@@ -373,11 +409,13 @@ impl Lab {
                 self.mode = Mode::Browser;
             }
             Mode::Browser => self.mode = Mode::Lab,
+            Mode::Dialog => self.close_dialog(),
             Mode::Lab if self.playback.steps_to_go().is_some() => {
                 self.stop_steps();
             }
             Mode::Lab if self.view.filled => self.view.filled = false,
             Mode::Lab if closed => {}
+            Mode::Lab if self.exporting.is_some() => self.stop_export(),
             Mode::Lab => self.say("nothing to close; q leaves"),
         }
     }
@@ -390,6 +428,9 @@ impl Lab {
         self.readouts = self.playback.read();
         self.read_at = self.now;
         self.changed = true;
+        if self.edits_in_force() != self.edits_listed {
+            self.list_parameters();
+        }
         if self.is_advised
             && self.advisor.is_none()
             && self.readouts.health.is_believed() == Some(false)
@@ -435,9 +476,29 @@ impl Lab {
         self.playback.run()
     }
 
-    /// The run before, where a restart by an edit has left one.
+    /// The run before, where an edit has begun this one anew.
     pub fn ghost(&self) -> Option<&Ghost> {
-        None
+        self.ghost.as_ref()
+    }
+
+    /// What can be edited, and which of it is selected.
+    pub fn editor(&self) -> &Editor {
+        &self.editor
+    }
+
+    /// The dialog on top, if there is one.
+    pub fn dialog(&self) -> Option<&Dialog> {
+        self.dialog.as_ref()
+    }
+
+    /// What has been exported since the lab was opened.
+    pub fn written(&self) -> &[Written] {
+        &self.written
+    }
+
+    /// Whether something is under way that time changes, beside the run.
+    pub fn is_exporting(&self) -> bool {
+        self.exporting.is_some()
     }
 
     /// How it is looked at.
@@ -478,7 +539,8 @@ impl Lab {
             .playback
             .steps_to_go()
             .map(|left| format!("stepping: {} to go, Esc stops", grouped(left)));
-        stepping.or_else(|| self.notice.text().map(str::to_owned))
+        let said = || self.notice.text().map(str::to_owned);
+        stepping.or_else(said).or_else(|| self.export_in_words())
     }
 }
 

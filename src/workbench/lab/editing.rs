@@ -1,0 +1,337 @@
+//! Changing the run: a value of its scenario, a push; and taking it back.
+
+use super::super::action::Direction;
+use super::super::editor::Line;
+use super::super::history::Turn;
+use super::super::next_push::{Field, NextPush};
+use super::super::view::Pane;
+use super::{Lab, dialogs::Asking};
+use crate::scenario::journal::{Act, Effect};
+use crate::scenario::parameters::{self, Parameter, parameters};
+use crate::scenario::{Problems, Scenario};
+use std::sync::Arc;
+use toml::Value;
+
+/// The editor's group of lines for the push to come.
+const NEXT_PUSH: &str = "next push (p)";
+
+/// What a line of the editor stands for.
+enum Selected<'a> {
+    Parameter(&'a Parameter),
+    NextPush(Field),
+}
+
+impl Lab {
+    /// Lists what can be edited, as it is now.
+    pub(super) fn list_parameters(&mut self) {
+        self.edits_listed = self.edits_in_force();
+        let scenario = self.run().scenario();
+        let table = parameters::table_at(scenario, self.playback.step_number());
+        let list = parameters(&table, scenario);
+        let line = |parameter: &Parameter| Line {
+            key: parameter.key.clone(),
+            group: parameter.group.clone(),
+            label: parameter.label.clone(),
+            value: parameter.shown(),
+            unit: parameter.unit().to_owned(),
+            is_default: parameter.is_default,
+        };
+        let lines = list
+            .iter()
+            .map(line)
+            .chain(next_push_lines(&self.next_push))
+            .collect();
+        self.parameters = list;
+        self.editor.set_lines(lines);
+    }
+
+    /// How many edits have been made up to where the run stands, those made here counted in.
+    pub(super) fn edits_in_force(&self) -> usize {
+        let here = self.playback.step_number();
+        self.run()
+            .scenario()
+            .edits
+            .partition_point(|edit| edit.step <= here)
+    }
+
+    fn selected(&self) -> Option<Selected<'_>> {
+        let index = self.editor.selected_index();
+        let next_push = || {
+            Field::ALL
+                .get(index.checked_sub(self.parameters.len())?)
+                .copied()
+                .map(Selected::NextPush)
+        };
+        self.parameters
+            .get(index)
+            .map(Selected::Parameter)
+            .or_else(next_push)
+    }
+
+    pub(super) fn turn_to_parameters(&mut self) {
+        self.view
+            .turn_to(Pane::Parameters, &self.layout().focusable());
+        self.say(
+            "Up and Down choose a value, Left and Right nudge it, Enter types it; u takes it back",
+        );
+    }
+
+    pub(super) fn choose_push(&mut self) {
+        self.view
+            .turn_to(Pane::Parameters, &self.layout().focusable());
+        self.editor.select(NEXT_PUSH, Field::Size.label().0);
+        self.say("the push to come: p gives it");
+    }
+
+    pub(super) fn move_in_parameters(&mut self, direction: Direction, times: i32) {
+        match direction {
+            Direction::Up | Direction::PageUp => self.editor.shift(-(times as isize)),
+            Direction::Down | Direction::PageDown => self.editor.shift(times as isize),
+            Direction::Left => self.nudge(-times),
+            Direction::Right => self.nudge(times),
+        }
+    }
+
+    fn nudge(&mut self, times: i32) {
+        let scenario = Arc::clone(self.run().scenario());
+        match self.selected() {
+            None => {}
+            Some(Selected::Parameter(parameter)) => {
+                let (key, label) = (parameter.key.clone(), parameter.label.clone());
+                let done = parameter
+                    .nudged(times)
+                    .map_err(|reason| format!("{label} {reason}"));
+                let done = done.and_then(|value| self.set(&key, value));
+                done.unwrap_or_else(|reason| self.say(reason));
+            }
+            Some(Selected::NextPush(field)) => match self.next_push.nudged(field, times, &scenario)
+            {
+                Ok(next) => self.choose_next_push(next),
+                Err(reason) => self.say(reason),
+            },
+        }
+    }
+
+    fn choose_next_push(&mut self, next: NextPush) {
+        self.next_push = next;
+        self.list_parameters();
+    }
+
+    /// Asks for the value of the line that is selected.
+    pub(super) fn ask_for_value(&mut self) {
+        if self.view.focus != Pane::Parameters {
+            return self.turn_to_parameters();
+        }
+        let Some(line) = self.editor.selected().cloned() else {
+            return;
+        };
+        let title = match line.key.is_empty() {
+            true => format!("{} {}", line.group, line.label),
+            false => line.key.clone(),
+        };
+        let label = match line.unit.is_empty() {
+            true => line.label.clone(),
+            false => format!("{}, {}", line.label, line.unit),
+        };
+        let about = match self.selected() {
+            Some(Selected::Parameter(parameter)) => about(parameter),
+            _ => vec!["it acts when p gives the push".to_owned()],
+        };
+        let about: Vec<_> = about.iter().map(String::as_str).collect();
+        self.ask(Asking::Value, &title, &[(&label, line.value)], &about);
+    }
+
+    /// Takes `text` for the value of the line that is selected.
+    ///
+    /// # Errors
+    /// Why it is none; nothing has changed then.
+    pub(super) fn take_value(&mut self, text: &str) -> Result<(), String> {
+        let scenario = Arc::clone(self.run().scenario());
+        match self.selected() {
+            None => Ok(()),
+            Some(Selected::Parameter(parameter)) => {
+                let (key, label) = (parameter.key.clone(), parameter.label.clone());
+                let value = parameter
+                    .typed(text)
+                    .map_err(|reason| format!("{label} {reason}"))?;
+                match value == parameter.value && !parameter.is_default {
+                    true => Ok(()),
+                    false => self.set(&key, value),
+                }
+            }
+            Some(Selected::NextPush(field)) => {
+                let next = self.next_push.typed(field, text, &scenario)?;
+                self.choose_next_push(next);
+                Ok(())
+            }
+        }
+    }
+
+    /// Sets `key` to `value`: for the steps to come, or in a new run.
+    fn set(&mut self, key: &str, value: Value) -> Result<(), String> {
+        let step = self.playback.step_number();
+        let in_one_line = |problems: Problems| problems.in_one_line();
+        match Effect::of(key) {
+            Effect::NewRun => {
+                let scenario = self
+                    .history
+                    .begin_with(step, key, value)
+                    .map_err(in_one_line)?;
+                self.begin_run(Arc::new(scenario));
+                if step > 0 {
+                    self.say("a new run; the one before is dotted, and u goes back to it");
+                }
+            }
+            Effect::FromHere | Effect::None => {
+                self.act(Act::set(key, value))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Does `act` here.
+    fn act(&mut self, act: Act) -> Result<(), String> {
+        let step = self.playback.step_number();
+        let is_described = matches!(act, Act::Describe(_));
+        let later = self.history.present().journal.later_than(step);
+        let scenario = self
+            .history
+            .act(step, act)
+            .map_err(|problems| problems.in_one_line())?;
+        self.take_over(scenario, is_described);
+        if later > 0 && !is_described {
+            self.say(format!(
+                "{later} later actions have made way for it; u brings them back"
+            ));
+        }
+        Ok(())
+    }
+
+    fn take_over(&mut self, scenario: Scenario, is_described: bool) {
+        let scenario = Arc::new(scenario);
+        match is_described {
+            true => self.playback.describe_as(&scenario),
+            false => self.playback.go_on_in(&scenario),
+        }
+        self.is_another();
+    }
+
+    /// Gives the push to come, from here on.
+    pub(super) fn push(&mut self) {
+        let run = self.run();
+        let given = self
+            .next_push
+            .given(run.scenario(), run.simulation().state());
+        let said = format!(
+            "pushed: {}; u takes it back, P chooses another",
+            self.next_push.in_words()
+        );
+        let done = given.and_then(|push| self.act(Act::Push(push)));
+        match done {
+            Ok(()) if self.notice.text().is_none() => self.say(said),
+            Ok(()) => {}
+            Err(reason) => self.say(reason),
+        }
+    }
+
+    pub(super) fn undo(&mut self, times: i32) {
+        self.turn_back_or_on(
+            times,
+            "undone",
+            "U brings it again",
+            "nothing to undo",
+            super::History::undo,
+        );
+    }
+
+    pub(super) fn redo(&mut self, times: i32) {
+        self.turn_back_or_on(
+            times,
+            "done again",
+            "u takes it back",
+            "nothing to do again",
+            super::History::redo,
+        );
+    }
+
+    fn turn_back_or_on(
+        &mut self,
+        times: i32,
+        done: &str,
+        other_way: &str,
+        nothing: &str,
+        turn: impl Fn(&mut super::History, u64) -> Option<Turn>,
+    ) {
+        for _ in 0..times {
+            let (here, name) = (self.playback.step_number(), self.name().to_owned());
+            match turn(&mut self.history, here) {
+                None => return self.say(nothing),
+                Some(Turn::Here { step, act }) => {
+                    self.turn_here(step, &act);
+                    self.say(format!(
+                        "{done}: {}, at step {step}; {other_way}",
+                        act.in_words()
+                    ));
+                }
+                Some(Turn::Elsewhere) => {
+                    self.turn_elsewhere(&name);
+                    self.say(format!("{done}: another run; {other_way}"));
+                }
+            }
+        }
+    }
+
+    /// The same run with another journal, from `step` on.
+    fn turn_here(&mut self, step: u64, act: &Act) {
+        let scenario = match self.history.present().journal.scenario() {
+            Ok(scenario) => Arc::new(scenario),
+            Err(problems) => return self.say(problems.in_one_line()),
+        };
+        match act {
+            Act::Describe(_) => self.playback.describe_as(&scenario),
+            Act::Edit(_) | Act::Push(_) => self.playback.turn_at(step, &scenario),
+        }
+        self.is_another();
+    }
+
+    /// Another run, where it was left; the one opened as `before` was shown until now.
+    fn turn_elsewhere(&mut self, before: &str) {
+        let chapter = self.history.present();
+        let (name, left_at) = (chapter.name.clone(), chapter.left_at);
+        match chapter.journal.scenario().map(Arc::new) {
+            Err(problems) => self.say(problems.in_one_line()),
+            Ok(scenario) if name == before => self.begin_run(scenario),
+            Ok(scenario) => self.show_another(scenario, false),
+        }
+        self.playback.go_to(left_at);
+    }
+}
+
+fn next_push_lines(push: &NextPush) -> impl Iterator<Item = Line> {
+    Field::ALL.into_iter().map(|field| {
+        let (label, unit) = field.label();
+        Line {
+            key: String::new(),
+            group: NEXT_PUSH.to_owned(),
+            label: label.to_owned(),
+            value: push.shown(field),
+            unit: unit.to_owned(),
+            is_default: false,
+        }
+    })
+}
+
+/// What is known of a parameter: its meaning, its choices, when a change acts.
+fn about(parameter: &Parameter) -> Vec<String> {
+    let mut lines = vec![parameter.spec.about.to_owned()];
+    if !parameter.choices.is_empty() {
+        lines.push(format!("one of {}", parameter.choices.join(", ")));
+    }
+    let when = match Effect::of(&parameter.key) {
+        Effect::NewRun => "a new run begins with it; the one before stays, dotted",
+        Effect::FromHere => "it acts from the next step on",
+        Effect::None => "no number depends on it",
+    };
+    lines.push(when.to_owned());
+    lines
+}

@@ -1,0 +1,74 @@
+//! Opening another preset or file, and going from one run to another.
+
+use super::super::browser::Browser;
+use super::super::ghost::Ghost;
+use super::super::keymap::Mode;
+use super::super::next_push::NextPush;
+use super::super::playback::Playback;
+use super::{Lab, note};
+use crate::scenario::journal::Journal;
+use crate::scenario::{Document, Scenario};
+use std::path::Path;
+use std::sync::Arc;
+
+impl Lab {
+    pub(super) fn browse(&mut self) {
+        self.browser = Browser::new(Path::new("."), self.name());
+        self.mode = Mode::Browser;
+    }
+
+    pub(super) fn choose(&mut self) {
+        let Some(name) = self.browser.choice().map(|entry| entry.name.clone()) else {
+            return self.say("nothing is selected: Esc clears the filter");
+        };
+        match Document::open(&name).and_then(|document| document.scenario()) {
+            Ok(scenario) => self.open(&name, Arc::new(scenario)),
+            Err(problems) => self.say(format!("{}: {}", problems.origin, problems.in_one_line())),
+        }
+    }
+
+    fn open(&mut self, name: &str, scenario: Arc<Scenario>) {
+        self.mode = Mode::Lab;
+        self.history.begin(
+            self.playback.step_number(),
+            name,
+            Journal::of(scenario.file.clone()),
+        );
+        self.show_another(scenario, true);
+    }
+
+    /// Shows the run of `scenario`, which is none of the present scenario's.
+    pub(super) fn show_another(&mut self, scenario: Arc<Scenario>, running: bool) {
+        let shows_exact = self.run().overlay().is_some();
+        self.ghost = None;
+        self.view.fit(&scenario);
+        self.file = Arc::clone(&scenario);
+        self.next_push = NextPush::of(&scenario);
+        self.playback = Playback::new(scenario, running);
+        self.playback.set_exact(shows_exact);
+        self.is_another();
+    }
+
+    /// Begins the run of `scenario`, which differs from the present one by an edit: that one stays as a ghost.
+    pub(super) fn begin_run(&mut self, scenario: Arc<Scenario>) {
+        if self.run().furthest() > 0 {
+            self.ghost = Some(Ghost::of(self.run()));
+        }
+        self.next_push = self.next_push.clone().suited_to(&scenario);
+        self.playback.begin(scenario);
+        self.is_another();
+    }
+
+    /// What was known of the scenario before no longer holds.
+    pub(super) fn is_another(&mut self) {
+        self.advisor = None;
+        self.work = None;
+        self.changed_from_file = note::changed(&self.file, self.run().scenario());
+        self.list_parameters();
+    }
+
+    /// SCENARIO as it was opened.
+    pub(super) fn name(&self) -> &str {
+        &self.history.present().name
+    }
+}

@@ -1,0 +1,76 @@
+//! Through the run: back, and to any step or time.
+
+use super::super::keymap::Mode;
+use super::{Lab, dialogs::Asking};
+use crate::run::Simulation;
+
+/// What the user may type to say where to go.
+const WHERE: &str =
+    "a step (421), a time (12.5 s), so many steps on or back (+50, -50), start or end";
+
+impl Lab {
+    pub(super) fn step_back(&mut self, steps: u64) {
+        let here = self.playback.step_number();
+        match here {
+            0 => self.say("the run begins here"),
+            _ => self.playback.go_to(here.saturating_sub(steps)),
+        }
+    }
+
+    /// Goes to the step that was `counted`, or asks for one.
+    pub(super) fn ask_where_to_go(&mut self, counted: Option<u64>) {
+        match counted {
+            Some(step) => self.playback.go_to(step),
+            None => self.ask(
+                Asking::GoTo,
+                "go to a step or a time",
+                &[("to", String::new())],
+                &[WHERE],
+            ),
+        }
+    }
+
+    /// Goes where `text` says.
+    ///
+    /// # Errors
+    /// Why that is nowhere.
+    pub(super) fn go_where(&mut self, text: &str) -> Result<(), String> {
+        let step = self.step_meant(text.trim())?;
+        self.mode = Mode::Lab;
+        self.playback.go_to(step);
+        Ok(())
+    }
+
+    fn step_meant(&self, text: &str) -> Result<u64, String> {
+        let here = self.playback.step_number();
+        let wrong = || format!("must be {WHERE}");
+        let digits = text.trim_start_matches(['+', '-']);
+        if let Some(time) = text.strip_suffix('s') {
+            let time_s: f64 = time.trim().parse().map_err(|_| wrong())?;
+            return self.step_at(time_s);
+        }
+        match text {
+            "start" => Ok(0),
+            "end" => Ok(self.run().scenario().steps),
+            _ if text.starts_with('+') => digits
+                .parse()
+                .map_err(|_| wrong())
+                .map(|steps: u64| here.saturating_add(steps)),
+            _ if text.starts_with('-') => digits
+                .parse()
+                .map_err(|_| wrong())
+                .map(|steps: u64| here.saturating_sub(steps)),
+            _ if text.contains('.') => {
+                Err("must be a whole number of steps, or a time such as 12.5 s".to_owned())
+            }
+            _ => text.parse().map_err(|_| wrong()),
+        }
+    }
+
+    fn step_at(&self, time_s: f64) -> Result<u64, String> {
+        match time_s >= 0.0 && time_s.is_finite() {
+            true => Ok(Simulation::step_at(self.run().scenario(), time_s)),
+            false => Err("must be a time from 0 s on: the run begins there".to_owned()),
+        }
+    }
+}
