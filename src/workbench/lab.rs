@@ -3,6 +3,7 @@
 use super::action::{Action, Direction};
 use super::advisor::Advisor;
 use super::browser::Browser;
+use super::editor::Editor;
 use super::ghost::Ghost;
 use super::keymap::{Key, Mode};
 use super::layout::Layout;
@@ -437,6 +438,11 @@ impl Lab {
 
     /// The run before, where a restart by an edit has left one.
     pub fn ghost(&self) -> Option<&Ghost> {
+        None
+    }
+
+    /// What can be edited, where anything can.
+    pub fn editor(&self) -> Option<&Editor> {
         None
     }
 

@@ -44,6 +44,7 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
             scenario: run.scenario(),
             motion: run.simulation().motion(),
             readouts,
+            editor: lab.editor(),
             view,
         }
         .render(area, buf),
