@@ -3,14 +3,20 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use gyrolab::scenario::{Document, presets};
+use gyrolab::workbench::editor::{Editor, Line};
+use gyrolab::workbench::form::{Field, Form};
 use gyrolab::workbench::ghost::Ghost;
 use gyrolab::workbench::live::LiveRun;
 use gyrolab::workbench::markers::Marker;
+use gyrolab::workbench::pace::Pace;
+use gyrolab::workbench::panes::form::FormPane;
 use gyrolab::workbench::panes::from_above::FromAbove;
+use gyrolab::workbench::panes::parameters::Parameters;
 use gyrolab::workbench::panes::three_d::ThreeD;
 use gyrolab::workbench::panes::traces::Traces;
-use gyrolab::workbench::theme::{Background, Theme};
-use gyrolab::workbench::view::View;
+use gyrolab::workbench::readouts::Readouts;
+use gyrolab::workbench::theme::{Background, Role, Theme};
+use gyrolab::workbench::view::{Pane, View};
 use proptest::prelude::*;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
@@ -43,7 +49,12 @@ fn view(run: &LiveRun, marker: Marker) -> View {
 fn drawn(widget: impl Widget, (width, height): (u16, u16)) -> String {
     let mut buf = Buffer::empty(Rect::new(0, 0, width, height));
     widget.render(buf.area, &mut buf);
-    let lines = buf.content.chunks(width.into());
+    text(&buf)
+}
+
+/// Its cells as text, a line each.
+fn text(buf: &Buffer) -> String {
+    let lines = buf.content.chunks(buf.area.width.into());
     let line = |cells: &[Cell]| cells.iter().map(Cell::symbol).collect::<String>();
     lines
         .map(|cells| line(cells).trim_end().to_owned() + "\n")
@@ -198,6 +209,242 @@ fn a_push_that_acts_is_an_arrow() {
     assert!(!drawn(ThreeD { run: &over, view }, ROUND).contains('F'));
 }
 
+/// What the lab lists of method-2, or something like it: key, group, label, value, unit, whether it is a default.
+const LINES: [(&str, &str, &str, &str, &str, bool); 22] = [
+    (
+        "title",
+        "scenario",
+        "title",
+        "Method 2, as the report has it",
+        "",
+        false,
+    ),
+    ("trace", "scenario", "traced point", "top", "", true),
+    ("body.rim.points", "body", "rim points", "10", "", false),
+    ("body.rim.radius_m", "body", "rim radius", "0.8", "m", false),
+    (
+        "body.rim.height_m",
+        "body",
+        "rim height",
+        "0.565685424949238",
+        "m",
+        false,
+    ),
+    (
+        "body.rim.point_mass_kg",
+        "body",
+        "mass each",
+        "0.5",
+        "kg",
+        false,
+    ),
+    ("body.point.0.name", "point top", "name", "top", "", false),
+    (
+        "body.point.0.at_m.2",
+        "point top",
+        "at z",
+        "1.131370849898476",
+        "m",
+        false,
+    ),
+    (
+        "body.point.0.mass_kg",
+        "point top",
+        "mass",
+        "0.0",
+        "kg",
+        true,
+    ),
+    ("start.tilt_deg", "start", "tilt", "45.0", "deg", false),
+    ("start.momentum_Js.0", "start", "Lx", "0.0", "J s", false),
+    ("start.momentum_Js.1", "start", "Ly", "0.0", "J s", false),
+    ("start.momentum_Js.2", "start", "Lz", "1000.0", "J s", false),
+    (
+        "start.momentum_frame",
+        "start",
+        "L given in",
+        "body",
+        "",
+        false,
+    ),
+    (
+        "motion.gravity_m_per_s2",
+        "motion",
+        "gravity",
+        "9.8",
+        "m/s2",
+        true,
+    ),
+    ("motion.scheme", "motion", "scheme", "report", "", true),
+    ("motion.time_step_s", "motion", "dt", "0.1", "s", false),
+    ("motion.steps", "motion", "steps", "2300", "", false),
+    ("push.0.point", "push 1", "point", "top", "", false),
+    ("push.0.force_N.2", "push 1", "Fz", "-100.0", "N", false),
+    ("view.speed", "view", "speed", "20.0", "", false),
+    (
+        "view.look_at",
+        "view",
+        "look at",
+        "the path:\nalmost a circle",
+        "",
+        false,
+    ),
+];
+
+fn editor(group: &str, label: &str) -> Editor {
+    let line =
+        |&(key, group, label, value, unit, is_default): &(&str, &str, &str, &str, &str, bool)| {
+            Line {
+                key: key.to_owned(),
+                group: group.to_owned(),
+                label: label.to_owned(),
+                value: value.to_owned(),
+                unit: unit.to_owned(),
+                is_default,
+            }
+        };
+    let mut editor = Editor::default();
+    editor.set_lines(LINES.iter().map(line).collect());
+    assert!(editor.select(group, label));
+    editor
+}
+
+/// The parameters with `editor` on a sheet of this size; where they have the focus, or fill the screen.
+fn parameters(editor: &Editor, (focus, filled): (bool, bool), size: (u16, u16)) -> Buffer {
+    let mut now = run("wobble-push", &[], "", 500);
+    let readouts = &Readouts::new(&mut now, &Pace::new(1.0, false));
+    let mut view = view(&now, Marker::Braille);
+    view.filled = filled;
+    view.focus = if focus {
+        Pane::Parameters
+    } else {
+        Pane::Traces
+    };
+    let mut buf = Buffer::empty(Rect::new(0, 0, size.0, size.1));
+    Parameters {
+        scenario: now.scenario(),
+        motion: now.simulation().motion(),
+        readouts,
+        editor: Some(editor),
+        view: &view,
+    }
+    .render(buf.area, &mut buf);
+    buf
+}
+
+#[test]
+fn the_parameters_are_an_editor_when_in_focus() {
+    let size = (26, 19);
+    let dt = editor("motion", "dt");
+    let shown = |editor, how, size| text(&parameters(editor, how, size));
+    insta::assert_snapshot!("editor_small", shown(&dt, (true, false), size));
+    insta::assert_snapshot!("editor_tall", shown(&dt, (true, false), (26, 45)));
+    insta::assert_snapshot!("editor_fills_80", shown(&dt, (true, true), (80, 19)));
+    insta::assert_snapshot!("editor_fills_200", shown(&dt, (true, true), (200, 45)));
+    let first = editor("scenario", "title");
+    insta::assert_snapshot!("editor_first", shown(&first, (true, false), size));
+    let last = editor("view", "look at");
+    insta::assert_snapshot!("editor_last", shown(&last, (true, false), size));
+    // Without the focus it is what it always was.
+    let away = shown(&dt, (false, false), size);
+    assert!(
+        away.contains("precession") && away.contains("f: all of them"),
+        "{away}"
+    );
+}
+
+#[test]
+fn the_selected_line_is_seen_at_every_place_and_size() {
+    for size in [
+        (26, 5),
+        (26, 9),
+        (26, 19),
+        (30, 10),
+        (52, 12),
+        (80, 19),
+        (120, 40),
+    ] {
+        for (_, group, label, ..) in LINES {
+            for filled in [false, true] {
+                let buf = parameters(&editor(group, label), (true, filled), size);
+                let shown = text(&buf);
+                let marked: Vec<_> = shown.split('►').skip(1).collect();
+                assert_eq!(marked.len(), 1, "{group} {label} at {size:?}\n{shown}");
+                assert!(marked[0].starts_with(label), "{group} {label}\n{shown}");
+                let reversed = Theme {
+                    colour: true,
+                    background: Background::Dark,
+                };
+                let reversed = reversed.style(Role::Selected).add_modifier;
+                let count = buf
+                    .content
+                    .iter()
+                    .filter(|cell| cell.modifier.contains(reversed));
+                assert!(count.count() >= 20, "{shown}");
+            }
+        }
+    }
+}
+
+fn question() -> Form {
+    let fields = vec![
+        Field::new("time step", "0.05 s"),
+        Field::new("steps", "4600"),
+    ];
+    let mut form = Form::new(
+        "motion.time_step_s",
+        fields,
+        "Enter takes it, Esc leaves it",
+    );
+    form.info = vec![
+        "now 0.1 s".to_owned(),
+        "a hundredth up or down: Left, Right".to_owned(),
+    ];
+    form
+}
+
+fn asked(form: &Form, size: (u16, u16)) -> String {
+    let theme = &Theme {
+        colour: true,
+        background: Background::Dark,
+    };
+    drawn(FormPane { form, theme }, size)
+}
+
+#[test]
+fn a_form_asks_at_the_bottom() {
+    let mut form = question();
+    insta::assert_snapshot!("form", asked(&form, (60, 12)));
+    form.complaint = Some(
+        "motion.time_step_s (-0.1): must be greater than zero, or nothing would ever move"
+            .to_owned(),
+    );
+    insta::assert_snapshot!("form_refuses", asked(&form, (40, 12)));
+    insta::assert_snapshot!("form_20x4", asked(&form, (20, 4)));
+    form.next_field();
+    insta::assert_snapshot!("form_20x3", asked(&form, (20, 3)));
+    insta::assert_snapshot!("form_20x2", asked(&form, (20, 2)));
+}
+
+#[test]
+fn a_long_text_scrolls_in_its_field() {
+    let mut form = Form::new("title", vec![Field::new("title", "")], "");
+    "0123456789速い独楽abcdef"
+        .chars()
+        .for_each(|c| form.type_char(c));
+    let field = |form: &Form| {
+        let picture = asked(form, (20, 4));
+        let line = picture.lines().nth(1).unwrap().to_owned();
+        line.trim_matches('│').to_owned()
+    };
+    // A wide character has two cells, of which the second is blank here.
+    assert_eq!(field(&form), "title 独 楽 abcdef_ ");
+    form.home();
+    assert_eq!(field(&form), "title 0123456789速 ");
+    (0..11).for_each(|_| form.right());
+    assert_eq!(field(&form), "title 23456789速 い ");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
@@ -224,6 +471,39 @@ proptest! {
             for position in around.positions().filter(|position| !inside.contains(*position)) {
                 prop_assert_eq!(buf[position].symbol(), "#", "{:?} of pane {}", position, pane);
             }
+        }
+    }
+
+    #[test]
+    fn forms_and_editors_stay_inside(
+        width in 0u16..100, height in 0u16..30, selected in 0..30isize, filled: bool, typed in "\\PC{0,40}", left in 0..20,
+        complaint in prop::option::of("[a-z ]{0,90}"), fields in 0usize..5, infos in 0usize..5,
+    ) {
+        let around = Rect::new(0, 0, width + 6, height + 6);
+        let inside = Rect::new(3, 3, width, height);
+        let mut form = Form::new(&typed, vec![Field::new(&typed, ""); fields], "Esc");
+        typed.chars().for_each(|c| form.type_char(c));
+        (0..left).for_each(|_| form.left());
+        (form.complaint, form.info) = (complaint, vec![typed.clone(); infos]);
+        let theme = &Theme { colour: false, background: Background::Dark };
+        let mut lines = editor("motion", "dt");
+        lines.shift(selected - 16);
+        let mut now = run("wobble-push", &[], "", 3);
+        let readouts = &Readouts::new(&mut now, &Pace::new(1.0, false));
+        let mut view = view(&now, Marker::Ascii);
+        (view.filled, view.focus) = (filled, Pane::Parameters);
+        let pane = Parameters {
+            scenario: now.scenario(),
+            motion: now.simulation().motion(),
+            readouts,
+            editor: Some(&lines),
+            view: &view,
+        };
+        let mut buf = Buffer::filled(around, Cell::new("#"));
+        pane.render(inside, &mut buf);
+        FormPane { form: &form, theme }.render(inside, &mut buf);
+        for position in around.positions().filter(|position| !inside.contains(*position)) {
+            prop_assert_eq!(buf[position].symbol(), "#", "{:?}", position);
         }
     }
 }

@@ -13,6 +13,7 @@
 //!   beside it; [`pace`] says how fast it is played, [`playback`] plays it as far as its next stop; [`readouts`] and [`health`] read numbers off it, [`advisor`] finds what
 //!   would mend them.
 //! - [`marks`] are the times at which something is done to a run, [`ghost`] what is kept of the run before.
+//! - [`editor`] is the list of what can be edited, [`form`] what exact values are typed into.
 //! - [`note`] says what there is to see, [`notice`] what has just happened.
 //! - [`view`] is how it is looked at, [`layout`] where the panes stand, [`screen`] puts them there, [`panes`] draw.
 //!   [`sweep`] and [`camera`] are their geometry, [`dots`], [`markers`] and [`theme`] their ink.

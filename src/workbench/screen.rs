@@ -6,6 +6,7 @@ use super::layout::Layout;
 use super::markers::{self, Marker};
 use super::panes::browser::BrowserPane;
 use super::panes::chrome;
+use super::panes::form::FormPane;
 use super::panes::from_above::FromAbove;
 use super::panes::help::Help;
 use super::panes::parameters::Parameters;
@@ -44,6 +45,7 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
             scenario: run.scenario(),
             motion: run.simulation().motion(),
             readouts,
+            editor: Some(lab.editor()),
             view,
         }
         .render(area, buf),
@@ -53,7 +55,13 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
 fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     match lab.mode() {
-        Mode::Lab | Mode::Dialog => {}
+        Mode::Lab => {}
+        Mode::Dialog => {
+            if let Some(dialog) = lab.dialog() {
+                let form = dialog.form();
+                FormPane { form, theme }.render(area, buf);
+            }
+        }
         Mode::Browser | Mode::Filter => {
             BrowserPane {
                 browser: lab.browser(),

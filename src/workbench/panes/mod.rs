@@ -2,6 +2,7 @@
 
 pub mod browser;
 pub mod chrome;
+pub mod form;
 pub mod from_above;
 pub mod help;
 pub mod parameters;
