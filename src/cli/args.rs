@@ -21,6 +21,7 @@ const EXAMPLES: &str = "\
 Examples:
   gyrolab                                           open the lab: the report's Method 2, live
   gyrolab cusps --paused --at 500                   a screen prepared for the class
+  gyrolab --resume                                  back to where the lab was left, or the line was lost
   gyrolab presets                                   what there is to run
   gyrolab run method-2                              the report's Method 2, how it ends
   gyrolab run method-2 -o method-2.csv              every step of it as CSV
@@ -93,6 +94,10 @@ pub(super) struct WorkbenchArgs {
 
     #[command(flatten)]
     pub(super) changes: Changes,
+
+    /// Come back to the newest session that is not in use, to the step where it was left
+    #[arg(long, conflicts_with_all = ["scenario", "set", "time_step", "scheme", "at"])]
+    pub(super) resume: bool,
 
     /// Open with the run standing still
     #[arg(long)]

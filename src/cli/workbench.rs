@@ -2,13 +2,14 @@
 
 use super::args::{Changes, Color, Look, Markers, Screen, ShowArgs, WorkbenchArgs};
 use super::scenario::changed;
-use crate::scenario::Document;
+use crate::scenario::{Document, Scenario};
 use crate::workbench::lab::Lab;
 use crate::workbench::markers::Marker;
+use crate::workbench::session::{self, Found, KeptAside, Session};
 use crate::workbench::surroundings::{self, ColourChoice};
 use crate::workbench::theme::{Background, Theme};
 use crate::workbench::view::View;
-use crate::workbench::{app, screen};
+use crate::workbench::{app, exporting, screen};
 use anyhow::Context;
 use ratatui::layout::Rect;
 use std::io::{self, IsTerminal, Write};
@@ -22,25 +23,105 @@ const DEFAULT: &str = "method-2";
 pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     let name = args.scenario.as_deref().unwrap_or(DEFAULT);
     if !(io::stdin().is_terminal() && io::stdout().is_terminal()) {
+        anyhow::ensure!(!args.resume, "--resume needs a terminal to come back to");
         writeln!(
             io::stderr(),
             "gyrolab: no terminal, so this is the picture that gyrolab show {name} prints"
         )?;
         return print(name, &args.changes, args.at, (80, 24), args.look.markers);
     }
-    let mut lab = lab(
-        name,
-        &args.changes,
-        args.look.markers,
-        theme(args.look),
-        !args.paused,
-    )?;
+    let (mut lab, session) = match args.resume {
+        true => come_back(args)?,
+        false => (
+            new(args, name)?,
+            session::folder().map_err(told).and_then(begun),
+        ),
+    };
+    let session = session.map_err(|trouble| lab.tell(trouble)).ok();
+    lab.take_advice();
+    app::run(&mut lab, session.as_ref(), args.fps).context("the terminal cannot be used")?;
+    tell_of_exports(&lab)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A lab with what `name` names, as the command line wants it.
+fn new(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
+    let theme = theme(args.look);
+    let mut lab = lab(name, &args.changes, args.look.markers, theme, !args.paused)?;
     if let Some(step) = args.at {
         lab.begin_at(step).with_context(|| name.to_owned())?;
     }
-    lab.take_advice();
-    app::run(lab, args.fps).context("the terminal cannot be used")?;
-    Ok(ExitCode::SUCCESS)
+    Ok(lab)
+}
+
+/// The newest session that is not in use; where there is none, a new lab that says so. What is damaged, or cannot be
+/// kept, never keeps the lab from opening.
+fn come_back(args: &WorkbenchArgs) -> anyhow::Result<(Lab, Result<Session, String>)> {
+    let view =
+        |scenario: &Scenario| View::new(scenario, marker(args.look.markers), theme(args.look));
+    let read =
+        |content: &session::Content| Lab::resumed(content, view).map_err(|error| error.to_string());
+    let folder = session::folder().map_err(told);
+    let found = folder
+        .clone()
+        .and_then(|folder| session::resume(&folder, read).map_err(told));
+    let (aside, none) = match found {
+        Ok(Found {
+            resumed: Some(resumed),
+            kept_aside,
+        }) => {
+            let (mut lab, session) = (resumed.what, Ok(resumed.session));
+            if !kept_aside.is_empty() {
+                lab.tell(put_aside(&kept_aside));
+            }
+            return Ok((lab, session));
+        }
+        Ok(Found {
+            resumed: None,
+            kept_aside,
+        }) => (
+            put_aside(&kept_aside),
+            "no session to come back to: this is a new one".to_owned(),
+        ),
+        Err(trouble) => (String::new(), trouble),
+    };
+    let mut lab = new(args, DEFAULT)?;
+    lab.tell(format!("{aside}{none}"));
+    Ok((lab, folder.and_then(begun)))
+}
+
+fn begun(folder: std::path::PathBuf) -> Result<Session, String> {
+    Session::begin(&folder).map_err(told)
+}
+
+fn told(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}
+
+fn put_aside(damaged: &[KeptAside]) -> String {
+    let names = damaged.iter().map(|one| {
+        format!(
+            "a damaged session is put aside as {} ({}); ",
+            one.path.display(),
+            one.reason
+        )
+    });
+    names.collect()
+}
+
+/// Says on the shell's screen what was exported: the lab's is gone with its last notice.
+fn tell_of_exports(lab: &Lab) -> io::Result<()> {
+    let mut stdout = io::stdout().lock();
+    for written in lab.written() {
+        let path = written.path.display();
+        writeln!(
+            stdout,
+            "{path}: {} rows\n  {}",
+            written.rows,
+            exporting::scp_line(&written.path)
+        )?;
+    }
+    Ok(())
 }
 
 /// Prints the lab's picture at the end of a run.

@@ -3,6 +3,7 @@
 use super::keymap::{self, Key};
 use super::lab::{Lab, Request};
 use super::screen;
+use super::session::Session;
 use super::terminal::{Event, Screen};
 use std::io;
 use std::ops::ControlFlow;
@@ -10,35 +11,48 @@ use std::time::{Duration, Instant};
 
 /// How long to sleep where nothing moves and nothing is due.
 const IDLE: Duration = Duration::from_millis(500);
+/// The same while an export is under way in the background.
+const ATTENTIVE: Duration = Duration::from_millis(100);
 
-/// Runs `lab` on the terminal at up to `frames` a second, until the user leaves.
+/// Runs `lab` on the terminal at up to `frames` a second, until the user leaves; `session` keeps it, where there is one.
 ///
 /// # Errors
 /// When there is no terminal, or it is gone; it has been given back then as far as that can be.
-pub fn run(mut lab: Lab, frames: u32) -> io::Result<()> {
+pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<()> {
     let mut screen = Screen::enter()?;
     let frame = Duration::from_secs(1) / frames.max(1);
     let begin = Instant::now();
     let mut next_frame = Duration::ZERO;
     lab.resize(screen.size()?);
     loop {
-        let wait = wait(&lab, next_frame.saturating_sub(begin.elapsed()));
+        let wait = wait(lab, next_frame.saturating_sub(begin.elapsed()));
         let events = screen.events(wait)?;
         let acted = !events.is_empty();
         for event in events {
-            if handle(event, &mut lab, &mut screen)?.is_break() {
+            if handle(event, lab, &mut screen)?.is_break() {
                 return Ok(());
             }
         }
         #[cfg(debug_assertions)]
         panic_if_asked(begin.elapsed());
         lab.advance(&mut || begin.elapsed());
+        if let Some(session) = session {
+            keep(lab, session);
+        }
         let now = begin.elapsed();
         // An action is answered at once, whenever the next frame would be.
         if (acted || now >= next_frame) && lab.take_changed() {
-            screen.draw(|area, buf| screen::draw(&lab, true, area, buf))?;
+            screen.draw(|area, buf| screen::draw(lab, true, area, buf))?;
             next_frame = now + frame;
         }
+    }
+}
+
+/// Has `session` keep `lab` as it stands; says so where it cannot.
+fn keep(lab: &mut Lab, session: &Session) {
+    session.note(lab.content());
+    if let Some(trouble) = session.new_trouble() {
+        lab.tell(format!("the session cannot be kept: {trouble}"));
     }
 }
 
@@ -68,7 +82,8 @@ fn wait(lab: &Lab, to_frame: Duration) -> Duration {
         // At least a little: a run too slow to change anything by the next frame must not spin.
         to_frame.max(Duration::from_millis(1))
     } else {
-        lab.notice_ends_in().unwrap_or(IDLE).min(IDLE)
+        let rest = if lab.is_exporting() { ATTENTIVE } else { IDLE };
+        lab.notice_ends_in().unwrap_or(rest).min(rest)
     }
 }
 
