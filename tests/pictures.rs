@@ -356,6 +356,8 @@ fn the_parameters_are_an_editor_when_in_focus() {
 #[test]
 fn the_selected_line_is_seen_at_every_place_and_size() {
     for size in [
+        (26, 3),
+        (26, 4),
         (26, 5),
         (26, 9),
         (26, 19),
