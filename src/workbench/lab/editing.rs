@@ -15,9 +15,15 @@ use toml::Value;
 /// The editor's group of lines for the push to come.
 const NEXT_PUSH: &str = "next push (p)";
 
+/// The groups in the order in which the editor lists them; pushes stand after the start, points after the body.
+const ORDER: [&str; 6] = ["motion", "start", NEXT_PUSH, "body", "view", "scenario"];
+
 /// What a line of the editor stands for.
-enum Selected<'a> {
-    Parameter(&'a Parameter),
+#[derive(Clone)]
+pub(super) enum Target {
+    /// A value of the scenario.
+    Parameter(Box<Parameter>),
+    /// A value of the push to come.
     NextPush(Field),
 }
 
@@ -27,22 +33,16 @@ impl Lab {
         self.edits_listed = self.edits_in_force();
         let scenario = self.run().scenario();
         let table = parameters::table_at(scenario, self.playback.step_number());
-        let list = parameters(&table, scenario);
-        let line = |parameter: &Parameter| Line {
-            key: parameter.key.clone(),
-            group: parameter.group.clone(),
-            label: parameter.label.clone(),
-            value: parameter.shown(),
-            unit: parameter.unit().to_owned(),
-            is_default: parameter.is_default,
-        };
-        let lines = list
+        let values = parameters(&table, scenario).into_iter();
+        let values = values.map(|parameter| Target::Parameter(Box::new(parameter)));
+        let mut targets: Vec<_> = values.chain(Field::ALL.map(Target::NextPush)).collect();
+        targets.sort_by_key(|target| rank(target.group())); // stable: within a group nothing moves
+        let lines = targets
             .iter()
-            .map(line)
-            .chain(next_push_lines(&self.next_push))
+            .map(|target| target.line(&self.next_push))
             .collect();
-        self.parameters = list;
         self.editor.set_lines(lines);
+        self.targets = targets;
     }
 
     /// How many edits have been made up to where the run stands, those made here counted in.
@@ -54,18 +54,8 @@ impl Lab {
             .partition_point(|edit| edit.step <= here)
     }
 
-    fn selected(&self) -> Option<Selected<'_>> {
-        let index = self.editor.selected_index();
-        let next_push = || {
-            Field::ALL
-                .get(index.checked_sub(self.parameters.len())?)
-                .copied()
-                .map(Selected::NextPush)
-        };
-        self.parameters
-            .get(index)
-            .map(Selected::Parameter)
-            .or_else(next_push)
+    fn selected(&self) -> Option<&Target> {
+        self.targets.get(self.editor.selected_index())
     }
 
     pub(super) fn turn_to_parameters(&mut self) {
@@ -96,7 +86,7 @@ impl Lab {
         let scenario = Arc::clone(self.run().scenario());
         match self.selected() {
             None => {}
-            Some(Selected::Parameter(parameter)) => {
+            Some(Target::Parameter(parameter)) => {
                 let (key, label) = (parameter.key.clone(), parameter.label.clone());
                 let done = parameter
                     .nudged(times)
@@ -104,11 +94,12 @@ impl Lab {
                 let done = done.and_then(|value| self.set(&key, value));
                 done.unwrap_or_else(|reason| self.say(reason));
             }
-            Some(Selected::NextPush(field)) => match self.next_push.nudged(field, times, &scenario)
-            {
-                Ok(next) => self.choose_next_push(next),
-                Err(reason) => self.say(reason),
-            },
+            Some(Target::NextPush(field)) => {
+                match self.next_push.nudged(*field, times, &scenario) {
+                    Ok(next) => self.choose_next_push(next),
+                    Err(reason) => self.say(reason),
+                }
+            }
         }
     }
 
@@ -134,7 +125,7 @@ impl Lab {
             false => format!("{}, {}", line.label, line.unit),
         };
         let about = match self.selected() {
-            Some(Selected::Parameter(parameter)) => about(parameter),
+            Some(Target::Parameter(parameter)) => about(parameter),
             _ => vec!["it acts when p gives the push".to_owned()],
         };
         let about: Vec<_> = about.iter().map(String::as_str).collect();
@@ -149,7 +140,7 @@ impl Lab {
         let scenario = Arc::clone(self.run().scenario());
         match self.selected() {
             None => Ok(()),
-            Some(Selected::Parameter(parameter)) => {
+            Some(Target::Parameter(parameter)) => {
                 let (key, label) = (parameter.key.clone(), parameter.label.clone());
                 let value = parameter
                     .typed(text)
@@ -159,8 +150,8 @@ impl Lab {
                     false => self.set(&key, value),
                 }
             }
-            Some(Selected::NextPush(field)) => {
-                let next = self.next_push.typed(field, text, &scenario)?;
+            Some(Target::NextPush(field)) => {
+                let next = self.next_push.typed(*field, text, &scenario)?;
                 self.choose_next_push(next);
                 Ok(())
             }
@@ -307,18 +298,46 @@ impl Lab {
     }
 }
 
-fn next_push_lines(push: &NextPush) -> impl Iterator<Item = Line> {
-    Field::ALL.into_iter().map(|field| {
-        let (label, unit) = field.label();
-        Line {
-            key: String::new(),
-            group: NEXT_PUSH.to_owned(),
-            label: label.to_owned(),
-            value: push.shown(field),
-            unit: unit.to_owned(),
-            is_default: false,
+impl Target {
+    fn group(&self) -> &str {
+        match self {
+            Self::Parameter(parameter) => &parameter.group,
+            Self::NextPush(_) => NEXT_PUSH,
         }
-    })
+    }
+
+    fn line(&self, push: &NextPush) -> Line {
+        let group = self.group().to_owned();
+        match self {
+            Self::Parameter(parameter) => Line {
+                key: parameter.key.clone(),
+                group,
+                label: parameter.label.clone(),
+                value: parameter.shown(),
+                unit: parameter.unit().to_owned(),
+                is_default: parameter.is_default,
+            },
+            Self::NextPush(field) => Line {
+                key: String::new(),
+                group,
+                label: field.label().0.to_owned(),
+                value: push.shown(*field),
+                unit: field.label().1.to_owned(),
+                is_default: false,
+            },
+        }
+    }
+}
+
+/// The place of a group in the list: pushes stand above the push to come, points below the body.
+fn rank(group: &str) -> usize {
+    let listed = ORDER.iter().position(|known| *known == group);
+    let place = |of: &str| ORDER.iter().position(|known| *known == of).unwrap_or(0);
+    match listed {
+        Some(rank) => 2 * rank,
+        None if group.starts_with("push") => 2 * place("start") + 1,
+        None => 2 * place("body") + 1,
+    }
 }
 
 /// What is known of a parameter: its meaning, its choices, when a change acts.

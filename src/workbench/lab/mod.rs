@@ -34,7 +34,7 @@ use crate::analysis::health::Advice;
 use crate::run::NotFinite;
 use crate::scenario::Scenario;
 use crate::scenario::journal::Journal;
-use crate::scenario::parameters::Parameter;
+use editing::Target;
 use ratatui::layout::Rect;
 use std::sync::Arc;
 use std::time::Duration;
@@ -75,7 +75,7 @@ pub struct Lab {
     playback: Playback,
     ghost: Option<Ghost>,
     /// What can be edited: every value of the scenario as it is now, and below them the push to come.
-    parameters: Vec<Parameter>,
+    targets: Vec<Target>,
     editor: Editor,
     next_push: NextPush,
     /// How many of the run's edits are in force on what the editor lists.
@@ -113,7 +113,7 @@ impl Lab {
             history,
             changed_from_file: None,
             ghost: None,
-            parameters: Vec::new(),
+            targets: Vec::new(),
             editor: Editor::default(),
             next_push: NextPush::of(&scenario),
             edits_listed: 0,
