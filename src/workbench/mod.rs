@@ -12,6 +12,8 @@
 //! - [`live`] plays a run; [`recording`] and [`path`] keep what the pictures need of it, [`overlay`] the exact motion
 //!   beside it; [`pace`] says how fast it is played, [`playback`] plays it as far as its next stop; [`readouts`] and [`health`] read numbers off it, [`advisor`] finds what
 //!   would mend them.
+//! - [`session`] keeps what is needed to come back, [`exporting`] writes a run into a file in the background, and
+//!   [`farewell`] lets both bring home what they have before the terminal is given back.
 //! - [`note`] says what there is to see, [`notice`] what has just happened.
 //! - [`view`] is how it is looked at, [`layout`] where the panes stand, [`screen`] puts them there, [`panes`] draw.
 //!   [`sweep`] and [`camera`] are their geometry, [`dots`], [`markers`] and [`theme`] their ink.
