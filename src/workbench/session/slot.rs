@@ -117,7 +117,7 @@ fn file(folder: &Path, id: &str, kind: &str) -> PathBuf {
 pub(super) fn prune(folder: &Path) {
     let old = sessions(folder).unwrap_or_default();
     let free = old.iter().filter_map(|id| Slot::take(folder, id).ok()?);
-    free.skip(MOST_KEPT).for_each(|slot| slot.remove());
+    free.skip(MOST_KEPT).for_each(Slot::remove);
     for name in names(folder).unwrap_or_default() {
         if let Some(id) = name.strip_suffix(".lock")
             && !file(folder, id, "work").exists()
