@@ -241,6 +241,7 @@ fn child() {
     farewell::say(Farewell::Stop);
     let (step, _) = exporting.progress();
     while exporting.progress().0 == step {
+        assert!(!exporting.is_done(), "it does not go on");
         thread::sleep(Duration::from_millis(1));
     }
     assert!(!exporting.is_done() && exporting.outcome().is_none());

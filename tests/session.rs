@@ -247,7 +247,8 @@ fn those_who_come_at_once_get_different_sessions() {
 
 #[test]
 fn what_is_damaged_is_put_aside_and_told_of() {
-    let damages: [(fn(&Path), &str); 6] = [
+    type Damage = fn(&Path);
+    let damages: [(Damage, &str); 6] = [
         (|path| cut(path, 3), "cut off"),
         (|path| cut(path, 1000), "cut off"),
         (|path| fs::write(path, [0; 100]).unwrap(), "cut off"),
@@ -258,7 +259,7 @@ fn what_is_damaged_is_put_aside_and_told_of() {
                     path,
                     "gyrolab session 1\nrevision 1\nplace 99999999999999999999\nwork 1\n",
                 )
-                .unwrap()
+                .unwrap();
             },
             "changed",
         ),
@@ -464,11 +465,8 @@ impl Other {
     }
 
     fn hear(&mut self, begin: &str) -> String {
-        let lines = self.says.by_ref().lines().map(Result::unwrap);
-        lines
-            .skip_while(|line| !line.starts_with(begin))
-            .next()
-            .unwrap()
+        let mut lines = self.says.by_ref().lines().map(Result::unwrap);
+        lines.find(|line| line.starts_with(begin)).unwrap()
     }
 
     fn note(&mut self, place: &str) {

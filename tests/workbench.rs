@@ -51,7 +51,7 @@ impl Stage {
         };
         let view = View::new(&scenario_numbers, Marker::Braille, theme);
         let mut lab = Lab::new(scenario, scenario_numbers, view, true);
-        lab.set_file(&file);
+        lab.set_file(Arc::new(file));
         lab.resize(size);
         Self {
             lab,

@@ -15,7 +15,7 @@ use ratatui::crossterm::event::{self, KeyCode, KeyEvent, KeyEventKind, KeyModifi
 use ratatui::crossterm::terminal::{self, EnterAlternateScreen, LeaveAlternateScreen};
 use ratatui::crossterm::{execute, style};
 use ratatui::layout::Rect;
-use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP};
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGXFSZ};
 use signal_hook::iterator::Signals;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -231,7 +231,8 @@ fn guard() -> io::Result<()> {
                 before(panic);
             }
         }));
-        result = Signals::new([SIGHUP, SIGTERM, SIGINT, SIGQUIT, SIGTSTP, SIGCONT])
+        let ends = [SIGHUP, SIGTERM, SIGINT, SIGQUIT];
+        result = Signals::new(ends.iter().chain(&[SIGTSTP, SIGCONT, SIGXFSZ]))
             .and_then(|signals| {
                 thread::Builder::new()
                     .name("signals".to_owned())
@@ -249,6 +250,7 @@ fn listen(mut signals: Signals) {
         match signal {
             SIGTSTP => SUSPEND.store(true, Ordering::Relaxed),
             SIGCONT => RESUMED.store(true, Ordering::Relaxed),
+            SIGXFSZ => {} // a file past `ulimit -f`: the write fails then, like one to a full disk
             end => {
                 farewell::say(Farewell::End);
                 ENDING.store(true, Ordering::SeqCst);

@@ -33,10 +33,20 @@ const PLACE: &str = "gyrolab place 1";
 pub(super) struct Slot {
     folder: PathBuf,
     id: String,
-    lock: File,
+    lock: Lock,
     /// Of the work that is on the disk.
     revision: u64,
     written: Option<Content>,
+}
+
+/// A lock file that is locked.
+pub(super) struct Lock(File);
+
+impl Drop for Lock {
+    /// Closing the file alone would leave it locked for as long as a process that is just being started has it too.
+    fn drop(&mut self) {
+        let _ = self.0.unlock();
+    }
 }
 
 /// Something that could not be read: where it is now, and why.
@@ -62,7 +72,7 @@ pub(super) fn make_folder(folder: &Path) -> io::Result<()> {
 
 /// Has other processes wait that would choose a session or clear some away, but not for long: one of them may have been
 /// stopped on the way. The locks of the sessions hold without it; it only lets nobody take a passing look for use.
-pub(super) fn door(folder: &Path) -> Option<File> {
+pub(super) fn door(folder: &Path) -> Option<Lock> {
     let begin = Instant::now();
     loop {
         match take(&folder.join("lock")) {
@@ -107,7 +117,7 @@ fn file(folder: &Path, id: &str, kind: &str) -> PathBuf {
 pub(super) fn prune(folder: &Path) {
     let old = sessions(folder).unwrap_or_default();
     let free = old.iter().filter_map(|id| Slot::take(folder, id).ok()?);
-    free.skip(MOST_KEPT).for_each(|slot| slot.remove());
+    free.skip(MOST_KEPT).for_each(Slot::remove);
     for name in names(folder).unwrap_or_default() {
         if let Some(id) = name.strip_suffix(".lock")
             && !file(folder, id, "work").exists()
@@ -119,7 +129,7 @@ pub(super) fn prune(folder: &Path) {
 }
 
 /// The lock at `path`, or `None` where a living process has it. Where the file system knows no locks it counts as free.
-fn take(path: &Path) -> io::Result<Option<File>> {
+fn take(path: &Path) -> io::Result<Option<Lock>> {
     let lock = OpenOptions::new()
         .write(true)
         .create(true)
@@ -129,7 +139,10 @@ fn take(path: &Path) -> io::Result<Option<File>> {
     match lock.try_lock() {
         Err(TryLockError::WouldBlock) => Ok(None),
         // Its last owner may have removed it between the two calls: then it is a lock to nothing.
-        Ok(()) | Err(TryLockError::Error(_)) => Ok(is_at(&lock, path).then_some(lock)),
+        Ok(()) | Err(TryLockError::Error(_)) => {
+            let lock = Lock(lock);
+            Ok(is_at(&lock.0, path).then_some(lock))
+        }
     }
 }
 
