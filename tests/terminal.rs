@@ -3,188 +3,27 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use portable_pty::{Child, CommandBuilder, ExitStatus, MasterPty, PtySize, native_pty_system};
-use std::io::{Read, Write};
-use std::num::NonZero;
-use std::process::{Command, Stdio};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
+#[path = "support/pty.rs"]
+mod pty;
+
+use pty::{Ground, LEAVES_ALTERNATE_SCREEN, SHOWS_CURSOR, Terminal};
 use std::thread;
 use std::time::{Duration, Instant};
 
-const PATIENCE: Duration = Duration::from_secs(20);
-const LEAVES_ALTERNATE_SCREEN: &str = "\u{1b}[?1049l";
-const SHOWS_CURSOR: &str = "\u{1b}[?25h";
-
-/// The program in a pty of its own.
-struct Session {
-    child: Box<dyn Child + Send + Sync>,
-    keys: Option<Box<dyn Write + Send>>,
-    pty: Option<Box<dyn MasterPty + Send>>,
-    bytes: Arc<Mutex<Vec<u8>>>,
-    size: (u16, u16),
-    /// The reader hangs up at the next byte.
-    lost: Arc<AtomicBool>,
-    /// The reader takes no more bytes, as a terminal stopped by Ctrl-S does.
-    stopped: Arc<AtomicBool>,
-}
-
-impl Session {
-    fn open(args: &[&str]) -> Self {
-        Self::open_with(args, &[("TERM", "xterm"), ("LANG", "C.UTF-8")])
-    }
-
-    fn open_with(args: &[&str], variables: &[(&str, &str)]) -> Self {
-        let size = (80, 24);
-        let pty = native_pty_system().openpty(pty_size(size)).unwrap();
-        let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_gyrolab"));
-        command.args(args);
-        for name in ["LC_ALL", "LC_CTYPE", "NO_COLOR", "COLORFGBG"] {
-            command.env_remove(name);
-        }
-        variables
-            .iter()
-            .for_each(|(name, value)| command.env(name, value));
-        let child = pty.slave.spawn_command(command).unwrap();
-        let mut output = pty.master.try_clone_reader().unwrap();
-        let bytes = Arc::new(Mutex::new(Vec::new()));
-        let kept = Arc::clone(&bytes);
-        let lost = Arc::new(AtomicBool::new(false));
-        let cut = Arc::clone(&lost);
-        let stopped = Arc::new(AtomicBool::new(false));
-        let shut = Arc::clone(&stopped);
-        thread::spawn(move || {
-            let mut buffer = [0; 65536];
-            while let Ok(length @ 1..) = output.read(&mut buffer) {
-                kept.lock().unwrap().extend_from_slice(&buffer[..length]);
-                if cut.load(Ordering::Relaxed) {
-                    break; // the last handle of the pty's near side: the line is lost
-                }
-                while shut.load(Ordering::Relaxed) {
-                    thread::sleep(Duration::from_millis(20));
-                }
-            }
-        });
-        let keys = Some(pty.master.take_writer().unwrap());
-        Self {
-            child,
-            keys,
-            pty: Some(pty.master),
-            bytes,
-            size,
-            lost,
-            stopped,
-        }
-    }
-
-    fn press(&mut self, keys: &str) {
-        let writer = self.keys.as_mut().unwrap();
-        writer.write_all(keys.as_bytes()).unwrap();
-        writer.flush().unwrap();
-    }
-
-    fn resize(&mut self, size: (u16, u16)) {
-        self.size = size;
-        self.pty.as_ref().unwrap().resize(pty_size(size)).unwrap();
-    }
-
-    fn signal(&self, name: &str) {
-        let id = self.child.process_id().unwrap().to_string();
-        assert!(
-            Command::new("kill")
-                .args(["-s", name, &id])
-                .status()
-                .unwrap()
-                .success()
-        );
-    }
-
-    fn sent(&self) -> Vec<u8> {
-        self.bytes.lock().unwrap().clone()
-    }
-
-    fn sent_text(&self) -> String {
-        String::from_utf8_lossy(&self.sent()).into_owned()
-    }
-
-    /// What a terminal would show of the last full picture.
-    fn screen(&self) -> String {
-        let [rows, columns] = [self.size.1, self.size.0].map(|side| NonZero::new(side).unwrap());
-        let mut parser = vt100::Parser::new(rows, columns, 0);
-        parser.process(&self.sent());
-        parser.screen().contents()
-    }
-
-    #[track_caller]
-    fn wait_for(&self, words: &str) {
-        self.wait_until(words, |session: &Self| session.screen().contains(words));
-    }
-
-    #[track_caller]
-    fn wait_until(&self, wanted: &str, is_so: impl Fn(&Self) -> bool) {
-        let begin = Instant::now();
-        while !is_so(self) {
-            assert!(
-                begin.elapsed() < PATIENCE,
-                "no {wanted:?} in\n{}",
-                self.screen()
-            );
-            thread::sleep(Duration::from_millis(20));
-        }
-    }
-
-    #[track_caller]
-    fn wait_for_end(&mut self) -> ExitStatus {
-        let begin = Instant::now();
-        loop {
-            if let Some(status) = self.child.try_wait().unwrap() {
-                return status;
-            }
-            assert!(begin.elapsed() < PATIENCE, "it does not end");
-            thread::sleep(Duration::from_millis(10));
-        }
-    }
-
-    #[track_caller]
-    fn has_given_the_terminal_back(&self) {
-        self.wait_until("the cursor", |session| {
-            let sent = session.sent_text();
-            let left = sent.rfind(LEAVES_ALTERNATE_SCREEN);
-            left.is_some_and(|left| sent[left..].contains(SHOWS_CURSOR))
-        });
-    }
-}
-
-impl Drop for Session {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-fn pty_size((cols, rows): (u16, u16)) -> PtySize {
-    PtySize {
-        rows,
-        cols,
-        pixel_width: 0,
-        pixel_height: 0,
-    }
-}
-
 #[test]
 fn it_opens_runs_and_leaves() {
-    let mut session = Session::open(&[]);
-    session.wait_for("q quit");
-    session.wait_for("Method 2");
-    session.wait_for("► ×20");
-    session.press("q");
-    assert_eq!(session.wait_for_end().exit_code(), 0);
-    session.has_given_the_terminal_back();
+    let mut terminal = Terminal::open(&[]);
+    terminal.wait_for("q quit");
+    terminal.wait_for("Method 2");
+    terminal.wait_for("► ×20");
+    terminal.press("q");
+    assert_eq!(terminal.wait_for_end().exit_code(), 0);
+    terminal.has_given_the_terminal_back();
 }
 
 #[test]
 fn a_screen_is_prepared_in_one_command() {
-    let session = Session::open(&[
+    let terminal = Terminal::open(&[
         "cusps",
         "--paused",
         "--at",
@@ -192,30 +31,30 @@ fn a_screen_is_prepared_in_one_command() {
         "--set",
         "start.tilt_deg=20",
     ]);
-    session.wait_for("paused");
-    session.wait_for("step 500");
-    session.wait_for("20.000 deg");
+    terminal.wait_for("paused");
+    terminal.wait_for("step 500");
+    terminal.wait_for("20.000 deg");
 }
 
 #[test]
 fn not_a_byte_while_it_stands_still() {
-    let session = Session::open(&["--paused"]);
-    session.wait_for("q quit");
+    let terminal = Terminal::open(&["--paused"]);
+    terminal.wait_for("q quit");
     thread::sleep(Duration::from_millis(300));
-    let before = session.sent().len();
+    let before = terminal.sent().len();
     thread::sleep(Duration::from_secs(2));
-    assert_eq!(session.sent().len(), before);
+    assert_eq!(terminal.sent().len(), before);
 }
 
 #[test]
 fn keys_are_answered_at_top_speed() {
-    let mut session = Session::open(&["--set", "motion.steps=1000000000"]);
-    session.wait_for("q quit");
-    session.press("99+");
-    session.wait_for("top ×");
+    let mut terminal = Terminal::open(&["--set", "motion.steps=1000000000"]);
+    terminal.wait_for("q quit");
+    terminal.press("99+");
+    terminal.wait_for("top ×");
     let begin = Instant::now();
-    session.press("?");
-    session.wait_for("keys: Esc");
+    terminal.press("?");
+    terminal.wait_for("keys: Esc");
     assert!(
         begin.elapsed() < Duration::from_millis(500),
         "{:?}",
@@ -225,26 +64,26 @@ fn keys_are_answered_at_top_speed() {
 
 #[test]
 fn it_follows_the_size_of_the_screen() {
-    let mut session = Session::open(&["--paused"]);
-    session.wait_for("q quit");
+    let mut terminal = Terminal::open(&["--paused"]);
+    terminal.wait_for("q quit");
     for size in [(200, 50), (40, 10), (1, 1), (120, 30)] {
-        session.resize(size);
+        terminal.resize(size);
         thread::sleep(Duration::from_millis(200));
     }
-    session.wait_for("3-D");
-    session.press("q");
-    assert_eq!(session.wait_for_end().exit_code(), 0);
+    terminal.wait_for("3-D");
+    terminal.press("q");
+    assert_eq!(terminal.wait_for_end().exit_code(), 0);
 }
 
 #[test]
 fn signals_to_end_give_the_terminal_back() {
     for (signal, code) in [("TERM", 143), ("INT", 130), ("HUP", 129), ("QUIT", 131)] {
-        let mut session = Session::open(&["--fps", "60"]);
-        session.wait_for("q quit");
-        session.signal(signal);
-        assert_eq!(session.wait_for_end().exit_code(), code, "{signal}");
-        session.has_given_the_terminal_back();
-        let sent = session.sent_text();
+        let mut terminal = Terminal::open(&["--fps", "60"]);
+        terminal.wait_for("q quit");
+        terminal.signal(signal);
+        assert_eq!(terminal.wait_for_end().exit_code(), code, "{signal}");
+        terminal.has_given_the_terminal_back();
+        let sent = terminal.sent_text();
         let farewell = sent.rfind(LEAVES_ALTERNATE_SCREEN).unwrap();
         assert_eq!(
             &sent[farewell..],
@@ -257,16 +96,16 @@ fn signals_to_end_give_the_terminal_back() {
 #[cfg(debug_assertions)]
 fn a_panic_gives_the_terminal_back_and_is_told_there() {
     let variables = [("TERM", "xterm"), ("GYROLAB_PANIC_AFTER_MS", "600")];
-    let mut session = Session::open_with(&[], &variables);
-    session.wait_for("q quit");
-    assert_eq!(session.wait_for_end().exit_code(), 101);
-    session.has_given_the_terminal_back();
-    session.wait_until("the message", |session| {
-        let sent = session.sent_text();
+    let mut terminal = Terminal::open_with(&[], &variables);
+    terminal.wait_for("q quit");
+    assert_eq!(terminal.wait_for_end().exit_code(), 101);
+    terminal.has_given_the_terminal_back();
+    terminal.wait_until("the message", |terminal| {
+        let sent = terminal.sent_text();
         let farewell = sent.rfind(LEAVES_ALTERNATE_SCREEN).unwrap();
         sent[farewell..].contains("a panic was asked for")
     });
-    let sent = session.sent_text();
+    let sent = terminal.sent_text();
     assert_eq!(sent.matches(LEAVES_ALTERNATE_SCREEN).count(), 1);
 }
 
@@ -274,16 +113,16 @@ fn a_panic_gives_the_terminal_back_and_is_told_there() {
 #[cfg(debug_assertions)]
 fn a_panic_in_the_background_waits_for_the_end_to_be_told() {
     let variables = [("TERM", "xterm"), ("GYROLAB_PANIC_ASIDE_AFTER_MS", "300")];
-    let mut session = Session::open_with(&[], &variables);
-    session.wait_for("q quit");
+    let mut terminal = Terminal::open_with(&[], &variables);
+    terminal.wait_for("q quit");
     thread::sleep(Duration::from_secs(1));
-    session.wait_for("q quit");
-    assert!(!session.sent_text().contains(LEAVES_ALTERNATE_SCREEN));
-    assert!(!session.sent_text().contains("asked for"));
-    session.press("q");
-    assert_eq!(session.wait_for_end().exit_code(), 0);
-    session.wait_until("the message", |session| {
-        let sent = session.sent_text();
+    terminal.wait_for("q quit");
+    assert!(!terminal.sent_text().contains(LEAVES_ALTERNATE_SCREEN));
+    assert!(!terminal.sent_text().contains("asked for"));
+    terminal.press("q");
+    assert_eq!(terminal.wait_for_end().exit_code(), 0);
+    terminal.wait_until("the message", |terminal| {
+        let sent = terminal.sent_text();
         let farewell = sent.rfind(LEAVES_ALTERNATE_SCREEN).unwrap();
         sent[farewell..].contains("a panic was asked for aside")
     });
@@ -292,68 +131,66 @@ fn a_panic_in_the_background_waits_for_the_end_to_be_told() {
 #[test]
 fn a_lost_line_ends_it() {
     for _ in 0..3 {
-        let mut session = Session::open(&[]);
-        session.wait_for("q quit");
-        session.lost.store(true, Ordering::Relaxed);
-        session.keys = None;
-        session.pty = None;
+        let mut terminal = Terminal::open(&[]);
+        terminal.wait_for("q quit");
+        terminal.lose_line();
         // By the signal, or by the frame that could not be written: whichever comes first.
-        assert!([1, 129].contains(&session.wait_for_end().exit_code()));
+        assert!([1, 129].contains(&terminal.wait_for_end().exit_code()));
     }
 }
 
 #[test]
 fn a_terminal_that_takes_no_bytes_does_not_hold_up_the_end() {
-    let mut session = Session::open(&["--fps", "60", "--set", "motion.steps=1000000000"]);
-    session.wait_for("q quit");
-    session.press("99+");
-    session.stopped.store(true, Ordering::Relaxed);
+    let mut terminal = Terminal::open(&["--fps", "60", "--set", "motion.steps=1000000000"]);
+    terminal.wait_for("q quit");
+    terminal.press("99+");
+    terminal.set_stopped(true);
     thread::sleep(Duration::from_secs(3)); // until the pty is full and a frame hangs
     let begin = Instant::now();
-    session.signal("TERM");
-    session.wait_for_end();
+    terminal.signal("TERM");
+    terminal.wait_for_end();
     assert!(
         begin.elapsed() < Duration::from_secs(3),
         "{:?}",
         begin.elapsed()
     );
-    session.stopped.store(false, Ordering::Relaxed);
+    terminal.set_stopped(false);
 }
 
 #[test]
 fn ctrl_l_draws_all_of_it_again() {
-    let mut session = Session::open(&["--paused"]);
-    session.wait_for("q quit");
+    let mut terminal = Terminal::open(&["--paused"]);
+    terminal.wait_for("q quit");
     thread::sleep(Duration::from_millis(300));
-    session.bytes.lock().unwrap().clear();
-    session.press("\u{c}");
-    session.wait_for("q quit");
-    session.wait_for("Method 2");
+    terminal.forget();
+    terminal.press("\u{c}");
+    terminal.wait_for("q quit");
+    terminal.wait_for("Method 2");
 }
 
 #[test]
 fn ctrl_z_gives_the_terminal_back_and_resuming_draws_all_of_it() {
-    let mut session = Session::open(&["--paused"]);
-    session.wait_for("q quit");
-    session.press("\u{1a}");
-    session.has_given_the_terminal_back();
+    let mut terminal = Terminal::open(&["--paused"]);
+    terminal.wait_for("q quit");
+    terminal.press("\u{1a}");
+    terminal.has_given_the_terminal_back();
     thread::sleep(Duration::from_millis(300));
-    session.bytes.lock().unwrap().clear();
-    session.signal("CONT");
-    session.wait_for("q quit");
-    session.wait_for("Method 2");
-    session.press("q");
-    assert_eq!(session.wait_for_end().exit_code(), 0);
+    terminal.forget();
+    terminal.signal("CONT");
+    terminal.wait_for("q quit");
+    terminal.wait_for("Method 2");
+    terminal.press("q");
+    assert_eq!(terminal.wait_for_end().exit_code(), 0);
 }
 
 #[test]
 fn no_color_means_no_colour_and_the_selection_still_shows() {
     let variables = [("TERM", "xterm"), ("LANG", "C.UTF-8"), ("NO_COLOR", "1")];
-    let mut session = Session::open_with(&["--paused"], &variables);
-    session.wait_for("q quit");
-    session.press("o");
-    session.wait_for("> method-2");
-    let sent = session.sent_text();
+    let mut terminal = Terminal::open_with(&["--paused"], &variables);
+    terminal.wait_for("q quit");
+    terminal.press("o");
+    terminal.wait_for("> method-2");
+    let sent = terminal.sent_text();
     assert!(
         !sent.contains("\u{1b}[38;") && !sent.contains("\u{1b}[48;"),
         "a colour"
@@ -367,21 +204,14 @@ fn a_locale_without_utf8_gets_ascii() {
         [("TERM", "xterm"), ("LANG", "C")],
         [("TERM", "linux"), ("LANG", "POSIX")],
     ] {
-        let session = Session::open_with(&["--paused", "--at", "100"], &variables);
-        session.wait_for("q quit");
-        assert!(session.sent().is_ascii());
+        let terminal = Terminal::open_with(&["--paused", "--at", "100"], &variables);
+        terminal.wait_for("q quit");
+        assert!(terminal.sent().is_ascii());
     }
 }
 
 fn gyrolab(args: &[&str]) -> std::process::Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_gyrolab"));
-    command
-        .args(args)
-        .env("LANG", "C.UTF-8")
-        .env_remove("LC_ALL")
-        .env("TERM", "xterm")
-        .stdin(Stdio::null());
-    command.output().unwrap()
+    Ground::new().gyrolab(args)
 }
 
 #[test]

@@ -1,0 +1,355 @@
+//! The program itself in a pty, in a folder of its own, and what a terminal would show of it.
+
+#![allow(dead_code, reason = "no test needs all of it")]
+
+use portable_pty::{Child, CommandBuilder, ExitStatus, MasterPty, PtySize, native_pty_system};
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+const PATIENCE: Duration = Duration::from_secs(20);
+pub const LEAVES_ALTERNATE_SCREEN: &str = "\u{1b}[?1049l";
+pub const SHOWS_CURSOR: &str = "\u{1b}[?25h";
+const VARIABLES: [(&str, &str); 2] = [("TERM", "xterm"), ("LANG", "C.UTF-8")];
+
+/// A folder in which the program works, with another one in it where it keeps its sessions.
+#[derive(Clone)]
+pub struct Ground(Arc<TempDir>);
+
+impl Ground {
+    pub fn new() -> Self {
+        Self(Arc::new(tempfile::tempdir().unwrap()))
+    }
+
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// Where the sessions' folder is.
+    pub fn state(&self) -> PathBuf {
+        self.file("state")
+    }
+
+    pub fn text(&self, name: &str) -> String {
+        std::fs::read_to_string(self.file(name)).unwrap()
+    }
+
+    /// The names of all files and folders in it, sorted.
+    pub fn names(&self) -> Vec<String> {
+        names(self.0.path())
+    }
+
+    /// The names of what has been kept of sessions and ends so.
+    pub fn kept(&self, end: &str) -> Vec<String> {
+        let mut names = names(&self.state().join("gyrolab"));
+        names.retain(|name| name.ends_with(end));
+        names
+    }
+
+    pub fn open(&self, args: &[&str]) -> Terminal {
+        self.open_with(args, &VARIABLES)
+    }
+
+    pub fn open_with(&self, args: &[&str], variables: &[(&str, &str)]) -> Terminal {
+        let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_gyrolab"));
+        command.args(args);
+        self.spawn(command, variables)
+    }
+
+    /// A shell with job control, and the program on its path.
+    pub fn open_shell(&self) -> Terminal {
+        let mut command = CommandBuilder::new("sh");
+        command.arg("-i");
+        command.env("PS1", "shell> ");
+        command.env("ENV", "");
+        self.spawn(command, &VARIABLES)
+    }
+
+    fn spawn(&self, mut command: CommandBuilder, variables: &[(&str, &str)]) -> Terminal {
+        for name in ["LC_ALL", "LC_CTYPE", "NO_COLOR", "COLORFGBG"] {
+            command.env_remove(name);
+        }
+        command.env("XDG_STATE_HOME", self.state());
+        command.env("HOME", self.0.path());
+        command.cwd(self.0.path());
+        for (name, value) in variables {
+            command.env(name, value);
+        }
+        Terminal::spawn(command, self.clone())
+    }
+
+    /// The program without a terminal.
+    pub fn gyrolab(&self, args: &[&str]) -> Output {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_gyrolab"));
+        command
+            .args(args)
+            .envs(VARIABLES)
+            .env_remove("LC_ALL")
+            .env("XDG_STATE_HOME", self.state())
+            .current_dir(self.0.path())
+            .stdin(Stdio::null());
+        command.output().unwrap()
+    }
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten();
+    let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name();
+    let mut names: Vec<_> = entries
+        .map(|entry| name(entry).into_string().unwrap())
+        .collect();
+    names.sort_unstable();
+    names
+}
+
+/// What has come from the program, and the picture that it makes.
+struct Shown {
+    bytes: Vec<u8>,
+    parser: vt100::Parser,
+}
+
+/// The program in a pty of its own.
+pub struct Terminal {
+    pub child: Box<dyn Child + Send + Sync>,
+    ground: Ground,
+    keys: Option<Box<dyn Write + Send>>,
+    pty: Option<Box<dyn MasterPty + Send>>,
+    shown: Arc<Mutex<Shown>>,
+    size: (u16, u16),
+    /// The reader hangs up at the next byte.
+    lost: Arc<AtomicBool>,
+    /// The reader takes no more bytes, as a terminal stopped by Ctrl-S does.
+    stopped: Arc<AtomicBool>,
+}
+
+impl Terminal {
+    /// The program on a ground of its own.
+    pub fn open(args: &[&str]) -> Self {
+        Ground::new().open(args)
+    }
+
+    pub fn open_with(args: &[&str], variables: &[(&str, &str)]) -> Self {
+        Ground::new().open_with(args, variables)
+    }
+
+    fn spawn(command: CommandBuilder, ground: Ground) -> Self {
+        let size = (80, 24);
+        let pty = native_pty_system().openpty(pty_size(size)).unwrap();
+        let child = pty.slave.spawn_command(command).unwrap();
+        let mut output = pty.master.try_clone_reader().unwrap();
+        let shown = Arc::new(Mutex::new(Shown {
+            bytes: Vec::new(),
+            parser: parser(size),
+        }));
+        let lost = Arc::new(AtomicBool::new(false));
+        let stopped = Arc::new(AtomicBool::new(false));
+        let (kept, cut, shut) = (shown.clone(), lost.clone(), stopped.clone());
+        thread::spawn(move || {
+            let mut buffer = [0; 65536];
+            while let Ok(length @ 1..) = output.read(&mut buffer) {
+                if let Ok(mut shown) = kept.lock() {
+                    shown.bytes.extend_from_slice(&buffer[..length]);
+                    shown.parser.process(&buffer[..length]);
+                }
+                if cut.load(Ordering::Relaxed) {
+                    break; // the last handle of the pty's near side: the line is lost
+                }
+                while shut.load(Ordering::Relaxed) {
+                    thread::sleep(Duration::from_millis(20));
+                }
+            }
+        });
+        let keys = Some(pty.master.take_writer().unwrap());
+        Self {
+            child,
+            ground,
+            keys,
+            pty: Some(pty.master),
+            shown,
+            size,
+            lost,
+            stopped,
+        }
+    }
+
+    /// Where it works.
+    pub fn ground(&self) -> &Ground {
+        &self.ground
+    }
+
+    pub fn press(&mut self, keys: &str) {
+        let writer = self.keys.as_mut().unwrap();
+        writer.write_all(keys.as_bytes()).unwrap();
+        writer.flush().unwrap();
+    }
+
+    /// Presses `keys` and waits for `words` on the screen.
+    #[track_caller]
+    pub fn ask(&mut self, keys: &str, words: &str) {
+        self.press(keys);
+        self.wait_for(words);
+    }
+
+    pub fn resize(&mut self, size: (u16, u16)) {
+        // No byte of a picture of the new size may come to a screen of the old one.
+        let mut shown = self.shown.lock().unwrap();
+        self.size = size;
+        self.pty.as_ref().unwrap().resize(pty_size(size)).unwrap();
+        shown.parser.screen_mut().set_size(size.1, size.0);
+    }
+
+    pub fn signal(&self, name: &str) {
+        signal(self.child.process_id().unwrap(), name);
+    }
+
+    /// Closes the pty's other side, as a line that is lost does.
+    pub fn lose_line(&mut self) {
+        self.lost.store(true, Ordering::Relaxed);
+        self.keys = None;
+        self.pty = None;
+    }
+
+    /// Whether the terminal takes bytes.
+    pub fn set_stopped(&self, stopped: bool) {
+        self.stopped.store(stopped, Ordering::Relaxed);
+    }
+
+    pub fn sent(&self) -> Vec<u8> {
+        self.shown.lock().unwrap().bytes.clone()
+    }
+
+    pub fn sent_text(&self) -> String {
+        String::from_utf8_lossy(&self.sent()).into_owned()
+    }
+
+    /// Takes the picture away, and what has been sent.
+    pub fn forget(&self) {
+        let mut shown = self.shown.lock().unwrap();
+        shown.bytes.clear();
+        shown.parser = parser(self.size);
+    }
+
+    /// What a terminal would show.
+    pub fn screen(&self) -> String {
+        self.shown.lock().unwrap().parser.screen().contents()
+    }
+
+    /// The same with single blanks between the words, whatever line they stand in.
+    pub fn words(&self) -> String {
+        let screen = self.screen();
+        screen.split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+
+    /// The step in the title.
+    pub fn step(&self) -> Option<u64> {
+        let screen = self.screen();
+        let (_, rest) = screen.lines().next()?.split_once(" step ")?;
+        rest.split_whitespace().next()?.parse().ok()
+    }
+
+    /// The values of the lines `label` in the pane of parameters, as they are shown.
+    pub fn values(&self, label: &str) -> Vec<String> {
+        let screen = self.screen();
+        let cells = screen.split(['│', '\n']);
+        let value = |cell: &str| {
+            let mut words = cell.trim_start_matches(['►', ' ']).split_whitespace();
+            (words.next()? == label).then(|| words.next().unwrap_or_default().to_owned())
+        };
+        cells.filter_map(value).collect()
+    }
+
+    #[track_caller]
+    pub fn wait_for(&self, words: &str) {
+        self.wait_until(words, |terminal| terminal.words().contains(words));
+    }
+
+    #[track_caller]
+    pub fn wait_for_step(&self, step: u64) {
+        self.wait_until(&format!("step {step}"), |terminal| {
+            terminal.step() == Some(step)
+        });
+    }
+
+    #[track_caller]
+    pub fn wait_until(&self, wanted: &str, is_so: impl Fn(&Self) -> bool) {
+        let begin = Instant::now();
+        while !is_so(self) {
+            assert!(
+                begin.elapsed() < PATIENCE,
+                "no {wanted:?} in\n{}",
+                self.screen()
+            );
+            thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    #[track_caller]
+    pub fn wait_for_end(&mut self) -> ExitStatus {
+        let begin = Instant::now();
+        loop {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                return status;
+            }
+            assert!(
+                begin.elapsed() < PATIENCE,
+                "it does not end:\n{}",
+                self.screen()
+            );
+            thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Leaves the lab as the user does.
+    #[track_caller]
+    pub fn quit(&mut self) {
+        self.press("q");
+        assert_eq!(self.wait_for_end().exit_code(), 0);
+    }
+
+    /// Ends it as nothing but the system can.
+    pub fn kill(&mut self) {
+        self.signal("KILL");
+        self.wait_for_end();
+    }
+
+    #[track_caller]
+    pub fn has_given_the_terminal_back(&self) {
+        self.wait_until("the cursor", |terminal| {
+            let sent = terminal.sent_text();
+            let left = sent.rfind(LEAVES_ALTERNATE_SCREEN);
+            left.is_some_and(|left| sent[left..].contains(SHOWS_CURSOR))
+        });
+    }
+}
+
+impl Drop for Terminal {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Sends the process `id` the signal called `name`.
+pub fn signal(id: u32, name: &str) {
+    let mut kill = Command::new("kill");
+    let sent = kill.args(["-s", name, &id.to_string()]).status().unwrap();
+    assert!(sent.success());
+}
+
+fn parser((columns, rows): (u16, u16)) -> vt100::Parser {
+    vt100::Parser::new(rows, columns, 0)
+}
+
+fn pty_size((cols, rows): (u16, u16)) -> PtySize {
+    PtySize {
+        rows,
+        cols,
+        pixel_width: 0,
+        pixel_height: 0,
+    }
+}
