@@ -15,7 +15,7 @@ use gyrolab::workbench::view::{Pane, View};
 use proptest::prelude::*;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 const SMALL: Rect = Rect {
@@ -31,6 +31,12 @@ const LARGE: Rect = Rect {
     height: 50,
 };
 const FRAME: Duration = Duration::from_millis(100);
+
+/// Where the labs of all tests write what they write.
+fn folder() -> &'static tempfile::TempDir {
+    static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
+    FOLDER.get_or_init(|| tempfile::tempdir().unwrap())
+}
 
 /// A lab with a keyboard, and a clock that goes only when told.
 struct Stage {
@@ -52,6 +58,7 @@ impl Stage {
         let view = View::new(&scenario_numbers, Marker::Braille, theme);
         let mut lab = Lab::new(scenario, scenario_numbers, view, true);
         lab.set_file(Arc::new(file));
+        lab.work_in(folder().path());
         lab.resize(size);
         Self {
             lab,
@@ -402,8 +409,8 @@ fn a_notice_goes_with_time_and_at_the_next_key() {
     stage
         .shows_no("colours for")
         .press("f↑")
-        .shows("arrows turn");
-    stage.press("o").shows_no("arrows turn").press("/zzz\n");
+        .shows("arrows change values");
+    stage.press("o").shows_no("arrows change").press("/zzz\n");
     stage.shows("nothing is selected").press("\u{1b}");
     stage.shows_no("nothing is selected");
 }
@@ -412,7 +419,7 @@ fn a_notice_goes_with_time_and_at_the_next_key() {
 fn what_does_nothing_says_why() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("!").shows("no key ! here; ? lists them");
-    stage.press("\n").shows("Enter opens what is selected");
+    stage.press("\n").shows("Enter types it");
     stage.press("/").shows("/ filters the list");
     stage
         .press("99+")
@@ -516,7 +523,7 @@ fn every_number_is_on_the_screen_once_the_parameters_fill_it() {
         "Lz",
         "energy",
         "push",
-        "acts",
+        "first step",
         "E drift",
     ] {
         stage.shows(label);
@@ -546,7 +553,7 @@ fn the_help_says_everything_at_every_size() {
         let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, width, height));
         stage.press("?");
         let mut seen = String::new();
-        for _ in 0..120 {
+        for _ in 0..250 {
             let picture = stage.picture();
             let inside = |line: &str| line.trim_matches('│').trim().to_owned() + " ";
             seen.extend(

@@ -124,12 +124,13 @@ impl Lab {
         };
         self.mode = Mode::Lab;
         let (text, second) = (dialog.form.text(0), dialog.form.text(1));
+        let path = self.path_of(text);
         let may_replace = |path: &Path| dialog.told_of.as_deref() == Some(path);
         let done = match &dialog.asking {
             Asking::Value => self.take_value(text).map_err(Refusal::Because),
             Asking::GoTo => self.go_where(text).map_err(Refusal::Because),
-            Asking::Export(scenario) => self.export(scenario, Path::new(text), second, may_replace),
-            Asking::Save(what, content) => self.save(what, content, Path::new(text), may_replace),
+            Asking::Export(scenario) => self.export(scenario, &path, second, may_replace),
+            Asking::Save(what, content) => self.save(what, content, &path, may_replace),
         };
         match done {
             Ok(()) => {}
@@ -240,6 +241,14 @@ impl Lab {
         Some(format!("exporting: {percent:.0} %, Esc stops it"))
     }
 
+    /// The file that is called `name`.
+    fn path_of(&self, name: &str) -> PathBuf {
+        match &self.folder {
+            Some(folder) if !name.is_empty() => folder.join(name),
+            _ => PathBuf::from(name),
+        }
+    }
+
     /// Whether the lab may end: not at the first word while an export is under way.
     pub(super) fn may_quit(&mut self, was_warned: bool) -> bool {
         if self.exporting.is_none() || was_warned {
@@ -331,7 +340,7 @@ impl Lab {
         });
         names
             .take(1000)
-            .find(|name| !Path::new(name).exists())
+            .find(|name| !self.path_of(name).exists())
             .unwrap_or_default()
     }
 }
@@ -342,7 +351,7 @@ fn refused(dialog: Dialog, refusal: Refusal) -> Dialog {
         Refusal::Because(reason) => (reason, None),
         Refusal::Exists(path) => (
             format!("{} exists: Enter again replaces it", path.display()),
-            Some(PathBuf::from(dialog.form.text(0))),
+            Some(path),
         ),
     };
     let form = Form {

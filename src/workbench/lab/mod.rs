@@ -36,6 +36,7 @@ use crate::scenario::Scenario;
 use crate::scenario::journal::Journal;
 use editing::Target;
 use ratatui::layout::Rect;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -80,6 +81,8 @@ pub struct Lab {
     next_push: NextPush,
     /// How many of the run's edits are in force on what the editor lists.
     edits_listed: usize,
+    /// Where files are looked for and written to, if not in the present folder.
+    folder: Option<PathBuf>,
     dialog: Option<Dialog>,
     exporting: Option<Exporting>,
     written: Vec<Written>,
@@ -118,6 +121,7 @@ impl Lab {
             next_push: NextPush::of(&scenario),
             edits_listed: 0,
             file: scenario,
+            folder: None,
             dialog: None,
             exporting: None,
             written: Vec::new(),
@@ -146,6 +150,11 @@ impl Lab {
     pub fn set_file(&mut self, file: Arc<Scenario>) {
         self.changed_from_file = note::changed(&file, self.run().scenario());
         self.file = file;
+    }
+
+    /// Looks for files in `folder`, and writes them there, instead of the present folder.
+    pub fn work_in(&mut self, folder: &Path) {
+        self.folder = Some(folder.to_owned());
     }
 
     /// From now on looks in the background for what would mend a run that is not to be believed.

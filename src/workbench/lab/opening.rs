@@ -13,7 +13,10 @@ use std::sync::Arc;
 
 impl Lab {
     pub(super) fn browse(&mut self) {
-        self.browser = Browser::new(Path::new("."), self.name());
+        self.browser = Browser::new(
+            self.folder.as_deref().unwrap_or(Path::new(".")),
+            self.name(),
+        );
         self.mode = Mode::Browser;
     }
 

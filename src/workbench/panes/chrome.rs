@@ -173,9 +173,22 @@ fn footer(mode: Mode, is_running: bool, width: usize) -> Vec<(String, &'static s
 
 /// Whether the footer names `action` as long as it can.
 fn is_kept(action: Action) -> bool {
-    use Action::{Browse, Choose, Help, Quit, ToggleExact, TogglePause};
+    use Action::{
+        Accept, Browse, Choose, Export, Help, Parameters, Push, Quit, Step, ToggleExact,
+        TogglePause,
+    };
     matches!(
         action,
-        TogglePause | ToggleExact | Browse | Choose | Help | Quit
+        TogglePause
+            | Step
+            | Parameters
+            | Push
+            | ToggleExact
+            | Export
+            | Browse
+            | Choose
+            | Accept
+            | Help
+            | Quit
     )
 }

@@ -60,6 +60,7 @@ fn lines(width: usize) -> Vec<Line> {
         (Mode::Lab, "the lab"),
         (Mode::Browser, "the list of presets and files"),
         (Mode::Filter, "the filter"),
+        (Mode::Dialog, "what is asked for"),
     ] {
         let heading = wrapped(heading, width.saturating_sub(1));
         lines.extend(

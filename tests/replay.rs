@@ -1,0 +1,216 @@
+//! A run is its scenario and its journal: whatever the user does, and in whatever order, the saved run file replays it
+//! to the same last bit, and going back and forward again leads through the same numbers.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use gyrolab::run::Simulation;
+use gyrolab::scenario::{Document, Scenario};
+use gyrolab::workbench::app;
+use gyrolab::workbench::keymap::{Key, Mode};
+use gyrolab::workbench::lab::Lab;
+use gyrolab::workbench::markers::Marker;
+use gyrolab::workbench::theme::{Background, Theme};
+use gyrolab::workbench::view::View;
+use proptest::prelude::*;
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// What a user may do, as keys; typed values stand in dialogs.
+const DEEDS: &[&[Key]] = &[
+    &[Key::Char(' ')],
+    &[Key::Char('.')],
+    &[Key::Char('7'), Key::Char('.')],
+    &[
+        Key::Char('3'),
+        Key::Char('0'),
+        Key::Char('0'),
+        Key::Char('.'),
+    ],
+    &[Key::Char(',')],
+    &[Key::Char('9'), Key::Char(',')],
+    &[Key::Char('4'), Key::Char('0'), Key::Char(',')],
+    &[Key::Char('5'), Key::Char('5'), Key::Char('g')],
+    &[Key::Char('r')],
+    &[Key::Char('p')],
+    &[Key::Char('u')],
+    &[Key::Char('u')],
+    &[Key::Char('U')],
+    &[Key::Char('t')],
+    &[Key::Char('e'), Key::Right],
+    &[Key::Char('e'), Key::Left],
+    &[Key::Char('e'), Key::ShiftRight],
+    &[Key::Char('e'), Key::Up],
+    &[Key::Char('e'), Key::Down],
+    &[Key::Char('e'), Key::ShiftDown],
+    &[Key::Char('P'), Key::Down, Key::Right],
+    &[Key::Char('P'), Key::Down, Key::Down, Key::Left],
+];
+
+struct Stage {
+    lab: Lab,
+    now: Duration,
+}
+
+impl Stage {
+    fn open(name: &str, folder: &Path) -> Self {
+        let scenario = Arc::new(Document::open(name).unwrap().scenario().unwrap());
+        let theme = Theme {
+            colour: false,
+            background: Background::Dark,
+        };
+        let view = View::new(&scenario, Marker::Braille, theme);
+        let mut lab = Lab::new(name, scenario, view, false);
+        lab.work_in(folder);
+        Self {
+            lab,
+            now: Duration::ZERO,
+        }
+    }
+
+    fn press(&mut self, keys: &[Key]) {
+        for &key in keys {
+            app::press(key, &mut self.lab);
+        }
+        self.wait(2);
+    }
+
+    fn type_text(&mut self, text: &str) {
+        text.chars().for_each(|c| {
+            app::press(Key::Char(c), &mut self.lab);
+        });
+    }
+
+    fn wait(&mut self, frames: u32) {
+        for _ in 0..frames {
+            self.now += Duration::from_millis(70);
+            let now = self.now;
+            self.lab.advance(&mut || now);
+        }
+        while self.lab.playback().steps_to_go().is_some() {
+            let now = self.now;
+            self.lab.advance(&mut || now);
+        }
+    }
+
+    fn simulation(&self) -> &Simulation {
+        self.lab.run().simulation()
+    }
+
+    /// Saves the run file and gives what is in it; `None` at step 0, where there is no run yet.
+    fn saved(&mut self, folder: &Path) -> Option<Scenario> {
+        app::press(Key::Esc, &mut self.lab);
+        app::press(Key::Char('s'), &mut self.lab);
+        if self.lab.mode() != Mode::Dialog {
+            assert_eq!(self.simulation().step_number(), 0);
+            return None;
+        }
+        app::press(Key::Ctrl('u'), &mut self.lab);
+        self.type_text("saved.toml");
+        app::press(Key::Enter, &mut self.lab);
+        if self.lab.mode() == Mode::Dialog {
+            app::press(Key::Enter, &mut self.lab); // it exists: replace it
+        }
+        assert_eq!(self.lab.mode(), Mode::Lab, "{:?}", self.lab.dialog());
+        let file = folder.join("saved.toml");
+        Some(Document::read(&file).unwrap().scenario().unwrap())
+    }
+}
+
+/// Every number of a step, to the bit.
+fn bits(simulation: &Simulation) -> Vec<u64> {
+    let (state, sample) = (simulation.state(), simulation.sample());
+    let numbers = state
+        .orientation
+        .iter()
+        .chain(state.momentum.iter())
+        .copied();
+    let rest = [
+        state.time_s,
+        sample.azimuth_deg,
+        sample.energy,
+        simulation.energy_drift().unwrap_or(0.0),
+    ];
+    let mut bits: Vec<_> = numbers.chain(rest).map(f64::to_bits).collect();
+    bits.push(sample.segment);
+    bits
+}
+
+fn replayed(scenario: Scenario, step: u64) -> Vec<u64> {
+    let mut simulation = Simulation::new(Arc::new(scenario));
+    let _ = simulation.step_to(step); // a run that ends stays where it ended, as the lab's does
+    bits(&simulation)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn any_actions_are_replayed_from_their_run_file(
+        preset in prop::sample::select(vec!["method-2", "wobble-push", "wobble-push-accumulating", "cusps", "falling"]),
+        scheme in prop::sample::select(vec!["report", "rk4", "strang", "srkn11b", "exact"]),
+        deeds in prop::collection::vec(0..DEEDS.len(), 1..40),
+    ) {
+        let folder = tempfile::tempdir().unwrap();
+        let mut stage = Stage::open(preset, folder.path());
+        stage.press(&[Key::Char('e')]);
+        while stage.lab.editor().selected().unwrap().key != "motion.scheme" {
+            stage.press(&[Key::Down]);
+        }
+        stage.press(&[Key::Enter, Key::Ctrl('u')]);
+        stage.type_text(scheme);
+        stage.press(&[Key::Enter]);
+        for deed in deeds {
+            stage.press(DEEDS[deed]);
+        }
+        let here = bits(stage.simulation());
+        let step = stage.simulation().step_number();
+        let whole = stage.lab.run().scenario().as_ref().clone();
+        prop_assert_eq!(&replayed(whole, step), &here, "the run as it stands, at step {}", step);
+        if let Some(saved) = stage.saved(folder.path()) {
+            prop_assert_eq!(saved.steps, step);
+            prop_assert_eq!(&replayed(saved, step), &here, "the saved run file, at step {}", step);
+        }
+    }
+
+    #[test]
+    fn back_and_forward_again_lead_through_the_same_numbers(
+        preset in prop::sample::select(vec!["method-2", "wobble-push", "wobble-push-accumulating", "loops"]),
+        scheme in prop::sample::select(vec!["report", "rk4", "strang", "srkn11b", "exact"]),
+        way in prop::collection::vec(0u64..3000, 2..30),
+        edits in prop::collection::vec((0u64..2000, 0usize..3), 0..4),
+    ) {
+        let folder = tempfile::tempdir().unwrap();
+        let mut stage = Stage::open(preset, folder.path());
+        let mut edits = edits;
+        edits.sort_unstable();
+        for (step, edit) in edits {
+            stage.press(&[]);
+            stage.type_text(&format!("{step}g"));
+            stage.wait(1);
+            let deeds: &[Key] = [&[Key::Char('p')][..], &[Key::Char('e'), Key::Right][..], &[Key::Char('e'), Key::Down, Key::Down, Key::Left, Key::Up, Key::Up][..]][edit];
+            stage.press(deeds);
+        }
+        stage.press(&[Key::Char('r'), Key::Char('e'), Key::Down]);
+        prop_assert_eq!(stage.lab.editor().selected().unwrap().key.as_str(), "motion.scheme");
+        stage.press(&[Key::Enter, Key::Ctrl('u')]);
+        stage.type_text(scheme);
+        stage.press(&[Key::Enter, Key::Up]);
+        let mut seen: HashMap<u64, Vec<u64>> = HashMap::new();
+        for step in way {
+            stage.type_text(&format!("{step}g"));
+            stage.wait(1);
+            let simulation = stage.simulation();
+            let reached = simulation.step_number();
+            let here = bits(simulation);
+            let health = stage.lab.readouts().health.clone();
+            prop_assert!(health.energy_drift.is_none_or(|drift| !drift.is_nan()));
+            prop_assert_eq!(seen.entry(reached).or_insert_with(|| here.clone()), &here, "step {}", reached);
+            prop_assert_eq!(stage.lab.run().recording().moments(), reached + 1);
+        }
+        for (step, there) in seen {
+            prop_assert_eq!(replayed(stage.lab.run().scenario().as_ref().clone(), step), there, "step {}", step);
+        }
+    }
+}
