@@ -29,16 +29,14 @@ pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<
         let events = screen.events(wait)?;
         let acted = !events.is_empty();
         for event in events {
-            if handle(event, lab, &mut screen)?.is_break() {
+            if handle(event, lab, &mut screen, session)?.is_break() {
                 return Ok(());
             }
         }
         #[cfg(debug_assertions)]
         panic_if_asked(begin.elapsed());
         lab.advance(&mut || begin.elapsed());
-        if let Some(session) = session {
-            keep(lab, session);
-        }
+        keep(lab, session);
         let now = begin.elapsed();
         // An action is answered at once, whenever the next frame would be.
         if (acted || now >= next_frame) && lab.take_changed() {
@@ -49,10 +47,13 @@ pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<
 }
 
 /// Has `session` keep `lab` as it stands; says so where it cannot.
-fn keep(lab: &mut Lab, session: &Session) {
+fn keep(lab: &mut Lab, session: Option<&Session>) {
+    let Some(session) = session else {
+        return;
+    };
     session.note(lab.content());
     if let Some(trouble) = session.new_trouble() {
-        lab.tell(format!("the session cannot be kept: {trouble}"));
+        lab.tell(trouble);
     }
 }
 
@@ -87,11 +88,18 @@ fn wait(lab: &Lab, to_frame: Duration) -> Duration {
     }
 }
 
-fn handle(event: Event, lab: &mut Lab, screen: &mut Screen) -> io::Result<ControlFlow<()>> {
+fn handle(
+    event: Event,
+    lab: &mut Lab,
+    screen: &mut Screen,
+    session: Option<&Session>,
+) -> io::Result<ControlFlow<()>> {
     let request = match event {
         Event::Key(key) => press(key, lab),
         Event::Suspend => Some(Request::Suspend),
         Event::Resized => {
+            // Of a screen that was smaller for a moment and is as large as before, a part is gone.
+            screen.forget()?;
             lab.resize(screen.size()?);
             None
         }
@@ -101,6 +109,9 @@ fn handle(event: Event, lab: &mut Lab, screen: &mut Screen) -> io::Result<Contro
             None
         }
     };
+    if matches!(request, Some(Request::Quit | Request::Suspend)) {
+        keep(lab, session); // what was pressed just before it came with it
+    }
     match request {
         None => return Ok(ControlFlow::Continue(())),
         Some(Request::Quit) => return Ok(ControlFlow::Break(())),

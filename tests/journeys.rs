@@ -1,0 +1,903 @@
+//! What a user does in the lab from its opening to its end, and what is on the screen and the disk then: the program
+//! itself in a pty.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "support/dice.rs"]
+mod dice;
+#[path = "support/pty.rs"]
+mod pty;
+
+use dice::Dice;
+use pty::{Ground, Terminal};
+use std::fs;
+use std::thread;
+use std::time::{Duration, Instant};
+
+const DOWN: &str = "\u{1b}[B";
+const RIGHT: &str = "\u{1b}[C";
+const LEFT: &str = "\u{1b}[D";
+const ESC: &str = "\u{1b}";
+const TO_THE_TOP: &str = "99\u{1b}[A";
+const CTRL_Z: &str = "\u{1a}";
+/// Takes away what a dialog offers, or what was typed into it.
+const CLEAR: &str = "\u{15}";
+/// What the lab says of itself when a session has been come back to.
+const AS_LEFT: &str = "as it was left";
+
+/// The lab with Method 2, standing still at `step`.
+fn paused_at(ground: &Ground, step: u64) -> Terminal {
+    let step = step.to_string();
+    let lab = ground.open(&["--paused", "--at", &step]);
+    lab.wait_for("q quit");
+    lab
+}
+
+/// The lab as the newest session has it, arrived where it was left.
+fn resumed(ground: &Ground) -> Terminal {
+    let lab = ground.open(&["--resume"]);
+    lab.wait_for(AS_LEFT);
+    lab.wait_for("paused");
+    lab
+}
+
+/// Types `text` into the dialog that is open, in place of what is there.
+fn answer(lab: &mut Terminal, text: &str) {
+    lab.press(&format!("{CLEAR}{text}\r"));
+}
+
+/// Selects the `row`th value of those that can be edited: 1 gravity, 3 dt, 5 tilt.
+#[track_caller]
+fn select(lab: &mut Terminal, row: usize) {
+    lab.press("e");
+    lab.ask(TO_THE_TOP, "parameters 1 of");
+    let down = DOWN.repeat(row - 1);
+    lab.ask(&down, &format!("parameters {row} of"));
+}
+
+/// Types `value` for the value that is selected.
+fn set(lab: &mut Terminal, value: &str) {
+    lab.ask("\r", "Enter take it");
+    answer(lab, value);
+}
+
+/// Goes to `step`, once all that was pressed before has been done.
+#[track_caller]
+fn go_to(lab: &mut Terminal, step: u64) {
+    lab.ask(&step.to_string(), &format!("{step}: now the key"));
+    lab.press("g");
+    let goal = format!("step {step}");
+    lab.wait_until(&goal, |lab| {
+        lab.step() == Some(step) && !lab.screen().contains("now the key")
+    });
+}
+
+/// Gives the push that is chosen, and sees it given.
+#[track_caller]
+fn push(lab: &mut Terminal) {
+    lab.ask("1", "1: now the key"); // what was said of the push before has gone
+    lab.press("p");
+    lab.wait_until("a push", |lab| {
+        ["pushed: ", "made way"]
+            .iter()
+            .any(|words| lab.words().contains(words))
+    });
+}
+
+/// Saves the run file as `name`, and reads it.
+#[track_caller]
+fn saved(lab: &mut Terminal, name: &str) -> String {
+    lab.ask("s", "save the run file");
+    answer(lab, name);
+    lab.wait_for("the run is in");
+    lab.ground().text(name)
+}
+
+/// Exports every row as `name`, and reads it.
+#[track_caller]
+fn exported(lab: &mut Terminal, name: &str) -> Vec<u8> {
+    lab.ask("x", "export steps 0 to");
+    answer(lab, name);
+    lab.wait_for("· scp ");
+    fs::read(lab.ground().file(name)).unwrap()
+}
+
+/// What `gyrolab run` makes of the file `name`.
+fn run(ground: &Ground, name: &str) -> Vec<u8> {
+    let output = ground.gyrolab(&["run", name, "-o", "-"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    output.stdout
+}
+
+/// Step, time and place of the axle top, as they are shown.
+fn shown(lab: &Terminal) -> [Vec<String>; 3] {
+    let shown = ["x", "y", "z"].map(|axis| lab.values(axis));
+    assert!(
+        shown.iter().all(|value| !value.is_empty()),
+        "{}",
+        lab.screen()
+    );
+    shown
+}
+
+#[test]
+fn a_value_is_nudged_and_typed_refused_and_taken_back() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 100);
+    select(&mut lab, 3);
+    lab.wait_for("►dt 0.1 s");
+    lab.ask(RIGHT, "►dt 0.2 s");
+    set(&mut lab, "0.05");
+    lab.wait_for("►dt 0.05 s");
+    for (value, why) in [("-1", "greater than zero"), ("soon", "number")] {
+        set(&mut lab, value);
+        lab.wait_for(why);
+        lab.wait_for(&format!("dt, s {value}_")); // it stays, to be corrected
+        lab.ask(ESC, "q quit");
+        lab.wait_for("►dt 0.05 s");
+    }
+    set(&mut lab, "-1");
+    lab.wait_for("greater than zero");
+    answer(&mut lab, "0.02");
+    lab.wait_for("►dt 0.02 s");
+    for dt in ["0.05", "0.2", "0.1"] {
+        lab.ask("u", &format!("►dt {dt} s"));
+    }
+    lab.ask("u", "nothing to undo");
+    for dt in ["0.2", "0.05"] {
+        lab.ask("U", &format!("►dt {dt} s"));
+    }
+    lab.wait_for_step(100);
+    let run = saved(&mut lab, "run.toml");
+    let edits: Vec<_> = run.match_indices("[[edit]]").collect();
+    assert_eq!(edits.len(), 1, "{run}");
+    assert!(
+        run[edits[0].0..].starts_with("[[edit]]\nstep = 100\n"),
+        "{run}"
+    );
+    assert!(run.contains("\"motion.time_step_s\" = 0.05"), "{run}");
+    lab.quit();
+}
+
+#[test]
+fn another_tilt_begins_a_run_and_undo_goes_back_to_the_old_one() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 100);
+    let before = saved(&mut lab, "before.toml");
+    select(&mut lab, 5);
+    lab.wait_for("►tilt 45 deg");
+    set(&mut lab, "30");
+    lab.wait_for("a new run");
+    lab.wait_for_step(0);
+    lab.wait_for("►tilt 30 deg");
+    lab.press("3.");
+    lab.wait_for_step(3);
+    lab.ask("u", "undone: another run");
+    lab.wait_for_step(100);
+    lab.wait_for("►tilt 45 deg");
+    assert_eq!(saved(&mut lab, "back.toml"), before);
+    lab.ask("U", "done again: another run");
+    lab.wait_for_step(3);
+    lab.wait_for("►tilt 30 deg");
+    let run = saved(&mut lab, "run.toml");
+    assert!(
+        run.contains("tilt_deg = 30") && run.contains("steps = 3\n"),
+        "{run}"
+    );
+    lab.quit();
+}
+
+#[test]
+fn a_push_is_chosen_given_marked_and_saved() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 100);
+    assert!(!lab.screen().contains("═"));
+    lab.ask("P", "►force 50 N");
+    set(&mut lab, "75");
+    lab.wait_for("►force 75 N");
+    lab.press(&format!("{DOWN}{RIGHT}"));
+    lab.wait_for("►toward up");
+    lab.ask("p", "pushed: 75 N on top, up, for 20 s");
+    lab.press("50.");
+    lab.wait_for_step(150);
+    lab.wait_for("═"); // below the traces, when it acts
+    let run = saved(&mut lab, "run.toml");
+    let push = &run[run.find("[[push]]").unwrap()..];
+    for line in [
+        "point = \"top\"",
+        "force_N = [0.0, 0.0, 75.0]",
+        "from_s = 10.0",
+        "for_s = 20.0",
+    ] {
+        assert!(push.contains(line), "{line}: {run}");
+    }
+    lab.quit();
+}
+
+#[test]
+fn forward_again_the_numbers_are_those_of_the_first_time() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 0);
+    lab.press("300.");
+    lab.wait_for_step(300);
+    push(&mut lab);
+    lab.press("100.");
+    lab.wait_for_step(400);
+    let first = (shown(&lab), exported(&mut lab, "first.csv"));
+    lab.press(",");
+    lab.wait_for_step(399);
+    assert_ne!(shown(&lab), first.0);
+    lab.press("10,");
+    lab.wait_for_step(389);
+    lab.ask("g", "a step (421), a time (12.5 s)");
+    answer(&mut lab, "12.5 s");
+    lab.wait_for_step(125);
+    lab.wait_for("t 12.5 s");
+    lab.ask("g", "go to a step");
+    answer(&mut lab, "40 o'clock");
+    lab.wait_for("must be a step (421)");
+    lab.ask(ESC, "q quit");
+    lab.press("r");
+    lab.wait_for_step(0);
+    lab.press("400g");
+    lab.wait_for_step(400);
+    assert_eq!(shown(&lab), first.0);
+    assert_eq!(exported(&mut lab, "again.csv"), first.1);
+    lab.press(",.");
+    lab.wait_until("forward again", |lab| {
+        lab.step() == Some(400) && !lab.screen().contains("scp")
+    });
+    assert_eq!(shown(&lab), first.0);
+    lab.quit();
+}
+
+#[test]
+fn a_step_beyond_all_is_gone_to_with_progress_until_esc() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 10);
+    lab.ask("g", "go to a step");
+    answer(&mut lab, "900000000");
+    lab.wait_for("to go, Esc stops");
+    lab.ask(ESC, "stopped with");
+    let stopped = lab.step().unwrap();
+    assert!((10..900_000_000).contains(&stopped), "{stopped}");
+    lab.press("20g");
+    lab.wait_for_step(20);
+    lab.quit();
+}
+
+/// The file is written by one who does all there is to do before.
+#[test]
+fn an_export_is_the_run_that_was_saved() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 50);
+    push(&mut lab);
+    select(&mut lab, 1);
+    lab.press("30.");
+    lab.wait_for_step(80);
+    lab.press(RIGHT);
+    lab.press("20.");
+    lab.wait_for_step(100);
+    lab.press("15,");
+    lab.wait_for_step(85);
+    lab.press(&format!("{DOWN}{DOWN}"));
+    set(&mut lab, "0.025");
+    lab.wait_for("►dt 0.025 s");
+    lab.press("200.");
+    lab.wait_for_step(285);
+    lab.ask("x", "286 rows, about");
+    lab.ask("\t", "every 1_");
+    for (every, words) in [("7", "42 rows, about"), ("0", "whole number, 1 or more")] {
+        lab.press(CLEAR);
+        lab.ask(every, words);
+    }
+    lab.press(ESC);
+    lab.wait_for("q quit");
+    assert_eq!(ground.names(), ["state"], "what is left of a cancelled one");
+    let csv = exported(&mut lab, "run.csv");
+    saved(&mut lab, "run.toml");
+    assert!(csv == run(&ground, "run.toml"), "other bytes");
+    assert!(csv == run(&ground, "run.csv"), "other bytes from the CSV");
+
+    // A file that exists goes at the second word only.
+    fs::write(ground.file("mine.csv"), "mine").unwrap();
+    lab.ask("x", "file method-2.csv_");
+    lab.press(ESC);
+    lab.wait_for("q quit");
+    lab.ask("x", "export steps 0 to 285");
+    answer(&mut lab, "mine.csv");
+    lab.wait_for("exists: Enter again replaces it");
+    assert_eq!(ground.text("mine.csv"), "mine");
+    lab.ask("\r", "· scp ");
+    assert!(fs::read(ground.file("mine.csv")).unwrap() == csv);
+    lab.quit();
+    let farewell = lab.words();
+    assert!(farewell.contains("mine.csv: 286 rows"), "{farewell}");
+}
+
+#[test]
+fn the_present_state_is_saved_as_a_scenario_that_runs() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 50);
+    push(&mut lab);
+    lab.press("100.");
+    lab.wait_for_step(150);
+    lab.ask("S", "save the present state");
+    answer(&mut lab, "here.toml");
+    lab.wait_for("the scenario is in");
+    let z = shown(&lab)[2].last().cloned();
+    lab.quit();
+    let checked = ground.gyrolab(&["check", "here.toml"]);
+    assert!(
+        checked.status.success(),
+        "{}",
+        String::from_utf8_lossy(&checked.stderr)
+    );
+    assert!(run(&ground, "here.toml").starts_with(b"# "));
+    let begins = ground.open(&["here.toml", "--paused"]);
+    begins.wait_for("paused");
+    assert_eq!(shown(&begins)[2].last().cloned(), z);
+}
+
+#[test]
+fn an_export_that_cannot_be_says_why_and_loses_nothing() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 50);
+    fs::create_dir(ground.file("gone")).unwrap();
+    lab.ask("x", "export steps 0 to 50");
+    lab.press(&format!("{CLEAR}gone/run.csv"));
+    lab.wait_for("gone/run.csv_");
+    fs::remove_dir(ground.file("gone")).unwrap();
+    lab.ask("\r", "there is no folder");
+    answer(&mut lab, "state");
+    lab.wait_for("is a folder");
+    let locked = ground.file("locked");
+    fs::create_dir(&locked).unwrap();
+    let mut rights = fs::metadata(&locked).unwrap().permissions();
+    rights.set_readonly(true);
+    fs::set_permissions(&locked, rights).unwrap();
+    if fs::write(locked.join("probe"), "").is_err() {
+        answer(&mut lab, "locked/run.csv");
+        lab.wait_for("Permission denied");
+    }
+    answer(&mut lab, "/dev/full");
+    lab.wait_for("not a regular file");
+    answer(&mut lab, "run.csv");
+    lab.wait_for("· scp ");
+    lab.wait_for_step(50);
+    lab.quit();
+}
+
+#[test]
+fn an_export_whose_folder_goes_away_says_so_and_the_lab_stays() {
+    let ground = Ground::new();
+    fs::create_dir(ground.file("gone")).unwrap();
+    let mut lab = long_run(&ground);
+    lab.ask("x", "export steps 0 to");
+    answer(&mut lab, "gone/run.csv");
+    lab.wait_until("a file begun", |_| {
+        fs::read_dir(ground.file("gone")).unwrap().count() == 1
+    });
+    fs::remove_dir_all(ground.file("gone")).unwrap();
+    lab.wait_for("cannot write");
+    lab.press(".");
+    lab.wait_for_step(LONG + 1);
+    lab.quit();
+}
+
+/// So many steps of a wheel of so many points take a second, and as long again to be written.
+const LONG: u64 = 200_000;
+const POINTS: &str = "body.rim.points=4000";
+
+fn long_run(ground: &Ground) -> Terminal {
+    let step = LONG.to_string();
+    let lab = ground.open(&["--paused", "--at", &step, "--set", POINTS]);
+    lab.wait_for_step(LONG);
+    lab
+}
+
+#[test]
+fn an_export_is_stopped_by_esc_and_by_the_second_q_and_leaves_nothing() {
+    let ground = Ground::new();
+    let mut lab = long_run(&ground);
+    let begin = |lab: &mut Terminal| {
+        lab.ask("x", "export steps 0 to");
+        answer(lab, "run.csv");
+        lab.wait_for("in the background");
+    };
+    begin(&mut lab);
+    lab.press(ESC); // it may close the notice
+    lab.wait_until("the line without the notice", |lab| {
+        !lab.words().contains("in the background")
+    });
+    lab.ask(ESC, "the export was stopped, and nothing was written");
+    assert_eq!(ground.names(), ["state"]);
+    begin(&mut lab);
+    lab.ask("q", "q again leaves it unfinished");
+    lab.quit();
+    assert_eq!(ground.names(), ["state"]);
+    resumed(&ground).wait_for_step(LONG);
+}
+
+#[test]
+fn a_line_that_is_lost_in_an_export_leaves_no_part_and_is_told_of() {
+    all_at_once(&["HUP", "line"], |end| {
+        let ground = Ground::new();
+        let mut lab = long_run(&ground);
+        lab.ask("x", "export steps 0 to");
+        answer(&mut lab, "run.csv");
+        lab.wait_for("in the background");
+        ended(&mut lab, end);
+        assert_eq!(ground.names(), ["state"], "{end}");
+        let lab = ground.open(&["--resume"]);
+        lab.wait_for("run.csv was cut off, x begins another");
+        lab.wait_for_step(LONG);
+    });
+}
+
+/// Does `test` with each of `cases`, which wait more than they work.
+fn all_at_once(cases: &[&str], test: impl Fn(&str) + Sync) {
+    thread::scope(|scope| {
+        for case in cases {
+            scope.spawn(|| test(case));
+        }
+    });
+}
+
+/// Has the lab end by that signal, or by the loss of its line.
+fn ended(lab: &mut Terminal, by: &str) {
+    match by {
+        "line" => lab.lose_line(),
+        signal => lab.signal(signal),
+    }
+    lab.wait_for_end();
+}
+
+/// All that is kept of sessions.
+fn kept(ground: &Ground) -> String {
+    let folder = ground.state().join("gyrolab");
+    let names = ground
+        .kept(".work")
+        .into_iter()
+        .chain(ground.kept(".place"));
+    names
+        .filter_map(|name| fs::read_to_string(folder.join(name)).ok())
+        .collect()
+}
+
+#[test]
+fn all_of_it_at_every_size_and_back_with_resume() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 40);
+    push(&mut lab);
+    lab.resize((1, 1));
+    lab.press("20.");
+    lab.resize((200, 50));
+    lab.wait_for_step(60);
+    select(&mut lab, 3);
+    lab.resize((40, 10));
+    set(&mut lab, "0.05");
+    lab.resize((1, 1));
+    lab.press("40.");
+    lab.press("s"); // a dialog that nobody sees
+    lab.resize((5, 3));
+    lab.press(CLEAR);
+    lab.press("small.toml\r");
+    lab.resize((80, 24));
+    lab.wait_for("the run is in");
+    lab.wait_for_value("dt", "0.05");
+    lab.press(" ");
+    lab.wait_until("a run that plays", |lab| {
+        lab.step().is_some_and(|step| step > 105)
+    });
+    lab.resize((1, 1));
+    lab.press(" ");
+    lab.resize((80, 24));
+    lab.wait_for("paused");
+    let before = saved(&mut lab, "before.toml");
+    assert!(before.contains("[[push]]") && before.contains("[[edit]]"));
+    let step = Some(lab.step().unwrap_or_else(|| panic!("{}", lab.screen())));
+    lab.quit();
+
+    let mut lab = resumed(&ground);
+    assert_eq!(lab.step(), step);
+    assert_eq!(saved(&mut lab, "after.toml"), before);
+    lab.ask("u", "undone: motion.time_step_s = 0.05, at step 60");
+    lab.wait_for_value("dt", "0.1");
+    lab.ask("u", "undone: the push on top, at step 40");
+    lab.wait_for_step(40);
+    lab.ask("u", "nothing to undo");
+    lab.press("U");
+    lab.press("U");
+    lab.wait_for_value("dt", "0.05");
+    lab.press("q");
+    lab.wait_for_end();
+
+    // What was taken back stays so, and the other run is still there.
+    let mut lab = resumed(&ground);
+    lab.press("u");
+    lab.wait_for_value("dt", "0.1");
+    lab.quit();
+    let mut lab = resumed(&ground);
+    lab.press("U");
+    lab.wait_for_value("dt", "0.05");
+    go_to(&mut lab, step.unwrap());
+    assert_eq!(saved(&mut lab, "again.toml"), before);
+    lab.quit();
+}
+
+#[test]
+fn a_screen_that_is_small_for_a_moment_is_drawn_again() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 40);
+    for small in [(1, 1), (79, 1), (40, 10), (1, 24)].repeat(3) {
+        lab.resize(small);
+        lab.resize((80, 24));
+        for words in ["Method 2", "parameters", "q quit"] {
+            lab.wait_for(words);
+        }
+    }
+    lab.quit();
+}
+
+#[test]
+fn the_runs_before_are_kept_too() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 70);
+    push(&mut lab);
+    let before = saved(&mut lab, "before.toml");
+    select(&mut lab, 5);
+    set(&mut lab, "30");
+    lab.wait_for_step(0);
+    lab.quit();
+    let mut lab = resumed(&ground);
+    lab.wait_for_step(0);
+    lab.ask("u", "undone: another run");
+    lab.wait_for_step(70);
+    assert_eq!(saved(&mut lab, "after.toml"), before);
+    lab.quit();
+}
+
+/// Keys and the end may come together, as from a hand that is fast on a line that is slow.
+#[test]
+fn what_is_pressed_just_before_the_end_is_kept() {
+    all_at_once(&["q", "\u{3}", CTRL_Z], |end| {
+        let ground = Ground::new();
+        let mut lab = paused_at(&ground, 30);
+        lab.press(&format!("p{end}"));
+        match end {
+            CTRL_Z => {
+                lab.has_given_the_terminal_back();
+                wait_for_rest(&lab);
+                lab.kill();
+            }
+            _ => drop(lab.wait_for_end()),
+        }
+        let mut lab = resumed(&ground);
+        let run = saved(&mut lab, "run.toml");
+        assert!(run.contains("[[push]]"), "{end:?}: {run}");
+    });
+}
+
+#[test]
+fn keys_that_come_together_count_one_by_one() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 30);
+    lab.press("....5.,p..");
+    lab.wait_for_step(40);
+    let run = saved(&mut lab, "run.toml");
+    assert!(run.contains("from_s = 3.8000000000000003"), "{run}");
+    lab.quit();
+}
+
+/// Waits until the process has stopped, as Ctrl-Z has it stop.
+#[track_caller]
+fn wait_for_rest(lab: &Terminal) {
+    let stat = format!("/proc/{}/stat", lab.child.process_id().unwrap());
+    lab.wait_until("a process that has stopped", |_| {
+        let stat = fs::read_to_string(&stat).unwrap_or_default();
+        let rest = stat.rsplit_once(')').map_or("", |(_, rest)| rest);
+        stat.is_empty() || rest.trim_start().starts_with('T')
+    });
+}
+
+#[test]
+fn after_every_end_there_is_all_that_was_done() {
+    all_at_once(&["TERM", "HUP", "INT", "QUIT", "line"], |end| {
+        let ground = Ground::new();
+        let mut lab = paused_at(&ground, 30);
+        push(&mut lab);
+        lab.press("5.");
+        lab.wait_for_step(35);
+        ended(&mut lab, end);
+        if end != "line" {
+            lab.has_given_the_terminal_back();
+        }
+        let mut lab = resumed(&ground);
+        assert_eq!(lab.step(), Some(35), "{end}");
+        let run = saved(&mut lab, "run.toml");
+        assert!(run.contains("[[push]]"), "{end}: {run}");
+    });
+}
+
+#[test]
+#[cfg(debug_assertions)]
+fn after_a_panic_there_is_all_that_was_done() {
+    let ground = Ground::new();
+    let variables = [("GYROLAB_PANIC_AFTER_MS", "3000")];
+    let variables = [("TERM", "xterm"), ("LANG", "C.UTF-8"), variables[0]];
+    let mut lab = ground.open_with(&["--paused", "--at", "30"], &variables);
+    lab.wait_for("q quit");
+    push(&mut lab);
+    lab.press("5.");
+    lab.wait_for_step(35);
+    assert_eq!(lab.wait_for_end().exit_code(), 101);
+    lab.has_given_the_terminal_back();
+    let mut lab = resumed(&ground);
+    assert_eq!(lab.step(), Some(35));
+    assert!(saved(&mut lab, "run.toml").contains("[[push]]"));
+}
+
+#[test]
+fn a_shell_stops_it_and_brings_it_back() {
+    let ground = Ground::new();
+    let mut lab = ground.open_shell();
+    lab.wait_for("shell>");
+    let program = env!("CARGO_BIN_EXE_gyrolab");
+    lab.press(&format!("{program} --paused --at 30\r"));
+    lab.wait_for("q quit");
+    push(&mut lab);
+    lab.press(CTRL_Z);
+    lab.has_given_the_terminal_back();
+    lab.ask("\r", "shell>");
+    lab.forget();
+    lab.press("echo the shell $((6 * 7))\r");
+    lab.wait_for("the shell 42");
+    lab.press("fg\r");
+    lab.wait_for("q quit");
+    lab.wait_for_step(30);
+    lab.press("5.");
+    lab.wait_for_step(35);
+    lab.forget();
+    lab.press("q");
+    lab.has_given_the_terminal_back();
+    lab.press("exit\r");
+    lab.wait_for_end();
+    let mut lab = resumed(&ground);
+    assert_eq!(lab.step(), Some(35));
+    assert!(saved(&mut lab, "run.toml").contains("[[push]]"));
+}
+
+#[test]
+fn two_labs_have_two_sessions_and_a_third_begins_anew() {
+    let ground = Ground::new();
+    let mut labs = [paused_at(&ground, 30), paused_at(&ground, 50)];
+    assert_eq!(ground.kept(".lock").len(), 2);
+    let [older, newer] = &mut labs;
+    push(older);
+    wait_until_kept(older, &ground);
+    push(newer);
+    newer.press("7.");
+    newer.wait_for_step(57);
+    wait_until_kept(newer, &ground);
+    labs.iter_mut().for_each(Terminal::kill);
+    let first = resumed(&ground);
+    first.wait_for_step(57);
+    let second = resumed(&ground);
+    second.wait_for_step(30);
+    let third = ground.open(&["--resume"]);
+    third.wait_for("no session to come back to: this is a new one");
+    third.wait_for("Method 2");
+}
+
+/// Waits until where `lab` stands is on the disk.
+fn wait_until_kept(lab: &Terminal, ground: &Ground) {
+    let step = format!("step = {}\n", lab.step().unwrap());
+    lab.wait_until("what it does on the disk", |_| kept(ground).contains(&step));
+}
+
+#[test]
+fn without_a_session_resume_opens_a_new_lab_and_says_so() {
+    let ground = Ground::new();
+    let mut lab = ground.open(&["--resume", "--paused"]);
+    lab.wait_for("no session to come back to: this is a new one");
+    push(&mut lab);
+    lab.quit();
+    assert!(resumed(&ground).words().contains("Method 2"));
+}
+
+#[test]
+fn a_damaged_session_is_named_and_kept_aside() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 30);
+    push(&mut lab);
+    lab.quit();
+    let [name] = &ground.kept(".work")[..] else {
+        panic!("{:?}", ground.kept(""))
+    };
+    let path = ground.state().join("gyrolab").join(name);
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, &text[..text.len() / 2]).unwrap();
+    let mut lab = ground.open(&["--resume"]);
+    lab.wait_for("a damaged session is put aside as");
+    lab.wait_for("Method 2");
+    let aside = ground.kept(".work.damaged");
+    assert_eq!(aside, [format!("{name}.damaged")]);
+    lab.press(" ");
+    lab.quit();
+    // It is not tried again, and the lab that was opened instead has a session of its own.
+    resumed(&ground);
+}
+
+#[test]
+fn without_a_place_for_sessions_the_lab_opens_and_says_so() {
+    let ground = Ground::new();
+    fs::write(ground.state(), "in the way").unwrap();
+    for args in [["--paused", "--at", "30"].as_slice(), &["--resume"]] {
+        let mut lab = ground.open(args);
+        lab.wait_for("sessions cannot be kept in");
+        push(&mut lab);
+        lab.quit();
+        assert_eq!(ground.text("state"), "in the way");
+    }
+}
+
+#[test]
+fn a_place_for_sessions_that_is_lost_is_told_of_and_found_again() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 30);
+    wait_until_kept(&lab, &ground);
+    let folder = ground.state().join("gyrolab");
+    fs::remove_dir_all(&folder).unwrap();
+    fs::write(&folder, "in the way").unwrap();
+    lab.press(".");
+    lab.wait_for("the session cannot be kept");
+    let said = lab.words();
+    assert_eq!(said.matches("cannot be kept:").count(), 1, "{said}");
+    fs::remove_file(&folder).unwrap();
+    push(&mut lab);
+    wait_until_kept(&lab, &ground);
+    lab.kill();
+    assert_eq!(resumed(&ground).step(), Some(31));
+}
+
+/// A lab that comes back to a far step is on its way for a while: an end on the way must not cost the rest of it.
+#[test]
+fn an_end_on_the_way_back_costs_nothing() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 3_000_000);
+    push(&mut lab);
+    wait_until_kept(&lab, &ground);
+    lab.quit();
+    for _ in 0..2 {
+        let mut lab = ground.open(&["--resume"]);
+        lab.wait_for("to go, Esc stops");
+        lab.signal("HUP");
+        lab.wait_for_end();
+    }
+    let lab = resumed(&ground);
+    assert_eq!(lab.step(), Some(3_000_000));
+}
+
+/// What must be there after a kill.
+struct Sure {
+    /// The step at which the run was saved, and what was in the file.
+    step: u64,
+    run: String,
+    /// A step it had come to, and how many pushes had been given since then, more than a second before the kill.
+    reached: u64,
+    pushes: usize,
+}
+
+/// What is seen at some time.
+struct Seen {
+    at: Instant,
+    step: u64,
+    pushes: usize,
+}
+
+#[test]
+fn twenty_kills_cost_no_more_than_the_last_second() {
+    thread::scope(|scope| {
+        for seed in 1..=4 {
+            scope.spawn(move || five_kills(seed));
+        }
+    });
+}
+
+fn five_kills(seed: u64) {
+    let mut dice = Dice(0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(seed));
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 20);
+    for kill in 0..5 {
+        let sure = lives_until_killed(&mut lab, &mut dice, kill);
+        lab = resumed(&ground);
+        let context = format!("seed {seed}, kill {kill}");
+        let step = lab.step().unwrap();
+        assert!(step >= sure.reached, "{context}: {step} {}", sure.reached);
+        let all = saved(&mut lab, &format!("all-{kill}.toml"));
+        let pushes = all.matches("[[push]]").count();
+        assert!(pushes >= sure.pushes, "{context}: {pushes} {}", sure.pushes);
+        go_to(&mut lab, sure.step);
+        let again = saved(&mut lab, &format!("again-{kill}.toml"));
+        assert_eq!(again, sure.run, "{context}");
+    }
+}
+
+/// Does this and that, and saves it; does more for a second or two; and is killed.
+fn lives_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Sure {
+    for _ in 0..dice.whole(1, 6) {
+        does_anything(lab, dice);
+    }
+    let step = dice.whole(10, 400);
+    go_to(lab, step);
+    let run = saved(lab, &format!("run-{kill}.toml"));
+    let pushes = run.matches("[[push]]").count();
+    let mut seen = vec![Seen {
+        at: Instant::now(),
+        step,
+        pushes,
+    }];
+    lab.press(".");
+    lab.wait_for_step(step + 1);
+    let until = Instant::now() + Duration::from_millis(dice.whole(1000, 1900));
+    while Instant::now() < until {
+        let given = goes_on(lab, dice);
+        let pushes = seen.last().map_or(0, |seen| seen.pushes) + given;
+        seen.push(Seen {
+            at: Instant::now(),
+            step: lab.step().unwrap(),
+            pushes,
+        });
+        thread::sleep(Duration::from_millis(dice.whole(0, 150)));
+    }
+    let killed = Instant::now();
+    lab.kill();
+    let is_sure = |seen: &&Seen| seen.at + Duration::from_secs(1) <= killed;
+    let Seen {
+        step: reached,
+        pushes,
+        ..
+    } = seen.iter().rfind(is_sure).unwrap();
+    Sure {
+        step,
+        run,
+        reached: *reached,
+        pushes: *pushes,
+    }
+}
+
+/// Any change of the run, at any place in it.
+fn does_anything(lab: &mut Terminal, dice: &mut Dice) {
+    match dice.whole(0, 7) {
+        0 => push(lab),
+        1 => select(lab, 1),
+        2 => lab.press(&format!("3{}", dice.pick(&[LEFT, RIGHT]))),
+        3 => go_to(lab, dice.whole(1, 500)),
+        4 => lab.press(dice.pick(&["u", "2u", "U", "7,"])),
+        5 => {
+            select(lab, 3);
+            set(lab, dice.pick(&["0.05", "0.02", "0.1"]));
+        }
+        6 => {
+            select(lab, 5);
+            set(lab, dice.pick(&["30", "45", "60"]));
+        }
+        _ => lab.press(dice.pick(&[".", "30.", "m", "w", "t"])),
+    }
+}
+
+/// Something that only adds to the run; gives how many pushes.
+fn goes_on(lab: &mut Terminal, dice: &mut Dice) -> usize {
+    match dice.whole(0, 4) {
+        0 => {
+            push(lab);
+            return 1;
+        }
+        1 => lab.press(" "),
+        _ => lab.press(dice.pick(&[".", "5.", "+", "-", "w"])),
+    }
+    0
+}
