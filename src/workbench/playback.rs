@@ -18,6 +18,9 @@ const FOLLOWING: Duration = Duration::from_millis(6);
 /// and so many more for what a step costs beside them, times steps. It takes about 0.2 s.
 const AT_ONCE: u64 = 100_000_000;
 const BESIDE_POINTS: u64 = 60;
+/// The same for steps that are asked for: before the next key, so that keys that come together count one by one. It
+/// takes a few milliseconds.
+const BEFORE_THE_NEXT_KEY: u64 = 1_000_000;
 /// Playback speed where the scenario names none, simulated seconds a second.
 const SPEED: f64 = 1.0;
 
@@ -126,13 +129,18 @@ impl Playback {
 
     /// Takes the run to where it has set out for: at once, or as fast as it can where that takes longer.
     fn arrive(&mut self) {
-        let points = self.run.scenario().body.mechanics.points().len() as u64;
-        let way = |to: u64| (to - self.step_number()).saturating_mul(points + BESIDE_POINTS);
-        if self.run.destination().is_some_and(|to| way(to) <= AT_ONCE) {
+        let is_near = |to: u64| self.cost(to - self.step_number()) <= AT_ONCE;
+        if self.run.destination().is_some_and(is_near) {
             while self.run.destination().is_some() && self.run.step().is_ok() {}
         }
         self.stop = self.run.destination().unwrap_or(self.next_stop());
         self.hurries = self.run.destination().is_some();
+    }
+
+    /// What `steps` cost, in points times steps.
+    fn cost(&self, steps: u64) -> u64 {
+        let points = self.run.scenario().body.mechanics.points().len() as u64;
+        steps.saturating_mul(points + BESIDE_POINTS)
     }
 
     /// Plays what `wall` has earned since `now` (as `clock` tells it), as far as there is time for it. Gives why it
@@ -196,11 +204,17 @@ impl Playback {
         self.pace.set_running(running);
     }
 
-    /// Takes `steps` time steps as fast as it can, and stops.
+    /// Takes `steps` time steps as fast as it can, a few of them at once, and stops.
     pub fn take_steps(&mut self, steps: u64) {
         self.set_running(false);
         self.stop = self.step_number().saturating_add(steps);
-        self.hurries = true;
+        if self.cost(steps) <= BEFORE_THE_NEXT_KEY {
+            while self.step_number() < self.stop && self.run.step().is_ok() {}
+        }
+        self.hurries = self.step_number() < self.stop; // a step that fails does so again, and is told of
+        if !self.hurries {
+            self.stop = self.next_stop();
+        }
     }
 
     /// How many of the steps that were asked for are still to be taken, if it is on its way through them.

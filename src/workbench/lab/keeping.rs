@@ -73,8 +73,8 @@ impl Lab {
         };
         Place {
             step: self
-                .run()
-                .destination()
+                .on_the_way_back()
+                .or(self.run().destination())
                 .unwrap_or(self.playback.step_number()),
             speed,
             shows_exact: self.run().overlay().is_some(),
@@ -87,6 +87,12 @@ impl Lab {
                 .map(|exporting| exporting.path().display().to_string()),
             next_push: self.next_push.clone(),
         }
+    }
+
+    /// The step where it was left, as long as it is still on its way there.
+    fn on_the_way_back(&self) -> Option<u64> {
+        let goal = self.playback.step_number() + self.playback.steps_to_go()?;
+        self.left_at.filter(|left_at| *left_at == goal)
     }
 
     /// The lab that `content` was kept of, on its way to the step where it stood, and paused there; `view` says what it looks like on this screen.
@@ -123,6 +129,7 @@ impl Lab {
             .set_speed(place.speed.map_or(Speed::Top, Speed::Times));
         lab.playback.set_exact(place.shows_exact);
         lab.playback.go_to(place.step);
+        lab.left_at = Some(place.step);
         lab.is_another();
         lab.notice.keep_saying(match place.exporting {
             Some(path) => {

@@ -90,6 +90,8 @@ pub struct Lab {
     was_warned: bool,
     /// The text of run and journal for the session, as long as it holds.
     work: Option<Arc<str>>,
+    /// Where the session that it comes back to was left.
+    left_at: Option<u64>,
     /// Whether to look for what would mend a run.
     is_advised: bool,
     advisor: Option<Advisor>,
@@ -127,6 +129,7 @@ impl Lab {
             written: Vec::new(),
             was_warned: false,
             work: None,
+            left_at: None,
             is_advised: false,
             advisor: None,
             readouts: playback.read(),
