@@ -15,7 +15,8 @@ use ratatui::crossterm::event::{self, KeyCode, KeyEvent, KeyEventKind, KeyModifi
 use ratatui::crossterm::terminal::{self, EnterAlternateScreen, LeaveAlternateScreen};
 use ratatui::crossterm::{execute, style};
 use ratatui::layout::Rect;
-use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGXFSZ};
+use rustix::termios::{self, OptionalActions};
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGWINCH, SIGXFSZ};
 use signal_hook::iterator::Signals;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -35,6 +36,8 @@ static PEN: Mutex<()> = Mutex::new(());
 static ENDING: AtomicBool = AtomicBool::new(false);
 /// Somebody asked from outside to stop until resumed.
 static SUSPEND: AtomicBool = AtomicBool::new(false);
+/// The screen has another size: crossterm forgets to say so where a key comes at the same moment.
+static RESIZED: AtomicBool = AtomicBool::new(false);
 /// The shell resumed us.
 static RESUMED: AtomicBool = AtomicBool::new(false);
 
@@ -156,16 +159,19 @@ impl Screen {
             events.extend(understood(&event::read()?));
             wait = Duration::ZERO;
         }
-        events.extend(
-            SUSPEND
-                .swap(false, Ordering::Relaxed)
-                .then_some(Event::Suspend),
-        );
-        events.extend(
-            RESUMED
-                .swap(false, Ordering::Relaxed)
-                .then_some(Event::Resumed),
-        );
+        let signals = [
+            (&RESIZED, Event::Resized),
+            (&SUSPEND, Event::Suspend),
+            (&RESUMED, Event::Resumed),
+        ];
+        for (signal, event) in signals {
+            if signal.swap(false, Ordering::Relaxed) && !events.contains(&event) {
+                events.push(event);
+            }
+        }
+        if events.contains(&Event::Resized) {
+            wake_the_keys();
+        }
         Ok(events)
     }
 }
@@ -173,6 +179,20 @@ impl Screen {
 impl Drop for Screen {
     fn drop(&mut self) {
         leave();
+    }
+}
+
+/// Has the system tell once more that there are keys to be read. Where a key and a change of size come at the same
+/// moment, crossterm 0.29 takes the one and forgets that it was told of the other: the key would wait for the next one.
+/// Setting the terminal's attributes, to what they are, wakes whoever waits for its keys.
+fn wake_the_keys() {
+    let _pen = PEN.lock().unwrap_or_else(PoisonError::into_inner);
+    if ENDING.load(Ordering::SeqCst) {
+        return; // the attributes are given back
+    }
+    let stdin = io::stdin();
+    if let Ok(attributes) = termios::tcgetattr(&stdin) {
+        let _ = termios::tcsetattr(&stdin, OptionalActions::Now, &attributes);
     }
 }
 
@@ -232,7 +252,7 @@ fn guard() -> io::Result<()> {
             }
         }));
         let ends = [SIGHUP, SIGTERM, SIGINT, SIGQUIT];
-        result = Signals::new(ends.iter().chain(&[SIGTSTP, SIGCONT, SIGXFSZ]))
+        result = Signals::new(ends.iter().chain(&[SIGTSTP, SIGCONT, SIGWINCH, SIGXFSZ]))
             .and_then(|signals| {
                 thread::Builder::new()
                     .name("signals".to_owned())
@@ -249,6 +269,7 @@ fn listen(mut signals: Signals) {
     for signal in signals.forever() {
         match signal {
             SIGTSTP => SUSPEND.store(true, Ordering::Relaxed),
+            SIGWINCH => RESIZED.store(true, Ordering::Relaxed),
             SIGCONT => RESUMED.store(true, Ordering::Relaxed),
             SIGXFSZ => {} // a file past `ulimit -f`: the write fails then, like one to a full disk
             end => {
