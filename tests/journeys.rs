@@ -543,6 +543,18 @@ fn a_screen_that_is_small_for_a_moment_is_drawn_again() {
 }
 
 #[test]
+fn no_key_is_lost_when_the_size_changes_at_the_same_moment() {
+    let ground = Ground::new();
+    let mut lab = paused_at(&ground, 40);
+    for step in 41..100 {
+        lab.resize((80, 24 + step as u16 % 2));
+        lab.press(".");
+        lab.wait_for_step(step);
+    }
+    lab.quit();
+}
+
+#[test]
 fn the_runs_before_are_kept_too() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 70);

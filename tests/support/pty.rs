@@ -4,6 +4,7 @@
 
 use portable_pty::{Child, CommandBuilder, ExitStatus, MasterPty, PtySize, native_pty_system};
 use std::io::{Read, Write};
+use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -200,7 +201,8 @@ impl Terminal {
         let mut shown = self.shown.lock().unwrap();
         self.size = size;
         self.pty.as_ref().unwrap().resize(pty_size(size)).unwrap();
-        shown.parser.screen_mut().set_size(size.1, size.0);
+        let (columns, rows) = cells(size);
+        shown.parser.screen_mut().set_size(rows, columns);
     }
 
     pub fn signal(&self, name: &str) {
@@ -275,6 +277,17 @@ impl Terminal {
         });
     }
 
+    /// Waits until the last line `label` in the pane of parameters has this `value`.
+    #[track_caller]
+    pub fn wait_for_value(&self, label: &str, value: &str) {
+        self.wait_until(&format!("{label} {value}"), |terminal| {
+            terminal
+                .values(label)
+                .last()
+                .is_some_and(|shown| shown == value)
+        });
+    }
+
     #[track_caller]
     pub fn wait_until(&self, wanted: &str, is_so: impl Fn(&Self) -> bool) {
         let begin = Instant::now();
@@ -341,8 +354,13 @@ pub fn signal(id: u32, name: &str) {
     assert!(sent.success());
 }
 
-fn parser((columns, rows): (u16, u16)) -> vt100::Parser {
+fn parser(size: (u16, u16)) -> vt100::Parser {
+    let (columns, rows) = cells(size);
     vt100::Parser::new(rows, columns, 0)
+}
+
+fn cells((columns, rows): (u16, u16)) -> (NonZero<u16>, NonZero<u16>) {
+    (NonZero::new(columns).unwrap(), NonZero::new(rows).unwrap())
 }
 
 fn pty_size((cols, rows): (u16, u16)) -> PtySize {
