@@ -214,3 +214,67 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_run_whose_numbers_have_ended_goes_on_once_it_is_mended() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut stage = Stage::open("method-2", folder.path());
+    stage.type_text("40g");
+    stage.press(&[Key::Char('e'), Key::Down, Key::Enter, Key::Ctrl('u')]);
+    stage.type_text("rk4");
+    stage.press(&[Key::Enter]);
+    stage.type_text("2000g");
+    stage.wait(1);
+    let ended_at = stage.simulation().step_number();
+    assert!(
+        (41..2000).contains(&ended_at) && stage.simulation().has_ended(),
+        "{ended_at}"
+    );
+    stage.type_text("40g");
+    stage.press(&[Key::Down, Key::Enter, Key::Ctrl('u')]);
+    stage.type_text("0.001 s");
+    stage.press(&[Key::Enter]);
+    stage.type_text("50.");
+    stage.wait(1);
+    assert_eq!(
+        stage.simulation().step_number(),
+        90,
+        "an edit before the end mends it"
+    );
+    stage.press(&[Key::Char('u')]);
+    stage.type_text(&format!("{}g", ended_at + 9));
+    stage.wait(1);
+    assert_eq!(
+        stage.simulation().step_number(),
+        ended_at,
+        "without it the run ends again"
+    );
+}
+
+#[test]
+fn an_edit_after_which_no_step_is_finite_is_taken_back_without_a_trace() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut stage = Stage::open("wobble-push", folder.path());
+    stage.type_text("60g");
+    stage.press(&[
+        Key::Char('e'),
+        Key::Down,
+        Key::Down,
+        Key::Enter,
+        Key::Ctrl('u'),
+    ]);
+    assert_eq!(
+        stage.lab.dialog().unwrap().form().title,
+        "motion.time_step_s"
+    );
+    stage.type_text("1e300");
+    stage.press(&[Key::Enter, Key::Char('.')]);
+    assert!(stage.simulation().has_ended());
+    assert_eq!(stage.simulation().step_number(), 60);
+    stage.press(&[Key::Char('u')]);
+    stage.type_text("300.");
+    stage.wait(1);
+    assert_eq!(stage.simulation().step_number(), 360);
+    let untouched = Document::open("wobble-push").unwrap().scenario().unwrap();
+    assert_eq!(replayed(untouched, 360), bits(stage.simulation()));
+}

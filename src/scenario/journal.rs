@@ -382,6 +382,11 @@ mod tests {
             (2, 0)
         );
         assert_eq!(journal.file_until(15).edit.len(), 1);
+        assert_eq!(
+            journal.file_until(20).edit.len(),
+            2,
+            "what is done here is in it"
+        );
         assert_eq!(journal.later_than(15), 1);
     }
 
