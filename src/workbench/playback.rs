@@ -4,7 +4,7 @@ use super::live::{LiveRun, PlayEnd, Played};
 use super::pace::{Pace, Speed};
 use super::readouts::Readouts;
 use crate::run::NotFinite;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, keys};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -18,9 +18,6 @@ const FOLLOWING: Duration = Duration::from_millis(6);
 /// and so many more for what a step costs beside them, times steps. It takes about 0.2 s.
 const AT_ONCE: u64 = 100_000_000;
 const BESIDE_POINTS: u64 = 60;
-/// Playback speed where the scenario names none, simulated seconds a second.
-const SPEED: f64 = 1.0;
-
 /// Why a run has stopped by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Halt {
@@ -49,7 +46,7 @@ impl Playback {
         let (stop, run) = (scenario.steps, LiveRun::new(scenario));
         Self {
             run,
-            pace: Pace::new(speed.unwrap_or(SPEED), running),
+            pace: Pace::new(speed.unwrap_or(keys::SPEED), running),
             stop,
             hurries: false,
         }
