@@ -14,11 +14,12 @@ pub struct Ghost {
 }
 
 impl Ghost {
-    /// What `run` has left behind so far.
+    /// What `run` has left behind, as far as it has been.
     pub fn of(run: &LiveRun) -> Self {
+        let (recording, path) = run.pictures();
         Self {
-            recording: run.recording().clone(),
-            path: run.path().clone(),
+            recording: recording.clone(),
+            path: path.clone(),
             marks: Marks::of(run.scenario()),
         }
     }

@@ -72,10 +72,7 @@ impl Lab {
             Speed::Top => None,
         };
         Place {
-            step: self
-                .run()
-                .destination()
-                .unwrap_or(self.playback.step_number()),
+            step: self.step_to_keep(),
             speed,
             shows_exact: self.run().overlay().is_some(),
             window_s: self.view.window_s,
@@ -123,6 +120,7 @@ impl Lab {
             .set_speed(place.speed.map_or(Speed::Top, Speed::Times));
         lab.playback.set_exact(place.shows_exact);
         lab.playback.go_to(place.step);
+        lab.returning_to = Some(place.step);
         lab.is_another();
         lab.notice.keep_saying(match place.exporting {
             Some(path) => {
@@ -132,6 +130,14 @@ impl Lab {
         });
         lab.read_now();
         Ok(lab)
+    }
+
+    /// Where it stands, or is on its way back to.
+    fn step_to_keep(&self) -> u64 {
+        let hurries = self.playback.steps_to_go().is_some();
+        let returning_to = self.returning_to.filter(|_| hurries);
+        let destination = self.run().destination().or(returning_to);
+        destination.unwrap_or(self.playback.step_number())
     }
 
     /// What the run was opened from, where that is still there; else the run itself.

@@ -86,6 +86,8 @@ pub struct Lab {
     dialog: Option<Dialog>,
     exporting: Option<Exporting>,
     written: Vec<Written>,
+    /// The step to which a session that was come back to is on its way.
+    returning_to: Option<u64>,
     /// Whether the end was asked for while something was under way.
     was_warned: bool,
     /// The text of run and journal for the session, as long as it holds.
@@ -125,6 +127,7 @@ impl Lab {
             dialog: None,
             exporting: None,
             written: Vec::new(),
+            returning_to: None,
             was_warned: false,
             work: None,
             is_advised: false,
