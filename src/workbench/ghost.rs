@@ -24,6 +24,11 @@ impl Ghost {
         }
     }
 
+    /// How far it has come, s.
+    pub fn end_s(&self) -> f64 {
+        self.recording.whole().map_or(0.0, |whole| whole.end_s)
+    }
+
     /// Its curves over time.
     pub fn recording(&self) -> &Recording {
         &self.recording
