@@ -9,6 +9,7 @@ use gyrolab::workbench::app;
 use gyrolab::workbench::keymap::{Key, Mode};
 use gyrolab::workbench::lab::Lab;
 use gyrolab::workbench::markers::Marker;
+use gyrolab::workbench::playback::Playback;
 use gyrolab::workbench::theme::{Background, Theme};
 use gyrolab::workbench::view::View;
 use proptest::prelude::*;
@@ -207,7 +208,15 @@ proptest! {
             let health = stage.lab.readouts().health.clone();
             prop_assert!(health.energy_drift.is_none_or(|drift| !drift.is_nan()));
             prop_assert_eq!(seen.entry(reached).or_insert_with(|| here.clone()), &here, "step {}", reached);
-            prop_assert_eq!(stage.lab.run().recording().moments(), reached + 1);
+            let (recording, path) = (stage.lab.run().recording(), stage.lab.run().path());
+            prop_assert_eq!(recording.moments(), reached + 1);
+            prop_assert_eq!(recording.coarse_since(), None);
+            let mut straight = Playback::new(Arc::clone(stage.lab.run().scenario()), false);
+            let _ = straight.begin_at(reached);
+            let (whole, known) = (recording.whole().unwrap(), straight.run().recording().whole().unwrap());
+            prop_assert_eq!(whole.extents, known.extents, "the traces at step {}", reached);
+            let (radius, known) = (path.radius(), straight.run().path().radius());
+            prop_assert!((radius - known).abs() <= 0.02 * known + 1e-9, "{} for {}", radius, known);
         }
         for (step, there) in seen {
             prop_assert_eq!(replayed(stage.lab.run().scenario().as_ref().clone(), step), there, "step {}", step);
@@ -277,4 +286,53 @@ fn an_edit_after_which_no_step_is_finite_is_taken_back_without_a_trace() {
     assert_eq!(stage.simulation().step_number(), 360);
     let untouched = Document::open("wobble-push").unwrap().scenario().unwrap();
     assert_eq!(replayed(untouched, 360), bits(stage.simulation()));
+}
+
+#[test]
+fn the_traces_of_a_long_run_are_whole_and_fine_after_every_seek() {
+    let mut document = Document::open("wobble-push").unwrap();
+    for set in [
+        "motion.time_step_s=0.001",
+        "motion.steps=400000",
+        "push.0.steps=150000",
+    ] {
+        document.set(set).unwrap();
+    }
+    let scenario = Arc::new(document.scenario().unwrap());
+    let mut playback = Playback::new(Arc::clone(&scenario), false);
+    playback.begin_at(400_000).unwrap();
+    for step in [
+        399_990, 200_000, 199_999, 350_123, 17, 60_000, 400_000, 150_001,
+    ] {
+        playback.go_to(step);
+        assert_eq!(
+            (playback.step_number(), playback.steps_to_go()),
+            (step, None)
+        );
+        let now_s = playback.run().now().time_s;
+        for share in [0.003, 0.05, 0.6, 1.0] {
+            let since_s = now_s * (1.0 - share);
+            let blocks: Vec<_> = playback.run().recording().since(since_s).collect();
+            let steps = |a: f64, b: f64| ((b - a) / 0.001).round();
+            assert!(
+                blocks[0].begin_s <= since_s + 0.001
+                    && steps(blocks[blocks.len() - 1].end_s, now_s) == 0.0
+            );
+            assert!(
+                blocks
+                    .windows(2)
+                    .all(|pair| steps(pair[0].end_s, pair[1].begin_s) == 1.0),
+                "step {step}"
+            );
+            let fine = (share * step as f64).min(256.0) * 0.9;
+            assert!(
+                blocks.len() as f64 >= fine,
+                "{} blocks for {share} at step {step}",
+                blocks.len()
+            );
+        }
+        let mut straight = Simulation::new(Arc::clone(&scenario));
+        straight.step_to(step).unwrap();
+        assert_eq!(bits(playback.run().simulation()), bits(&straight));
+    }
 }
