@@ -205,7 +205,7 @@ proptest! {
             let simulation = stage.simulation();
             let reached = simulation.step_number();
             let here = bits(simulation);
-            let health = stage.lab.readouts().health.clone();
+            let health = stage.lab.readouts().health;
             prop_assert!(health.energy_drift.is_none_or(|drift| !drift.is_nan()));
             prop_assert_eq!(seen.entry(reached).or_insert_with(|| here.clone()), &here, "step {}", reached);
             let (recording, path) = (stage.lab.run().recording(), stage.lab.run().path());

@@ -182,7 +182,7 @@ impl Journal {
                 Act::Edit(set) => match file.edit.last_mut() {
                     // Edits of one moment are one edit, unless they were two in the file.
                     Some(last) if may_join && last.step == entry.step => {
-                        last.set.extend(set.clone())
+                        last.set.extend(set.clone());
                     }
                     _ => file.edit.push(EditFile {
                         step: entry.step,

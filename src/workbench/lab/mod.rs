@@ -258,7 +258,7 @@ impl Lab {
             Action::ThreeD => self.view.toggle_three_d(),
             Action::Move(direction) => self.shift(direction, repeated(count)),
             Action::MoveFar(direction) => {
-                self.shift(direction, repeated(count).saturating_mul(FAR))
+                self.shift(direction, repeated(count).saturating_mul(FAR));
             }
             Action::WiderWindow => self.zoom(true),
             Action::NarrowerWindow => self.zoom(false),
