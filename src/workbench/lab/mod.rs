@@ -1,8 +1,8 @@
 //! The lab's state, and what every action does to it. It draws nothing and reads no clock: time comes in.
 //!
 //! This file has the state, the dispatch of actions and the passing of time; the rooms beside it carry out what
-//! belongs together: [`travel`] through the run, [`editing`] it, [`opening`] another, [`dialogs`] and what they ask
-//! for, [`keeping`] all of it.
+//! belongs together: `travel` through the run, `editing` it, `opening` another, `dialogs` and what they ask for,
+//! `keeping` all of it.
 
 mod dialogs;
 mod editing;
