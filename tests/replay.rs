@@ -9,6 +9,7 @@ use gyrolab::workbench::app;
 use gyrolab::workbench::keymap::{Key, Mode};
 use gyrolab::workbench::lab::Lab;
 use gyrolab::workbench::markers::Marker;
+use gyrolab::workbench::playback::Playback;
 use gyrolab::workbench::theme::{Background, Theme};
 use gyrolab::workbench::view::View;
 use proptest::prelude::*;
@@ -204,13 +205,134 @@ proptest! {
             let simulation = stage.simulation();
             let reached = simulation.step_number();
             let here = bits(simulation);
-            let health = stage.lab.readouts().health.clone();
+            let health = stage.lab.readouts().health;
             prop_assert!(health.energy_drift.is_none_or(|drift| !drift.is_nan()));
             prop_assert_eq!(seen.entry(reached).or_insert_with(|| here.clone()), &here, "step {}", reached);
-            prop_assert_eq!(stage.lab.run().recording().moments(), reached + 1);
+            let (recording, path) = (stage.lab.run().recording(), stage.lab.run().path());
+            prop_assert_eq!(recording.moments(), reached + 1);
+            prop_assert_eq!(recording.coarse_since(), None);
+            let mut straight = Playback::new(Arc::clone(stage.lab.run().scenario()), false);
+            let _ = straight.begin_at(reached);
+            let (whole, known) = (recording.whole().unwrap(), straight.run().recording().whole().unwrap());
+            prop_assert_eq!(whole.extents, known.extents, "the traces at step {}", reached);
+            let (radius, known) = (path.radius(), straight.run().path().radius());
+            prop_assert!((radius - known).abs() <= 0.02 * known + 1e-9, "{} for {}", radius, known);
         }
         for (step, there) in seen {
             prop_assert_eq!(replayed(stage.lab.run().scenario().as_ref().clone(), step), there, "step {}", step);
         }
+    }
+}
+
+#[test]
+fn a_run_whose_numbers_have_ended_goes_on_once_it_is_mended() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut stage = Stage::open("method-2", folder.path());
+    stage.type_text("40g");
+    stage.press(&[Key::Char('e'), Key::Down, Key::Enter, Key::Ctrl('u')]);
+    stage.type_text("rk4");
+    stage.press(&[Key::Enter]);
+    stage.type_text("2000g");
+    stage.wait(1);
+    let ended_at = stage.simulation().step_number();
+    assert!(
+        (41..2000).contains(&ended_at) && stage.simulation().has_ended(),
+        "{ended_at}"
+    );
+    stage.type_text("40g");
+    stage.press(&[Key::Down, Key::Enter, Key::Ctrl('u')]);
+    stage.type_text("0.001 s");
+    stage.press(&[Key::Enter]);
+    stage.type_text("50.");
+    stage.wait(1);
+    assert_eq!(
+        stage.simulation().step_number(),
+        90,
+        "an edit before the end mends it"
+    );
+    stage.press(&[Key::Char('u')]);
+    stage.type_text(&format!("{}g", ended_at + 9));
+    stage.wait(1);
+    assert_eq!(
+        stage.simulation().step_number(),
+        ended_at,
+        "without it the run ends again"
+    );
+}
+
+#[test]
+fn an_edit_after_which_no_step_is_finite_is_taken_back_without_a_trace() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut stage = Stage::open("wobble-push", folder.path());
+    stage.type_text("60g");
+    stage.press(&[
+        Key::Char('e'),
+        Key::Down,
+        Key::Down,
+        Key::Enter,
+        Key::Ctrl('u'),
+    ]);
+    assert_eq!(
+        stage.lab.dialog().unwrap().form().title,
+        "motion.time_step_s"
+    );
+    stage.type_text("1e300");
+    stage.press(&[Key::Enter, Key::Char('.')]);
+    assert!(stage.simulation().has_ended());
+    assert_eq!(stage.simulation().step_number(), 60);
+    stage.press(&[Key::Char('u')]);
+    stage.type_text("300.");
+    stage.wait(1);
+    assert_eq!(stage.simulation().step_number(), 360);
+    let untouched = Document::open("wobble-push").unwrap().scenario().unwrap();
+    assert_eq!(replayed(untouched, 360), bits(stage.simulation()));
+}
+
+#[test]
+fn the_traces_of_a_long_run_are_whole_and_fine_after_every_seek() {
+    let mut document = Document::open("wobble-push").unwrap();
+    for set in [
+        "motion.time_step_s=0.001",
+        "motion.steps=400000",
+        "push.0.steps=150000",
+    ] {
+        document.set(set).unwrap();
+    }
+    let scenario = Arc::new(document.scenario().unwrap());
+    let mut playback = Playback::new(Arc::clone(&scenario), false);
+    playback.begin_at(400_000).unwrap();
+    for step in [
+        399_990, 200_000, 199_999, 350_123, 17, 60_000, 400_000, 150_001,
+    ] {
+        playback.go_to(step);
+        assert_eq!(
+            (playback.step_number(), playback.steps_to_go()),
+            (step, None)
+        );
+        let now_s = playback.run().now().time_s;
+        for share in [0.003, 0.05, 0.6, 1.0] {
+            let since_s = now_s * (1.0 - share);
+            let blocks: Vec<_> = playback.run().recording().since(since_s).collect();
+            let steps = |a: f64, b: f64| ((b - a) / 0.001).round();
+            assert!(
+                blocks[0].begin_s <= since_s + 0.001
+                    && steps(blocks[blocks.len() - 1].end_s, now_s) == 0.0
+            );
+            assert!(
+                blocks
+                    .windows(2)
+                    .all(|pair| steps(pair[0].end_s, pair[1].begin_s) == 1.0),
+                "step {step}"
+            );
+            let fine = (share * step as f64).min(256.0) * 0.9;
+            assert!(
+                blocks.len() as f64 >= fine,
+                "{} blocks for {share} at step {step}",
+                blocks.len()
+            );
+        }
+        let mut straight = Simulation::new(Arc::clone(&scenario));
+        straight.step_to(step).unwrap();
+        assert_eq!(bits(playback.run().simulation()), bits(&straight));
     }
 }

@@ -12,6 +12,7 @@ use gyrolab::physics::exact::Kind;
 use gyrolab::physics::{SchemeInfo, State};
 use gyrolab::run::resample::resampled;
 use gyrolab::run::{Simulation, Truth};
+use gyrolab::scenario::file::{EditFile, PushFile};
 use gyrolab::scenario::{Document, Scenario};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use std::fmt::Write;
@@ -832,4 +833,48 @@ fn the_wobble_is_made_by_the_time_step() {
         truth.state_at(simulation.state().time_s).axle().z * arm
     });
     assert_eq!(seen, ["0.99936", "1.00010"], "the truth");
+}
+
+/// What the random scenarios are looked at for, s.
+const LENGTH_S: f64 = 10.0;
+
+#[test]
+fn an_edit_on_the_way_leads_to_the_truth_that_was_edited_from_the_start() {
+    let mut dice = Dice(99);
+    for _ in 0..60 {
+        let mut told = random(&mut dice);
+        told.edits.clear();
+        let plain = told.scenario("strang");
+        let here_s = dice.between(0.1, 0.9) * LENGTH_S;
+        let step = (here_s / plain.motion.time_step_s) as u64;
+        let mut file = plain.file.clone();
+        let push = file.push.first().cloned();
+        file.push.extend(push.map(|push| PushFile {
+            first_step: None,
+            steps: None,
+            accumulates: None,
+            from_s: Some(step as f64 * plain.motion.time_step_s),
+            for_s: Some(0.3 * LENGTH_S),
+            ..push
+        }));
+        file.edit.push(EditFile {
+            step,
+            set: toml::Table::from_iter([(
+                "motion.gravity_m_per_s2".to_owned(),
+                toml::Value::Float(3.0),
+            )]),
+        });
+        let edited = Document::from_file("edited", &file).and_then(|document| document.scenario());
+        let edited = Arc::new(edited.unwrap());
+        let mut on_the_way = Truth::new(Arc::clone(&plain));
+        on_the_way.state_at(step as f64 * plain.motion.time_step_s);
+        on_the_way.go_on_in(&edited);
+        let mut from_the_start = Truth::new(edited);
+        for share in [0.2, 0.5, 1.0] {
+            let at_s = here_s + 0.3 * share * LENGTH_S; // not long: chaos would make much of rounding
+            let (a, b) = (on_the_way.state_at(at_s), from_the_start.state_at(at_s));
+            let off = (a.orientation - b.orientation).amax();
+            assert!(off < 1e-9, "{off:e} at {at_s} s of {}", told.toml("strang"));
+        }
+    }
 }

@@ -15,7 +15,7 @@ use gyrolab::workbench::view::{Pane, View};
 use proptest::prelude::*;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use std::time::Duration;
 
 const SMALL: Rect = Rect {
@@ -32,17 +32,13 @@ const LARGE: Rect = Rect {
 };
 const FRAME: Duration = Duration::from_millis(100);
 
-/// Where the labs of all tests write what they write.
-fn folder() -> &'static tempfile::TempDir {
-    static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
-    FOLDER.get_or_init(|| tempfile::tempdir().unwrap())
-}
-
 /// A lab with a keyboard, and a clock that goes only when told.
 struct Stage {
     lab: Lab,
     now: Duration,
     size: Rect,
+    /// Where it writes what it writes.
+    _folder: tempfile::TempDir,
 }
 
 impl Stage {
@@ -58,12 +54,14 @@ impl Stage {
         let view = View::new(&scenario_numbers, Marker::Braille, theme);
         let mut lab = Lab::new(scenario, scenario_numbers, view, true);
         lab.set_file(Arc::new(file));
-        lab.work_in(folder().path());
+        let folder = tempfile::tempdir().unwrap();
+        lab.work_in(folder.path());
         lab.resize(size);
         Self {
             lab,
             now: Duration::ZERO,
             size,
+            _folder: folder,
         }
     }
 

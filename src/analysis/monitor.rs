@@ -40,7 +40,11 @@ impl Monitor {
 
     /// Goes on with a run of `scenario`, whose past is the same.
     pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
-        self.truth = is_affordable(scenario).then(|| Truth::new(Arc::clone(scenario)));
+        match &mut self.truth {
+            Some(truth) => truth.go_on_in(scenario),
+            None => self.truth = Some(Truth::new(Arc::clone(scenario))),
+        }
+        self.truth.take_if(|_| !is_affordable(scenario));
     }
 
     /// Takes in the step that `simulation` stands at; to be shown every step.

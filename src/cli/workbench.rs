@@ -13,6 +13,7 @@ use crate::workbench::{app, exporting, screen};
 use anyhow::Context;
 use ratatui::layout::Rect;
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -34,7 +35,9 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
         true => come_back(args)?,
         false => (
             new(args, name)?,
-            session::folder().map_err(told).and_then(begun),
+            session::folder()
+                .map_err(told)
+                .and_then(|folder| begun(&folder)),
         ),
     };
     let session = session.map_err(|trouble| lab.tell(trouble)).ok();
@@ -87,11 +90,11 @@ fn come_back(args: &WorkbenchArgs) -> anyhow::Result<(Lab, Result<Session, Strin
     };
     let mut lab = new(args, DEFAULT)?;
     lab.tell(format!("{aside}{none}"));
-    Ok((lab, folder.and_then(begun)))
+    Ok((lab, folder.and_then(|folder| begun(&folder))))
 }
 
-fn begun(folder: std::path::PathBuf) -> Result<Session, String> {
-    Session::begin(&folder).map_err(told)
+fn begun(folder: &Path) -> Result<Session, String> {
+    Session::begin(folder).map_err(told)
 }
 
 fn told(error: impl std::fmt::Display) -> String {

@@ -65,6 +65,13 @@ impl Truth {
         self.piece.at(time_s)
     }
 
+    /// Goes on as the exact motion of `scenario`, whose past is the same up to the time asked for last.
+    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+        self.eras = eras(scenario);
+        self.scenario = Arc::clone(scenario);
+        self.end_s = self.end_of_piece(self.piece.begin_s());
+    }
+
     /// The scenario whose exact motion it is.
     pub fn scenario(&self) -> &Arc<Scenario> {
         &self.scenario
@@ -90,21 +97,31 @@ impl Truth {
         self.pieces
     }
 
-    fn begin_piece(&mut self, state: State) {
-        let counting = Counting::Seconds {
+    fn counting(&self) -> Counting {
+        Counting::Seconds {
             written_for_s: self.scenario.written_for_s,
-        };
+        }
+    }
+
+    /// The index of the era that `time_s` (s) lies in.
+    fn era_at(&self, time_s: f64) -> usize {
+        let begun = self.eras.partition_point(|era| era.begin_s <= time_s);
+        begun.saturating_sub(1)
+    }
+
+    /// When the forces change next after `begin` (s).
+    fn end_of_piece(&self, begin: f64) -> f64 {
+        let index = self.era_at(begin);
+        let next_era = self.eras.get(index + 1);
+        let next_era = next_era.map_or(f64::INFINITY, |era| era.begin_s);
+        pushes::next_after(&self.eras[index].pushes, self.counting(), begin).min(next_era)
+    }
+
+    fn begin_piece(&mut self, state: State) {
+        let counting = self.counting();
         let begin = state.time_s;
-        let index = self
-            .eras
-            .partition_point(|era| era.begin_s <= begin)
-            .saturating_sub(1);
-        let era = &self.eras[index];
-        let next_era = self
-            .eras
-            .get(index + 1)
-            .map_or(f64::INFINITY, |era| era.begin_s);
-        self.end_s = pushes::next_after(&era.pushes, counting, begin).min(next_era);
+        self.end_s = self.end_of_piece(begin);
+        let era = &self.eras[self.era_at(begin)];
         let stretch = Stretch {
             step: 1,
             begin,

@@ -182,7 +182,7 @@ impl Journal {
                 Act::Edit(set) => match file.edit.last_mut() {
                     // Edits of one moment are one edit, unless they were two in the file.
                     Some(last) if may_join && last.step == entry.step => {
-                        last.set.extend(set.clone())
+                        last.set.extend(set.clone());
                     }
                     _ => file.edit.push(EditFile {
                         step: entry.step,
@@ -382,6 +382,11 @@ mod tests {
             (2, 0)
         );
         assert_eq!(journal.file_until(15).edit.len(), 1);
+        assert_eq!(
+            journal.file_until(20).edit.len(),
+            2,
+            "what is done here is in it"
+        );
         assert_eq!(journal.later_than(15), 1);
     }
 

@@ -14,13 +14,19 @@ pub struct Ghost {
 }
 
 impl Ghost {
-    /// What `run` has left behind so far.
+    /// What `run` has left behind, as far as it has been.
     pub fn of(run: &LiveRun) -> Self {
+        let (recording, path) = run.pictures();
         Self {
-            recording: run.recording().clone(),
-            path: run.path().clone(),
+            recording: recording.clone(),
+            path: path.clone(),
             marks: Marks::of(run.scenario()),
         }
+    }
+
+    /// How far it has come, s.
+    pub fn end_s(&self) -> f64 {
+        self.recording.whole().map_or(0.0, |whole| whole.end_s)
     }
 
     /// Its curves over time.

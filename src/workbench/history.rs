@@ -7,7 +7,7 @@ use toml::Value;
 
 /// Runs that can be gone back to, and for large bodies as many as have so many points together.
 const MOST_RUNS: usize = 200;
-const MOST_POINTS: usize = 1_000_000;
+const MOST_POINTS: usize = 200_000;
 
 /// One run: where it came from, its journal, and where it was left.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -217,7 +217,10 @@ impl LiveRun {
             self.stand_before(here, here);
         }
         self.adopt(scenario);
-        self.set_overlay(self.overlay.is_some());
+        match &mut self.overlay {
+            Some(overlay) if overlay.now().time_s <= self.now.time_s => overlay.go_on_in(scenario),
+            overlay => *overlay = overlay.is_some().then(|| Overlay::new(scenario)),
+        }
     }
 
     /// Is called and looked at otherwise: `scenario` leads to the same numbers at every step.
@@ -308,6 +311,14 @@ impl LiveRun {
     /// Where it stands.
     pub fn now(&self) -> &Moment {
         &self.now
+    }
+
+    /// Its curves over time and its path, as far as it has been.
+    pub fn pictures(&self) -> (&Recording, &Path) {
+        match &self.ahead {
+            Some(ahead) => (&ahead.recording, &ahead.path),
+            None => (&self.recording, &self.path),
+        }
     }
 
     /// Its curves over time.

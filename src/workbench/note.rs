@@ -1,8 +1,8 @@
 //! The line that says what to look at; where the scenario was changed from its file, what was changed instead, for
 //! what the file says of it may then be false.
 
-use crate::scenario::Scenario;
 use crate::scenario::rescale::at_time_step;
+use crate::scenario::{Motion, Scenario};
 
 /// What there is to see in `scenario`, as its file says.
 pub fn look_at(scenario: &Scenario) -> Option<&str> {
@@ -19,7 +19,7 @@ pub fn changed(before: &Scenario, now: &Scenario) -> Option<String> {
 }
 
 fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
-    let (old, new) = (&before.motion, &now.motion);
+    let (old, new) = (last_motion(before), last_motion(now));
     let mut changes = Vec::new();
     if new.time_step_s != old.time_step_s {
         changes.push(format!("dt {} s, not {}", new.time_step_s, old.time_step_s));
@@ -36,8 +36,7 @@ fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
     let others = [
         (now.file.body != before.file.body, "another body"),
         (now.file.start != before.file.start, "another start"),
-        (are_pushes_changed(before, now), "other pushes"),
-        (now.file.edit != before.file.edit, "other edits"),
+        (are_pushes_changed(before, now), pushes(before, now)),
     ];
     changes.extend(
         others
@@ -45,7 +44,26 @@ fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
             .filter(|(is, _)| *is)
             .map(|(_, what)| (*what).to_owned()),
     );
+    if changes.is_empty() && now.file.edit != before.file.edit {
+        changes.push("edits on the way".to_owned());
+    }
     changes
+}
+
+/// Gravity, scheme and time step once all edits are made.
+fn last_motion(scenario: &Scenario) -> &Motion {
+    scenario
+        .edits
+        .last()
+        .map_or(&scenario.motion, |edit| &edit.motion)
+}
+
+fn pushes(before: &Scenario, now: &Scenario) -> &'static str {
+    match now.file.push.len().saturating_sub(before.file.push.len()) {
+        0 => "other pushes",
+        1 => "one more push",
+        _ => "more pushes",
+    }
 }
 
 /// Whether the pushes are others, not only the same at another time step.

@@ -41,6 +41,11 @@ impl Overlay {
         overlay
     }
 
+    /// Goes on as the exact motion of `scenario`, whose past is the same up to where it stands.
+    pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+        self.truth.go_on_in(scenario);
+    }
+
     /// Follows it to `time_s` (s), look by look, until `enough` says that there is no more time for it.
     pub fn follow(&mut self, time_s: f64, mut enough: impl FnMut() -> bool) {
         let due = (time_s - self.now.time_s) / self.time_step_s;

@@ -4,7 +4,7 @@ use super::live::{LiveRun, PlayEnd, Played};
 use super::pace::{Pace, Speed};
 use super::readouts::Readouts;
 use crate::run::NotFinite;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, keys};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -21,9 +21,6 @@ const BESIDE_POINTS: u64 = 60;
 /// The same for steps that are asked for: before the next key, so that keys that come together count one by one. It
 /// takes a few milliseconds.
 const BEFORE_THE_NEXT_KEY: u64 = 1_000_000;
-/// Playback speed where the scenario names none, simulated seconds a second.
-const SPEED: f64 = 1.0;
-
 /// Why a run has stopped by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Halt {
@@ -52,7 +49,7 @@ impl Playback {
         let (stop, run) = (scenario.steps, LiveRun::new(scenario));
         Self {
             run,
-            pace: Pace::new(speed.unwrap_or(SPEED), running),
+            pace: Pace::new(speed.unwrap_or(keys::SPEED), running),
             stop,
             hurries: false,
         }

@@ -5,7 +5,7 @@ use super::camera::Camera;
 use super::markers::Marker;
 use super::theme::{Background, Theme};
 use crate::run::Clock;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, keys};
 use serde::{Deserialize, Serialize};
 
 /// A sweep that takes longer than this to be drawn, s, is no picture of the run.
@@ -146,7 +146,7 @@ fn first_window_s(scenario: &Scenario) -> f64 {
         .view
         .as_ref()
         .and_then(|view| view.speed)
-        .unwrap_or(1.0);
+        .unwrap_or(keys::SPEED);
     let whole = Clock::at(scenario, scenario.steps).time_s(scenario.steps);
     whole
         .min(LONGEST_SWEEP_S * speed)

@@ -393,7 +393,7 @@ fn told(written: &Written) -> String {
         None => String::new(),
     };
     format!(
-        "{rows} rows, {}{end}: {} · {}",
+        "wrote {rows} rows, {}{end}: {} · {}",
         in_bytes(written.bytes),
         written.path.display(),
         exporting::scp_line(&written.path)

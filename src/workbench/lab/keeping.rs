@@ -72,10 +72,7 @@ impl Lab {
             Speed::Top => None,
         };
         Place {
-            step: self
-                .on_the_way_back()
-                .or(self.run().destination())
-                .unwrap_or(self.playback.step_number()),
+            step: self.step_to_keep(),
             speed,
             shows_exact: self.run().overlay().is_some(),
             window_s: self.view.window_s,
@@ -87,12 +84,6 @@ impl Lab {
                 .map(|exporting| exporting.path().display().to_string()),
             next_push: self.next_push.clone(),
         }
-    }
-
-    /// The step where it was left, as long as it is still on its way there.
-    fn on_the_way_back(&self) -> Option<u64> {
-        let goal = self.playback.step_number() + self.playback.steps_to_go()?;
-        self.left_at.filter(|left_at| *left_at == goal)
     }
 
     /// The lab that `content` was kept of, on its way to the step where it stood, and paused there; `view` says what it looks like on this screen.
@@ -129,7 +120,7 @@ impl Lab {
             .set_speed(place.speed.map_or(Speed::Top, Speed::Times));
         lab.playback.set_exact(place.shows_exact);
         lab.playback.go_to(place.step);
-        lab.left_at = Some(place.step);
+        lab.returning_to = Some(place.step);
         lab.is_another();
         lab.notice.keep_saying(match place.exporting {
             Some(path) => {
@@ -139,6 +130,15 @@ impl Lab {
         });
         lab.read_now();
         Ok(lab)
+    }
+
+    /// Where it stands, or is on its way back to.
+    fn step_to_keep(&self) -> u64 {
+        let to_go = self.playback.steps_to_go();
+        let bound_for = to_go.map(|to_go| self.playback.step_number().saturating_add(to_go));
+        let returning_to = self.returning_to.filter(|step| bound_for == Some(*step));
+        let destination = self.run().destination().or(returning_to);
+        destination.unwrap_or(self.playback.step_number())
     }
 
     /// What the run was opened from, where that is still there; else the run itself.

@@ -1,8 +1,8 @@
 //! The lab's state, and what every action does to it. It draws nothing and reads no clock: time comes in.
 //!
 //! This file has the state, the dispatch of actions and the passing of time; the rooms beside it carry out what
-//! belongs together: [`travel`] through the run, [`editing`] it, [`opening`] another, [`dialogs`] and what they ask
-//! for, [`keeping`] all of it.
+//! belongs together: `travel` through the run, `editing` it, `opening` another, `dialogs` and what they ask for,
+//! `keeping` all of it.
 
 mod dialogs;
 mod editing;
@@ -86,12 +86,12 @@ pub struct Lab {
     dialog: Option<Dialog>,
     exporting: Option<Exporting>,
     written: Vec<Written>,
+    /// The step to which a session that was come back to is on its way.
+    returning_to: Option<u64>,
     /// Whether the end was asked for while something was under way.
     was_warned: bool,
     /// The text of run and journal for the session, as long as it holds.
     work: Option<Arc<str>>,
-    /// Where the session that it comes back to was left.
-    left_at: Option<u64>,
     /// Whether to look for what would mend a run.
     is_advised: bool,
     advisor: Option<Advisor>,
@@ -127,9 +127,9 @@ impl Lab {
             dialog: None,
             exporting: None,
             written: Vec::new(),
+            returning_to: None,
             was_warned: false,
             work: None,
-            left_at: None,
             is_advised: false,
             advisor: None,
             readouts: playback.read(),
@@ -258,7 +258,7 @@ impl Lab {
             Action::ThreeD => self.view.toggle_three_d(),
             Action::Move(direction) => self.shift(direction, repeated(count)),
             Action::MoveFar(direction) => {
-                self.shift(direction, repeated(count).saturating_mul(FAR))
+                self.shift(direction, repeated(count).saturating_mul(FAR));
             }
             Action::WiderWindow => self.zoom(true),
             Action::NarrowerWindow => self.zoom(false),

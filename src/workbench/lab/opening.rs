@@ -11,6 +11,9 @@ use crate::scenario::{Document, Scenario};
 use std::path::Path;
 use std::sync::Arc;
 
+/// A run that has come less than this part as far as its ghost is no ghost itself: a value was nudged once more.
+const SHORT: f64 = 0.1;
+
 impl Lab {
     pub(super) fn browse(&mut self) {
         self.browser = Browser::new(
@@ -54,8 +57,10 @@ impl Lab {
 
     /// Begins the run of `scenario`, which differs from the present one by an edit: that one stays as a ghost.
     pub(super) fn begin_run(&mut self, scenario: Arc<Scenario>) {
-        if self.run().furthest() > 0 {
-            self.ghost = Some(Ghost::of(self.run()));
+        let left = Ghost::of(self.run());
+        let is_short = |before: &Ghost| left.end_s() < SHORT * before.end_s();
+        if left.end_s() > 0.0 && !self.ghost.as_ref().is_some_and(is_short) {
+            self.ghost = Some(left);
         }
         self.next_push = self.next_push.clone().suited_to(&scenario);
         self.playback.begin(scenario);
