@@ -313,8 +313,7 @@ fn an_export_is_the_run_that_was_saved() {
     lab.ask("\r", "· scp ");
     assert!(fs::read(ground.file("mine.csv")).unwrap() == csv);
     lab.quit();
-    let farewell = lab.words();
-    assert!(farewell.contains("mine.csv: 286 rows"), "{farewell}");
+    lab.wait_for("mine.csv: 286 rows");
 }
 
 #[test]
