@@ -2,7 +2,7 @@
 //!
 //! Where it has been it can go back to, and forward again: to the last [checkpoint](Checkpoints) before that step, and
 //! from there step by step, with the same bits as the first time. What the pictures need of the steps that lie ahead of
-//! it then is kept [`Ahead`].
+//! it then is kept apart.
 
 use super::checkpoints::Checkpoints;
 use super::overlay::Overlay;

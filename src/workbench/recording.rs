@@ -2,7 +2,7 @@
 //!
 //! Blocks of one step, of two, of four and so on. Two full blocks of one size make one of the next, so that no step's
 //! minimum or maximum is ever lost to the picture. Of the sizes that still reach back to the start there are up to
-//! [`WHOLE`] blocks, of the smaller ones the newest [`RECENT`]: any stretch of the run up to now is covered by a
+//! 16 384 blocks, of the smaller ones the newest 2048: any stretch of the run up to now is covered by a
 //! thousand blocks or more.
 //!
 //! A recording can be [cut back](Recording::cut_back) to an earlier moment. Its blocks there are coarser than they were
