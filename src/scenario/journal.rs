@@ -5,9 +5,13 @@
 //! back, and brought again.
 
 use super::file::{EditFile, PushFile, ScenarioFile};
+use super::problem::brief;
 use super::{Document, Problems, Scenario, parameters, rescale};
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
+
+/// Characters of a value in words.
+const LONGEST_VALUE: usize = 30;
 
 /// A scenario and what was done to it, in the order of the steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -107,7 +111,9 @@ impl Act {
         match self {
             Self::Push(push) => format!("the push on {}", push.point),
             Self::Edit(set) | Self::Describe(set) => {
-                let words = set.iter().map(|(key, value)| format!("{key} = {value}"));
+                let words = set.iter().map(|(key, value)| {
+                    format!("{key} = {}", brief(&value.to_string(), LONGEST_VALUE))
+                });
                 words.collect::<Vec<_>>().join(", ")
             }
         }
@@ -258,6 +264,25 @@ impl Journal {
         self.done.truncate(self.done.len() - entry.dropped.len());
         self.done.push(entry);
         self.done.last()
+    }
+
+    /// What was taken back can no longer be brought again.
+    pub fn forget_undone(&mut self) {
+        self.undone.clear();
+    }
+
+    /// How many entries act by `step`, those made there counted in.
+    pub fn in_force(&self, step: u64) -> usize {
+        self.done.len() - self.later_than(step)
+    }
+
+    /// How many pushes there are by `step`, over or to come: those of the scenario, and those given since.
+    pub fn pushes_by(&self, step: u64) -> usize {
+        let given = self
+            .done
+            .iter()
+            .filter(|entry| entry.step <= step && matches!(entry.act, Act::Push(_)));
+        self.base.push.len() + given.count()
     }
 
     /// A new run with `value` at `key`: nothing is done to it yet, and it moves from the start as this one does at `step`.

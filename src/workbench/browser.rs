@@ -58,6 +58,11 @@ impl Browser {
             .collect()
     }
 
+    /// How many of all entries are files.
+    pub fn files(&self) -> usize {
+        self.entries.iter().filter(|entry| entry.is_file).count()
+    }
+
     /// The place of the selected one among them.
     pub fn selected(&self) -> usize {
         self.selected

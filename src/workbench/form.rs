@@ -14,6 +14,8 @@ pub struct Field {
     pub text: String,
     /// How many characters stand before the cursor.
     pub cursor: usize,
+    /// Whether the whole text is marked, as it was put there: what is typed takes its place.
+    pub is_marked: bool,
 }
 
 /// A few fields, and what there is to say about them.
@@ -34,12 +36,13 @@ pub struct Form {
 }
 
 impl Field {
-    /// The field of `label` with `text` in it, the cursor behind it.
+    /// The field of `label` with `text` in it, all of it marked.
     pub fn new(label: &str, text: &str) -> Self {
         Self {
             label: label.to_owned(),
             text: text.to_owned(),
             cursor: text.chars().count(),
+            is_marked: !text.is_empty(),
         }
     }
 
@@ -54,12 +57,25 @@ impl Field {
     }
 
     fn type_char(&mut self, typed: char) {
-        if is_steering(typed) || self.length() >= MOST_TYPED {
+        if is_steering(typed) {
+            return;
+        }
+        self.take_marked();
+        if self.length() >= MOST_TYPED {
             return;
         }
         let at = self.cursor.min(self.length());
         self.text.insert(self.byte(at), typed);
         self.cursor = at + 1;
+    }
+
+    /// Takes the text away if it is marked; gives whether it did.
+    fn take_marked(&mut self) -> bool {
+        let was_marked = std::mem::take(&mut self.is_marked);
+        if was_marked {
+            (self.text, self.cursor) = (String::new(), 0);
+        }
+        was_marked
     }
 
     /// Takes the `index`th character away, if there is one.
@@ -93,6 +109,9 @@ impl Form {
     /// Takes the character before the cursor away.
     pub fn erase(&mut self) {
         self.edit(|field| {
+            if field.take_marked() {
+                return;
+            }
             if let Some(before) = field.cursor.checked_sub(1) {
                 field.take(before);
                 field.cursor = before;
@@ -102,12 +121,19 @@ impl Form {
 
     /// Takes the character at the cursor away.
     pub fn delete(&mut self) {
-        self.edit(|field| field.take(field.cursor));
+        self.edit(|field| {
+            if !field.take_marked() {
+                field.take(field.cursor);
+            }
+        });
     }
 
     /// Takes the whole of the field away.
     pub fn clear(&mut self) {
-        self.edit(|field| (field.text, field.cursor) = (String::new(), 0));
+        self.edit(|field| {
+            field.is_marked = true;
+            field.take_marked();
+        });
     }
 
     /// The cursor one character to the left.
@@ -155,6 +181,7 @@ impl Form {
     fn move_cursor(&mut self, to: impl FnOnce(&Field) -> usize) {
         if let Some(field) = self.fields.get_mut(self.selected) {
             field.cursor = to(field).min(field.length());
+            field.is_marked = false;
         }
     }
 }
@@ -175,6 +202,7 @@ mod tests {
     #[test]
     fn typing_goes_where_the_cursor_is() {
         let mut form = form("0.1");
+        form.end();
         form.type_char('5');
         form.left();
         form.left();
@@ -198,8 +226,23 @@ mod tests {
     }
 
     #[test]
+    fn what_is_typed_takes_the_place_of_what_was_there_unless_the_cursor_was_moved() {
+        let mut typed = form("45");
+        "30".chars().for_each(|c| typed.type_char(c));
+        assert_eq!(typed.text(0), "30");
+        let mut erased = form("45");
+        erased.erase();
+        assert_eq!(erased.text(0), "");
+        let mut moved = form("45");
+        moved.left();
+        moved.type_char('.');
+        assert_eq!(moved.text(0), "4.5");
+    }
+
+    #[test]
     fn fields_follow_one_another_in_a_ring() {
         let mut form = form("x");
+        form.end();
         form.next_field();
         form.type_char('y');
         form.next_field();

@@ -69,6 +69,7 @@ impl History {
     /// Leaves the present run at the step `left_at` and begins another.
     pub fn begin(&mut self, left_at: u64, name: &str, journal: Journal) {
         self.present.left_at = left_at;
+        self.present.journal.forget_undone(); // something new was done: this
         let next = Self::new(name, journal).present;
         self.past.push(std::mem::replace(&mut self.present, next));
         self.undone.clear();
@@ -221,6 +222,21 @@ mod tests {
             .act(5, Act::set("motion.gravity_m_per_s2", Value::Float(1.0)))
             .unwrap();
         assert_eq!(history.redo(5), None);
+    }
+
+    #[test]
+    fn a_new_run_is_brought_again_before_what_was_undone_earlier() {
+        let mut history = History::new("method-2", opened("method-2"));
+        history
+            .act(40, Act::set("motion.time_step_s", Value::Float(0.05)))
+            .unwrap();
+        history.undo(40);
+        history
+            .begin_with(90, "start.tilt_deg", Value::Float(30.0))
+            .unwrap();
+        history.undo(5);
+        assert_eq!(history.redo(90), Some(Turn::Elsewhere));
+        assert_eq!(tilt(&history), Some(30.0));
     }
 
     #[test]

@@ -12,7 +12,9 @@ use ratatui::backend::CrosstermBackend;
 use ratatui::buffer::Buffer;
 use ratatui::crossterm::cursor::{Hide, Show};
 use ratatui::crossterm::event::{self, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
-use ratatui::crossterm::terminal::{self, EnterAlternateScreen, LeaveAlternateScreen};
+use ratatui::crossterm::terminal::{
+    self, Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen,
+};
 use ratatui::crossterm::{execute, style};
 use ratatui::layout::Rect;
 use rustix::termios::{self, OptionalActions};
@@ -204,7 +206,8 @@ fn stdout() -> io::Result<File> {
 fn take_over() -> io::Result<()> {
     ENTERED.store(true, Ordering::SeqCst);
     terminal::enable_raw_mode()?;
-    execute!(stdout()?, EnterAlternateScreen, Hide)
+    // A lab that was killed has left its picture there.
+    execute!(stdout()?, EnterAlternateScreen, Clear(ClearType::All), Hide)
 }
 
 /// The one way out for every end there is: what others have to bring home first, then the terminal, then what

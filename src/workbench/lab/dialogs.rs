@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The keys that end a dialog.
-const KEYS: &str = "Enter take it · Esc leave it";
+const KEYS: &str = "Enter take it · arrows edit it, typing replaces it · Esc leave it";
 const KEYS_OF_TWO: &str = "Enter write it · Up, Down the other line · Esc leave it";
 
 /// A form on top of the lab, and what it is for.

@@ -30,10 +30,19 @@ pub(super) enum Target {
 impl Lab {
     /// Lists what can be edited, as it is now.
     pub(super) fn list_parameters(&mut self) {
-        self.edits_listed = self.edits_in_force();
+        self.entries_listed = self.entries_in_force();
         let scenario = self.run().scenario();
         let table = parameters::table_at(scenario, self.playback.step_number());
-        let values = parameters(&table, scenario).into_iter();
+        // Of a push that is given later, nothing can be set here: what is done here takes its place.
+        let pushes = self
+            .history
+            .present()
+            .journal
+            .pushes_by(self.playback.step_number());
+        let is_given = |parameter: &Parameter| {
+            number_of_push(&parameter.key).is_none_or(|number| number < pushes)
+        };
+        let values = parameters(&table, scenario).into_iter().filter(is_given);
         let values = values.map(|parameter| Target::Parameter(Box::new(parameter)));
         let mut targets: Vec<_> = values.chain(Field::ALL.map(Target::NextPush)).collect();
         targets.sort_by_key(|target| rank(target.group())); // stable: within a group nothing moves
@@ -45,13 +54,12 @@ impl Lab {
         self.targets = targets;
     }
 
-    /// How many edits have been made up to where the run stands, those made here counted in.
-    pub(super) fn edits_in_force(&self) -> usize {
-        let here = self.playback.step_number();
-        self.run()
-            .scenario()
-            .edits
-            .partition_point(|edit| edit.step <= here)
+    /// How many entries of the journal act by now.
+    pub(super) fn entries_in_force(&self) -> usize {
+        self.history
+            .present()
+            .journal
+            .in_force(self.playback.step_number())
     }
 
     fn selected(&self) -> Option<&Target> {
@@ -353,4 +361,9 @@ fn about(parameter: &Parameter) -> Vec<String> {
     };
     lines.push(when.to_owned());
     lines
+}
+
+/// The number of the push that the dotted `key` belongs to.
+fn number_of_push(key: &str) -> Option<usize> {
+    key.strip_prefix("push.")?.split('.').next()?.parse().ok()
 }

@@ -79,8 +79,8 @@ pub struct Lab {
     targets: Vec<Target>,
     editor: Editor,
     next_push: NextPush,
-    /// How many of the run's edits are in force on what the editor lists.
-    edits_listed: usize,
+    /// How many entries of the journal act on what the editor lists.
+    entries_listed: usize,
     /// Where files are looked for and written to, if not in the present folder.
     folder: Option<PathBuf>,
     dialog: Option<Dialog>,
@@ -121,7 +121,7 @@ impl Lab {
             targets: Vec::new(),
             editor: Editor::default(),
             next_push: NextPush::of(&scenario),
-            edits_listed: 0,
+            entries_listed: 0,
             file: scenario,
             folder: None,
             dialog: None,
@@ -219,7 +219,7 @@ impl Lab {
                 .keep_saying("end of the scenario's run: space goes on, r begins again"),
             Halt::NotFinite(error) => {
                 let text = format!(
-                    "the numbers are no longer finite at step {}: r begins again",
+                    "the numbers are no longer finite at step {}: u takes the last edit back, r begins again",
                     error.step
                 );
                 self.notice.keep_saying(text);
@@ -440,7 +440,7 @@ impl Lab {
         self.readouts = self.playback.read();
         self.read_at = self.now;
         self.changed = true;
-        if self.edits_in_force() != self.edits_listed {
+        if self.entries_in_force() != self.entries_listed {
             self.list_parameters();
         }
         if self.is_advised

@@ -56,12 +56,21 @@ impl Widget for BrowserPane<'_> {
     }
 }
 
+/// What can be done with the list, and what is in it beside the presets.
+fn keys(files: usize) -> String {
+    match files {
+        0 => "/ filters by name, Enter opens".to_owned(),
+        1 => "/ filters by name, Enter opens; a file of this folder stands below".to_owned(),
+        _ => format!("/ filters by name, Enter opens; {files} files of this folder stand below"),
+    }
+}
+
 impl BrowserPane<'_> {
     fn filter_line(&self, area: Rect, buf: &mut Buffer) {
         let shown = self.browser.shown().len();
         let (text, role) = match (self.mode, self.browser.filter()) {
             (Mode::Filter, filter) => (format!("/{filter}_  ({shown})"), Role::Focus),
-            (_, "") => ("/ filters by name, Enter opens".to_owned(), Role::Quiet),
+            (_, "") => (keys(self.browser.files()), Role::Quiet),
             (_, filter) => (format!("/{filter}  ({shown})"), Role::Text),
         };
         write(area, (1, 0), &text, self.theme.style(role), buf);

@@ -1,6 +1,6 @@
 //! A form, over the bottom of the panes.
 
-use super::{columns, frame_on_top, wrapped_to, write};
+use super::{columns, frame_on_top, wrapped, wrapped_to, write};
 use crate::workbench::form::{Field, Form};
 use crate::workbench::theme::{Role, Theme};
 use ratatui::buffer::Buffer;
@@ -74,13 +74,18 @@ impl FormPane<'_> {
         let complaint = self.complaint(width, room.min(MOST_COMPLAINT));
         room -= complaint.len();
         let keys = taken(&mut room, 1);
-        let info = taken(&mut room, form.info.len());
+        let info = form
+            .info
+            .iter()
+            .flat_map(|text| wrapped(text, width as usize));
+        let mut info: Vec<_> = info.collect();
+        info.truncate(taken(&mut room, info.len()));
         // The selected field is among those that are shown.
         let first = (form.selected + 1).saturating_sub(fields);
         let fields = form.fields.iter().enumerate().skip(first).take(fields);
         let mut rows: Vec<_> = fields.map(|(at, field)| Row::Field(at, field)).collect();
         let quiet = |text: &str| Row::Text(text.to_owned(), Role::Quiet);
-        rows.extend(form.info.iter().take(info).map(|text| quiet(text)));
+        rows.extend(info.iter().map(|text| quiet(text)));
         let complaint = complaint.into_iter();
         rows.extend(complaint.map(|line| Row::Text(line, Role::Warning)));
         rows.extend((keys == 1).then(|| quiet(form.keys)));
@@ -141,7 +146,13 @@ impl FormPane<'_> {
         let chars: Vec<char> = field.text.chars().collect();
         let cursor = if is_selected { field.cursor } else { 0 };
         let first = first_shown(&chars, cursor, area.width as usize);
-        let style = self.theme.style(Role::Text);
+        let is_marked = is_selected && field.is_marked;
+        let role = if is_marked {
+            Role::Selected
+        } else {
+            Role::Text
+        };
+        let style = self.theme.style(role);
         let shown: String = chars[first..].iter().collect();
         buf.set_stringn(area.x, area.y, &shown, area.width as usize, style);
         if !is_selected {
@@ -153,6 +164,7 @@ impl FormPane<'_> {
             return;
         }
         match chars.get(cursor) {
+            Some(_) if is_marked => {}
             Some(_) => {
                 let cell = Rect::new(at, area.y, 1, 1);
                 buf.set_style(cell, self.theme.style(Role::Selected));

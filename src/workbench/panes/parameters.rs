@@ -119,7 +119,7 @@ impl Parameters<'_> {
         self.lines(&rows, lines, buf);
         let keys = match self.view.focus {
             Pane::Parameters => "f: all of them",
-            _ => "Tab, then f: all of them",
+            _ => "e, then f: all of them",
         };
         self.note(keys, note, buf);
     }
@@ -301,6 +301,9 @@ fn on_one_line(text: &str) -> String {
 
 /// What `--set` takes for `line`: with its value where there is room for it on `width` columns.
 fn key_line(line: &Line, width: usize) -> String {
+    if line.key.is_empty() {
+        return String::new();
+    }
     let value = on_one_line(&line.value);
     let whole = format!("{}={value}", line.key);
     if columns(&whole) <= width {
@@ -571,6 +574,10 @@ fn fixed(label: &str, number: Option<f64>, digits: usize) -> String {
 
 /// As [`fixed`], with its sign.
 fn signed(label: &str, number: f64, digits: usize) -> String {
+    let is_zero = format!("{number:.digits$}")
+        .trim_matches(['-', '0', '.'])
+        .is_empty();
+    let number = if is_zero { 0.0 } else { number }; // no -0.0000
     fitted(
         label,
         digits,
