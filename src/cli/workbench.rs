@@ -2,6 +2,7 @@
 
 use super::args::{Changes, Color, Look, Markers, Screen, ShowArgs, WorkbenchArgs};
 use super::scenario::changed;
+use crate::scenario::problem::printable;
 use crate::scenario::{Document, Scenario};
 use crate::workbench::lab::Lab;
 use crate::workbench::markers::Marker;
@@ -44,6 +45,17 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     lab.take_advice();
     app::run(&mut lab, session.as_ref(), args.fps).context("the terminal cannot be used")?;
     tell_of_exports(&lab)?;
+    if session.is_some() {
+        let (step, title) = (
+            lab.playback().step_number(),
+            &lab.run().scenario().file.title,
+        );
+        writeln!(
+            io::stdout(),
+            "gyrolab --resume comes back to step {step} of {}",
+            printable(title)
+        )?;
+    }
     Ok(ExitCode::SUCCESS)
 }
 

@@ -37,6 +37,9 @@ pub struct Entry {
     /// Whether it stood in the file the run was opened from.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     from_file: bool,
+    /// Whether it is one more nudge, taken back together with the entry before it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    is_chained: bool,
     /// The later entries that it dropped.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     dropped: Vec<Entry>,
@@ -127,6 +130,7 @@ impl Journal {
             step: edit.step,
             act: Act::Edit(edit.set),
             from_file: true,
+            is_chained: false,
             dropped: Vec::new(),
         };
         Self {
@@ -206,6 +210,18 @@ impl Journal {
     /// # Errors
     /// Why it cannot be done; nothing has changed then.
     pub fn act(&mut self, step: u64, act: Act) -> Result<Scenario, Problems> {
+        self.enter(step, act, false)
+    }
+
+    /// Does `act` at `step` as one more nudge of what was nudged before: undo takes them all back at once.
+    ///
+    /// # Errors
+    /// As [`act`](Self::act).
+    pub fn act_again(&mut self, step: u64, act: Act) -> Result<Scenario, Problems> {
+        self.enter(step, act, !self.done.is_empty())
+    }
+
+    fn enter(&mut self, step: u64, act: Act, is_chained: bool) -> Result<Scenario, Problems> {
         if let Act::Describe(set) = &act {
             let file = self.file();
             set.iter().try_for_each(|(key, value)| {
@@ -224,6 +240,7 @@ impl Journal {
             step,
             act,
             from_file: false,
+            is_chained,
             dropped,
         });
         next.undone.clear();
@@ -250,20 +267,32 @@ impl Journal {
         }
     }
 
-    /// Takes the last entry back.
-    pub fn undo(&mut self) -> Option<&Entry> {
-        let entry = self.done.pop()?;
-        self.done.extend(entry.dropped.iter().cloned());
-        self.undone.push(entry);
-        self.undone.last()
+    /// Takes the last entry back, or all nudges of a chain; gives from which step on, and what the last of it was.
+    pub fn undo(&mut self) -> Option<(u64, Act)> {
+        let last = self.done.last()?.act.clone();
+        loop {
+            let entry = self.done.pop()?;
+            self.done.extend(entry.dropped.iter().cloned());
+            let (step, is_chained) = (entry.step, entry.is_chained);
+            self.undone.push(entry);
+            if !is_chained {
+                return Some((step, last));
+            }
+        }
     }
 
-    /// Brings the entry again that was taken back last.
-    pub fn redo(&mut self) -> Option<&Entry> {
-        let entry = self.undone.pop()?;
-        self.done.truncate(self.done.len() - entry.dropped.len());
-        self.done.push(entry);
-        self.done.last()
+    /// Brings again what was taken back last; gives from which step on, and what the last of it was.
+    pub fn redo(&mut self) -> Option<(u64, Act)> {
+        let first = self.undone.last()?.step;
+        loop {
+            let entry = self.undone.pop()?;
+            self.done.truncate(self.done.len() - entry.dropped.len());
+            let act = entry.act.clone();
+            self.done.push(entry);
+            if !self.undone.last().is_some_and(|next| next.is_chained) {
+                return Some((first, act));
+            }
+        }
     }
 
     /// What was taken back can no longer be brought again.
@@ -398,7 +427,7 @@ mod tests {
             (file.edit.len(), file.push.len(), file.title.as_str()),
             (2, 0, "Mine")
         );
-        assert_eq!(journal.undo().unwrap().step, 20);
+        assert_eq!(journal.undo().unwrap().0, 20);
         let file = journal.file();
         assert_eq!((file.edit.len(), file.push.len()), (1, 1));
         journal.redo().unwrap();
@@ -413,6 +442,24 @@ mod tests {
             "what is done here is in it"
         );
         assert_eq!(journal.later_than(15), 1);
+    }
+
+    #[test]
+    fn nudges_of_a_chain_are_taken_back_together() {
+        let mut journal = journal("method-2");
+        journal.act(5, push(0.5)).unwrap();
+        journal.act(10, gravity(1.0)).unwrap();
+        journal.act_again(12, gravity(2.0)).unwrap();
+        journal.act_again(14, gravity(3.0)).unwrap();
+        let whole = journal.file();
+        assert_eq!(journal.undo(), Some((10, gravity(3.0))));
+        assert_eq!(
+            (journal.file().edit.len(), journal.file().push.len()),
+            (0, 1)
+        );
+        assert_eq!(journal.redo(), Some((10, gravity(3.0))));
+        assert_eq!(journal.file(), whole);
+        assert_eq!(journal.redo(), None);
     }
 
     #[test]

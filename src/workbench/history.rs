@@ -1,5 +1,7 @@
 //! The runs one after the other: an edit of the body, or another file, begins a new one, and the old one is one undo away.
 
+use super::next_push::NextPush;
+use crate::run::Clock;
 use crate::scenario::journal::{Act, Journal};
 use crate::scenario::{Problems, Scenario};
 use serde::{Deserialize, Serialize};
@@ -17,6 +19,11 @@ pub struct Chapter {
     pub name: String,
     /// The step it was left at.
     pub left_at: u64,
+    /// When it is over, s: an edit of the time step changes how many steps that is.
+    pub end_s: f64,
+    /// The push that was to come when it was left.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next_push: Option<NextPush>,
     /// What it is.
     pub journal: Journal,
 }
@@ -48,15 +55,11 @@ pub enum Turn {
 }
 
 impl History {
-    /// Begins with the run in `journal`, opened as `name`.
-    pub fn new(name: &str, journal: Journal) -> Self {
+    /// Begins with the run of `scenario`, opened as `name`.
+    pub fn new(name: &str, scenario: &Scenario) -> Self {
         Self {
             past: Vec::new(),
-            present: Chapter {
-                name: name.to_owned(),
-                left_at: 0,
-                journal,
-            },
+            present: Chapter::new(name, Journal::of(scenario.file.clone()), scenario),
             undone: Vec::new(),
         }
     }
@@ -66,11 +69,20 @@ impl History {
         &self.present
     }
 
-    /// Leaves the present run at the step `left_at` and begins another.
-    pub fn begin(&mut self, left_at: u64, name: &str, journal: Journal) {
-        self.present.left_at = left_at;
+    /// Says where the present run stands, and which push is to come: it may be left.
+    pub fn stands(&mut self, step: u64, next_push: &NextPush) {
+        self.present.left_at = step;
+        self.present.next_push = Some(next_push.clone());
+    }
+
+    /// Leaves the present run and begins that of `scenario`, opened as `name`.
+    pub fn begin(&mut self, name: &str, scenario: &Scenario) {
+        let journal = Journal::of(scenario.file.clone());
+        self.begin_chapter(Chapter::new(name, journal, scenario));
+    }
+
+    fn begin_chapter(&mut self, next: Chapter) {
         self.present.journal.forget_undone(); // something new was done: this
-        let next = Self::new(name, journal).present;
         self.past.push(std::mem::replace(&mut self.present, next));
         self.undone.clear();
         self.forget_the_oldest();
@@ -104,51 +116,89 @@ impl History {
         Ok(scenario)
     }
 
+    /// The same as one more nudge, which is taken back together with those before.
+    ///
+    /// # Errors
+    /// Why it cannot be done; nothing has changed then.
+    pub fn act_again(&mut self, step: u64, act: Act) -> Result<Scenario, Problems> {
+        let scenario = self.present.journal.act_again(step, act)?;
+        self.undone.clear();
+        Ok(scenario)
+    }
+
     /// Begins a new run with `value` at `key`, as [`Journal::begun_with`] has it.
     ///
     /// # Errors
     /// Why it cannot begin so; nothing has changed then.
-    pub fn begin_with(&mut self, step: u64, key: &str, value: Value) -> Result<Scenario, Problems> {
-        let (journal, scenario) = self.present.journal.begun_with(step, key, value)?;
-        let name = self.present.name.clone();
-        self.begin(step, &name, journal);
+    pub fn begin_with(&mut self, key: &str, value: Value) -> Result<Scenario, Problems> {
+        let left = &self.present;
+        let (journal, scenario) = left.journal.begun_with(left.left_at, key, value)?;
+        self.begin_chapter(Chapter::new(&left.name, journal, &scenario));
         Ok(scenario)
     }
 
-    /// Takes the last thing back: what was done in the present run, or else the run itself, which stands at `step`.
-    pub fn undo(&mut self, step: u64) -> Option<Turn> {
-        if let Some(entry) = self.present.journal.undo() {
-            return Some(Turn::Here {
-                step: entry.step,
-                act: entry.act.clone(),
-            });
-        }
-        self.turn(step, |history| (&mut history.past, &mut history.undone))
+    /// Begins the present run once more with another `value` at the `key` that it was begun with, in its place.
+    ///
+    /// # Errors
+    /// Why it cannot begin so; nothing has changed then.
+    pub fn begin_again_with(&mut self, key: &str, value: Value) -> Result<Scenario, Problems> {
+        let Some(left) = self.past.last() else {
+            return self.begin_with(key, value);
+        };
+        let (journal, scenario) = left.journal.begun_with(left.left_at, key, value)?;
+        self.present = Chapter::new(&left.name, journal, &scenario);
+        self.undone.clear();
+        Ok(scenario)
     }
 
-    /// Brings again what was taken back last; the present run stands at `step`.
-    pub fn redo(&mut self, step: u64) -> Option<Turn> {
-        if let Some(entry) = self.present.journal.redo() {
-            return Some(Turn::Here {
-                step: entry.step,
-                act: entry.act.clone(),
-            });
+    /// Says that the present run is now over at `end_s` (s).
+    pub fn set_end(&mut self, end_s: f64) {
+        self.present.end_s = end_s;
+    }
+
+    /// Takes the last thing back: what was done in the present run, or else the run itself.
+    pub fn undo(&mut self) -> Option<Turn> {
+        if let Some((step, act)) = self.present.journal.undo() {
+            return Some(Turn::Here { step, act });
         }
-        self.turn(step, |history| (&mut history.undone, &mut history.past))
+        self.turn(|history| (&mut history.past, &mut history.undone))
+    }
+
+    /// Brings again what was taken back last.
+    pub fn redo(&mut self) -> Option<Turn> {
+        if let Some((step, act)) = self.present.journal.redo() {
+            return Some(Turn::Here { step, act });
+        }
+        self.turn(|history| (&mut history.undone, &mut history.past))
     }
 
     /// Another run in the place of the present one.
     fn turn(
         &mut self,
-        left_at: u64,
         stacks: impl Fn(&mut Self) -> (&mut Vec<Chapter>, &mut Vec<Chapter>),
     ) -> Option<Turn> {
         let next = stacks(self).0.pop()?;
-        self.present.left_at = left_at;
         let left = std::mem::replace(&mut self.present, next);
         stacks(self).1.push(left);
         Some(Turn::Elsewhere)
     }
+}
+
+impl Chapter {
+    fn new(name: &str, journal: Journal, scenario: &Scenario) -> Self {
+        Self {
+            name: name.to_owned(),
+            left_at: 0,
+            end_s: end_s(scenario),
+            next_push: None,
+            journal,
+        }
+    }
+}
+
+/// When the run of `scenario` is over, s.
+pub fn end_s(scenario: &Scenario) -> f64 {
+    Clock::at(scenario, scenario.steps).time_s(scenario.steps)
 }
 
 #[cfg(test)]
@@ -156,8 +206,19 @@ mod tests {
     use super::*;
     use crate::scenario::Document;
 
-    fn opened(name: &str) -> Journal {
-        Journal::of(Document::open(name).unwrap().scenario().unwrap().file)
+    fn opened(name: &str) -> Scenario {
+        Document::open(name).unwrap().scenario().unwrap()
+    }
+
+    fn leave(history: &mut History, step: u64) {
+        history.stands(step, &NextPush::of(&opened("method-2")));
+    }
+
+    fn begin_with_tilt(history: &mut History, step: u64, tilt_deg: f64) {
+        leave(history, step);
+        history
+            .begin_with("start.tilt_deg", Value::Float(tilt_deg))
+            .unwrap();
     }
 
     fn time_step(history: &History) -> f64 {
@@ -174,20 +235,19 @@ mod tests {
 
     #[test]
     fn everything_is_taken_back_and_brought_again_in_order() {
-        let mut history = History::new("method-2", opened("method-2"));
+        let mut history = History::new("method-2", &opened("method-2"));
         history
             .act(40, Act::set("motion.time_step_s", Value::Float(0.05)))
             .unwrap();
-        history
-            .begin_with(90, "start.tilt_deg", Value::Float(30.0))
-            .unwrap();
+        begin_with_tilt(&mut history, 90, 30.0);
         history
             .act(7, Act::set("motion.time_step_s", Value::Float(0.02)))
             .unwrap();
-        history.begin(9, "cusps", opened("cusps"));
-        assert_eq!(history.undo(3), Some(Turn::Elsewhere));
+        leave(&mut history, 9);
+        history.begin("cusps", &opened("cusps"));
+        assert_eq!(history.undo(), Some(Turn::Elsewhere));
         assert_eq!((history.present().left_at, tilt(&history)), (9, Some(30.0)));
-        let Some(Turn::Here { step: 7, .. }) = history.undo(9) else {
+        let Some(Turn::Here { step: 7, .. }) = history.undo() else {
             panic!()
         };
         assert_eq!(
@@ -195,59 +255,74 @@ mod tests {
             0.05,
             "the new run moves as the old one did when it was left"
         );
-        assert_eq!(history.undo(9), Some(Turn::Elsewhere));
+        assert_eq!(history.undo(), Some(Turn::Elsewhere));
         assert_eq!(
             (history.present().left_at, tilt(&history)),
             (90, Some(45.0))
         );
-        let Some(Turn::Here { step: 40, .. }) = history.undo(90) else {
+        let Some(Turn::Here { step: 40, .. }) = history.undo() else {
             panic!()
         };
-        assert_eq!(history.undo(40), None);
+        assert_eq!(history.undo(), None);
         for _ in 0..4 {
-            assert!(history.redo(1).is_some());
+            assert!(history.redo().is_some());
         }
-        assert_eq!(history.redo(1), None);
+        assert_eq!(history.redo(), None);
         assert_eq!(history.present().name, "cusps");
     }
 
     #[test]
     fn what_is_done_anew_cannot_be_redone() {
-        let mut history = History::new("method-2", opened("method-2"));
-        history
-            .begin_with(90, "start.tilt_deg", Value::Float(30.0))
-            .unwrap();
-        history.undo(0);
+        let mut history = History::new("method-2", &opened("method-2"));
+        begin_with_tilt(&mut history, 90, 30.0);
+        history.undo();
         history
             .act(5, Act::set("motion.gravity_m_per_s2", Value::Float(1.0)))
             .unwrap();
-        assert_eq!(history.redo(5), None);
+        assert_eq!(history.redo(), None);
+    }
+
+    #[test]
+    fn a_run_that_is_nudged_again_is_one_run() {
+        let mut history = History::new("method-2", &opened("method-2"));
+        begin_with_tilt(&mut history, 90, 30.0);
+        for tilt_deg in [31.0, 32.0] {
+            leave(&mut history, 5);
+            history
+                .begin_again_with("start.tilt_deg", Value::Float(tilt_deg))
+                .unwrap();
+        }
+        assert_eq!(tilt(&history), Some(32.0));
+        assert_eq!(history.undo(), Some(Turn::Elsewhere));
+        assert_eq!(
+            (history.present().left_at, tilt(&history)),
+            (90, Some(45.0))
+        );
+        assert_eq!(history.undo(), None);
     }
 
     #[test]
     fn a_new_run_is_brought_again_before_what_was_undone_earlier() {
-        let mut history = History::new("method-2", opened("method-2"));
+        let mut history = History::new("method-2", &opened("method-2"));
         history
             .act(40, Act::set("motion.time_step_s", Value::Float(0.05)))
             .unwrap();
-        history.undo(40);
-        history
-            .begin_with(90, "start.tilt_deg", Value::Float(30.0))
-            .unwrap();
-        history.undo(5);
-        assert_eq!(history.redo(90), Some(Turn::Elsewhere));
+        history.undo();
+        begin_with_tilt(&mut history, 90, 30.0);
+        history.undo();
+        assert_eq!(history.redo(), Some(Turn::Elsewhere));
         assert_eq!(tilt(&history), Some(30.0));
     }
 
     #[test]
     fn a_refused_edit_changes_nothing() {
-        let mut history = History::new("method-2", opened("method-2"));
+        let mut history = History::new("method-2", &opened("method-2"));
         let before = history.clone();
         history
             .act(5, Act::set("motion.time_step_s", Value::Float(-1.0)))
             .unwrap_err();
         history
-            .begin_with(5, "body.rim.radius_m", Value::Float(-1.0))
+            .begin_with("body.rim.radius_m", Value::Float(-1.0))
             .unwrap_err();
         history
             .act(5, Act::set("motion.steps", Value::Integer(0)))

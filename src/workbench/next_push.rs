@@ -63,6 +63,18 @@ impl Field {
     /// All of them, in the order in which they are listed.
     pub const ALL: [Self; 4] = [Self::Point, Self::Size, Self::Toward, Self::Length];
 
+    /// What may be typed for it.
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::Point => "the name of a point of the body",
+            Self::Size => "how hard, in N",
+            Self::Toward => {
+                "down, up, out or in (from the vertical), around or back, +x, -x, +y, -y, or three numbers"
+            }
+            Self::Length => "how long, in s, or steps: 20 steps",
+        }
+    }
+
     /// What it is called, and its unit.
     pub fn label(self) -> (&'static str, &'static str) {
         match self {
@@ -121,7 +133,7 @@ impl Toward {
             _ => {
                 let names: Vec<_> = Self::NAMED.iter().map(|(name, _)| *name).collect();
                 Err(format!(
-                    "must be one of {}, or three numbers",
+                    "toward must be one of {}, or three numbers",
                     names.join(", ")
                 ))
             }
@@ -261,7 +273,7 @@ impl NextPush {
     /// Why it cannot be.
     pub fn typed(&self, field: Field, text: &str, scenario: &Scenario) -> Result<Self, String> {
         let (label, unit) = field.label();
-        let number = || nudge::typed(text, unit);
+        let number = || nudge::typed(text, unit).map_err(|reason| format!("{label} {reason}"));
         let mut next = self.clone();
         match field {
             Field::Point => {

@@ -1,9 +1,10 @@
 //! A run being played: at its pace, as far as its next stop.
 
+use super::history::end_s;
 use super::live::{LiveRun, PlayEnd, Played};
 use super::pace::{Pace, Speed};
 use super::readouts::Readouts;
-use crate::run::NotFinite;
+use crate::run::{NotFinite, Simulation};
 use crate::scenario::{Scenario, keys};
 use std::sync::Arc;
 use std::time::Duration;
@@ -40,19 +41,36 @@ pub struct Playback {
     stop: u64,
     /// Whether it is on its way to `stop` as fast as it can.
     hurries: bool,
+    /// When the scenario's run is over, s.
+    end_s: f64,
 }
 
 impl Playback {
     /// The run of `scenario` at step 0, at the speed the scenario names.
     pub fn new(scenario: Arc<Scenario>, running: bool) -> Self {
         let speed = scenario.file.view.as_ref().and_then(|view| view.speed);
-        let (stop, run) = (scenario.steps, LiveRun::new(scenario));
+        let (stop, end_s) = (scenario.steps, end_s(&scenario));
+        let run = LiveRun::new(scenario);
         Self {
             run,
             pace: Pace::new(speed.unwrap_or(keys::SPEED), running),
             stop,
             hurries: false,
+            end_s,
         }
+    }
+
+    /// The run is over at `end_s` (s), however many steps that is.
+    pub fn set_end(&mut self, end_s: f64) {
+        self.end_s = end_s;
+        if !self.hurries {
+            self.stop = self.next_stop();
+        }
+    }
+
+    /// The step at which the run is over.
+    pub fn end_step(&self) -> u64 {
+        Simulation::step_at(self.run.scenario(), self.end_s)
     }
 
     /// Takes the run to `step` at once.
@@ -77,6 +95,7 @@ impl Playback {
     /// Begins the run of another `scenario`; speed, running or not, and the exact motion's being shown stay as they are.
     pub fn begin(&mut self, scenario: Arc<Scenario>) {
         let shows_exact = self.run.overlay().is_some();
+        self.end_s = end_s(&scenario);
         self.run = LiveRun::new(scenario);
         self.run.set_overlay(shows_exact);
         self.hurries = false;
@@ -183,7 +202,7 @@ impl Playback {
 
     /// The end of the scenario's run, once it is passed none.
     fn next_stop(&self) -> u64 {
-        let end = self.run.scenario().steps;
+        let end = self.end_step();
         if self.step_number() < end {
             end
         } else {

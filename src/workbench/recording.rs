@@ -240,8 +240,9 @@ impl Recording {
     /// The moment from which on it should be filled anew, if the blocks up to now are coarse for some stretch.
     pub fn coarse_since(&self) -> Option<u64> {
         let lengths = (0..u64::BITS).map(|power| 1 << power);
-        let coarse = lengths
-            .take_while(|&length| length < self.moments)
+        let shorter = lengths.take_while(|&length| length < self.moments);
+        let coarse = shorter
+            .chain((self.moments > 0).then_some(self.moments))
             .filter(|&length| {
                 let begin = self.moments - length;
                 let reaches = |(size, level): &(usize, &Level)| {
@@ -356,7 +357,10 @@ mod tests {
                 prop_assert_eq!(recording.moments(), wanted);
                 prop_assert_eq!(recording.coarse_since(), None);
                 for since in [0.0, 0.4, 0.9, 0.999] {
-                    covers(&recording, (since * wanted as f64).floor())?;
+                    let since = (since * wanted as f64).floor();
+                    covers(&recording, since)?;
+                    let blocks = recording.since(since).count() as f64;
+                    prop_assert!(blocks >= (wanted as f64 - since).min(0.45 * COARSE as f64), "{blocks} since {since} of {wanted}");
                 }
                 let largest = (0..wanted).map(value).fold(-1.0, f64::max);
                 prop_assert_eq!(recording.whole().unwrap().extents[0].max, largest);

@@ -43,7 +43,7 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
         Pane::ThreeD => ThreeD { run, view }.render(area, buf),
         Pane::Parameters => Parameters {
             scenario: run.scenario(),
-            motion: run.simulation().motion(),
+            motion: &lab.motion(),
             readouts,
             editor: Some(lab.editor()),
             view,

@@ -299,7 +299,9 @@ impl Shared {
         let mut state = self.state();
         while !state.is_closing {
             let to_go = not_before.saturating_duration_since(Instant::now());
-            match state.noted.as_ref().filter(|_| state.written < state.notes) {
+            // Asked to hurry it writes the same once more: the session that was left last is to be the newest.
+            let is_due = state.written < state.notes || state.hurry.is_some();
+            match state.noted.as_ref().filter(|_| is_due) {
                 Some(content) if state.hurry.is_some() || to_go.is_zero() => {
                     return Some((content.clone(), state.notes));
                 }

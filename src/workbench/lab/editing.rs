@@ -2,13 +2,14 @@
 
 use super::super::action::Direction;
 use super::super::editor::Line;
-use super::super::history::Turn;
+use super::super::history::{Turn, end_s};
 use super::super::next_push::{Field, NextPush};
 use super::super::view::Pane;
 use super::{Lab, dialogs::Asking};
 use crate::scenario::journal::{Act, Effect};
 use crate::scenario::parameters::{self, Parameter, parameters};
-use crate::scenario::{Problems, Scenario};
+use crate::scenario::present::in_force;
+use crate::scenario::{Scenario, Window};
 use std::sync::Arc;
 use toml::Value;
 
@@ -99,8 +100,11 @@ impl Lab {
                 let done = parameter
                     .nudged(times)
                     .map_err(|reason| format!("{label} {reason}"));
-                let done = done.and_then(|value| self.set(&key, value));
-                done.unwrap_or_else(|reason| self.say(reason));
+                let is_again = self.last_nudged.as_ref() == Some(&key);
+                match done.and_then(|value| self.set(&key, value, is_again)) {
+                    Ok(()) => self.last_nudged = Some(key),
+                    Err(reason) => self.say(reason),
+                }
             }
             Some(Target::NextPush(field)) => {
                 match self.next_push.nudged(*field, times, &scenario) {
@@ -134,7 +138,11 @@ impl Lab {
         };
         let about = match self.selected() {
             Some(Target::Parameter(parameter)) => about(parameter),
-            _ => vec!["it acts when p gives the push".to_owned()],
+            Some(Target::NextPush(field)) => vec![
+                field.about().to_owned(),
+                "it acts when p gives the push".to_owned(),
+            ],
+            None => Vec::new(),
         };
         let about: Vec<_> = about.iter().map(String::as_str).collect();
         self.ask(Asking::Value, &title, &[(&label, line.value)], &about);
@@ -155,7 +163,7 @@ impl Lab {
                     .map_err(|reason| format!("{label} {reason}"))?;
                 match value == parameter.value && !parameter.is_default {
                     true => Ok(()),
-                    false => self.set(&key, value),
+                    false => self.set(&key, value, false),
                 }
             }
             Some(Target::NextPush(field)) => {
@@ -166,44 +174,82 @@ impl Lab {
         }
     }
 
-    /// Sets `key` to `value`: for the steps to come, or in a new run.
-    fn set(&mut self, key: &str, value: Value) -> Result<(), String> {
-        let step = self.playback.step_number();
-        let in_one_line = |problems: Problems| problems.in_one_line();
+    /// Sets `key` to `value`: for the steps to come, or in a new run. What `is_again` set is taken back together with
+    /// what was set before.
+    fn set(&mut self, key: &str, value: Value, is_again: bool) -> Result<(), String> {
         match Effect::of(key) {
-            Effect::NewRun => {
-                let scenario = self
-                    .history
-                    .begin_with(step, key, value)
-                    .map_err(in_one_line)?;
-                self.begin_run(Arc::new(scenario));
-                if step > 0 {
-                    self.say("a new run; the one before is dotted, and u goes back to it");
-                }
-            }
+            Effect::NewRun => self.begin_with(key, value, is_again),
             Effect::FromHere | Effect::None => {
-                self.act(Act::set(key, value))?;
+                let said = self.act(Act::set(key, value), is_again)?;
+                self.say(said.unwrap_or_else(|| self.said_of(key)));
+                Ok(())
             }
+        }
+    }
+
+    fn begin_with(&mut self, key: &str, value: Value, is_again: bool) -> Result<(), String> {
+        let had_begun = self.playback.step_number() > 0;
+        self.stands();
+        let begun = match is_again {
+            true => self.history.begin_again_with(key, value),
+            false => self.history.begin_with(key, value),
+        };
+        let scenario = begun.map_err(|problems| problems.in_one_line())?;
+        self.begin_run(Arc::new(scenario));
+        if had_begun {
+            self.say("a new run; the one before is dotted, and u goes back to it");
         }
         Ok(())
     }
 
-    /// Does `act` here.
-    fn act(&mut self, act: Act) -> Result<(), String> {
+    /// What is to be said of `key`, the value selected, now that it is set.
+    fn said_of(&self, key: &str) -> String {
+        let line = self.editor.selected().cloned().unwrap_or_default();
+        let value = format!("{} {} {}", line.label, line.value, line.unit);
+        let value = value.trim_end();
+        match Effect::of(key) {
+            Effect::None => format!("{value}; u takes it back"),
+            _ if self.is_of_a_push_that_is_over(key) => {
+                "that push is over and acts no more: u takes this back, \
+                and g goes to before it"
+                    .to_owned()
+            }
+            _ => format!("{value}, from the next step on; u takes it back"),
+        }
+    }
+
+    fn is_of_a_push_that_is_over(&self, key: &str) -> bool {
+        let simulation = self.run().simulation();
+        let (step, time_s) = (simulation.step_number(), simulation.state().time_s);
+        let (_, pushes) = in_force(simulation.scenario(), step);
+        let push = number_of_push(key).and_then(|number| pushes.get(number));
+        push.is_some_and(|push| match push.window {
+            Window::Steps { first, count } => {
+                !push.accumulates && (first - 1).saturating_add(count) <= step
+            }
+            Window::Time { from_s, for_s } => from_s + for_s <= time_s,
+        })
+    }
+
+    /// Does `act` here; gives what is to be said of what has made way for it.
+    fn act(&mut self, act: Act, is_again: bool) -> Result<Option<String>, String> {
         let step = self.playback.step_number();
         let is_described = matches!(act, Act::Describe(_));
         let later = self.history.present().journal.later_than(step);
-        let scenario = self
-            .history
-            .act(step, act)
-            .map_err(|problems| problems.in_one_line())?;
+        let done = match is_again {
+            true => self.history.act_again(step, act),
+            false => self.history.act(step, act),
+        };
+        let scenario = done.map_err(|problems| problems.in_one_line())?;
+        let is_as_long = scenario.steps == self.run().scenario().steps;
         self.take_over(scenario, is_described);
-        if later > 0 && !is_described {
-            self.say(format!(
-                "{later} later actions have made way for it; u brings them back"
-            ));
+        if !is_as_long {
+            self.history.set_end(end_s(self.run().scenario()));
+            self.playback.set_end(self.history.present().end_s);
         }
-        Ok(())
+        let made_way = later > 0 && !is_described;
+        Ok(made_way
+            .then(|| format!("{later} later actions have made way for it; u brings them back")))
     }
 
     fn take_over(&mut self, scenario: Scenario, is_described: bool) {
@@ -225,12 +271,11 @@ impl Lab {
             "pushed: {}; u takes it back, P chooses another",
             self.next_push.in_words()
         );
-        let done = given.and_then(|push| self.act(Act::Push(push)));
-        match done {
-            Ok(()) if self.notice.text().is_none() => self.say(said),
-            Ok(()) => {}
-            Err(reason) => self.say(reason),
-        }
+        let done = given.and_then(|push| self.act(Act::Push(push), false));
+        self.say(match done {
+            Ok(made_way) => made_way.unwrap_or(said),
+            Err(reason) => reason,
+        });
     }
 
     pub(super) fn undo(&mut self, times: i32) {
@@ -259,11 +304,12 @@ impl Lab {
         done: &str,
         other_way: &str,
         nothing: &str,
-        turn: impl Fn(&mut super::History, u64) -> Option<Turn>,
+        turn: impl Fn(&mut super::History) -> Option<Turn>,
     ) {
         for _ in 0..times {
-            let (here, name) = (self.playback.step_number(), self.name().to_owned());
-            match turn(&mut self.history, here) {
+            let name = self.name().to_owned();
+            self.stands();
+            match turn(&mut self.history) {
                 None => return self.say(nothing),
                 Some(Turn::Here { step, act }) => {
                     self.turn_here(step, &act);
@@ -286,23 +332,33 @@ impl Lab {
             Ok(scenario) => Arc::new(scenario),
             Err(problems) => return self.say(problems.in_one_line()),
         };
+        if scenario.steps != self.run().scenario().steps {
+            self.history.set_end(end_s(&scenario));
+        }
         match act {
             Act::Describe(_) => self.playback.describe_as(&scenario),
             Act::Edit(_) | Act::Push(_) => self.playback.turn_at(step, &scenario),
         }
+        self.playback.set_end(self.history.present().end_s);
         self.is_another();
     }
 
     /// Another run, where it was left; the one opened as `before` was shown until now.
     fn turn_elsewhere(&mut self, before: &str) {
         let chapter = self.history.present();
-        let (name, left_at) = (chapter.name.clone(), chapter.left_at);
+        let (name, left_at, end_s) = (chapter.name.clone(), chapter.left_at, chapter.end_s);
+        let next_push = chapter.next_push.clone();
         match chapter.journal.scenario().map(Arc::new) {
             Err(problems) => self.say(problems.in_one_line()),
             Ok(scenario) if name == before => self.begin_run(scenario),
             Ok(scenario) => self.show_another(scenario, false),
         }
+        self.next_push = next_push.map_or(self.next_push.clone(), |push| {
+            push.suited_to(self.run().scenario())
+        });
+        self.playback.set_end(end_s);
         self.playback.go_to(left_at);
+        self.list_parameters();
     }
 }
 
@@ -351,6 +407,9 @@ fn rank(group: &str) -> usize {
 /// What is known of a parameter: its meaning, its choices, when a change acts.
 fn about(parameter: &Parameter) -> Vec<String> {
     let mut lines = vec![parameter.spec.about.to_owned()];
+    if parameter.value.is_bool() {
+        lines.push("true or false".to_owned());
+    }
     if !parameter.choices.is_empty() {
         lines.push(format!("one of {}", parameter.choices.join(", ")));
     }

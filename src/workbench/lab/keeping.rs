@@ -116,6 +116,7 @@ impl Lab {
         lab.history = work.history;
         lab.set_file(lab.file_as_opened());
         lab.next_push = place.next_push.suited_to(lab.run().scenario());
+        lab.playback.set_end(lab.history.present().end_s);
         lab.playback
             .set_speed(place.speed.map_or(Speed::Top, Speed::Times));
         lab.playback.set_exact(place.shows_exact);

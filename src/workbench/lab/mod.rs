@@ -32,8 +32,8 @@ use super::readouts::{self, Readouts};
 use super::view::{Pane, View};
 use crate::analysis::health::Advice;
 use crate::run::NotFinite;
-use crate::scenario::Scenario;
-use crate::scenario::journal::Journal;
+use crate::scenario::present::in_force;
+use crate::scenario::{Motion, Scenario};
 use editing::Target;
 use ratatui::layout::Rect;
 use std::path::{Path, PathBuf};
@@ -83,6 +83,8 @@ pub struct Lab {
     entries_listed: usize,
     /// Where files are looked for and written to, if not in the present folder.
     folder: Option<PathBuf>,
+    /// The key that was nudged last, if nothing else has been done since.
+    last_nudged: Option<String>,
     dialog: Option<Dialog>,
     exporting: Option<Exporting>,
     written: Vec<Written>,
@@ -112,7 +114,7 @@ pub struct Lab {
 impl Lab {
     /// A lab with the run of `scenario`, opened as `name`, at step 0.
     pub fn new(name: &str, scenario: Arc<Scenario>, view: View, running: bool) -> Self {
-        let history = History::new(name, Journal::of(scenario.file.clone()));
+        let history = History::new(name, &scenario);
         let mut playback = Playback::new(Arc::clone(&scenario), running);
         let mut lab = Self {
             history,
@@ -124,6 +126,7 @@ impl Lab {
             entries_listed: 0,
             file: scenario,
             folder: None,
+            last_nudged: None,
             dialog: None,
             exporting: None,
             written: Vec::new(),
@@ -233,6 +236,12 @@ impl Lab {
         let count = self.count.take();
         let closed = self.notice.take_back() || count.is_some();
         let was_warned = std::mem::take(&mut self.was_warned);
+        if !matches!(
+            action,
+            Action::Move(_) | Action::MoveFar(_) | Action::Digit(_)
+        ) {
+            self.last_nudged = None;
+        }
         match action {
             Action::TogglePause => self.toggle_pause(),
             Action::Step => self.playback.take_steps(count.unwrap_or(1)),
@@ -511,6 +520,12 @@ impl Lab {
     /// Whether something is under way that time changes, beside the run.
     pub fn is_exporting(&self) -> bool {
         self.exporting.is_some()
+    }
+
+    /// Gravity, scheme and time step of the step to come.
+    pub fn motion(&self) -> Motion {
+        let simulation = self.run().simulation();
+        in_force(simulation.scenario(), simulation.step_number()).0
     }
 
     /// How it is looked at.

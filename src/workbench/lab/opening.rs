@@ -6,7 +6,6 @@ use super::super::keymap::Mode;
 use super::super::next_push::NextPush;
 use super::super::playback::Playback;
 use super::{Lab, note};
-use crate::scenario::journal::Journal;
 use crate::scenario::{Document, Scenario};
 use std::path::Path;
 use std::sync::Arc;
@@ -35,12 +34,15 @@ impl Lab {
 
     fn open(&mut self, name: &str, scenario: Arc<Scenario>) {
         self.mode = Mode::Lab;
-        self.history.begin(
-            self.playback.step_number(),
-            name,
-            Journal::of(scenario.file.clone()),
-        );
+        self.stands();
+        self.history.begin(name, &scenario);
         self.show_another(scenario, true);
+    }
+
+    /// The history is to know where the run stands: it may be left.
+    pub(super) fn stands(&mut self) {
+        self.history
+            .stands(self.playback.step_number(), &self.next_push);
     }
 
     /// Shows the run of `scenario`, which is none of the present scenario's.

@@ -51,7 +51,7 @@ impl Lab {
         }
         match text {
             "start" => Ok(0),
-            "end" => Ok(self.run().scenario().steps),
+            "end" => Ok(self.playback.end_step()),
             _ if text.starts_with('+') => digits
                 .parse()
                 .map_err(|_| wrong())

@@ -20,7 +20,7 @@ const SEPARATOR: &str = " · ";
 /// Title, scheme and time step on the left, what fits of it; time, step and pace on the right, in fixed columns.
 pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let motion = lab.run().simulation().motion();
+    let motion = lab.motion();
     let clock = clock(lab.readouts(), motion.time_step_s, area.width as usize);
     let clock_x = area.width.saturating_sub(clock.chars().count() as u16);
     write(area, (clock_x, 0), &clock, theme.style(Role::Text), buf);

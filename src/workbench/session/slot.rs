@@ -205,7 +205,6 @@ impl Slot {
 
     fn save_changes(&mut self, content: &Content) -> io::Result<()> {
         match &self.written {
-            Some(written) if written == content => Ok(()),
             Some(written) if same(&written.work, &content.work) => self.save_place(&content.place),
             _ => self.save_work(content),
         }
