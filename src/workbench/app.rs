@@ -79,7 +79,7 @@ fn panic_if_asked(elapsed: Duration) {
 fn wait(lab: &Lab, to_frame: Duration) -> Duration {
     if lab.playback().is_flat_out() {
         Duration::ZERO
-    } else if lab.playback().is_busy() {
+    } else if lab.playback().is_busy() || lab.has_changed() {
         // At least a little: a run too slow to change anything by the next frame must not spin.
         to_frame.max(Duration::from_millis(1))
     } else {

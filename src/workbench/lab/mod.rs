@@ -467,6 +467,11 @@ impl Lab {
         self.changed = true;
     }
 
+    /// Whether the picture has changed and is to be taken.
+    pub fn has_changed(&self) -> bool {
+        self.changed
+    }
+
     /// Whether the picture has changed since this was asked last.
     pub fn take_changed(&mut self) -> bool {
         std::mem::take(&mut self.changed)
