@@ -530,3 +530,18 @@ fn killed_at_any_moment_it_leaves_a_whole_session() {
         assert!(any(&folder).kept_aside.is_empty());
     }
 }
+
+#[test]
+fn who_has_the_newer_ones_is_told() {
+    let (_outer, folder) = folder();
+    kept(&folder, "old", "");
+    age(&only(&folder, ".work"), 100);
+    let newer = Session::begin(&folder).unwrap();
+    newer.note(content("newer", ""));
+    newer.flush();
+    let found = any(&folder);
+    assert_eq!(found.resumed.unwrap().what.work.as_ref(), "old");
+    assert_eq!(found.in_use_by, [std::process::id()]);
+    drop(newer);
+    assert!(any(&folder).in_use_by.is_empty());
+}

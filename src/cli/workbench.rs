@@ -6,7 +6,7 @@ use crate::scenario::problem::printable;
 use crate::scenario::{Document, Scenario};
 use crate::workbench::lab::Lab;
 use crate::workbench::markers::Marker;
-use crate::workbench::session::{self, Found, KeptAside, Session};
+use crate::workbench::session::{self, KeptAside, Session};
 use crate::workbench::surroundings::{self, ColourChoice};
 use crate::workbench::theme::{Background, Theme};
 use crate::workbench::view::View;
@@ -81,28 +81,45 @@ fn come_back(args: &WorkbenchArgs) -> anyhow::Result<(Lab, Result<Session, Strin
         .clone()
         .and_then(|folder| session::resume(&folder, read).map_err(told));
     let (aside, none) = match found {
-        Ok(Found {
-            resumed: Some(resumed),
-            kept_aside,
-        }) => {
-            let (mut lab, session) = (resumed.what, Ok(resumed.session));
-            if !kept_aside.is_empty() {
-                lab.tell(put_aside(&kept_aside));
+        Ok(found) => {
+            let passed_over = put_aside(&found.kept_aside) + &in_use(&found.in_use_by);
+            if let Some(resumed) = found.resumed {
+                let (mut lab, session) = (resumed.what, Ok(resumed.session));
+                if !passed_over.is_empty() {
+                    lab.tell(passed_over + "this is an older one");
+                }
+                return Ok((lab, session));
             }
-            return Ok((lab, session));
+            let none = match found.in_use_by.is_empty() {
+                true => "no session to come back to: this is a new one",
+                false => "this is a new one",
+            };
+            (passed_over, none.to_owned())
         }
-        Ok(Found {
-            resumed: None,
-            kept_aside,
-        }) => (
-            put_aside(&kept_aside),
-            "no session to come back to: this is a new one".to_owned(),
-        ),
         Err(trouble) => (String::new(), trouble),
     };
     let mut lab = new(args, DEFAULT)?;
     lab.tell(format!("{aside}{none}"));
     Ok((lab, folder.and_then(|folder| begun(&folder))))
+}
+
+/// Says that newer sessions are open in other labs, of the processes `owners`. A line that has died without a word keeps
+/// its lab alive for as long as the system believes in it.
+fn in_use(owners: &[u32]) -> String {
+    let numbers = owners
+        .iter()
+        .map(ToString::to_string)
+        .collect::<Vec<_>>()
+        .join(" ");
+    match owners {
+        [] => String::new(),
+        [_] => format!(
+            "the newest session is open in another lab (if its line is dead, kill {numbers} frees it for --resume); "
+        ),
+        _ => format!(
+            "newer sessions are open in other labs (where the line is dead, kill frees them: {numbers}); "
+        ),
+    }
 }
 
 fn begun(folder: &Path) -> Result<Session, String> {

@@ -121,6 +121,7 @@ fn energy(health: &Health) -> Remark {
 /// Three digits, as a fixed number of characters while the size does not change.
 fn significant(number: f64) -> String {
     match number {
+        n if n >= 1e6 => format!("{n:.1e}"),
         n if n >= 1.0 => format!("{n:.2}"),
         n if n >= 0.1 => format!("{n:.3}"),
         n => format!("{n:.4}"),
@@ -129,8 +130,11 @@ fn significant(number: f64) -> String {
 
 /// How many times, without digits that only flicker.
 fn times(ratio: f64) -> String {
-    let digits = if ratio < 10.0 { 1 } else { 0 };
-    format!("{ratio:.digits$}")
+    match ratio {
+        r if r >= 1e6 => format!("{r:.1e}"),
+        r if r < 10.0 => format!("{r:.1}"),
+        r => format!("{r:.0}"),
+    }
 }
 
 /// A distance in metres, as many characters whatever its size; rounding is no distance.

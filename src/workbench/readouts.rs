@@ -26,6 +26,8 @@ pub struct Readouts {
     pub nutation_s: Option<f64>,
     /// The exact motion's nutation period, s.
     pub predicted_nutation_s: Option<f64>,
+    /// Whether it is shorter than two time steps: what is measured then is a strobe's picture of it.
+    pub nutation_is_strobed: bool,
     /// How far the numbers can be trusted.
     pub health: Health,
     /// Whether the run goes on, and how fast.
@@ -41,6 +43,8 @@ impl Readouts {
             run.instruments().nutation_period_s(),
         );
         let predicted = theory.and_then(|theory| theory.precession);
+        let predicted_nutation_s = theory.and_then(|theory| theory.nutation_period_s);
+        let two_steps_s = 2.0 * run.simulation().motion().time_step_s;
         Self {
             sample: run.simulation().sample(),
             precession_deg_per_s: precession
@@ -48,7 +52,9 @@ impl Readouts {
                 .map(|measured| measured.value.to_degrees()),
             predicted_precession_deg_per_s: predicted.map(f64::to_degrees),
             nutation_s: nutation.map(|measured| measured.value),
-            predicted_nutation_s: theory.and_then(|theory| theory.nutation_period_s),
+            predicted_nutation_s,
+            nutation_is_strobed: predicted_nutation_s
+                .is_some_and(|period_s| period_s < two_steps_s),
             health,
             pace: pace_in_words(pace),
         }

@@ -50,6 +50,8 @@ pub struct Found<T> {
     pub resumed: Option<Resumed<T>>,
     /// What could not be read on the way to it, kept under other names.
     pub kept_aside: Vec<KeptAside>,
+    /// The processes that have the newer ones, as far as they are known.
+    pub in_use_by: Vec<u32>,
 }
 
 /// An earlier session, gone on with.
@@ -89,12 +91,15 @@ pub fn resume<T>(
     folder: &Path,
     mut read: impl FnMut(&Content) -> Result<T, String>,
 ) -> io::Result<Found<T>> {
-    let mut kept_aside = Vec::new();
+    let (mut kept_aside, mut in_use_by) = (Vec::new(), Vec::new());
     let _door = slot::door(folder);
     for id in earlier(folder)? {
         let mut slot = match Slot::take(folder, &id) {
             Ok(Some(slot)) => slot,
-            Ok(None) => continue,
+            Ok(None) => {
+                in_use_by.extend(slot::owner(folder, &id));
+                continue;
+            }
             Err(error) => {
                 let path = folder.join(format!("{id}.lock"));
                 let reason = format!("it cannot be opened: {error}");
@@ -113,6 +118,7 @@ pub fn resume<T>(
                 return Ok(Found {
                     resumed,
                     kept_aside,
+                    in_use_by,
                 });
             }
             Err(reason) => kept_aside.push(slot.put_all_aside(reason)),
@@ -121,6 +127,7 @@ pub fn resume<T>(
     Ok(Found {
         resumed: None,
         kept_aside,
+        in_use_by,
     })
 }
 

@@ -543,13 +543,17 @@ fn now_rows(readouts: &Readouts) -> Vec<Row> {
 fn watched_rows(readouts: &Readouts) -> [Row; 5] {
     let precession = readouts.precession_deg_per_s;
     let predicted = readouts.predicted_precession_deg_per_s;
+    let nutation = match readouts.nutation_is_strobed {
+        true => "strobed",
+        false => "nutation",
+    };
     let drift = readouts.health.energy_drift;
     let drift = drift.map_or("n/a".to_owned(), |drift| signed("E drift", drift, 4));
     [
         number(0, "tilt", readouts.sample.tilt_deg, 3, "deg"),
         measured(0, "precession", precession, 3, "deg/s"),
         measured(1, "predicted", predicted, 3, "deg/s"),
-        measured(1, "nutation", readouts.nutation_s, 5, "s"),
+        measured(1, nutation, readouts.nutation_s, 5, "s"),
         value(2, "E drift", drift, "mgl"),
     ]
 }

@@ -130,7 +130,7 @@ pub(super) fn prune(folder: &Path) {
 
 /// The lock at `path`, or `None` where a living process has it. Where the file system knows no locks it counts as free.
 fn take(path: &Path) -> io::Result<Option<Lock>> {
-    let lock = OpenOptions::new()
+    let mut lock = OpenOptions::new()
         .write(true)
         .create(true)
         .truncate(false)
@@ -140,10 +140,22 @@ fn take(path: &Path) -> io::Result<Option<Lock>> {
         Err(TryLockError::WouldBlock) => Ok(None),
         // Its last owner may have removed it between the two calls: then it is a lock to nothing.
         Ok(()) | Err(TryLockError::Error(_)) => {
+            // For who finds it in use; where that cannot be written nobody is told.
+            let _ = lock
+                .set_len(0)
+                .and_then(|()| write!(lock, "{}", std::process::id()));
             let lock = Lock(lock);
             Ok(is_at(&lock.0, path).then_some(lock))
         }
     }
+}
+
+/// The number of the process that has the session `id`, as far as it can be told.
+pub(super) fn owner(folder: &Path, id: &str) -> Option<u32> {
+    fs::read_to_string(file(folder, id, "lock"))
+        .ok()?
+        .parse()
+        .ok()
 }
 
 fn is_at(file: &File, path: &Path) -> bool {
