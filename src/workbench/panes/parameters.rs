@@ -544,7 +544,7 @@ fn watched_rows(readouts: &Readouts) -> [Row; 5] {
     let precession = readouts.precession_deg_per_s;
     let predicted = readouts.predicted_precession_deg_per_s;
     let nutation = match readouts.nutation_is_strobed {
-        true => "strobed",
+        true => "nutation?", // a strobe's picture: the line below the panes says whose swing it is
         false => "nutation",
     };
     let drift = readouts.health.energy_drift;
