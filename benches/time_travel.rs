@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used)]
 
 use gyrolab::scenario::Document;
-use gyrolab::workbench::playback::Playback;
+use gyrolab::workbench::watch::playback::Playback;
 use std::sync::Arc;
 use std::time::Instant;
 

@@ -3,20 +3,20 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use gyrolab::scenario::{Document, presets};
-use gyrolab::workbench::editor::{Editor, Line};
-use gyrolab::workbench::form::{Field, Form};
-use gyrolab::workbench::ghost::Ghost;
-use gyrolab::workbench::live::LiveRun;
-use gyrolab::workbench::markers::Marker;
-use gyrolab::workbench::pace::Pace;
-use gyrolab::workbench::panes::form::FormPane;
-use gyrolab::workbench::panes::from_above::FromAbove;
-use gyrolab::workbench::panes::parameters::Parameters;
-use gyrolab::workbench::panes::three_d::ThreeD;
-use gyrolab::workbench::panes::traces::Traces;
-use gyrolab::workbench::readouts::Readouts;
-use gyrolab::workbench::theme::{Background, Role, Theme};
+use gyrolab::workbench::lab::editor::{Editor, Line};
+use gyrolab::workbench::lab::form::{Field, Form};
+use gyrolab::workbench::picture::panes::form::FormPane;
+use gyrolab::workbench::picture::panes::from_above::FromAbove;
+use gyrolab::workbench::picture::panes::parameters::Parameters;
+use gyrolab::workbench::picture::panes::three_d::ThreeD;
+use gyrolab::workbench::picture::panes::traces::Traces;
+use gyrolab::workbench::view::markers::Marker;
+use gyrolab::workbench::view::theme::{Background, Role, Theme};
 use gyrolab::workbench::view::{Pane, View};
+use gyrolab::workbench::watch::ghost::Ghost;
+use gyrolab::workbench::watch::live::LiveRun;
+use gyrolab::workbench::watch::pace::Pace;
+use gyrolab::workbench::watch::readouts::Readouts;
 use proptest::prelude::*;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;

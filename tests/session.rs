@@ -3,8 +3,8 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use gyrolab::workbench::farewell::{self, Farewell};
-use gyrolab::workbench::session::{Content, Found, Session, resume};
+use gyrolab::workbench::keep::farewell::{self, Farewell};
+use gyrolab::workbench::keep::session::{Content, Found, Session, resume};
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::fs::PermissionsExt;

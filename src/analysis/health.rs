@@ -326,7 +326,7 @@ pub fn advise(scenario: &Scenario) -> Advice {
 }
 
 fn duration_s(scenario: &Scenario) -> f64 {
-    Clock::at(scenario, scenario.steps).time_s(scenario.steps)
+    Clock::end_s(scenario)
 }
 
 /// How many steps a search may take with this many points.

@@ -125,5 +125,5 @@ pub fn integration_rad(scenario: &Scenario) -> f64 {
     // A body at rest will swing and turn under its weight, at about this rate.
     let weight = scenario.motion.gravity.abs() * body.first_moment().norm();
     let swing = (weight * body.inverse_inertia().trace()).sqrt();
-    (spin + swing) * crate::run::Clock::at(scenario, scenario.steps).time_s(scenario.steps)
+    (spin + swing) * crate::run::Clock::end_s(scenario)
 }

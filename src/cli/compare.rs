@@ -94,7 +94,7 @@ fn time_steps(args: &CompareArgs, scenario: &Scenario) -> Vec<f64> {
 }
 
 fn duration_s(scenario: &Scenario) -> f64 {
-    Clock::at(scenario, scenario.steps).time_s(scenario.steps)
+    Clock::end_s(scenario)
 }
 
 fn heading(scenario: &Scenario) -> String {

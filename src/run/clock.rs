@@ -31,6 +31,11 @@ impl Clock {
         clock
     }
 
+    /// When the run of `scenario` is over, s.
+    pub fn end_s(scenario: &Scenario) -> f64 {
+        Self::at(scenario, scenario.steps).time_s(scenario.steps)
+    }
+
     /// Time at `step`, s; the step must not lie before the last edit of dt.
     pub fn time_s(&self, step: u64) -> f64 {
         self.anchor_s + (step - self.anchor_step) as f64 * self.time_step_s

@@ -1,6 +1,6 @@
 //! What the user can want, in words that know no key.
 
-/// An intention; [`Lab::update`](super::lab::Lab::update) carries it out.
+/// An intention; [`Lab::update`](crate::workbench::lab::Lab::update) carries it out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// Stops the run, or lets it go on.

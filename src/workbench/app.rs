@@ -1,10 +1,10 @@
 //! The loop: events to actions, time to steps, and a frame where something has changed.
 
-use super::keymap::{self, Key};
-use super::lab::{Lab, Request};
-use super::screen;
-use super::session::Session;
-use super::terminal::{Event, Screen};
+use crate::workbench::keep::session::Session;
+use crate::workbench::keymap::{self, Key};
+use crate::workbench::lab::{Lab, Request};
+use crate::workbench::picture::screen;
+use crate::workbench::terminal::{Event, Screen};
 use std::io;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};

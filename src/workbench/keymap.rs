@@ -1,6 +1,6 @@
 //! The one table of keys: what is pressed, in which mode, what it means, and what the footer and the help say of it.
 
-use super::action::{Action, Direction, FieldEdit};
+use crate::workbench::action::{Action, Direction, FieldEdit};
 use Key::{
     BackTab, Backspace, Char, Ctrl, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp,
     Right, ShiftDown, ShiftLeft, ShiftRight, ShiftUp, Tab, Up,

@@ -1,7 +1,7 @@
 //! What the environment says about the terminal: whether it can show more than ASCII, and colours.
 
-use super::markers::Marker;
-use super::theme::{Background, Theme};
+use crate::workbench::view::markers::Marker;
+use crate::workbench::view::theme::{Background, Theme};
 
 /// When there are colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -5,8 +5,8 @@
 //! The one room that knows crossterm. Nothing here waits for an answer from the terminal: over slow lines, and in
 //! bare ptys, there may be none.
 
-use super::farewell::{self, Farewell};
-use super::keymap::Key;
+use crate::workbench::keep::farewell::{self, Farewell};
+use crate::workbench::keymap::Key;
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 use ratatui::buffer::Buffer;

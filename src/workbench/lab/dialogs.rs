@@ -1,14 +1,14 @@
 //! What the lab asks for in a dialog, and what it does with the answer.
 
-use super::super::action::FieldEdit;
-use super::super::exporting::{self, Estimate, Exporting, Written};
-use super::super::form::{Field, Form};
-use super::super::keymap::Mode;
 use super::Lab;
+use super::form::{Field, Form};
 use crate::export::Destination;
 use crate::export::destination::DestinationError;
 use crate::scenario::present::scenario_from;
 use crate::scenario::{Document, Scenario, ScenarioFile};
+use crate::workbench::action::FieldEdit;
+use crate::workbench::keep::exporting::{self, Estimate, Exporting, Written};
+use crate::workbench::keymap::Mode;
 use std::io::Write;
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};

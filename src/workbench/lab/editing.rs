@@ -1,15 +1,16 @@
 //! Changing the run: a value of its scenario, a push; and taking it back.
 
-use super::super::action::Direction;
-use super::super::editor::Line;
-use super::super::history::{Turn, end_s};
-use super::super::next_push::{Field, NextPush};
-use super::super::view::Pane;
+use super::editor::Line;
+use super::history::Turn;
+use super::next_push::{Field, NextPush};
 use super::{Lab, dialogs::Asking};
+use crate::run::Clock;
 use crate::scenario::journal::{Act, Effect};
 use crate::scenario::parameters::{self, Parameter, parameters};
 use crate::scenario::present::in_force;
 use crate::scenario::{Scenario, Window};
+use crate::workbench::action::Direction;
+use crate::workbench::view::Pane;
 use std::sync::Arc;
 use toml::Value;
 
@@ -244,7 +245,7 @@ impl Lab {
         let is_as_long = scenario.steps == self.run().scenario().steps;
         self.take_over(scenario, is_described);
         if !is_as_long {
-            self.history.set_end(end_s(self.run().scenario()));
+            self.history.set_end(Clock::end_s(self.run().scenario()));
             self.playback.set_end(self.history.present().end_s);
         }
         let made_way = later > 0 && !is_described;
@@ -333,7 +334,7 @@ impl Lab {
             Err(problems) => return self.say(problems.in_one_line()),
         };
         if scenario.steps != self.run().scenario().steps {
-            self.history.set_end(end_s(&scenario));
+            self.history.set_end(Clock::end_s(&scenario));
         }
         match act {
             Act::Describe(_) => self.playback.describe_as(&scenario),

@@ -1,12 +1,12 @@
 //! The lab as a session keeps it: the runs with their journals, and where the lab stands.
 
-use super::super::history::History;
-use super::super::next_push::NextPush;
-use super::super::pace::Speed;
-use super::super::session::Content;
-use super::super::view::{Pane, View};
 use super::Lab;
+use super::history::History;
+use super::next_push::NextPush;
 use crate::scenario::{Document, Scenario};
+use crate::workbench::keep::session::Content;
+use crate::workbench::view::{Pane, View};
+use crate::workbench::watch::pace::Speed;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 

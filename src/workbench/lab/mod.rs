@@ -2,39 +2,47 @@
 //!
 //! This file has the state, the dispatch of actions and the passing of time; the rooms beside it carry out what
 //! belongs together: `travel` through the run, `editing` it, `opening` another, `dialogs` and what they ask for,
-//! `keeping` all of it.
+//! `keeping` all of it. What they work on has rooms of its own: [`history`] the runs one after the other, each with its
+//! journal; [`editor`] the list of what can be edited; [`next_push`] the push to come; [`form`] what is typed into;
+//! [`browser`] the list of presets and files; [`note`] says what there is to see, [`notice`] what has just happened.
 
+pub mod browser;
 mod dialogs;
 mod editing;
+pub mod editor;
+pub mod form;
+pub mod history;
 mod keeping;
+pub mod next_push;
+pub mod note;
+pub mod notice;
 mod opening;
 mod travel;
 
 pub use dialogs::Dialog;
 pub use keeping::Unreadable;
 
-use super::action::{Action, Direction};
-use super::advisor::Advisor;
-use super::browser::Browser;
-use super::editor::Editor;
-use super::exporting::{Exporting, Written};
-use super::ghost::Ghost;
-use super::history::History;
-use super::keymap::{Key, Mode};
-use super::layout::Layout;
-use super::live::LiveRun;
-use super::next_push::NextPush;
-use super::note;
-use super::notice::Notice;
-use super::pace::Speed;
-use super::playback::{Halt, Playback};
-use super::readouts::{self, Readouts};
-use super::view::{Pane, View};
 use crate::analysis::health::Advice;
 use crate::run::NotFinite;
 use crate::scenario::present::in_force;
 use crate::scenario::{Motion, Scenario};
+use crate::workbench::action::{Action, Direction};
+use crate::workbench::keep::exporting::{Exporting, Written};
+use crate::workbench::keymap::{Key, Mode};
+use crate::workbench::view::layout::Layout;
+use crate::workbench::view::{Pane, View};
+use crate::workbench::watch::advisor::Advisor;
+use crate::workbench::watch::ghost::Ghost;
+use crate::workbench::watch::live::LiveRun;
+use crate::workbench::watch::pace::Speed;
+use crate::workbench::watch::playback::{Halt, Playback};
+use crate::workbench::watch::readouts::{self, Readouts};
+use browser::Browser;
 use editing::Target;
+use editor::Editor;
+use history::History;
+use next_push::NextPush;
+use notice::Notice;
 use ratatui::layout::Rect;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

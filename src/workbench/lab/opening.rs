@@ -1,12 +1,12 @@
 //! Opening another preset or file, and going from one run to another.
 
-use super::super::browser::Browser;
-use super::super::ghost::Ghost;
-use super::super::keymap::Mode;
-use super::super::next_push::NextPush;
-use super::super::playback::Playback;
+use super::browser::Browser;
+use super::next_push::NextPush;
 use super::{Lab, note};
 use crate::scenario::{Document, Scenario};
+use crate::workbench::keymap::Mode;
+use crate::workbench::watch::ghost::Ghost;
+use crate::workbench::watch::playback::Playback;
 use std::path::Path;
 use std::sync::Arc;
 

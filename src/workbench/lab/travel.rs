@@ -1,8 +1,8 @@
 //! Through the run: back, and to any step or time.
 
-use super::super::keymap::Mode;
 use super::{Lab, dialogs::Asking};
 use crate::run::Simulation;
+use crate::workbench::keymap::Mode;
 
 /// What the user may type to say where to go.
 const WHERE: &str =

@@ -1,7 +1,7 @@
 //! What is to be done before the terminal is given back, whoever it is that ends the lab: its own loop, a signal, a
 //! panic.
 //!
-//! Whoever has something to bring home registers a [`hook`]; [`terminal`](super::terminal) calls them all.
+//! Whoever has something to bring home registers a [`hook`]; [`terminal`](crate::workbench::terminal) calls them all.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};

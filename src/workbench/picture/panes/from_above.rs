@@ -1,14 +1,14 @@
 //! The path of the traced point from above, x to the right and y up: a true circle at every size.
 
 use super::{frame, write};
-use crate::workbench::dots::{Dots, Ink};
-use crate::workbench::ghost::Ghost;
-use crate::workbench::live::LiveRun;
-use crate::workbench::markers::Marker;
-use crate::workbench::overlay::Overlay;
-use crate::workbench::path::Path;
-use crate::workbench::theme::Role;
+use crate::workbench::picture::dots::{Dots, Ink};
+use crate::workbench::view::markers::Marker;
+use crate::workbench::view::theme::Role;
 use crate::workbench::view::{Pane, View};
+use crate::workbench::watch::ghost::Ghost;
+use crate::workbench::watch::live::LiveRun;
+use crate::workbench::watch::overlay::Overlay;
+use crate::workbench::watch::path::Path;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;

@@ -2,7 +2,7 @@
 
 use super::{frame_on_top, wrapped, write};
 use crate::workbench::keymap::{BINDINGS, Binding, Mode};
-use crate::workbench::theme::{Role, Theme};
+use crate::workbench::view::theme::{Role, Theme};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;

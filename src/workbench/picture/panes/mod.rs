@@ -9,7 +9,7 @@ pub mod parameters;
 pub mod three_d;
 pub mod traces;
 
-use super::theme::{Role, Theme};
+use crate::workbench::view::theme::{Role, Theme};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;

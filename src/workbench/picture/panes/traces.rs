@@ -1,16 +1,16 @@
 //! x, y, z and the magnified tilt over time, a strip each, as an oscilloscope draws them.
 
 use super::{frame, write};
-use crate::workbench::dots::{Dots, Ink};
-use crate::workbench::ghost::Ghost;
-use crate::workbench::live::LiveRun;
-use crate::workbench::markers::Marker;
-use crate::workbench::marks::Marks;
-use crate::workbench::overlay::Overlay;
-use crate::workbench::recording::{Curve, Extent, Recording};
-use crate::workbench::sweep::Sweep;
-use crate::workbench::theme::Role;
+use crate::workbench::picture::dots::{Dots, Ink};
+use crate::workbench::picture::sweep::Sweep;
+use crate::workbench::view::markers::Marker;
+use crate::workbench::view::theme::Role;
 use crate::workbench::view::{Pane, View};
+use crate::workbench::watch::ghost::Ghost;
+use crate::workbench::watch::live::LiveRun;
+use crate::workbench::watch::marks::Marks;
+use crate::workbench::watch::overlay::Overlay;
+use crate::workbench::watch::recording::{Curve, Extent, Recording};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;

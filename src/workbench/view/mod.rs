@@ -1,12 +1,20 @@
 //! How the lab is looked at: what has the focus, what the dots are, how much time the traces show. A run's numbers
 //! never depend on it.
+//!
+//! [`layout`] says where the panes stand, [`camera`] from where the 3-D view is seen, [`markers`] and [`theme`] what dots
+//! and colours there are.
 
-use super::camera::Camera;
-use super::markers::Marker;
-use super::theme::{Background, Theme};
+pub mod camera;
+pub mod layout;
+pub mod markers;
+pub mod theme;
+
 use crate::run::Clock;
 use crate::scenario::{Scenario, keys};
+use camera::Camera;
+use markers::Marker;
 use serde::{Deserialize, Serialize};
+use theme::{Background, Theme};
 
 /// A sweep that takes longer than this to be drawn, s, is no picture of the run.
 const LONGEST_SWEEP_S: f64 = 120.0;
@@ -147,7 +155,7 @@ fn first_window_s(scenario: &Scenario) -> f64 {
         .as_ref()
         .and_then(|view| view.speed)
         .unwrap_or(keys::SPEED);
-    let whole = Clock::at(scenario, scenario.steps).time_s(scenario.steps);
+    let whole = Clock::end_s(scenario);
     whole
         .min(LONGEST_SWEEP_S * speed)
         .max(2.0 * scenario.motion.time_step_s)

@@ -1,7 +1,7 @@
 //! A sheet of dots: what panes draw curves on, whatever the dots are made of.
 
-use super::markers::Marker;
-use super::theme::{Role, Theme};
+use crate::workbench::view::markers::Marker;
+use crate::workbench::view::theme::{Role, Theme};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 

@@ -3,7 +3,7 @@
 //! From 80x24 on all of them stand side by side, from 120 columns on with the 3-D view; on smaller screens there are
 //! fewer, the most important first, and the hint line says so.
 
-use super::view::{Pane, View};
+use super::{Pane, View};
 use ratatui::layout::Rect;
 
 /// From this width on all panes but 3-D stand side by side.

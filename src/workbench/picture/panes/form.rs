@@ -1,8 +1,8 @@
 //! A form, over the bottom of the panes.
 
 use super::{columns, frame_on_top, wrapped, wrapped_to, write};
-use crate::workbench::form::{Field, Form};
-use crate::workbench::theme::{Role, Theme};
+use crate::workbench::lab::form::{Field, Form};
+use crate::workbench::view::theme::{Role, Theme};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::{Clear, Widget};

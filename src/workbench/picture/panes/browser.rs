@@ -3,9 +3,9 @@
 use super::{frame_on_top, wrapped, write};
 use crate::scenario::Scenario;
 use crate::scenario::problem::printable;
-use crate::workbench::browser::Browser;
 use crate::workbench::keymap::Mode;
-use crate::workbench::theme::{Role, Theme};
+use crate::workbench::lab::browser::Browser;
+use crate::workbench::view::theme::{Role, Theme};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;

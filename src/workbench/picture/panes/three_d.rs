@@ -1,11 +1,11 @@
 //! The scene in space: wheel, axle, the path of the axle's top, and the vectors L and Ω.
 
 use super::{frame, write};
-use crate::workbench::dots::{Dots, Ink};
-use crate::workbench::live::LiveRun;
-use crate::workbench::recording::{Curve, Recording};
-use crate::workbench::theme::Role;
+use crate::workbench::picture::dots::{Dots, Ink};
+use crate::workbench::view::theme::Role;
 use crate::workbench::view::{Pane, View};
+use crate::workbench::watch::live::LiveRun;
+use crate::workbench::watch::recording::{Curve, Recording};
 use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

@@ -1,10 +1,9 @@
 //! A run being played: at its pace, as far as its next stop.
 
-use super::history::end_s;
 use super::live::{LiveRun, PlayEnd, Played};
 use super::pace::{Pace, Speed};
 use super::readouts::Readouts;
-use crate::run::{NotFinite, Simulation};
+use crate::run::{Clock, NotFinite, Simulation};
 use crate::scenario::{Scenario, keys};
 use std::sync::Arc;
 use std::time::Duration;
@@ -49,7 +48,7 @@ impl Playback {
     /// The run of `scenario` at step 0, at the speed the scenario names.
     pub fn new(scenario: Arc<Scenario>, running: bool) -> Self {
         let speed = scenario.file.view.as_ref().and_then(|view| view.speed);
-        let (stop, end_s) = (scenario.steps, end_s(&scenario));
+        let (stop, end_s) = (scenario.steps, Clock::end_s(&scenario));
         let run = LiveRun::new(scenario);
         Self {
             run,
@@ -95,7 +94,7 @@ impl Playback {
     /// Begins the run of another `scenario`; speed, running or not, and the exact motion's being shown stay as they are.
     pub fn begin(&mut self, scenario: Arc<Scenario>) {
         let shows_exact = self.run.overlay().is_some();
-        self.end_s = end_s(&scenario);
+        self.end_s = Clock::end_s(&scenario);
         self.run = LiveRun::new(scenario);
         self.run.set_overlay(shows_exact);
         self.hurries = false;

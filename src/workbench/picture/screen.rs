@@ -1,9 +1,5 @@
 //! The whole picture: every pane in its place, and on top what has been opened.
 
-use super::keymap::Mode;
-use super::lab::Lab;
-use super::layout::Layout;
-use super::markers::{self, Marker};
 use super::panes::browser::BrowserPane;
 use super::panes::chrome;
 use super::panes::form::FormPane;
@@ -12,7 +8,11 @@ use super::panes::help::Help;
 use super::panes::parameters::Parameters;
 use super::panes::three_d::ThreeD;
 use super::panes::traces::Traces;
-use super::view::Pane;
+use crate::workbench::keymap::Mode;
+use crate::workbench::lab::Lab;
+use crate::workbench::view::Pane;
+use crate::workbench::view::layout::Layout;
+use crate::workbench::view::markers::{self, Marker};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;

@@ -189,16 +189,11 @@ impl Chapter {
         Self {
             name: name.to_owned(),
             left_at: 0,
-            end_s: end_s(scenario),
+            end_s: Clock::end_s(scenario),
             next_push: None,
             journal,
         }
     }
-}
-
-/// When the run of `scenario` is over, s.
-pub fn end_s(scenario: &Scenario) -> f64 {
-    Clock::at(scenario, scenario.steps).time_s(scenario.steps)
 }
 
 #[cfg(test)]

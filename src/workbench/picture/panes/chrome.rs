@@ -2,11 +2,11 @@
 
 use super::{shortened, wrapped_to, write};
 use crate::workbench::action::Action;
-use crate::workbench::health::remarks;
 use crate::workbench::keymap::{BINDINGS, Mode};
 use crate::workbench::lab::Lab;
-use crate::workbench::readouts::Readouts;
-use crate::workbench::theme::Role;
+use crate::workbench::view::theme::Role;
+use crate::workbench::watch::health::remarks;
+use crate::workbench::watch::readouts::Readouts;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 

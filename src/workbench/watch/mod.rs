@@ -1,0 +1,20 @@
+//! A run as it is watched: played at its pace, gone back into, read off, and what is kept of it for the pictures.
+//!
+//! - [`live`] plays a run, [`checkpoints`] lead back into it; [`recording`] and [`path`] keep what the pictures need of
+//!   it, [`overlay`] the exact motion beside it.
+//! - [`pace`] says how fast it is played, [`playback`] plays it as far as its next stop.
+//! - [`readouts`] and [`health`] read numbers off it, [`advisor`] finds what would mend them.
+//! - [`marks`] are the times at which something is done to a run, [`ghost`] what is kept of the run before.
+
+pub mod advisor;
+pub mod checkpoints;
+pub mod ghost;
+pub mod health;
+pub mod live;
+pub mod marks;
+pub mod overlay;
+pub mod pace;
+pub mod path;
+pub mod playback;
+pub mod readouts;
+pub mod recording;
