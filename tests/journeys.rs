@@ -699,7 +699,8 @@ fn two_labs_have_two_sessions_and_a_third_begins_anew() {
     let second = resumed(&ground);
     second.wait_for_step(30);
     let third = ground.open(&["--resume"]);
-    third.wait_for("no session to come back to: this is a new one");
+    third.wait_for("newer sessions are open in other labs");
+    third.wait_for("this is a new one");
     third.wait_for("Method 2");
 }
 
