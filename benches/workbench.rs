@@ -22,6 +22,7 @@ struct Lab {
     output: Arc<Mutex<Vec<u8>>>,
     first_frame: Duration,
     _pty: Box<dyn portable_pty::MasterPty + Send>,
+    _state: tempfile::TempDir,
 }
 
 impl Lab {
@@ -32,11 +33,13 @@ impl Lab {
             pixel_width: 0,
             pixel_height: 0,
         };
+        let state = tempfile::tempdir().unwrap(); // the user's sessions stay as they are
         let pty = native_pty_system().openpty(size).unwrap();
         let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_gyrolab"));
         command.args(args);
         command.env("TERM", "xterm");
         command.env("LANG", "C.UTF-8");
+        command.env("XDG_STATE_HOME", state.path());
         let mut reader = pty.master.try_clone_reader().unwrap();
         let keys = pty.master.take_writer().unwrap();
         let begin = Instant::now();
@@ -55,6 +58,7 @@ impl Lab {
             output,
             first_frame: Duration::ZERO,
             _pty: pty.master,
+            _state: state,
         };
         // The first frame is there when its last line, the keys, is.
         lab.wait_for("quit", 0);
