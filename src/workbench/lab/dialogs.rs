@@ -15,8 +15,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The keys that end a dialog.
-const KEYS: &str = "Enter take it · arrows edit it, typing replaces it · Esc leave it";
-const KEYS_OF_TWO: &str = "Enter write it · Up, Down the other line · Esc leave it";
+const KEYS: &str = "Enter takes it, typing replaces it, Esc leaves it";
+const KEYS_OF_TWO: &str = "Enter writes it, Up and Down the other line, Esc leaves it";
 
 /// A form on top of the lab, and what it is for.
 #[derive(Clone, Debug)]
