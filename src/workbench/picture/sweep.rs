@@ -176,7 +176,7 @@ impl<'a> Pen<'a> {
 
     /// Draws `block` from column `first` to `last`, of which those beyond the right edge are not there.
     fn draw(&mut self, block: &Block, first: usize, last: usize) {
-        let extent = block.extents[self.curve as usize];
+        let extent = block.extent(self.curve);
         if let Some((end_s, column, from)) = self.before
             && column < first
             && !self.is_cut(end_s, block.begin_s)
@@ -243,7 +243,7 @@ mod tests {
             recording.push(&Moment {
                 time_s: step as f64 * dt,
                 position,
-                tilt_deg: 0.0,
+                axle_height: 1.0,
             });
         }
         recording

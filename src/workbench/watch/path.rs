@@ -41,7 +41,9 @@ impl Path {
         while radius >= self.half_width {
             self.double();
         }
-        self.radius = self.radius.max(libm::hypot(x, y));
+        if x * x + y * y > self.radius * self.radius {
+            self.radius = libm::hypot(x, y);
+        }
         let (from_x, from_y) = self.last.replace((x, y)).unwrap_or((x, y));
         let cell = 2.0 * self.half_width / SIDE as f64;
         let cells = ((x - from_x).abs().max((y - from_y).abs()) / cell).ceil();

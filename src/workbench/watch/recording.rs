@@ -10,7 +10,6 @@
 //! anew.
 
 use crate::physics::State;
-use crate::physics::observables;
 use nalgebra::Vector3;
 use std::collections::VecDeque;
 
@@ -48,8 +47,8 @@ pub struct Moment {
     pub time_s: f64,
     /// The traced point, world frame, m.
     pub position: Vector3<f64>,
-    /// Angle of the axle from +z, degrees.
-    pub tilt_deg: f64,
+    /// Height of the axle's direction, a unit vector: the cosine of the tilt.
+    pub axle_height: f64,
 }
 
 impl Moment {
@@ -58,13 +57,15 @@ impl Moment {
         Self {
             time_s: state.time_s,
             position: state.orientation * traced,
-            tilt_deg: observables::tilt_deg(state),
+            axle_height: state.axle().z,
         }
     }
 
+    /// What is kept of each curve: of the tilt its cosine, which costs no arc at every step, with the sign that makes it
+    /// grow with the tilt.
     fn values(&self) -> [f64; 4] {
         let at = &self.position;
-        [at.x, at.y, at.z, self.tilt_deg]
+        [at.x, at.y, at.z, -self.axle_height]
     }
 }
 
@@ -102,13 +103,25 @@ pub struct Block {
     pub begin_s: f64,
     /// Time of its last moment, s.
     pub end_s: f64,
-    /// Extremes of each curve, see [`Curve::ALL`].
-    pub extents: [Extent; 4],
+    /// Extremes of what is kept of each curve.
+    extents: [Extent; 4],
     /// The traced point at its last moment, world frame, m.
     pub end: Vector3<f64>,
 }
 
 impl Block {
+    /// The extremes of `curve`, in its unit.
+    pub fn extent(&self, curve: Curve) -> Extent {
+        let Extent { min, max } = self.extents[curve as usize];
+        match curve {
+            Curve::X | Curve::Y | Curve::Z => Extent { min, max },
+            Curve::Tilt => Extent {
+                min: tilt_deg(min),
+                max: tilt_deg(max),
+            },
+        }
+    }
+
     fn of(moment: &Moment) -> Self {
         Self {
             begin_s: moment.time_s,
@@ -126,6 +139,12 @@ impl Block {
             end: later.end,
         }
     }
+}
+
+/// The tilt of an axle, degrees, from the height of its direction with the sign changed. Near the vertical it is known to
+/// a millionth of a degree: for a picture, not for a number.
+fn tilt_deg(sunk: f64) -> f64 {
+    libm::acos((-sunk).clamp(-1.0, 1.0)).to_degrees()
 }
 
 /// All blocks of one size: each follows the one before it without a gap.
@@ -284,7 +303,7 @@ mod tests {
         Moment {
             time_s: step as f64,
             position: Vector3::new(value, 0.0, 0.0),
-            tilt_deg: value,
+            axle_height: value,
         }
     }
 

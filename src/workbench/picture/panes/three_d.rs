@@ -196,7 +196,7 @@ impl<'a> Scene<'a> {
             .run
             .recording()
             .whole()
-            .map_or(0.0, |whole| whole.extents[Curve::Z as usize].min);
+            .map_or(0.0, |whole| whole.extent(Curve::Z).min);
         let (bottom, top) = if lowest < 0.0 { HANGING } else { STANDING };
         let (half_height, middle) = (0.5 * (top - bottom), 0.5 * (top + bottom));
         let reach = pane.reach();

@@ -157,7 +157,7 @@ impl Traces<'_> {
             .into_iter()
             .flatten()
             .filter_map(Recording::whole);
-        let extents = blocks.map(|block| block.extents[curve as usize]);
+        let extents = blocks.map(|block| block.extent(curve));
         extents.reduce(Extent::and).unwrap_or(Extent::of(0.0))
     }
 
