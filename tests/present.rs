@@ -188,3 +188,16 @@ fn what_is_in_force_follows_the_edits() {
         (0.05, 0.03)
     );
 }
+
+#[test]
+fn at_another_time_step_it_lasts_as_long() {
+    let mut document = Document::open("method-2").unwrap();
+    document
+        .set("edit=[{step=50, set={\"motion.time_step_s\"=0.01}}]")
+        .unwrap();
+    let scenario = Arc::new(document.scenario().unwrap());
+    let mut run = Simulation::new(Arc::clone(&scenario));
+    run.step_to(60).unwrap();
+    let saved = scenario_from(&scenario, run.state(), 60).unwrap();
+    assert_eq!((saved.motion.time_step_s, saved.steps), (0.01, 23_000));
+}

@@ -3,6 +3,7 @@
 use super::file::{MotionFile, PushFile, ScenarioFile, StartFile, ViewFile};
 use super::model::{Motion, Push, Scenario, Window};
 use super::problem::{Problem, Problems};
+use super::rescale::MOST_STEPS;
 use super::{Document, nudge};
 use crate::physics::{State, rotation};
 use nalgebra::{Matrix3, Vector3};
@@ -49,7 +50,7 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
             gravity_m_per_s2: Some(motion.gravity),
             scheme: Some(motion.scheme.name.to_owned()),
             time_step_s: motion.time_step_s,
-            steps: scenario.steps,
+            steps: as_long(scenario, &motion),
         },
         push,
         view: speed.map(|speed| ViewFile {
@@ -60,6 +61,19 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
         edit: Vec::new(),
     };
     Document::from_file(origin, &file)?.scenario()
+}
+
+/// As many steps as the run of `scenario` has seconds, at the time step it has now.
+fn as_long(scenario: &Scenario, motion: &Motion) -> u64 {
+    match motion.time_step_s == scenario.motion.time_step_s {
+        true => scenario.steps,
+        false => {
+            let length_s = scenario.steps as f64 * scenario.motion.time_step_s;
+            (length_s / motion.time_step_s)
+                .round()
+                .clamp(1.0, MOST_STEPS) as u64
+        }
+    }
 }
 
 /// Gravity, scheme, time step and pushes of the step after `step`.

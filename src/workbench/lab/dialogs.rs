@@ -346,9 +346,12 @@ impl Lab {
 }
 
 /// The dialog again, with the reason.
-fn refused(dialog: Dialog, refusal: Refusal) -> Dialog {
+fn refused(mut dialog: Dialog, refusal: Refusal) -> Dialog {
     let (complaint, told_of) = match refusal {
-        Refusal::Because(reason) => (reason, None),
+        Refusal::Because(reason) => {
+            dialog.form.mark();
+            (reason, None)
+        }
         Refusal::Exists(path) => (
             format!("{} exists: Enter again replaces it", path.display()),
             Some(path),

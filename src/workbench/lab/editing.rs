@@ -249,8 +249,10 @@ impl Lab {
             self.playback.set_end(self.history.present().end_s);
         }
         let made_way = later > 0 && !is_described;
-        Ok(made_way
-            .then(|| format!("{later} later actions have made way for it; u brings them back")))
+        Ok(made_way.then(|| match later {
+            1 => "a later action has made way for it; u brings it back".to_owned(),
+            _ => format!("{later} later actions have made way for it; u brings them back"),
+        }))
     }
 
     fn take_over(&mut self, scenario: Scenario, is_described: bool) {
@@ -351,7 +353,7 @@ impl Lab {
         let next_push = chapter.next_push.clone();
         match chapter.journal.scenario().map(Arc::new) {
             Err(problems) => self.say(problems.in_one_line()),
-            Ok(scenario) if name == before => self.begin_run(scenario),
+            Ok(scenario) if name == before => self.go_over_to(scenario),
             Ok(scenario) => self.show_another(scenario, false),
         }
         self.next_push = next_push.map_or(self.next_push.clone(), |push| {

@@ -136,6 +136,14 @@ impl Form {
         });
     }
 
+    /// Marks the whole of the field: what is typed takes its place.
+    pub fn mark(&mut self) {
+        if let Some(field) = self.fields.get_mut(self.selected) {
+            field.is_marked = !field.text.is_empty();
+            field.cursor = field.length();
+        }
+    }
+
     /// The cursor one character to the left.
     pub fn left(&mut self) {
         self.move_cursor(|field| field.cursor.saturating_sub(1));

@@ -87,7 +87,7 @@ impl Field {
 }
 
 impl Toward {
-    const NAMED: [(&'static str, Self); 12] = [
+    const NAMED: [(&'static str, Self); 10] = [
         ("down", Self::Down),
         ("up", Self::Up),
         ("out", Self::Out),
@@ -98,8 +98,6 @@ impl Toward {
         ("-x", Self::Along([-1.0, 0.0, 0.0])),
         ("+y", Self::Along([0.0, 1.0, 0.0])),
         ("-y", Self::Along([0.0, -1.0, 0.0])),
-        ("+z", Self::Along([0.0, 0.0, 1.0])),
-        ("-z", Self::Along([0.0, 0.0, -1.0])),
     ];
 
     fn name(self) -> Option<&'static str> {

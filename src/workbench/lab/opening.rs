@@ -69,6 +69,13 @@ impl Lab {
         self.is_another();
     }
 
+    /// Shows the run of `scenario` again, from which the present one differs by an edit that is taken back or brought
+    /// again: the present one stays as a ghost, if it was played.
+    pub(super) fn go_over_to(&mut self, scenario: Arc<Scenario>) {
+        self.ghost = None;
+        self.begin_run(scenario);
+    }
+
     /// What was known of the scenario before no longer holds.
     pub(super) fn is_another(&mut self) {
         self.advisor = None;

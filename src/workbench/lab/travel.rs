@@ -52,18 +52,16 @@ impl Lab {
         match text {
             "start" => Ok(0),
             "end" => Ok(self.playback.end_step()),
-            _ if text.starts_with('+') => digits
-                .parse()
-                .map_err(|_| wrong())
-                .map(|steps: u64| here.saturating_add(steps)),
-            _ if text.starts_with('-') => digits
-                .parse()
-                .map_err(|_| wrong())
-                .map(|steps: u64| here.saturating_sub(steps)),
+            _ if text.starts_with('+') => whole(digits)
+                .map(|steps| here.saturating_add(steps))
+                .ok_or_else(wrong),
+            _ if text.starts_with('-') => whole(digits)
+                .map(|steps| here.saturating_sub(steps))
+                .ok_or_else(wrong),
             _ if text.contains('.') => {
                 Err("must be a whole number of steps, or a time such as 12.5 s".to_owned())
             }
-            _ => text.parse().map_err(|_| wrong()),
+            _ => whole(text).ok_or_else(wrong),
         }
     }
 
@@ -73,4 +71,16 @@ impl Lab {
             false => Err("must be a time from 0 s on: the run begins there".to_owned()),
         }
     }
+}
+
+/// A whole number, also as 1e7.
+fn whole(text: &str) -> Option<u64> {
+    /// Floats are exact whole numbers up to here.
+    const EXACT: f64 = 9e15;
+    let float = || {
+        text.parse()
+            .ok()
+            .filter(|number: &f64| number.fract() == 0.0 && (0.0..=EXACT).contains(number))
+    };
+    text.parse().ok().or_else(|| Some(float()? as u64))
 }

@@ -186,7 +186,9 @@ impl FromAbove<'_> {
         let end = write(area, (0, 0), &bar, theme.style(Role::Quiet), buf);
         let legends: &[&str] = match self.run.overlay() {
             Some(_) => &["o now e exact * both", "o now e exact", "e exact"],
-            None if self.ghost.is_some() => &["o now, dotted: the run before", "dotted: before"],
+            None if self.ghost.is_some() => {
+                &["o now, dotted: the other run", "o now, dotted: other"]
+            }
             None => &["o now"],
         };
         let place = |legend: &&str| {

@@ -283,9 +283,9 @@ const PUSH: &str = "═";
 const WORD: &str = "push";
 /// What the dots of the run before mean, at length and in short.
 const LEGENDS: [&str; 3] = [
-    "dotted: the run before",
-    "dotted: run before",
-    "dotted: before",
+    "dotted: the other run",
+    "dotted: other run",
+    "dotted: other",
 ];
 
 /// Least range of z, of the distance between pivot and traced point: a swing below it is small, and shall look small.
