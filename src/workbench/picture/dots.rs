@@ -8,7 +8,7 @@ use ratatui::layout::Rect;
 /// How a dot is meant. Colour is never the only difference: see [`Marker::strong`] and [`Marker::faint`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
-    /// The motion itself; it hides what lies under it.
+    /// The motion itself; it hides what lies under it, but for the exact one in a patch that it fills.
     Strong(Role),
     /// The exact motion, axes, what is old.
     Faint(Role),
@@ -101,13 +101,30 @@ impl Dots {
         }
     }
 
+    /// A cell that is filled, which no cell is that has a dot or two.
+    fn patch(&self) -> u8 {
+        let (across, down) = self.marker.dots();
+        if across * down <= 2 {
+            return 0;
+        }
+        let places = (0..across).flat_map(|x| (0..down).map(move |y| (x, y)));
+        places.fold(0, |bits, (x, y)| bits | self.marker.bit(x, y))
+    }
+
     /// Puts the dots on the screen; cells without dots are left as they are.
     pub fn render(&self, theme: &Theme, buf: &mut Buffer) {
+        let full = self.patch();
         for (cell, position) in self.cells.iter().zip(self.area.positions()) {
             let (symbol, role) = match (cell.strong, cell.faint, cell.ghost) {
                 (0, 0, 0) => continue,
                 (0, 0, ghost) => (self.marker.ghost(ghost), Role::Ghost),
                 (0, faint, _) => (self.marker.faint(faint), cell.faint_role),
+                // Where the motion swings too fast to be drawn it fills the cell: the exact one is a line in it.
+                (strong, faint, _)
+                    if strong == full && faint != 0 && cell.faint_role == Role::Exact =>
+                {
+                    (self.marker.faint(faint), cell.faint_role)
+                }
                 (strong, _, _) => (self.marker.strong(strong), cell.strong_role),
             };
             if let Some(target) = buf.cell_mut(position) {
