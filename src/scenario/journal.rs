@@ -40,7 +40,7 @@ pub struct Entry {
     /// Whether it is one more nudge, taken back together with the entry before it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     is_chained: bool,
-    /// The later entries that it dropped.
+    /// What came after the first later entry that it dropped: all of it but for what has no time is gone.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     dropped: Vec<Entry>,
 }
@@ -251,9 +251,9 @@ impl Journal {
             act => act,
         };
         let is_drop = |entry: &Entry| entry.is_later_than(step) && !matches!(act, Act::Describe(_));
-        let (dropped, done) = next.done.into_iter().partition(is_drop);
-        next.done = done;
-        next.done.push(Entry {
+        let first = next.done.iter().position(is_drop);
+        let dropped = next.done.split_off(first.unwrap_or(next.done.len()));
+        next.push(Entry {
             step,
             act,
             from_file: false,
@@ -264,6 +264,13 @@ impl Journal {
         let scenario = next.scenario()?;
         *self = next;
         Ok(scenario)
+    }
+
+    /// Does `entry` last, what it drops being gone: what has no time goes on to hold.
+    fn push(&mut self, entry: Entry) {
+        let stay = entry.dropped.iter().filter(|entry| entry.has_no_time());
+        self.done.extend(stay.cloned());
+        self.done.push(entry);
     }
 
     /// A push as a table of its own; where edits have added pushes, whose numbers must stay, as one more edit.
@@ -289,6 +296,8 @@ impl Journal {
         let last = self.done.last()?.act.clone();
         loop {
             let entry = self.done.pop()?;
+            let stayed = entry.dropped.iter().filter(|entry| entry.has_no_time());
+            self.take_off(stayed.count());
             self.done.extend(entry.dropped.iter().cloned());
             let (step, is_chained) = (entry.step, entry.is_chained);
             self.undone.push(entry);
@@ -303,14 +312,18 @@ impl Journal {
         let first = self.undone.last()?.step;
         loop {
             let entry = self.undone.pop()?;
-            let kept = self.done.len().saturating_sub(entry.dropped.len());
-            self.done.truncate(kept);
+            self.take_off(entry.dropped.len());
             let act = entry.act.clone();
-            self.done.push(entry);
+            self.push(entry);
             if !self.undone.last().is_some_and(|next| next.is_chained) {
                 return Some((first, act));
             }
         }
+    }
+
+    /// Takes the last `count` entries off.
+    fn take_off(&mut self, count: usize) {
+        self.done.truncate(self.done.len().saturating_sub(count));
     }
 
     /// What was taken back can no longer be brought again.
@@ -379,9 +392,14 @@ impl Journal {
 }
 
 impl Entry {
-    /// Whether it acts on steps after the one that follows `step`. What no number depends on has no time.
+    /// Whether it acts on steps after the one that follows `step`.
     fn is_later_than(&self, step: u64) -> bool {
-        self.step > step && !matches!(self.act, Act::Describe(_))
+        self.step > step && !self.has_no_time()
+    }
+
+    /// Whether no number depends on it.
+    fn has_no_time(&self) -> bool {
+        matches!(self.act, Act::Describe(_))
     }
 }
 
