@@ -3,12 +3,15 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use gyrolab::scenario::Document;
 use gyrolab::scenario::Scenario;
+use gyrolab::scenario::file::PushFile;
+use gyrolab::scenario::journal::{Act, Journal};
 use gyrolab::workbench::app;
 use gyrolab::workbench::keymap::{Key, Mode};
 use gyrolab::workbench::lab::Lab;
 use gyrolab::workbench::view::View;
 use gyrolab::workbench::view::markers::Marker;
 use gyrolab::workbench::view::theme::{Background, Theme};
+use proptest::prelude::*;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -159,4 +162,59 @@ fn a_push_is_over_by_its_seconds() {
         "{:?}",
         lab.notice()
     );
+}
+
+/// One of the things that can be done, with the number `value` in it.
+fn deed(kind: u8, value: f64) -> Act {
+    match kind {
+        0 => Act::set("motion.gravity_m_per_s2", value.into()),
+        1 => Act::set("title", format!("title {value}").into()),
+        2 => Act::set("push.0.force_N.1", value.into()),
+        _ => Act::Push(PushFile {
+            point: "top".to_owned(),
+            force_N: [value, 0.0, 0.0],
+            first_step: None,
+            steps: None,
+            from_s: Some(value),
+            for_s: Some(1.0),
+            accumulates: None,
+        }),
+    }
+}
+
+proptest! {
+    /// Kinds 0 to 3 are deeds, 4 and 5 take back, 6 and 7 bring again.
+    #[test]
+    fn undo_and_redo_lead_through_the_same_files(
+        ways in prop::collection::vec((0..8u8, 0..100u64, 1..50u32), 1..30)
+    ) {
+        let edits = "\n[[edit]]\nstep = 60\nset = { 'motion.gravity_m_per_s2' = 1 }\n\
+                     [[edit]]\nstep = 60\nset = { 'push.0.force_N' = [0, 0, -1] }\n";
+        let text = gyrolab::scenario::presets::find("wobble-push").unwrap().text;
+        let document = Document::parse("edited", &format!("{text}{edits}")).unwrap();
+        let mut journal = Journal::of(document.scenario().unwrap().file);
+        let (mut past, mut future) = (Vec::new(), Vec::new());
+        for (kind, step, value) in ways {
+            let before = journal.file();
+            match kind {
+                4 | 5 => {
+                    let Some(file) = past.pop() else { break };
+                    prop_assert!(journal.undo().is_some());
+                    prop_assert_eq!(journal.file(), file);
+                    future.push(before);
+                }
+                6 | 7 => {
+                    prop_assert_eq!(journal.redo().is_some(), !future.is_empty());
+                    let Some(file) = future.pop() else { continue };
+                    prop_assert_eq!(journal.file(), file);
+                    past.push(before);
+                }
+                kind => {
+                    journal.act(step, deed(kind, f64::from(value))).unwrap();
+                    past.push(before);
+                    future.clear();
+                }
+            }
+        }
+    }
 }
