@@ -878,3 +878,29 @@ fn an_edit_on_the_way_leads_to_the_truth_that_was_edited_from_the_start() {
         }
     }
 }
+
+#[test]
+fn an_edit_at_the_start_is_in_force_from_the_start() {
+    let plain = Arc::new(
+        Document::open("method-2")
+            .and_then(|document| document.scenario())
+            .unwrap(),
+    );
+    let mut file = plain.file.clone();
+    file.edit.push(EditFile {
+        step: 0,
+        set: toml::Table::from_iter([(
+            "motion.gravity_m_per_s2".to_owned(),
+            toml::Value::Float(3.0),
+        )]),
+    });
+    let edited = Document::from_file("edited", &file).and_then(|document| document.scenario());
+    let edited = Arc::new(edited.unwrap());
+    for (from, to) in [(&plain, &edited), (&edited, &plain)] {
+        let mut on_the_way = Truth::new(Arc::clone(from));
+        on_the_way.state_at(0.0);
+        on_the_way.go_on_in(to);
+        let mut from_the_start = Truth::new(Arc::clone(to));
+        assert_eq!(on_the_way.state_at(30.0), from_the_start.state_at(30.0));
+    }
+}

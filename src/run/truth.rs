@@ -69,7 +69,16 @@ impl Truth {
     pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
         self.eras = eras(scenario);
         self.scenario = Arc::clone(scenario);
-        self.end_s = self.end_of_piece(self.piece.begin_s());
+        let begin_s = self.piece.begin_s();
+        self.end_s = self.end_of_piece(begin_s);
+        // What is done where the piece begins, as at the start, is in force on all of it.
+        if self.loads_from(begin_s) != self.loads {
+            let state = match begin_s == 0.0 {
+                true => self.scenario.start,
+                false => self.piece.at(begin_s),
+            };
+            self.begin_piece(state);
+        }
     }
 
     /// The scenario whose exact motion it is.
@@ -117,18 +126,26 @@ impl Truth {
         pushes::next_after(&self.eras[index].pushes, self.counting(), begin).min(next_era)
     }
 
-    fn begin_piece(&mut self, state: State) {
-        let counting = self.counting();
-        let begin = state.time_s;
-        self.end_s = self.end_of_piece(begin);
+    /// The forces of the piece from `begin` to [`end_s`](Self::end_s), s.
+    fn loads_from(&self, begin: f64) -> Loads {
         let era = &self.eras[self.era_at(begin)];
         let stretch = Stretch {
             step: 1,
             begin,
             end: self.end_s,
         };
-        self.loads.gravity = era.gravity;
-        pushes::acting(&era.pushes, counting, &stretch, &mut self.loads.pushes);
+        let mut loads = Loads {
+            gravity: era.gravity,
+            pushes: Vec::new(),
+        };
+        pushes::acting(&era.pushes, self.counting(), &stretch, &mut loads.pushes);
+        loads
+    }
+
+    fn begin_piece(&mut self, state: State) {
+        let begin = state.time_s;
+        self.end_s = self.end_of_piece(begin);
+        self.loads = self.loads_from(begin);
         self.piece = ExactMotion::new(&self.scenario.body.mechanics, &self.loads, &state);
         self.pieces += 1;
     }

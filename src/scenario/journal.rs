@@ -40,7 +40,7 @@ pub struct Entry {
     /// Whether it is one more nudge, taken back together with the entry before it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     is_chained: bool,
-    /// The later entries that it dropped.
+    /// What came after the first later entry that it dropped: all of it but for what has no time is gone.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     dropped: Vec<Entry>,
 }
@@ -161,12 +161,25 @@ impl Journal {
         checked(&self.file())
     }
 
+    /// The run as it was when its length was told last: by its file, or by what was done since.
+    ///
+    /// # Errors
+    /// As [`scenario`](Self::scenario).
+    pub fn when_its_length_was_told(&self) -> Result<Scenario, Problems> {
+        let tells = |entry: &Entry| match &entry.act {
+            Act::Describe(set) => set.contains_key("motion.steps"),
+            Act::Edit(_) | Act::Push(_) => entry.from_file,
+        };
+        let told = self.done.iter().rposition(tells).map_or(0, |last| last + 1);
+        checked(&self.made_of(&self.done[..told]))
+    }
+
     /// The run file of the run up to `step`: as long, and without what was done later.
     pub fn file_until(&self, step: u64) -> ScenarioFile {
         let earlier: Vec<_> = self
             .done
             .iter()
-            .filter(|entry| entry.step <= step)
+            .filter(|entry| !entry.is_later_than(step))
             .cloned()
             .collect();
         let mut file = self.made_of(&earlier);
@@ -184,23 +197,27 @@ impl Journal {
 
     fn made_of(&self, done: &[Entry]) -> ScenarioFile {
         let mut file = self.base.clone();
-        let mut may_join = false;
+        let mut last_is_of_file = true;
         for entry in done {
             match &entry.act {
                 Act::Describe(set) => file = with(&file, set).unwrap_or(file), // checked when it was done
                 Act::Push(push) => file.push.push(push.clone()),
                 Act::Edit(set) => match file.edit.last_mut() {
                     // Edits of one moment are one edit, unless they were two in the file.
-                    Some(last) if may_join && last.step == entry.step => {
+                    Some(last)
+                        if last.step == entry.step && !last_is_of_file && may_be_joined(entry) =>
+                    {
                         last.set.extend(set.clone());
                     }
-                    _ => file.edit.push(EditFile {
-                        step: entry.step,
-                        set: set.clone(),
-                    }),
+                    _ => {
+                        last_is_of_file = entry.from_file;
+                        file.edit.push(EditFile {
+                            step: entry.step,
+                            set: set.clone(),
+                        });
+                    }
                 },
             }
-            may_join |= !entry.from_file;
         }
         file
     }
@@ -234,9 +251,9 @@ impl Journal {
             act => act,
         };
         let is_drop = |entry: &Entry| entry.is_later_than(step) && !matches!(act, Act::Describe(_));
-        let (dropped, done) = next.done.into_iter().partition(is_drop);
-        next.done = done;
-        next.done.push(Entry {
+        let first = next.done.iter().position(is_drop);
+        let dropped = next.done.split_off(first.unwrap_or(next.done.len()));
+        next.push(Entry {
             step,
             act,
             from_file: false,
@@ -247,6 +264,13 @@ impl Journal {
         let scenario = next.scenario()?;
         *self = next;
         Ok(scenario)
+    }
+
+    /// Does `entry` last, what it drops being gone: what has no time goes on to hold.
+    fn push(&mut self, entry: Entry) {
+        let stay = entry.dropped.iter().filter(|entry| entry.has_no_time());
+        self.done.extend(stay.cloned());
+        self.done.push(entry);
     }
 
     /// A push as a table of its own; where edits have added pushes, whose numbers must stay, as one more edit.
@@ -272,6 +296,8 @@ impl Journal {
         let last = self.done.last()?.act.clone();
         loop {
             let entry = self.done.pop()?;
+            let stayed = entry.dropped.iter().filter(|entry| entry.has_no_time());
+            self.take_off(stayed.count());
             self.done.extend(entry.dropped.iter().cloned());
             let (step, is_chained) = (entry.step, entry.is_chained);
             self.undone.push(entry);
@@ -286,13 +312,18 @@ impl Journal {
         let first = self.undone.last()?.step;
         loop {
             let entry = self.undone.pop()?;
-            self.done.truncate(self.done.len() - entry.dropped.len());
+            self.take_off(entry.dropped.len());
             let act = entry.act.clone();
-            self.done.push(entry);
+            self.push(entry);
             if !self.undone.last().is_some_and(|next| next.is_chained) {
                 return Some((first, act));
             }
         }
+    }
+
+    /// Takes the last `count` entries off.
+    fn take_off(&mut self, count: usize) {
+        self.done.truncate(self.done.len().saturating_sub(count));
     }
 
     /// What was taken back can no longer be brought again.
@@ -333,7 +364,7 @@ impl Journal {
     fn as_it_moves_at(&self, step: u64) -> Result<ScenarioFile, Problems> {
         let mut file = self.base.clone();
         let mut time_step_s = file.motion.time_step_s;
-        for entry in self.done.iter().filter(|entry| entry.step <= step) {
+        for entry in self.done.iter().filter(|entry| !entry.is_later_than(step)) {
             let (Act::Edit(set) | Act::Describe(set)) = &entry.act else {
                 continue;
             };
@@ -361,10 +392,22 @@ impl Journal {
 }
 
 impl Entry {
-    /// Whether it acts on steps after the one that follows `step`. What no number depends on has no time.
+    /// Whether it acts on steps after the one that follows `step`.
     fn is_later_than(&self, step: u64) -> bool {
-        self.step > step && !matches!(self.act, Act::Describe(_))
+        self.step > step && !self.has_no_time()
     }
+
+    /// Whether no number depends on it.
+    fn has_no_time(&self) -> bool {
+        matches!(self.act, Act::Describe(_))
+    }
+}
+
+/// Whether an edit can be one with others of its moment. A table has its keys in the order of their letters, push 10
+/// before push 9: a push that is added keeps its place by being an edit of its own.
+fn may_be_joined(entry: &Entry) -> bool {
+    let adds = matches!(&entry.act, Act::Edit(set) if set.values().any(Value::is_table));
+    !entry.from_file && !adds
 }
 
 fn number(value: &Value) -> Option<f64> {
@@ -392,6 +435,7 @@ fn with(file: &ScenarioFile, set: &Table) -> Result<ScenarioFile, Problems> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::presets;
 
     fn journal(name: &str) -> Journal {
         Journal::of(Document::open(name).unwrap().scenario().unwrap().file)
@@ -442,6 +486,57 @@ mod tests {
             "what is done here is in it"
         );
         assert_eq!(journal.later_than(15), 1);
+    }
+
+    #[test]
+    fn what_no_number_depends_on_has_no_time() {
+        let mut journal = journal("method-2");
+        let title = Act::set("title", Value::String("Mine".to_owned()));
+        journal.act(500, title).unwrap();
+        assert_eq!(journal.file_until(100).title, "Mine");
+        let begun = journal.begun_with(100, "start.tilt_deg", Value::Float(3.0));
+        assert_eq!(begun.unwrap().1.file.title, "Mine");
+    }
+
+    #[test]
+    fn edits_of_a_file_are_what_they_were_after_an_undo() {
+        let edits = "[[edit]]\nstep = 60\nset = { 'motion.gravity_m_per_s2' = 1 }\n".repeat(2);
+        let text = format!("{}\n{edits}", presets::find("method-2").unwrap().text);
+        let file = Document::parse("edited", &text)
+            .unwrap()
+            .scenario()
+            .unwrap()
+            .file;
+        let mut journal = Journal::of(file.clone());
+        let title = Act::set("title", Value::String(file.title.clone()));
+        journal.act(70, title).unwrap();
+        journal.act(50, gravity(2.0)).unwrap();
+        journal.undo();
+        assert_eq!(journal.file(), file);
+    }
+
+    #[test]
+    fn pushes_of_one_moment_are_added_one_after_the_other() {
+        let own = "[[push]]\npoint = 'top'\nforce_N = [0, 0, -1]\nfor_s = 1\n".repeat(8);
+        let added = "[[edit]]\nstep = 5\nset = { 'push.8' = \
+                     { point = 'top', force_N = [0, 0, -1], for_s = 1 } }\n";
+        let text = presets::find("method-2").unwrap().text;
+        let document = Document::parse("pushed", &format!("{text}\n{own}{added}")).unwrap();
+        let mut journal = Journal::of(document.scenario().unwrap().file);
+        for count in 10..13 {
+            let scenario = journal.act(20, push(2.0)).unwrap();
+            assert_eq!(scenario.edits.last().unwrap().pushes.len(), count);
+        }
+    }
+
+    #[test]
+    fn a_journal_that_was_changed_by_hand_is_no_panic() {
+        let mut journal = journal("method-2");
+        journal.act(5, gravity(3.0)).unwrap();
+        journal.act(3, gravity(4.0)).unwrap();
+        journal.undo();
+        journal.done.clear();
+        assert!(journal.redo().is_some());
     }
 
     #[test]

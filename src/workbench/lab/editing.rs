@@ -5,6 +5,7 @@ use super::history::Turn;
 use super::next_push::{Field, NextPush};
 use super::{Lab, dialogs::Asking};
 use crate::run::Clock;
+use crate::run::pushes::{Counting, seconds};
 use crate::scenario::journal::{Act, Effect};
 use crate::scenario::parameters::{self, Parameter, parameters};
 use crate::scenario::present::in_force;
@@ -41,8 +42,10 @@ impl Lab {
             .present()
             .journal
             .pushes_by(self.playback.step_number());
+        let first_added = scenario.file.push.len(); // by an edit, which stands in the table once it is made
         let is_given = |parameter: &Parameter| {
-            number_of_push(&parameter.key).is_none_or(|number| number < pushes)
+            number_of_push(&parameter.key)
+                .is_none_or(|number| number < pushes || number >= first_added)
         };
         let values = parameters(&table, scenario).into_iter().filter(is_given);
         let values = values.map(|parameter| Target::Parameter(Box::new(parameter)));
@@ -168,7 +171,10 @@ impl Lab {
                 }
             }
             Some(Target::NextPush(field)) => {
-                let next = self.next_push.typed(*field, text, &scenario)?;
+                let (motion, _) = in_force(&scenario, self.playback.step_number());
+                let next = self
+                    .next_push
+                    .typed(*field, text, &scenario, motion.time_step_s)?;
                 self.choose_next_push(next);
                 Ok(())
             }
@@ -189,8 +195,9 @@ impl Lab {
     }
 
     fn begin_with(&mut self, key: &str, value: Value, is_again: bool) -> Result<(), String> {
-        let had_begun = self.playback.step_number() > 0;
-        self.stands();
+        let here = self.playback.step_number();
+        let had_begun = here > 0;
+        self.history.stands(here, &self.next_push); // wherever it was bound for: the new run moves as it does here
         let begun = match is_again {
             true => self.history.begin_again_with(key, value),
             false => self.history.begin_with(key, value),
@@ -224,11 +231,12 @@ impl Lab {
         let (step, time_s) = (simulation.step_number(), simulation.state().time_s);
         let (_, pushes) = in_force(simulation.scenario(), step);
         let push = number_of_push(key).and_then(|number| pushes.get(number));
-        push.is_some_and(|push| match push.window {
-            Window::Steps { first, count } => {
-                !push.accumulates && (first - 1).saturating_add(count) <= step
-            }
-            Window::Time { from_s, for_s } => from_s + for_s <= time_s,
+        let counting = Counting::Seconds {
+            written_for_s: simulation.scenario().written_for_s,
+        };
+        push.is_some_and(|push| {
+            let goes_on = push.accumulates && matches!(push.window, Window::Steps { .. });
+            !goes_on && seconds(push.window, counting).1 <= time_s
         })
     }
 
@@ -336,7 +344,10 @@ impl Lab {
             Err(problems) => return self.say(problems.in_one_line()),
         };
         if scenario.steps != self.run().scenario().steps {
-            self.history.set_end(Clock::end_s(&scenario));
+            // Not by this scenario: edits of the time step since then have not moved the end.
+            let told = self.history.present().journal.when_its_length_was_told();
+            self.history
+                .set_end(Clock::end_s(told.as_ref().unwrap_or(&scenario)));
         }
         match act {
             Act::Describe(_) => self.playback.describe_as(&scenario),
@@ -361,6 +372,7 @@ impl Lab {
         });
         self.playback.set_end(end_s);
         self.playback.go_to(left_at);
+        self.returning_to = Some(left_at);
         self.list_parameters();
     }
 }

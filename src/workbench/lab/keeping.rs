@@ -134,7 +134,7 @@ impl Lab {
     }
 
     /// Where it stands, or is on its way back to.
-    fn step_to_keep(&self) -> u64 {
+    pub(super) fn step_to_keep(&self) -> u64 {
         let to_go = self.playback.steps_to_go();
         let bound_for = to_go.map(|to_go| self.playback.step_number().saturating_add(to_go));
         let returning_to = self.returning_to.filter(|step| bound_for == Some(*step));

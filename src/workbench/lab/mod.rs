@@ -96,7 +96,7 @@ pub struct Lab {
     dialog: Option<Dialog>,
     exporting: Option<Exporting>,
     written: Vec<Written>,
-    /// The step to which a session that was come back to is on its way.
+    /// The step to which a run or a session that was come back to is on its way.
     returning_to: Option<u64>,
     /// Whether the end was asked for while something was under way.
     was_warned: bool,

@@ -265,11 +265,17 @@ impl NextPush {
         next.checked()
     }
 
-    /// With the value of `field` that the user typed.
+    /// With the value of `field` that the user typed; steps are of `time_step_s` (s).
     ///
     /// # Errors
     /// Why it cannot be.
-    pub fn typed(&self, field: Field, text: &str, scenario: &Scenario) -> Result<Self, String> {
+    pub fn typed(
+        &self,
+        field: Field,
+        text: &str,
+        scenario: &Scenario,
+        time_step_s: f64,
+    ) -> Result<Self, String> {
         let (label, unit) = field.label();
         let number = || nudge::typed(text, unit).map_err(|reason| format!("{label} {reason}"));
         let mut next = self.clone();
@@ -285,7 +291,7 @@ impl NextPush {
             Field::Toward => next.toward = Toward::typed(text)?,
             Field::Length => {
                 next.for_s = match text.trim().split_once(" step") {
-                    Some((steps, _)) => nudge::typed(steps, "")? * scenario.motion.time_step_s,
+                    Some((steps, _)) => nudge::typed(steps, "")? * time_step_s,
                     None => number()?,
                 }
             }
@@ -403,7 +409,7 @@ mod tests {
         let push = NextPush::of(&scenario);
         for field in Field::ALL {
             assert_eq!(
-                push.typed(field, &push.shown(field), &scenario),
+                push.typed(field, &push.shown(field), &scenario, 0.1),
                 Ok(push.clone())
             );
             let nudged = push.nudged(field, 1, &scenario).unwrap();
@@ -417,10 +423,10 @@ mod tests {
             (Field::Length, "nan"),
             (Field::Point, "hub 7"),
         ] {
-            assert!(push.typed(field, text, &scenario).is_err(), "{text}");
+            assert!(push.typed(field, text, &scenario, 0.1).is_err(), "{text}");
         }
         assert_eq!(
-            push.typed(Field::Length, "20 steps", &scenario)
+            push.typed(Field::Length, "20 steps", &scenario, 0.1)
                 .unwrap()
                 .for_s,
             2.0

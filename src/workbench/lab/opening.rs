@@ -39,10 +39,9 @@ impl Lab {
         self.show_another(scenario, true);
     }
 
-    /// The history is to know where the run stands: it may be left.
+    /// The history is to know where the run stands, or is on its way back to: it may be left.
     pub(super) fn stands(&mut self) {
-        self.history
-            .stands(self.playback.step_number(), &self.next_push);
+        self.history.stands(self.step_to_keep(), &self.next_push);
     }
 
     /// Shows the run of `scenario`, which is none of the present scenario's.

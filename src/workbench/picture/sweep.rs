@@ -206,6 +206,9 @@ impl<'a> Pen<'a> {
 fn join(columns: &mut [Option<Extent>], from: (usize, Extent), to: (usize, Extent)) {
     let ((begin, from), (end, to)) = (from, to);
     let (leave, arrive) = nearest(from, to);
+    if !(leave.is_finite() && arrive.is_finite()) {
+        return; // the exact motion may leave the range of numbers where the run does not
+    }
     let length = (end - begin) as f64;
     let (low, high) = (leave.min(arrive), leave.max(arrive));
     let at = |place: f64| (leave + (arrive - leave) * (place / length)).clamp(low, high);
@@ -247,6 +250,31 @@ mod tests {
             });
         }
         recording
+    }
+
+    #[test]
+    fn what_is_no_number_is_joined_to_nothing() {
+        let mut columns = vec![None; 8];
+        let none = Extent::of(f64::NAN);
+        for (from, to) in [
+            (none, none),
+            (none, Extent::of(1.0)),
+            (Extent::of(f64::INFINITY), none),
+        ] {
+            join(&mut columns, (1, from), (5, to));
+        }
+        join(
+            &mut columns,
+            (1, Extent::of(f64::INFINITY)),
+            (5, Extent::of(0.0)),
+        );
+        assert!(
+            columns
+                .iter()
+                .flatten()
+                .all(|extent| extent.min.is_finite()),
+            "{columns:?}"
+        );
     }
 
     proptest! {

@@ -4,6 +4,10 @@ use crate::analysis::health::{Advice, advise};
 use crate::scenario::Scenario;
 use std::sync::{Arc, OnceLock};
 use std::thread;
+use std::time::Duration;
+
+/// How long a question waits: while a value is nudged by a key held down, each is dropped for the next, unanswered.
+const PATIENCE: Duration = Duration::from_millis(200);
 
 /// A question under way, or answered. Dropped, nobody hears the answer.
 pub struct Advisor {
@@ -15,9 +19,16 @@ impl Advisor {
     /// Asks what would mend `scenario`.
     pub fn ask(scenario: Arc<Scenario>) -> Self {
         let answer = Arc::new(OnceLock::new());
-        let told = Arc::clone(&answer);
+        let told = Arc::downgrade(&answer);
         let search = move || {
-            let _ = told.set(advise(&scenario)); // the first answer, so it is taken
+            thread::sleep(PATIENCE);
+            if told.strong_count() == 0 {
+                return;
+            }
+            let advice = advise(&scenario);
+            if let Some(told) = told.upgrade() {
+                let _ = told.set(advice); // the first answer, so it is taken
+            }
         };
         // Where there is no thread to be had, there is no advice.
         let _ = thread::Builder::new()
