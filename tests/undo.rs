@@ -218,3 +218,36 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_time_with_a_sign_counts_from_here() {
+    let mut lab = lab(scenario("method-2"));
+    go(&mut lab, "100");
+    for (to, step) in [
+        ("+5 s", 150),
+        ("-2.5 s", 125),
+        ("12.5 s", 125),
+        ("1e2", 100),
+        ("-30", 70),
+    ] {
+        go(&mut lab, to);
+        assert_eq!(lab.playback().step_number(), step, "{to}");
+    }
+}
+
+#[test]
+fn nudges_that_belong_together_are_one_undo_and_later_ones_another() {
+    let mut lab = lab(scenario("method-2"));
+    go(&mut lab, "100");
+    select(&mut lab, "gravity", "motion");
+    let gravity = |lab: &Lab| lab.editor().selected().unwrap().value.clone();
+    press(&mut lab, &[Key::Right, Key::Right, Key::Right]);
+    assert_eq!(gravity(&lab), "10.1");
+    lab.advance(&mut || Duration::from_secs(60));
+    press(&mut lab, &[Key::Right]);
+    assert_eq!(gravity(&lab), "10.2");
+    press(&mut lab, &[Key::Char('u')]);
+    assert_eq!(gravity(&lab), "10.1");
+    press(&mut lab, &[Key::Char('u')]);
+    assert_eq!(gravity(&lab), "9.8");
+}

@@ -3,7 +3,7 @@
 use super::editor::Line;
 use super::history::Turn;
 use super::next_push::{Field, NextPush};
-use super::{Lab, dialogs::Asking};
+use super::{BELONGS, Lab, dialogs::Asking};
 use crate::run::Clock;
 use crate::run::pushes::{Counting, seconds};
 use crate::scenario::journal::{Act, Effect};
@@ -13,6 +13,7 @@ use crate::scenario::{Scenario, Window};
 use crate::workbench::action::Direction;
 use crate::workbench::view::Pane;
 use std::sync::Arc;
+use std::time::Duration;
 use toml::Value;
 
 /// The editor's group of lines for the push to come.
@@ -104,9 +105,12 @@ impl Lab {
                 let done = parameter
                     .nudged(times)
                     .map_err(|reason| format!("{label} {reason}"));
-                let is_again = self.last_nudged.as_ref() == Some(&key);
+                let belongs = |(last, at): &(String, Duration)| {
+                    *last == key && self.now.saturating_sub(*at) < BELONGS
+                };
+                let is_again = self.last_nudged.as_ref().is_some_and(belongs);
                 match done.and_then(|value| self.set(&key, value, is_again)) {
-                    Ok(()) => self.last_nudged = Some(key),
+                    Ok(()) => self.last_nudged = Some((key, self.now)),
                     Err(reason) => self.say(reason),
                 }
             }

@@ -52,6 +52,8 @@ use std::time::Duration;
 const PAGE: isize = 10;
 /// Degrees the camera turns at a key.
 const TURN_DEG: f64 = 10.0;
+/// A value that was nudged longer ago is nudged anew: undo takes back what belongs together.
+const BELONGS: Duration = Duration::from_secs(3);
 /// What is moved far is moved so often.
 const FAR: i32 = 10;
 /// Part of the traces' time that may pass between two readings.
@@ -92,7 +94,7 @@ pub struct Lab {
     /// Where files are looked for and written to, if not in the present folder.
     folder: Option<PathBuf>,
     /// The key that was nudged last, if nothing else has been done since.
-    last_nudged: Option<String>,
+    last_nudged: Option<(String, Duration)>,
     dialog: Option<Dialog>,
     exporting: Option<Exporting>,
     written: Vec<Written>,

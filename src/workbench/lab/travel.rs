@@ -5,8 +5,7 @@ use crate::run::Simulation;
 use crate::workbench::keymap::Mode;
 
 /// What the user may type to say where to go.
-const WHERE: &str =
-    "a step (421), a time (12.5 s), so many steps on or back (+50, -50), start or end";
+const WHERE: &str = "a step (421), a time (12.5 s), so many on or back (+50, -2 s), start or end";
 
 impl Lab {
     pub(super) fn step_back(&mut self, steps: u64) {
@@ -47,7 +46,13 @@ impl Lab {
         let digits = text.trim_start_matches(['+', '-']);
         if let Some(time) = text.strip_suffix('s') {
             let time_s: f64 = time.trim().parse().map_err(|_| wrong())?;
-            return self.step_at(time_s);
+            // With a sign it counts from here, as steps do.
+            let from_s = if digits == text {
+                0.0
+            } else {
+                self.run().now().time_s
+            };
+            return self.step_at(from_s + time_s);
         }
         match text {
             "start" => Ok(0),
