@@ -88,7 +88,7 @@ fn come_back(args: &WorkbenchArgs) -> anyhow::Result<(Lab, Result<Session, Strin
             if let Some(resumed) = found.resumed {
                 let (mut lab, session) = (resumed.what, Ok(resumed.session));
                 if !passed_over.is_empty() {
-                    lab.tell(passed_over + "this is an older one, as it was left");
+                    lab.tell_first(&(passed_over + "this is an older one, "));
                 }
                 return Ok((lab, session));
             }

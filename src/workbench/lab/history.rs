@@ -64,6 +64,16 @@ impl History {
         }
     }
 
+    /// Whether every run in it can be gone to: nothing is wrong with any, unless it was changed by hand.
+    ///
+    /// # Errors
+    /// What is wrong with the first that cannot.
+    pub fn check(&self) -> Result<(), Problems> {
+        let runs = self.past.iter().chain(&self.undone);
+        runs.map(|chapter| &chapter.journal)
+            .try_for_each(|journal| journal.scenario().map(drop))
+    }
+
     /// The present run.
     pub fn present(&self) -> &Chapter {
         &self.present

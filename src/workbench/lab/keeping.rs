@@ -3,7 +3,7 @@
 use super::Lab;
 use super::history::History;
 use super::next_push::NextPush;
-use crate::scenario::{Document, Scenario};
+use crate::scenario::{Document, Problems, Scenario};
 use crate::workbench::keep::session::Content;
 use crate::workbench::view::{Pane, View};
 use crate::workbench::watch::pace::Speed;
@@ -101,11 +101,10 @@ impl Lab {
             ));
         }
         let place: Place = read("the place in it", &content.place)?;
+        let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
+        work.history.check().map_err(unreadable)?;
         let present = work.history.present();
-        let scenario = present
-            .journal
-            .scenario()
-            .map_err(|problems| Unreadable(problems.in_one_line()))?;
+        let scenario = present.journal.scenario().map_err(unreadable)?;
         let scenario = Arc::new(scenario);
         let mut view = view(&scenario);
         (view.focus, view.filled) = (place.focus, place.filled);
@@ -146,6 +145,12 @@ impl Lab {
     fn file_as_opened(&self) -> Arc<Scenario> {
         let file = Document::open(self.name()).and_then(|document| document.scenario());
         file.map_or_else(|_| Arc::clone(self.run().scenario()), Arc::new)
+    }
+
+    /// Says `text` before what is being said already.
+    pub fn tell_first(&mut self, text: &str) {
+        let said = self.notice.text().unwrap_or_default();
+        self.tell(format!("{text}{said}"));
     }
 
     /// Says `text` until the next key: something about the session that the user should know.

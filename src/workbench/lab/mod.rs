@@ -1,8 +1,8 @@
 //! The lab's state, and what every action does to it. It draws nothing and reads no clock: time comes in.
 //!
 //! This file has the state, the dispatch of actions and the passing of time; the rooms beside it carry out what
-//! belongs together: `travel` through the run, `editing` it, `opening` another, `dialogs` and what they ask for,
-//! `keeping` all of it. What they work on has rooms of its own: [`history`] the runs one after the other, each with its
+//! belongs together: `travel` through the run, `looking` at it, `editing` it, `opening` another, `dialogs` and what
+//! they ask for, `keeping` all of it. What they work on has rooms of its own: [`history`] the runs one after the other, each with its
 //! journal; [`editor`] the list of what can be edited; [`next_push`] the push to come; [`form`] what is typed into;
 //! [`browser`] the list of presets and files; [`note`] says what there is to see, [`notice`] what has just happened.
 
@@ -13,6 +13,7 @@ pub mod editor;
 pub mod form;
 pub mod history;
 mod keeping;
+mod looking;
 pub mod next_push;
 pub mod note;
 pub mod notice;
@@ -26,11 +27,11 @@ use crate::analysis::health::Advice;
 use crate::run::NotFinite;
 use crate::scenario::present::in_force;
 use crate::scenario::{Motion, Scenario};
-use crate::workbench::action::{Action, Direction};
+use crate::workbench::action::Action;
 use crate::workbench::keep::exporting::{Exporting, Written};
 use crate::workbench::keymap::{Key, Mode};
+use crate::workbench::view::View;
 use crate::workbench::view::layout::Layout;
-use crate::workbench::view::{Pane, View};
 use crate::workbench::watch::advisor::Advisor;
 use crate::workbench::watch::ghost::Ghost;
 use crate::workbench::watch::live::LiveRun;
@@ -48,18 +49,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Rows of a page in lists.
-const PAGE: isize = 10;
-/// Degrees the camera turns at a key.
-const TURN_DEG: f64 = 10.0;
 /// A value that was nudged longer ago is nudged anew: undo takes back what belongs together.
 const BELONGS: Duration = Duration::from_secs(3);
 /// What is moved far is moved so often.
 const FAR: i32 = 10;
 /// Part of the traces' time that may pass between two readings.
 const FAST: f64 = 0.1;
-/// A step that takes longer than this is announced, s.
-const LONG_STEP_S: f64 = 3.0;
 /// The longest count that can be typed.
 const MOST_COUNTED: u64 = 999_999_999;
 /// Repeating something on the screen more often than this shows nothing new.
@@ -306,43 +301,6 @@ impl Lab {
         None
     }
 
-    fn toggle_pause(&mut self) {
-        if !self.stop_steps() {
-            self.playback.set_running(!self.playback.is_running());
-        }
-    }
-
-    /// Stops on the way through the steps that were asked for; gives whether it was there.
-    fn stop_steps(&mut self) -> bool {
-        let Some(left) = self.playback.steps_to_go() else {
-            return false;
-        };
-        self.playback.set_running(false);
-        self.say(format!("stopped with {} steps to go", grouped(left)));
-        true
-    }
-
-    /// Another speed; says so where there is none, or where it lets nothing be seen for a while.
-    fn shift_speed(&mut self, notches: i32) {
-        let before = self.playback.speed();
-        self.playback.shift_speed(notches);
-        match self.playback.speed() {
-            now if now == before && notches > 0 => self.say("this is the top speed"),
-            now if now == before => self.say("this is the lowest speed; . takes a single step"),
-            Speed::Times(speed) => self.announce_step(speed),
-            Speed::Top => {}
-        }
-    }
-
-    fn announce_step(&mut self, speed: f64) {
-        let wall_s = self.run().simulation().motion().time_step_s / speed;
-        if wall_s > LONG_STEP_S {
-            self.say(format!(
-                "a step takes {wall_s:.0} s at this speed; . takes one now"
-            ));
-        }
-    }
-
     /// Says that `key` means nothing here.
     pub fn refuse(&mut self, key: Key) {
         self.count = None;
@@ -358,66 +316,6 @@ impl Lab {
         };
         self.say(text);
         self.changed = true;
-    }
-
-    fn toggle_exact(&mut self) {
-        let shown = self.run().overlay().is_none();
-        self.playback.set_exact(shown);
-        self.say(match shown {
-            true => "the exact motion of the same start is drawn in dashes; t takes it away",
-            false => "without the exact motion",
-        });
-    }
-
-    fn shift(&mut self, direction: Direction, times: i32) {
-        let rows = rows(direction) * times as isize;
-        match (self.mode, self.view.focus) {
-            (Mode::Browser | Mode::Filter, _) => self.browser.shift(rows),
-            (Mode::Lab, Pane::ThreeD) => self.turn_camera(direction, f64::from(times) * TURN_DEG),
-            (Mode::Lab, Pane::Parameters) => self.move_in_parameters(direction, times),
-            (Mode::Lab, Pane::Traces | Pane::FromAbove) => {
-                self.say("arrows change values (e), turn the 3-D view (d) and move in lists");
-            }
-            _ => self.view.scroll = self.view.scroll.saturating_add_signed(rows),
-        }
-    }
-
-    fn turn_camera(&mut self, direction: Direction, degrees: f64) {
-        let (yaw, pitch) = match direction {
-            Direction::Left => (-degrees, 0.0),
-            Direction::Right => (degrees, 0.0),
-            Direction::Up | Direction::PageUp => (0.0, degrees),
-            Direction::Down | Direction::PageDown => (0.0, -degrees),
-        };
-        self.view.camera.turn(yaw, pitch);
-    }
-
-    fn zoom(&mut self, wider: bool) {
-        self.view
-            .zoom(wider, self.run().simulation().motion().time_step_s);
-        self.say(format!("the traces show {} s", self.view.window_s));
-    }
-
-    fn next_marker(&mut self) {
-        self.view.marker = self.view.marker.next();
-        self.say(format!("dots: {}", self.view.marker.name()));
-    }
-
-    fn toggle_colour(&mut self) {
-        self.view.theme.colour = !self.view.theme.colour;
-        self.say(if self.view.theme.colour {
-            "with colours"
-        } else {
-            "without colours"
-        });
-    }
-
-    fn toggle_background(&mut self) {
-        self.view.toggle_background();
-        self.say(match self.view.theme.colour {
-            true => format!("colours for a {:?} screen", self.view.theme.background).to_lowercase(),
-            false => "there are no colours: c turns them on".to_owned(),
-        });
     }
 
     fn toggle_help(&mut self) {
@@ -606,13 +504,4 @@ fn grouped(number: u64) -> String {
 /// How often to repeat what needs no more than `MOST_REPEATED` repetitions.
 fn repeated(count: Option<u64>) -> i32 {
     count.unwrap_or(1).min(MOST_REPEATED) as i32
-}
-
-fn rows(direction: Direction) -> isize {
-    match direction {
-        Direction::Up | Direction::Left => -1,
-        Direction::Down | Direction::Right => 1,
-        Direction::PageUp => -PAGE,
-        Direction::PageDown => PAGE,
-    }
 }

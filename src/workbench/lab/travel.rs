@@ -1,13 +1,53 @@
-//! Through the run: back, and to any step or time.
+//! Through the run: at which speed, back, and to any step or time.
 
-use super::{Lab, dialogs::Asking};
+use super::{Lab, dialogs::Asking, grouped};
 use crate::run::Simulation;
 use crate::workbench::keymap::Mode;
+use crate::workbench::watch::pace::Speed;
 
+/// A step that takes longer than this is announced, s.
+const LONG_STEP_S: f64 = 3.0;
 /// What the user may type to say where to go.
 const WHERE: &str = "a step (421), a time (12.5 s), so many on or back (+50, -2 s), start or end";
 
 impl Lab {
+    pub(super) fn toggle_pause(&mut self) {
+        if !self.stop_steps() {
+            self.playback.set_running(!self.playback.is_running());
+        }
+    }
+
+    /// Stops on the way through the steps that were asked for; gives whether it was there.
+    pub(super) fn stop_steps(&mut self) -> bool {
+        let Some(left) = self.playback.steps_to_go() else {
+            return false;
+        };
+        self.playback.set_running(false);
+        self.say(format!("stopped with {} steps to go", grouped(left)));
+        true
+    }
+
+    /// Another speed; says so where there is none, or where it lets nothing be seen for a while.
+    pub(super) fn shift_speed(&mut self, notches: i32) {
+        let before = self.playback.speed();
+        self.playback.shift_speed(notches);
+        match self.playback.speed() {
+            now if now == before && notches > 0 => self.say("this is the top speed"),
+            now if now == before => self.say("this is the lowest speed; . takes a single step"),
+            Speed::Times(speed) => self.announce_step(speed),
+            Speed::Top => {}
+        }
+    }
+
+    fn announce_step(&mut self, speed: f64) {
+        let wall_s = self.run().simulation().motion().time_step_s / speed;
+        if wall_s > LONG_STEP_S {
+            self.say(format!(
+                "a step takes {wall_s:.0} s at this speed; . takes one now"
+            ));
+        }
+    }
+
     pub(super) fn step_back(&mut self, steps: u64) {
         let here = self.playback.step_number();
         match here {
