@@ -3,21 +3,18 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[path = "support/desk.rs"]
+mod desk;
+
+use desk::Desk;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
-use gyrolab::workbench::app;
-use gyrolab::workbench::keymap::{Key, Mode};
-use gyrolab::workbench::lab::Lab;
-use gyrolab::workbench::view::View;
-use gyrolab::workbench::view::markers::Marker;
-use gyrolab::workbench::view::theme::{Background, Theme};
+use gyrolab::workbench::keymap::Key;
 use gyrolab::workbench::watch::playback::Playback;
 use gyrolab::workbench::watch::recording::Curve;
 use proptest::prelude::*;
 use std::collections::HashMap;
-use std::path::Path;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// What a user may do, as keys; typed values stand in dialogs.
 const DEEDS: &[&[Key]] = &[
@@ -49,76 +46,6 @@ const DEEDS: &[&[Key]] = &[
     &[Key::Char('P'), Key::Down, Key::Right],
     &[Key::Char('P'), Key::Down, Key::Down, Key::Left],
 ];
-
-struct Stage {
-    lab: Lab,
-    now: Duration,
-}
-
-impl Stage {
-    fn open(name: &str, folder: &Path) -> Self {
-        let scenario = Arc::new(Document::open(name).unwrap().scenario().unwrap());
-        let theme = Theme {
-            colour: false,
-            background: Background::Dark,
-        };
-        let view = View::new(&scenario, Marker::Braille, theme);
-        let mut lab = Lab::new(name, scenario, view, false);
-        lab.work_in(folder);
-        Self {
-            lab,
-            now: Duration::ZERO,
-        }
-    }
-
-    fn press(&mut self, keys: &[Key]) {
-        for &key in keys {
-            app::press(key, &mut self.lab);
-        }
-        self.wait(2);
-    }
-
-    fn type_text(&mut self, text: &str) {
-        text.chars().for_each(|c| {
-            app::press(Key::Char(c), &mut self.lab);
-        });
-    }
-
-    fn wait(&mut self, frames: u32) {
-        for _ in 0..frames {
-            self.now += Duration::from_millis(70);
-            let now = self.now;
-            self.lab.advance(&mut || now);
-        }
-        while self.lab.playback().steps_to_go().is_some() {
-            let now = self.now;
-            self.lab.advance(&mut || now);
-        }
-    }
-
-    fn simulation(&self) -> &Simulation {
-        self.lab.run().simulation()
-    }
-
-    /// Saves the run file and gives what is in it; `None` at step 0, where there is no run yet.
-    fn saved(&mut self, folder: &Path) -> Option<Scenario> {
-        app::press(Key::Esc, &mut self.lab);
-        app::press(Key::Char('s'), &mut self.lab);
-        if self.lab.mode() != Mode::Dialog {
-            assert_eq!(self.simulation().step_number(), 0);
-            return None;
-        }
-        app::press(Key::Ctrl('u'), &mut self.lab);
-        self.type_text("saved.toml");
-        app::press(Key::Enter, &mut self.lab);
-        if self.lab.mode() == Mode::Dialog {
-            app::press(Key::Enter, &mut self.lab); // it exists: replace it
-        }
-        assert_eq!(self.lab.mode(), Mode::Lab, "{:?}", self.lab.dialog());
-        let file = folder.join("saved.toml");
-        Some(Document::read(&file).unwrap().scenario().unwrap())
-    }
-}
 
 /// Every number of a step, to the bit.
 fn bits(simulation: &Simulation) -> Vec<u64> {
@@ -155,22 +82,23 @@ proptest! {
         deeds in prop::collection::vec(0..DEEDS.len(), 1..40),
     ) {
         let folder = tempfile::tempdir().unwrap();
-        let mut stage = Stage::open(preset, folder.path());
-        stage.press(&[Key::Char('e')]);
-        while stage.lab.editor().selected().unwrap().key != "motion.scheme" {
-            stage.press(&[Key::Down]);
+        let mut desk = Desk::open(preset);
+        desk.lab.work_in(folder.path());
+        desk.press(&[Key::Char('e')]);
+        while desk.lab.editor().selected().unwrap().key != "motion.scheme" {
+            desk.press(&[Key::Down]);
         }
-        stage.press(&[Key::Enter, Key::Ctrl('u')]);
-        stage.type_text(scheme);
-        stage.press(&[Key::Enter]);
+        desk.press(&[Key::Enter, Key::Ctrl('u')]);
+        desk.type_text(scheme);
+        desk.press(&[Key::Enter]);
         for deed in deeds {
-            stage.press(DEEDS[deed]);
+            desk.press(DEEDS[deed]);
         }
-        let here = bits(stage.simulation());
-        let step = stage.simulation().step_number();
-        let whole = stage.lab.run().scenario().as_ref().clone();
+        let here = bits(desk.simulation());
+        let step = desk.simulation().step_number();
+        let whole = desk.scenario();
         prop_assert_eq!(&replayed(whole, step), &here, "the run as it stands, at step {}", step);
-        if let Some(saved) = stage.saved(folder.path()) {
+        if let Some(saved) = desk.saved(folder.path()) {
             prop_assert_eq!(saved.steps, step);
             prop_assert_eq!(&replayed(saved, step), &here, "the saved run file, at step {}", step);
         }
@@ -184,35 +112,36 @@ proptest! {
         edits in prop::collection::vec((0u64..2000, 0usize..3), 0..4),
     ) {
         let folder = tempfile::tempdir().unwrap();
-        let mut stage = Stage::open(preset, folder.path());
+        let mut desk = Desk::open(preset);
+        desk.lab.work_in(folder.path());
         let mut edits = edits;
         edits.sort_unstable();
         for (step, edit) in edits {
-            stage.press(&[]);
-            stage.type_text(&format!("{step}g"));
-            stage.wait(1);
+            desk.press(&[]);
+            desk.type_text(&format!("{step}g"));
+            desk.wait(1);
             let deeds: &[Key] = [&[Key::Char('p')][..], &[Key::Char('e'), Key::Right][..], &[Key::Char('e'), Key::Down, Key::Down, Key::Left, Key::Up, Key::Up][..]][edit];
-            stage.press(deeds);
+            desk.press(deeds);
         }
-        stage.press(&[Key::Char('r'), Key::Char('e'), Key::Down]);
-        prop_assert_eq!(stage.lab.editor().selected().unwrap().key.as_str(), "motion.scheme");
-        stage.press(&[Key::Enter, Key::Ctrl('u')]);
-        stage.type_text(scheme);
-        stage.press(&[Key::Enter, Key::Up]);
+        desk.press(&[Key::Char('r'), Key::Char('e'), Key::Down]);
+        prop_assert_eq!(desk.lab.editor().selected().unwrap().key.as_str(), "motion.scheme");
+        desk.press(&[Key::Enter, Key::Ctrl('u')]);
+        desk.type_text(scheme);
+        desk.press(&[Key::Enter, Key::Up]);
         let mut seen: HashMap<u64, Vec<u64>> = HashMap::new();
         for step in way {
-            stage.type_text(&format!("{step}g"));
-            stage.wait(1);
-            let simulation = stage.simulation();
+            desk.type_text(&format!("{step}g"));
+            desk.wait(1);
+            let simulation = desk.simulation();
             let reached = simulation.step_number();
             let here = bits(simulation);
-            let health = stage.lab.readouts().health;
+            let health = desk.lab.readouts().health;
             prop_assert!(health.energy_drift.is_none_or(|drift| !drift.is_nan()));
             prop_assert_eq!(seen.entry(reached).or_insert_with(|| here.clone()), &here, "step {}", reached);
-            let (recording, path) = (stage.lab.run().recording(), stage.lab.run().path());
+            let (recording, path) = (desk.lab.run().recording(), desk.lab.run().path());
             prop_assert_eq!(recording.moments(), reached + 1);
             prop_assert_eq!(recording.coarse_since(), None);
-            let mut straight = Playback::new(Arc::clone(stage.lab.run().scenario()), false);
+            let mut straight = Playback::new(Arc::clone(desk.lab.run().scenario()), false);
             let _ = straight.begin_at(reached);
             let (whole, known) = (recording.whole().unwrap(), straight.run().recording().whole().unwrap());
             for curve in Curve::ALL {
@@ -222,7 +151,7 @@ proptest! {
             prop_assert!((radius - known).abs() <= 0.02 * known + 1e-9, "{} for {}", radius, known);
         }
         for (step, there) in seen {
-            prop_assert_eq!(replayed(stage.lab.run().scenario().as_ref().clone(), step), there, "step {}", step);
+            prop_assert_eq!(replayed(desk.scenario(), step), there, "step {}", step);
         }
     }
 }
@@ -230,34 +159,35 @@ proptest! {
 #[test]
 fn a_run_whose_numbers_have_ended_goes_on_once_it_is_mended() {
     let folder = tempfile::tempdir().unwrap();
-    let mut stage = Stage::open("method-2", folder.path());
-    stage.type_text("40g");
-    stage.press(&[Key::Char('e'), Key::Down, Key::Enter, Key::Ctrl('u')]);
-    stage.type_text("rk4");
-    stage.press(&[Key::Enter]);
-    stage.type_text("2000g");
-    stage.wait(1);
-    let ended_at = stage.simulation().step_number();
+    let mut desk = Desk::open("method-2");
+    desk.lab.work_in(folder.path());
+    desk.type_text("40g");
+    desk.press(&[Key::Char('e'), Key::Down, Key::Enter, Key::Ctrl('u')]);
+    desk.type_text("rk4");
+    desk.press(&[Key::Enter]);
+    desk.type_text("2000g");
+    desk.wait(1);
+    let ended_at = desk.simulation().step_number();
     assert!(
-        (41..2000).contains(&ended_at) && stage.simulation().has_ended(),
+        (41..2000).contains(&ended_at) && desk.simulation().has_ended(),
         "{ended_at}"
     );
-    stage.type_text("40g");
-    stage.press(&[Key::Down, Key::Enter, Key::Ctrl('u')]);
-    stage.type_text("0.001 s");
-    stage.press(&[Key::Enter]);
-    stage.type_text("50.");
-    stage.wait(1);
+    desk.type_text("40g");
+    desk.press(&[Key::Down, Key::Enter, Key::Ctrl('u')]);
+    desk.type_text("0.001 s");
+    desk.press(&[Key::Enter]);
+    desk.type_text("50.");
+    desk.wait(1);
     assert_eq!(
-        stage.simulation().step_number(),
+        desk.simulation().step_number(),
         90,
         "an edit before the end mends it"
     );
-    stage.press(&[Key::Char('u')]);
-    stage.type_text(&format!("{}g", ended_at + 9));
-    stage.wait(1);
+    desk.press(&[Key::Char('u')]);
+    desk.type_text(&format!("{}g", ended_at + 9));
+    desk.wait(1);
     assert_eq!(
-        stage.simulation().step_number(),
+        desk.simulation().step_number(),
         ended_at,
         "without it the run ends again"
     );
@@ -266,9 +196,10 @@ fn a_run_whose_numbers_have_ended_goes_on_once_it_is_mended() {
 #[test]
 fn an_edit_after_which_no_step_is_finite_is_taken_back_without_a_trace() {
     let folder = tempfile::tempdir().unwrap();
-    let mut stage = Stage::open("wobble-push", folder.path());
-    stage.type_text("60g");
-    stage.press(&[
+    let mut desk = Desk::open("wobble-push");
+    desk.lab.work_in(folder.path());
+    desk.type_text("60g");
+    desk.press(&[
         Key::Char('e'),
         Key::Down,
         Key::Down,
@@ -276,19 +207,19 @@ fn an_edit_after_which_no_step_is_finite_is_taken_back_without_a_trace() {
         Key::Ctrl('u'),
     ]);
     assert_eq!(
-        stage.lab.dialog().unwrap().form().title,
+        desk.lab.dialog().unwrap().form().title,
         "motion.time_step_s"
     );
-    stage.type_text("1e300");
-    stage.press(&[Key::Enter, Key::Char('.')]);
-    assert!(stage.simulation().has_ended());
-    assert_eq!(stage.simulation().step_number(), 60);
-    stage.press(&[Key::Char('u')]);
-    stage.type_text("300.");
-    stage.wait(1);
-    assert_eq!(stage.simulation().step_number(), 360);
+    desk.type_text("1e300");
+    desk.press(&[Key::Enter, Key::Char('.')]);
+    assert!(desk.simulation().has_ended());
+    assert_eq!(desk.simulation().step_number(), 60);
+    desk.press(&[Key::Char('u')]);
+    desk.type_text("300.");
+    desk.wait(1);
+    assert_eq!(desk.simulation().step_number(), 360);
     let untouched = Document::open("wobble-push").unwrap().scenario().unwrap();
-    assert_eq!(replayed(untouched, 360), bits(stage.simulation()));
+    assert_eq!(replayed(untouched, 360), bits(desk.simulation()));
 }
 
 #[test]

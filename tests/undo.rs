@@ -1,116 +1,45 @@
 //! Taking back and bringing again, by keys, where several edits meet.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "support/desk.rs"]
+mod desk;
+
+use desk::Desk;
 use gyrolab::scenario::Document;
-use gyrolab::scenario::Scenario;
 use gyrolab::scenario::file::PushFile;
 use gyrolab::scenario::journal::{Act, Journal};
-use gyrolab::workbench::app;
-use gyrolab::workbench::keymap::{Key, Mode};
-use gyrolab::workbench::lab::Lab;
-use gyrolab::workbench::view::View;
-use gyrolab::workbench::view::markers::Marker;
-use gyrolab::workbench::view::theme::{Background, Theme};
+use gyrolab::workbench::keymap::Key;
 use proptest::prelude::*;
-use std::sync::Arc;
 use std::time::Duration;
-
-fn scenario(name: &str) -> Arc<Scenario> {
-    Arc::new(Document::open(name).unwrap().scenario().unwrap())
-}
-fn lab(scenario: Arc<Scenario>) -> Lab {
-    let view = View::new(
-        &scenario,
-        Marker::Braille,
-        Theme {
-            colour: false,
-            background: Background::Dark,
-        },
-    );
-    Lab::new("method-2", scenario, view, false)
-}
-fn press(lab: &mut Lab, keys: &[Key]) {
-    for &key in keys {
-        app::press(key, lab);
-    }
-}
-fn typed(lab: &mut Lab, text: &str) {
-    for c in text.chars() {
-        app::press(Key::Char(c), lab);
-    }
-}
-fn settle(lab: &mut Lab) {
-    let mut n = 0u64;
-    while lab.playback().steps_to_go().is_some() {
-        n += 1;
-        lab.advance(&mut || Duration::from_millis(70 * n));
-    }
-}
-fn go(lab: &mut Lab, to: &str) {
-    typed(lab, "g");
-    typed(lab, to);
-    app::press(Key::Enter, lab);
-    settle(lab);
-}
-fn select(lab: &mut Lab, label: &str, group: &str) {
-    press(lab, &[Key::Char('e')]);
-    let lines: Vec<_> = lab
-        .editor()
-        .lines()
-        .iter()
-        .map(|l| (l.group.clone(), l.label.clone()))
-        .collect();
-    let want = lines
-        .iter()
-        .position(|(g, l)| g == group && l == label)
-        .unwrap_or_else(|| panic!("{lines:?}"));
-    loop {
-        let now = lab.editor().selected_index();
-        if now == want {
-            break;
-        }
-        press(lab, &[if now < want { Key::Down } else { Key::Up }]);
-    }
-}
-fn set(lab: &mut Lab, group: &str, label: &str, text: &str) {
-    select(lab, label, group);
-    press(lab, &[Key::Enter]);
-    typed(lab, text);
-    press(lab, &[Key::Enter]);
-    assert_eq!(lab.mode(), Mode::Lab, "{:?}", lab.dialog());
-    settle(lab);
-}
 
 #[test]
 fn a_length_taken_back_is_in_seconds_what_it_was() {
-    let mut lab = lab(scenario("method-2"));
-    let end = |lab: &Lab| lab.playback().end_step();
-    go(&mut lab, "1000");
-    set(&mut lab, "motion", "dt", "0.05");
-    let before = end(&lab);
-    set(&mut lab, "motion", "steps", "4000");
-    assert_eq!(end(&lab), 4000);
-    press(&mut lab, &[Key::Char('u')]);
-    assert_eq!(end(&lab), before);
+    let mut desk = Desk::open("method-2");
+    let end = |desk: &Desk| desk.lab.playback().end_step();
+    desk.go("1000");
+    desk.set("motion", "dt", "0.05");
+    let before = end(&desk);
+    desk.set("motion", "steps", "4000");
+    assert_eq!(end(&desk), 4000);
+    desk.press(&[Key::Char('u')]);
+    assert_eq!(end(&desk), before);
 }
 
 #[test]
 fn a_run_passed_on_the_way_back_is_left_where_it_stood() {
-    let mut lab = lab(scenario("method-2"));
-    go(&mut lab, "100");
-    set(&mut lab, "start", "tilt", "40");
-    go(&mut lab, "200000");
-    set(&mut lab, "start", "tilt", "30");
-    go(&mut lab, "7");
-    press(&mut lab, &[Key::Char('2'), Key::Char('u')]);
-    settle(&mut lab);
-    assert_eq!(lab.playback().step_number(), 100);
-    press(&mut lab, &[Key::Char('U')]);
-    settle(&mut lab);
-    assert_eq!(lab.playback().step_number(), 200000);
-    press(&mut lab, &[Key::Char('2'), Key::Char('U')]);
-    settle(&mut lab);
-    assert_eq!(lab.playback().step_number(), 7);
+    let mut desk = Desk::open("method-2");
+    desk.go("100");
+    desk.set("start", "tilt", "40");
+    desk.go("200000");
+    desk.set("start", "tilt", "30");
+    desk.go("7");
+    desk.press(&[Key::Char('2'), Key::Char('u')]);
+    assert_eq!(desk.step(), 100);
+    desk.press(&[Key::Char('U')]);
+    assert_eq!(desk.step(), 200_000);
+    desk.press(&[Key::Char('2'), Key::Char('U')]);
+    assert_eq!(desk.step(), 7);
 }
 
 #[test]
@@ -121,46 +50,54 @@ fn a_push_that_an_edit_of_the_file_adds_is_listed() {
         .to_owned();
     file +=
         "\n[[edit]]\nstep=5\nset={ 'push.0' = {point='top',force_N=[0,0,-1],from_s=1,for_s=1} }\n";
-    let s = Arc::new(
-        Document::parse("x.toml", &file)
-            .unwrap()
-            .scenario()
-            .unwrap(),
+    let scenario = Document::parse("x.toml", &file).and_then(|document| document.scenario());
+    let mut desk = Desk::with("x.toml", scenario.unwrap());
+    assert!(
+        !desk
+            .lab
+            .editor()
+            .lines()
+            .iter()
+            .any(|l| l.group == "push 1")
     );
-    let mut lab = lab(s);
-    assert!(!lab.editor().lines().iter().any(|l| l.group == "push 1"));
-    go(&mut lab, "10");
-    assert!(lab.editor().lines().iter().any(|l| l.group == "push 1"));
+    desk.go("10");
+    assert!(
+        desk.lab
+            .editor()
+            .lines()
+            .iter()
+            .any(|l| l.group == "push 1")
+    );
 }
 
 #[test]
 fn steps_of_a_push_to_come_are_those_of_now() {
-    let mut lab = lab(scenario("method-2"));
-    go(&mut lab, "10");
-    set(&mut lab, "motion", "dt", "0.05");
-    set(&mut lab, "next push (p)", "for", "20 steps");
-    let line = lab.editor().selected().unwrap();
+    let mut desk = Desk::open("method-2");
+    desk.go("10");
+    desk.set("motion", "dt", "0.05");
+    desk.set("next push (p)", "for", "20 steps");
+    let line = desk.lab.editor().selected().unwrap();
     assert_eq!((line.label.as_str(), line.value.as_str()), ("for", "1"));
 }
 
 #[test]
 fn a_push_is_over_by_its_seconds() {
-    let mut lab = lab(scenario("wobble-push"));
-    go(&mut lab, "40");
-    set(&mut lab, "motion", "dt", "0.05");
-    go(&mut lab, "250");
-    set(&mut lab, "push 1", "Fx", "1");
+    let mut desk = Desk::open("wobble-push");
+    desk.go("40");
+    desk.set("motion", "dt", "0.05");
+    desk.go("250");
+    desk.set("push 1", "Fx", "1");
     assert!(
-        lab.notice().unwrap().contains("from the next step on"),
+        desk.lab.notice().unwrap().contains("from the next step on"),
         "{:?}",
-        lab.notice()
+        desk.lab.notice()
     );
-    go(&mut lab, "400");
-    set(&mut lab, "push 1", "Fx", "2");
+    desk.go("400");
+    desk.set("push 1", "Fx", "2");
     assert!(
-        lab.notice().unwrap().contains("is over"),
+        desk.lab.notice().unwrap().contains("is over"),
         "{:?}",
-        lab.notice()
+        desk.lab.notice()
     );
 }
 
@@ -221,8 +158,8 @@ proptest! {
 
 #[test]
 fn a_time_with_a_sign_counts_from_here() {
-    let mut lab = lab(scenario("method-2"));
-    go(&mut lab, "100");
+    let mut desk = Desk::open("method-2");
+    desk.go("100");
     for (to, step) in [
         ("+5 s", 150),
         ("-2.5 s", 125),
@@ -230,24 +167,24 @@ fn a_time_with_a_sign_counts_from_here() {
         ("1e2", 100),
         ("-30", 70),
     ] {
-        go(&mut lab, to);
-        assert_eq!(lab.playback().step_number(), step, "{to}");
+        desk.go(to);
+        assert_eq!(desk.step(), step, "{to}");
     }
 }
 
 #[test]
 fn nudges_that_belong_together_are_one_undo_and_later_ones_another() {
-    let mut lab = lab(scenario("method-2"));
-    go(&mut lab, "100");
-    select(&mut lab, "gravity", "motion");
-    let gravity = |lab: &Lab| lab.editor().selected().unwrap().value.clone();
-    press(&mut lab, &[Key::Right, Key::Right, Key::Right]);
-    assert_eq!(gravity(&lab), "10.1");
-    lab.advance(&mut || Duration::from_secs(60));
-    press(&mut lab, &[Key::Right]);
-    assert_eq!(gravity(&lab), "10.2");
-    press(&mut lab, &[Key::Char('u')]);
-    assert_eq!(gravity(&lab), "10.1");
-    press(&mut lab, &[Key::Char('u')]);
-    assert_eq!(gravity(&lab), "9.8");
+    let mut desk = Desk::open("method-2");
+    desk.go("100");
+    desk.select("motion", "gravity");
+    let gravity = |desk: &Desk| desk.lab.editor().selected().unwrap().value.clone();
+    desk.press(&[Key::Right, Key::Right, Key::Right]);
+    assert_eq!(gravity(&desk), "10.1");
+    desk.pass(Duration::from_secs(60));
+    desk.press(&[Key::Right]);
+    assert_eq!(gravity(&desk), "10.2");
+    desk.press(&[Key::Char('u')]);
+    assert_eq!(gravity(&desk), "10.1");
+    desk.press(&[Key::Char('u')]);
+    assert_eq!(gravity(&desk), "9.8");
 }

@@ -1,0 +1,136 @@
+//! A lab on a desk, without a terminal: keys go in, and a clock goes only when told.
+
+#![allow(dead_code, reason = "no test needs all of it")]
+
+use gyrolab::run::Simulation;
+use gyrolab::scenario::{Document, Scenario};
+use gyrolab::workbench::app;
+use gyrolab::workbench::keymap::{Key, Mode};
+use gyrolab::workbench::lab::Lab;
+use gyrolab::workbench::view::View;
+use gyrolab::workbench::view::markers::Marker;
+use gyrolab::workbench::view::theme::{Background, Theme};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// The lab, and what time it is there.
+pub struct Desk {
+    pub lab: Lab,
+    now: Duration,
+}
+
+impl Desk {
+    /// The preset `name`, standing still.
+    pub fn open(name: &str) -> Self {
+        let scenario = Document::open(name).unwrap().scenario().unwrap();
+        Self::with(name, scenario)
+    }
+
+    pub fn with(name: &str, scenario: Scenario) -> Self {
+        let theme = Theme {
+            colour: false,
+            background: Background::Dark,
+        };
+        let view = View::new(&scenario, Marker::Braille, theme);
+        Self {
+            lab: Lab::new(name, Arc::new(scenario), view, false),
+            now: Duration::ZERO,
+        }
+    }
+
+    /// Presses `keys`, and lets the lab get to where they lead.
+    pub fn press(&mut self, keys: &[Key]) {
+        for &key in keys {
+            app::press(key, &mut self.lab);
+        }
+        self.wait(2);
+    }
+
+    pub fn type_text(&mut self, text: &str) {
+        text.chars().for_each(|c| {
+            app::press(Key::Char(c), &mut self.lab);
+        });
+    }
+
+    /// Lets some frames pass, and then as many as it takes to get to where the lab is on its way to.
+    pub fn wait(&mut self, frames: u32) {
+        for _ in 0..frames {
+            self.pass(Duration::from_millis(70));
+        }
+        while self.lab.playback().steps_to_go().is_some() {
+            self.pass(Duration::ZERO);
+        }
+    }
+
+    pub fn pass(&mut self, time: Duration) {
+        self.now += time;
+        let now = self.now;
+        self.lab.advance(&mut || now);
+    }
+
+    /// Goes where `text` says.
+    #[track_caller]
+    pub fn go(&mut self, text: &str) {
+        self.type_text("g");
+        self.type_text(text);
+        self.press(&[Key::Enter]);
+        assert_eq!(self.lab.mode(), Mode::Lab, "{:?}", self.lab.dialog());
+    }
+
+    /// Selects the value called `label` of `group`.
+    #[track_caller]
+    pub fn select(&mut self, group: &str, label: &str) {
+        self.press(&[Key::Char('e')]);
+        let lines = self.lab.editor().lines();
+        let wanted = lines
+            .iter()
+            .position(|line| line.group == group && line.label == label);
+        let wanted = wanted.unwrap_or_else(|| panic!("no {label} of {group} in {lines:?}"));
+        while self.lab.editor().selected_index() != wanted {
+            let is_above = self.lab.editor().selected_index() < wanted;
+            self.press(&[if is_above { Key::Down } else { Key::Up }]);
+        }
+    }
+
+    /// Types `text` for the value called `label` of `group`.
+    #[track_caller]
+    pub fn set(&mut self, group: &str, label: &str, text: &str) {
+        self.select(group, label);
+        self.press(&[Key::Enter]);
+        self.type_text(text);
+        self.press(&[Key::Enter]);
+        assert_eq!(self.lab.mode(), Mode::Lab, "{:?}", self.lab.dialog());
+    }
+
+    pub fn step(&self) -> u64 {
+        self.lab.playback().step_number()
+    }
+
+    pub fn simulation(&self) -> &Simulation {
+        self.lab.run().simulation()
+    }
+
+    /// The scenario of the run with all that was done to it.
+    pub fn scenario(&self) -> Scenario {
+        self.lab.run().scenario().as_ref().clone()
+    }
+
+    /// Saves the run file in `folder`, where the lab works, and gives what is in it; `None` at step 0, where there is no
+    /// run yet.
+    pub fn saved(&mut self, folder: &Path) -> Option<Scenario> {
+        self.press(&[Key::Esc, Key::Char('s')]);
+        if self.lab.mode() != Mode::Dialog {
+            assert_eq!(self.step(), 0);
+            return None;
+        }
+        self.type_text("saved.toml");
+        self.press(&[Key::Enter]);
+        if self.lab.mode() == Mode::Dialog {
+            self.press(&[Key::Enter]); // it exists: replace it
+        }
+        assert_eq!(self.lab.mode(), Mode::Lab, "{:?}", self.lab.dialog());
+        let file = folder.join("saved.toml");
+        Some(Document::read(&file).unwrap().scenario().unwrap())
+    }
+}
