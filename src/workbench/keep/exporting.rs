@@ -273,19 +273,26 @@ pub fn scp_line(path: &Path) -> String {
         .into_iter()
         .find_map(|name| std::env::var(name).ok());
     let host = gethostname::gethostname();
+    // "client its-port server our-port": what ssh says of the line.
+    let line = std::env::var("SSH_CONNECTION").unwrap_or_default();
     scp_line_from(
+        line.split(' ').nth(3).unwrap_or_default(),
         user.as_deref(),
         &host.to_string_lossy(),
         &path.to_string_lossy(),
     )
 }
 
-fn scp_line_from(user: Option<&str>, host: &str, path: &str) -> String {
+fn scp_line_from(port: &str, user: Option<&str>, host: &str, path: &str) -> String {
+    let port = match port.parse::<u16>() {
+        Ok(22) | Err(_) => String::new(),
+        Ok(port) => format!("-P {port} "),
+    };
     let user = user
         .filter(|user| !user.is_empty())
         .map(|user| format!("{user}@"));
     let place = format!("{}{host}:{path}", user.unwrap_or_default());
-    format!("scp {} .", quoted(&place))
+    format!("scp {port}{} .", quoted(&place))
 }
 
 /// `text` as one word of a shell.
@@ -311,12 +318,12 @@ mod tests {
     #[test]
     fn an_scp_line_can_be_pasted() {
         assert_eq!(
-            scp_line_from(Some("ada"), "lab.example.org", "/home/ada/run-1.csv"),
+            scp_line_from("22", Some("ada"), "lab.example.org", "/home/ada/run-1.csv"),
             "scp ada@lab.example.org:/home/ada/run-1.csv ."
         );
         assert_eq!(
-            scp_line_from(None, "lab", "/tmp/Ada's run $1.csv"),
-            r"scp 'lab:/tmp/Ada'\''s run $1.csv' ."
+            scp_line_from("2222", None, "lab", "/tmp/Ada's run $1.csv"),
+            r"scp -P 2222 'lab:/tmp/Ada'\''s run $1.csv' ."
         );
     }
 }
