@@ -325,7 +325,7 @@ fn parameters(editor: &Editor, (focus, filled): (bool, bool), size: (u16, u16)) 
         scenario: now.scenario(),
         motion: now.simulation().motion(),
         readouts,
-        editor: Some(editor),
+        editor,
         view: &view,
     }
     .render(buf.area, &mut buf);
@@ -498,7 +498,7 @@ proptest! {
             scenario: now.scenario(),
             motion: now.simulation().motion(),
             readouts,
-            editor: Some(&lines),
+            editor: &lines,
             view: &view,
         };
         let mut buf = Buffer::filled(around, Cell::new("#"));

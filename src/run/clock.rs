@@ -1,6 +1,6 @@
 //! What time it is at a step.
 
-use crate::scenario::Scenario;
+use crate::scenario::{Edit, Scenario};
 
 /// Time as a function of the step, t = t_a + (step − a) dt, with a the step of the last edit of dt: never a running
 /// sum, whose rounding would grow with the run.
@@ -29,6 +29,18 @@ impl Clock {
             .filter(|edit| edit.touches.time_step)
             .for_each(|edit| clock.change(edit.step, edit.motion.time_step_s));
         clock
+    }
+
+    /// The edits of `scenario`, each with the time at which it is made, s.
+    pub fn edits(scenario: &Scenario) -> impl Iterator<Item = (f64, &Edit)> {
+        let mut clock = Self::new(scenario.motion.time_step_s);
+        scenario.edits.iter().map(move |edit| {
+            let time_s = clock.time_s(edit.step);
+            if edit.touches.time_step {
+                clock.change(edit.step, edit.motion.time_step_s);
+            }
+            (time_s, edit)
+        })
     }
 
     /// When the run of `scenario` is over, s.

@@ -7,7 +7,7 @@
 
 use super::Clock;
 use crate::physics::PointForce;
-use crate::scenario::{Push, Window};
+use crate::scenario::{Push, Scenario, Window};
 
 /// Parts of a step smaller than this are rounding, not time.
 const ROUNDING: f64 = 1e-9;
@@ -110,8 +110,24 @@ fn mean_growth(begin: f64, end: f64, count: f64) -> f64 {
     (sum(end) - sum(begin)) / (end - begin)
 }
 
+impl Counting {
+    /// Step counts as the seconds they stood for when `scenario` was written.
+    pub fn in_seconds(scenario: &Scenario) -> Self {
+        Self::Seconds {
+            written_for_s: scenario.written_for_s,
+        }
+    }
+}
+
+/// From when to when `push` of `scenario` acts, s: an accumulating one does not end.
+pub fn acts_s(push: &Push, scenario: &Scenario) -> (f64, f64) {
+    let (begin, end) = seconds(push.window, Counting::in_seconds(scenario));
+    let grows = push.accumulates && matches!(push.window, Window::Steps { .. });
+    (begin, if grows { f64::INFINITY } else { end })
+}
+
 /// A window in seconds, from and to; infinite where it has none.
-pub fn seconds(window: Window, counting: Counting) -> (f64, f64) {
+fn seconds(window: Window, counting: Counting) -> (f64, f64) {
     match (window, counting) {
         (Window::Time { from_s, for_s }, _) => (from_s, from_s + for_s),
         (Window::Steps { first, count }, Counting::Seconds { written_for_s: dt }) => {

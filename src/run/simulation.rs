@@ -239,9 +239,7 @@ impl Simulation {
         let body = &self.scenario.body.mechanics;
         if edit.touches.time_step {
             self.clock.change(self.step, edit.motion.time_step_s);
-            self.counting = Counting::Seconds {
-                written_for_s: self.scenario.motion.time_step_s,
-            };
+            self.counting = Counting::in_seconds(&self.scenario);
         }
         let lift = edit.motion.gravity - self.motion.gravity;
         self.energy.work += lift * observables::weight_height(body, &self.state);
@@ -355,9 +353,7 @@ fn step_of_edit(scenario: &Scenario, index: usize) -> u64 {
 fn counting(scenario: &Scenario) -> Counting {
     match scenario.written_for_s == scenario.motion.time_step_s {
         true => Counting::Steps,
-        false => Counting::Seconds {
-            written_for_s: scenario.written_for_s,
-        },
+        false => Counting::in_seconds(scenario),
     }
 }
 

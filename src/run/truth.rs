@@ -106,12 +106,6 @@ impl Truth {
         self.pieces
     }
 
-    fn counting(&self) -> Counting {
-        Counting::Seconds {
-            written_for_s: self.scenario.written_for_s,
-        }
-    }
-
     /// The index of the era that `time_s` (s) lies in.
     fn era_at(&self, time_s: f64) -> usize {
         let begun = self.eras.partition_point(|era| era.begin_s <= time_s);
@@ -123,7 +117,12 @@ impl Truth {
         let index = self.era_at(begin);
         let next_era = self.eras.get(index + 1);
         let next_era = next_era.map_or(f64::INFINITY, |era| era.begin_s);
-        pushes::next_after(&self.eras[index].pushes, self.counting(), begin).min(next_era)
+        pushes::next_after(
+            &self.eras[index].pushes,
+            Counting::in_seconds(&self.scenario),
+            begin,
+        )
+        .min(next_era)
     }
 
     /// The forces of the piece from `begin` to [`end_s`](Self::end_s), s.
@@ -138,7 +137,12 @@ impl Truth {
             gravity: era.gravity,
             pushes: Vec::new(),
         };
-        pushes::acting(&era.pushes, self.counting(), &stretch, &mut loads.pushes);
+        pushes::acting(
+            &era.pushes,
+            Counting::in_seconds(&self.scenario),
+            &stretch,
+            &mut loads.pushes,
+        );
         loads
     }
 
@@ -152,17 +156,12 @@ impl Truth {
 }
 
 fn eras(scenario: &Scenario) -> Vec<Era> {
-    let mut clock = Clock::new(scenario.motion.time_step_s);
     let mut eras = vec![Era {
         begin_s: 0.0,
         gravity: scenario.motion.gravity,
         pushes: scenario.pushes.clone(),
     }];
-    for edit in &scenario.edits {
-        let begin_s = clock.time_s(edit.step);
-        if edit.touches.time_step {
-            clock.change(edit.step, edit.motion.time_step_s);
-        }
+    for (begin_s, edit) in Clock::edits(scenario) {
         let era = Era {
             begin_s,
             gravity: edit.motion.gravity,

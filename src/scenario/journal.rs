@@ -276,12 +276,8 @@ impl Journal {
     /// A push as a table of its own; where edits have added pushes, whose numbers must stay, as one more edit.
     fn push_at_the_end(&self, push: PushFile) -> Act {
         let file = self.file();
-        let number = |key: &String| key.split('.').nth(1)?.parse::<usize>().ok();
         let set = file.edit.iter().flat_map(|edit| edit.set.keys());
-        let added = set
-            .filter(|key| key.starts_with("push."))
-            .filter_map(number)
-            .max();
+        let added = set.filter_map(|key| number_of_push(key)).max();
         match (added, Table::try_from(&push)) {
             (Some(last), Ok(table)) if last >= file.push.len() => Act::Edit(Table::from_iter([(
                 format!("push.{}", last + 1),
@@ -382,13 +378,13 @@ impl Journal {
     }
 
     fn is_of_an_added_push(&self, key: &str) -> bool {
-        let number = key
-            .strip_prefix("push.")
-            .and_then(|rest| rest.split('.').next());
-        number
-            .and_then(|number| number.parse().ok())
-            .is_some_and(|number: usize| number >= self.base.push.len())
+        number_of_push(key).is_some_and(|number| number >= self.base.push.len())
     }
+}
+
+/// The number, from 0, of the push that the dotted `key` belongs to.
+pub fn number_of_push(key: &str) -> Option<usize> {
+    key.strip_prefix("push.")?.split('.').next()?.parse().ok()
 }
 
 impl Entry {

@@ -5,11 +5,11 @@ use super::history::Turn;
 use super::next_push::{Field, NextPush};
 use super::{BELONGS, Lab, dialogs::Asking};
 use crate::run::Clock;
-use crate::run::pushes::{Counting, seconds};
-use crate::scenario::journal::{Act, Effect};
+use crate::run::pushes::acts_s;
+use crate::scenario::journal::{Act, Effect, number_of_push};
 use crate::scenario::parameters::{self, Parameter, parameters};
 use crate::scenario::present::in_force;
-use crate::scenario::{Scenario, Window};
+use crate::scenario::Scenario;
 use crate::workbench::action::Direction;
 use crate::workbench::view::Pane;
 use std::sync::Arc;
@@ -235,13 +235,7 @@ impl Lab {
         let (step, time_s) = (simulation.step_number(), simulation.state().time_s);
         let (_, pushes) = in_force(simulation.scenario(), step);
         let push = number_of_push(key).and_then(|number| pushes.get(number));
-        let counting = Counting::Seconds {
-            written_for_s: simulation.scenario().written_for_s,
-        };
-        push.is_some_and(|push| {
-            let goes_on = push.accumulates && matches!(push.window, Window::Steps { .. });
-            !goes_on && seconds(push.window, counting).1 <= time_s
-        })
+        push.is_some_and(|push| acts_s(push, simulation.scenario()).1 <= time_s)
     }
 
     /// Does `act` here; gives what is to be said of what has made way for it.
@@ -439,9 +433,4 @@ fn about(parameter: &Parameter) -> Vec<String> {
     };
     lines.push(when.to_owned());
     lines
-}
-
-/// The number of the push that the dotted `key` belongs to.
-fn number_of_push(key: &str) -> Option<usize> {
-    key.strip_prefix("push.")?.split('.').next()?.parse().ok()
 }

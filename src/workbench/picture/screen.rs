@@ -45,7 +45,7 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
             scenario: run.scenario(),
             motion: &lab.motion(),
             readouts,
-            editor: Some(lab.editor()),
+            editor: lab.editor(),
             view,
         }
         .render(area, buf),

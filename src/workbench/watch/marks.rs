@@ -1,8 +1,8 @@
 //! What was done to a run and when: the pushes that act on it, and the edits made during it.
 
 use crate::run::Clock;
-use crate::run::pushes::{self, Counting};
-use crate::scenario::{Push, Scenario, Window};
+use crate::run::pushes::acts_s;
+use crate::scenario::{Push, Scenario};
 
 /// Times at which something is done to a run, in their order.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,25 +16,17 @@ pub struct Marks {
 impl Marks {
     /// The marks of the run of `scenario`.
     pub fn of(scenario: &Scenario) -> Self {
-        let counting = Counting::Seconds {
-            written_for_s: scenario.written_for_s,
-        };
-        let mut clock = Clock::new(scenario.motion.time_step_s);
         let mut edits = Vec::new();
         let mut stretches = Vec::new();
         let (mut begin_s, mut acting) = (0.0, &scenario.pushes);
-        for edit in &scenario.edits {
-            let time_s = clock.time_s(edit.step);
-            if edit.touches.time_step {
-                clock.change(edit.step, edit.motion.time_step_s);
-            }
+        for (time_s, edit) in Clock::edits(scenario) {
             if edits.last() != Some(&time_s) {
                 edits.push(time_s);
             }
-            stretches.extend(between(acting, counting, (begin_s, time_s)));
+            stretches.extend(between(acting, scenario, (begin_s, time_s)));
             (begin_s, acting) = (time_s, &edit.pushes);
         }
-        stretches.extend(between(acting, counting, (begin_s, f64::INFINITY)));
+        stretches.extend(between(acting, scenario, (begin_s, f64::INFINITY)));
         Self {
             pushes: joined(stretches),
             edits,
@@ -42,28 +34,21 @@ impl Marks {
     }
 }
 
-/// From when to when each of `pushes` acts inside `era`, s.
+/// From when to when each of `pushes` of `scenario` acts inside `era`, s.
 fn between(
     pushes: &[Push],
-    counting: Counting,
+    scenario: &Scenario,
     era: (f64, f64),
 ) -> impl Iterator<Item = (f64, f64)> {
-    let seconds = move |push: &Push| {
-        let (begin, end) = window_s(push, counting);
+    let inside = move |push: &Push| {
+        let (begin, end) = acts_s(push, scenario);
         (begin.max(era.0), end.min(era.1))
     };
     pushes
         .iter()
         .filter(|push| push.force.norm() > 0.0)
-        .map(seconds)
+        .map(inside)
         .filter(|(begin, end)| begin < end)
-}
-
-/// From when to when `push` acts, s: an accumulating one does not end.
-fn window_s(push: &Push, counting: Counting) -> (f64, f64) {
-    let (begin, end) = pushes::seconds(push.window, counting);
-    let grows = push.accumulates && matches!(push.window, Window::Steps { .. });
-    (begin, if grows { f64::INFINITY } else { end })
 }
 
 /// `stretches` in order, those that touch made one.

@@ -106,10 +106,7 @@ impl Playback {
     pub fn go_to(&mut self, step: u64) {
         self.set_running(false);
         self.run.set_out_for(step);
-        self.arrive();
-        if step > self.run.furthest() {
-            self.take_steps(step - self.step_number());
-        }
+        self.go_on_to(step);
     }
 
     /// Goes on in `scenario`, which has the same past up to `step`, and stops there.
@@ -117,6 +114,11 @@ impl Playback {
         self.set_running(false);
         self.run.set_out_for(step);
         self.run.go_on_in(scenario);
+        self.go_on_to(step);
+    }
+
+    /// On to where it has set out for, and from there to `step`, where it has not been.
+    fn go_on_to(&mut self, step: u64) {
         self.arrive();
         if step > self.run.furthest() {
             self.take_steps(step - self.step_number());

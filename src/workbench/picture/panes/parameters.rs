@@ -19,10 +19,9 @@ use std::borrow::Cow;
 const VALUE_END: u16 = 18;
 /// Column of units.
 const UNIT: u16 = 19;
-/// Width of a column of lines, and how many stand side by side at most.
+/// Width of a column of lines.
 const COLUMN: u16 = 26;
-const MOST_COLUMNS: u16 = 3;
-/// As [`MOST_COLUMNS`], of the values that can be edited; the readouts have one more.
+/// How many columns of values that can be edited stand side by side at most; the readouts have one more.
 const MOST_EDITED: u16 = 6;
 /// What marks the selected line, and a list that goes on above or below.
 const SELECTED: &str = "►";
@@ -39,8 +38,8 @@ pub struct Parameters<'a> {
     pub motion: &'a Motion,
     /// The latest reading of its run.
     pub readouts: &'a Readouts,
-    /// What can be edited, where anything can.
-    pub editor: Option<&'a Editor>,
+    /// What can be edited.
+    pub editor: &'a Editor,
     /// How it is looked at.
     pub view: &'a View,
 }
@@ -61,7 +60,7 @@ struct Row {
 impl Widget for Parameters<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let focus = self.view.focus == Pane::Parameters;
-        let editor = self.editor.filter(|_| focus);
+        let editor = Some(self.editor).filter(|_| focus);
         let inside = frame(&title(editor), area, focus, &self.view.theme, buf);
         if inside.is_empty() {
             return;
@@ -69,34 +68,12 @@ impl Widget for Parameters<'_> {
         match (editor, self.view.filled) {
             (Some(editor), true) => self.edited_and_read(editor, inside, buf),
             (Some(editor), false) => self.edited_above_read(editor, inside, buf),
-            (None, true) => self.all(inside, buf),
-            (None, false) => self.most_important(inside, buf),
+            (None, _) => self.most_important(inside, buf),
         }
     }
 }
 
 impl Parameters<'_> {
-    /// Every line, in columns, scrolled where even they are too short.
-    fn all(&self, area: Rect, buf: &mut Buffer) {
-        let height = area.height as usize;
-        let count = (area.width / COLUMN).clamp(1, MOST_COLUMNS) as usize;
-        let rows = self.rows();
-        let hidden = rows.len().saturating_sub(count * height);
-        if hidden > 0 {
-            let (lines, note) = above_last(area);
-            let room = lines.height as usize * count;
-            let scroll = self.view.scroll.min(rows.len() - room);
-            let rows = rows.get(scroll..).unwrap_or_default();
-            self.columns(rows.chunks(lines.height.max(1) as usize), lines, buf);
-            let more = rows.len().saturating_sub(room);
-            self.note(&format!("Up, Down: {more} more below"), note, buf);
-        } else if let Some(columns) = by_group(&rows, height).filter(|all| all.len() <= count) {
-            self.columns(columns.into_iter(), area, buf);
-        } else {
-            self.columns(rows.chunks(height), area, buf);
-        }
-    }
-
     fn columns<'r>(&self, columns: impl Iterator<Item = &'r [Row]>, area: Rect, buf: &mut Buffer) {
         for (rows, column) in columns.zip(0..MOST_EDITED) {
             let place = Rect {
@@ -117,11 +94,7 @@ impl Parameters<'_> {
         let (lines, note) = above_last(area);
         let rows = fitting(rows, lines.height as usize);
         self.lines(&rows, lines, buf);
-        let keys = match self.view.focus {
-            Pane::Parameters => "f: all of them",
-            _ => "e, then f: all of them",
-        };
-        self.note(keys, note, buf);
+        self.note("e, then f: all of them", note, buf);
     }
 
     /// The values to edit above, the key of the selected one, and the readouts to watch below.
