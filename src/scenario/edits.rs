@@ -2,7 +2,8 @@
 
 use super::dotted::set_key;
 use super::file::{EditFile, MotionFile, PushFile, ScenarioFile};
-use super::keys::{self, KEYS};
+use super::journal::Effect;
+use super::keys::{self, EDITABLE_MOTION, KEYS};
 use super::model::{Body, Edit, Touches};
 use super::parts::{motion, pushes};
 use super::problem::{Problem, nearest};
@@ -100,25 +101,20 @@ fn moved(problem: Problem, here: &str, key: &str) -> Problem {
 }
 
 fn may_edit(key: &str, value: &toml::Value) -> Result<(), Problem> {
-    const MOTION: [&str; 3] = [
-        "motion.gravity_m_per_s2",
-        "motion.scheme",
-        "motion.time_step_s",
-    ];
-    if MOTION.contains(&key) || key.starts_with("push.") {
+    if Effect::of(key) == Effect::FromHere {
         return Ok(());
     }
     if value.is_table() {
         let rule = "must be a dotted key in quotes, such as \"motion.time_step_s\" = 0.05";
         return Err(Problem::at(key, rule));
     }
-    let rule = match nearest(key, MOTION.into_iter()) {
+    let rule = match nearest(key, EDITABLE_MOTION.into_iter()) {
         near if near.starts_with("did") && !KEYS.iter().any(|known| known.path == key) => {
             format!("unknown key: {near}")
         }
         _ => format!(
             "cannot be edited during a run (only {} and push.N can): set it in the scenario",
-            MOTION.join(", ")
+            EDITABLE_MOTION.join(", ")
         ),
     };
     Err(Problem::at(key, rule))

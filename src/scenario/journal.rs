@@ -5,6 +5,7 @@
 //! back, and brought again.
 
 use super::file::{EditFile, PushFile, ScenarioFile};
+use super::keys::EDITABLE_MOTION;
 use super::problem::brief;
 use super::{Document, Problems, Scenario, parameters, rescale};
 use serde::{Deserialize, Serialize};
@@ -71,27 +72,11 @@ pub enum Effect {
 impl Effect {
     /// What setting the dotted `key` does.
     pub fn of(key: &str) -> Self {
-        const LIVE: [&str; 4] = [
-            "motion.gravity_m_per_s2",
-            "motion.scheme",
-            "motion.time_step_s",
-            "push.",
-        ];
-        const IDLE: [&str; 6] = [
-            "title",
-            "about",
-            "source",
-            "view.",
-            "motion.steps",
-            "expected.",
-        ];
-        let is_one_of = |keys: &[&str]| {
-            keys.iter()
-                .any(|known| key == *known || (known.ends_with('.') && key.starts_with(known)))
-        };
-        if is_one_of(&LIVE) {
+        const IDLE: [&str; 4] = ["title", "about", "source", "motion.steps"];
+        const IDLE_TABLES: [&str; 2] = ["view.", "expected."];
+        if EDITABLE_MOTION.contains(&key) || key.starts_with("push.") {
             Self::FromHere
-        } else if is_one_of(&IDLE) {
+        } else if IDLE.contains(&key) || IDLE_TABLES.iter().any(|table| key.starts_with(table)) {
             Self::None
         } else {
             Self::NewRun

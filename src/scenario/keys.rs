@@ -3,7 +3,8 @@
 //! Every file and every `--set` is held against it, so that a wrong name or value is refused in the same words
 //! wherever it comes from. Rules that need more than one value are in `checks` and `parts`.
 
-use super::problem::{Problem, is_steering, nearest};
+pub use super::kind::{Kind, Range};
+use super::problem::{Problem, nearest};
 use crate::physics::scheme;
 use toml::Value;
 
@@ -83,40 +84,15 @@ impl Absent {
     }
 }
 
-/// What a key may hold.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    /// Text on one line, not empty.
-    Line,
-    /// Text that may have several lines.
-    Paragraph,
-    /// A finite number.
-    Number(Range),
-    /// A whole number, from the least to the most.
-    Whole(i64, i64),
-    /// Three finite numbers.
-    Vector,
-    /// true or false.
-    Flag,
-    /// One of these words.
-    OneOf(&'static [&'static str]),
-    /// A table of dotted keys and their new values (run files).
-    Settings,
-}
-
-/// The range of a number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Range {
-    /// Any finite number.
-    Any,
-    /// Greater than zero.
-    Positive,
-    /// Zero or greater.
-    NotNegative,
-}
-
 /// The traced point where a scenario names none.
 pub const TOP: &str = "top";
+
+/// What of `[motion]` may be edited as a run goes on.
+pub const EDITABLE_MOTION: [&str; 3] = [
+    "motion.gravity_m_per_s2",
+    "motion.scheme",
+    "motion.time_step_s",
+];
 
 /// Gravity where a scenario gives none, m/s² (the report's figure).
 pub const GRAVITY: f64 = 9.8;
@@ -358,131 +334,6 @@ pub fn join(under: &str, name: &str) -> String {
     } else {
         format!("{under}.{name}")
     }
-}
-
-impl Kind {
-    /// Whether `value` is of this kind and in its range.
-    ///
-    /// # Errors
-    /// The rule that it breaks.
-    pub fn check(self, value: &Value) -> Result<(), String> {
-        match self {
-            Line => text(value).and_then(check_line),
-            Paragraph => text(value).and_then(|text| check_characters(text, "\n")),
-            Number(range) => number(value).and_then(|number| range.check(number)),
-            Whole(least, most) => check_whole(value, least, most),
-            Vector => check_vector(value),
-            Flag => value
-                .as_bool()
-                .map(|_| ())
-                .ok_or_else(|| not("true or false", value)),
-            OneOf(words) => text(value).and_then(|text| check_word(text, words)),
-            Settings => value
-                .as_table()
-                .map(|_| ())
-                .ok_or_else(|| not("a table of keys and values", value)),
-        }
-    }
-}
-
-impl Range {
-    fn check(self, number: f64) -> Result<(), String> {
-        match self {
-            Positive if number <= 0.0 => Err("must be greater than zero".to_owned()),
-            NotNegative if number < 0.0 => Err("must not be negative".to_owned()),
-            _ => Ok(()),
-        }
-    }
-}
-
-fn not(wanted: &str, value: &Value) -> String {
-    let found = match value {
-        Value::String(_) => "text",
-        Value::Integer(_) | Value::Float(_) => "a number",
-        Value::Boolean(_) => "true or false",
-        Value::Datetime(_) => "a date",
-        Value::Array(_) => "an array",
-        Value::Table(_) => "a table",
-    };
-    format!("must be {wanted}, not {found}")
-}
-
-fn text(value: &Value) -> Result<&str, String> {
-    value.as_str().ok_or_else(|| not("text", value))
-}
-
-fn number(value: &Value) -> Result<f64, String> {
-    let number = match value {
-        Value::Integer(whole) => *whole as f64,
-        Value::Float(number) => *number,
-        other => return Err(not("a number", other)),
-    };
-    if number.is_finite() {
-        Ok(number)
-    } else {
-        Err("must be a finite number".to_owned())
-    }
-}
-
-fn check_line(text: &str) -> Result<(), String> {
-    if text.trim().is_empty() {
-        return Err("must not be empty".to_owned());
-    }
-    check_characters(text, "")
-}
-
-fn check_characters(text: &str, allowed: &str) -> Result<(), String> {
-    match text
-        .chars()
-        .find(|&c| is_steering(c) && !allowed.contains(c))
-    {
-        Some(c) => Err(format!(
-            "must hold no control or direction characters (here U+{:04X})",
-            c as u32
-        )),
-        None => Ok(()),
-    }
-}
-
-fn check_whole(value: &Value, least: i64, most: i64) -> Result<(), String> {
-    let whole = value.as_integer().ok_or_else(|| match value {
-        Value::Float(_) => "must be a whole number".to_owned(),
-        other => not("a whole number", other),
-    })?;
-    if whole < least {
-        return Err(format!("must be {least} or more"));
-    }
-    if whole > most {
-        return Err(format!("must be at most {most}"));
-    }
-    Ok(())
-}
-
-fn check_vector(value: &Value) -> Result<(), String> {
-    let items = value
-        .as_array()
-        .ok_or_else(|| not("three numbers in brackets", value))?;
-    if items.len() != 3 {
-        return Err(format!("must be three numbers, not {}", items.len()));
-    }
-    items.iter().try_for_each(|item| {
-        number(item)
-            .map(|_| ())
-            .map_err(|rule| format!("each {rule}"))
-    })
-}
-
-fn check_word(word: &str, words: &[&str]) -> Result<(), String> {
-    if words.contains(&word) {
-        return Ok(());
-    }
-    let near = nearest(word, words.iter().copied());
-    let near = if near.starts_with("did") {
-        format!("; {near}")
-    } else {
-        String::new()
-    };
-    Err(format!("must be one of {}{near}", words.join(", ")))
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ mod edits;
 pub mod file;
 pub mod journal;
 pub mod keys;
+mod kind;
 mod model;
 pub mod nudge;
 pub mod parameters;
