@@ -1,11 +1,6 @@
 //! The health of a run: when it warns, whether what it advises is right, and whether its numbers are those of the run.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-#[path = "support/dice.rs"]
-mod dice;
-
-use dice::Dice;
+use crate::support::dice::Dice;
 use gyrolab::analysis::health::{Advice, BELIEVED_WITHIN, Health, Picture, advise};
 use gyrolab::analysis::{Monitor, Trial};
 use gyrolab::physics::SchemeInfo;
@@ -466,8 +461,11 @@ fn drifts_and_deviation_are_those_of_known_cases() {
 fn distances_are_those_from_the_reference_motions() {
     // Rows: t (s), axle, ...; the traced point is 1.5 m up the axle.
     for (momentum, table) in [
-        ("[0, 0, 100]", include_str!("reference/exact/cusped.csv")),
-        ("[0, -20, 30]", include_str!("reference/exact/looping.csv")),
+        ("[0, 0, 100]", include_str!("../reference/exact/cusped.csv")),
+        (
+            "[0, -20, 30]",
+            include_str!("../reference/exact/looping.csv"),
+        ),
     ] {
         let scenario = reference_top(momentum);
         let mut simulation = Simulation::new(Arc::new(scenario));

@@ -1,7 +1,5 @@
 //! A run is a scenario and its journal: what an edit made at a step changes, from when on, and what it leaves alone.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use gyrolab::export::{CsvWriter, stream};
 use gyrolab::physics::{Loads, SchemeInfo};
 use gyrolab::run::{Sample, Simulation};

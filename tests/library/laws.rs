@@ -1,7 +1,5 @@
 //! Laws that the schemes keep, or break in a way that is known.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)]
-
 use gyrolab::physics::report::Report;
 use gyrolab::physics::{Body, Loads, PointForce, PointMass, Scheme, SchemeInfo, State, rotation};
 use nalgebra::{Complex, Matrix3, Vector3};

@@ -1,8 +1,6 @@
 //! Files as accidents leave them: whatever is cut out of a scenario, swapped, or put in, it is refused in printable
 //! words or it runs, and never does the program panic.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use gyrolab::export::COLUMNS;
 use gyrolab::physics::scheme;
 use gyrolab::run::{Sample, Simulation};

@@ -1,7 +1,5 @@
 //! The values of a scenario one at a time: listed, nudged, typed, changed.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use gyrolab::scenario::file::ScenarioFile;
 use gyrolab::scenario::parameters::{changed, parameters, table_at, table_of};
 use gyrolab::scenario::presets::PRESETS;

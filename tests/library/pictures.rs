@@ -1,7 +1,5 @@
 //! Single panes on a sheet of their own: the run before, pushes and edits.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use gyrolab::scenario::{Document, presets};
 use gyrolab::workbench::lab::editor::{Editor, Line};
 use gyrolab::workbench::lab::form::{Field, Form};

@@ -1,7 +1,5 @@
 //! A scenario that starts where a run stands goes on as the run does.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use gyrolab::physics::State;
 use gyrolab::physics::observables::position;
 use gyrolab::run::Simulation;

@@ -1,7 +1,5 @@
 //! Every shipped preset: it is complete, and it does what it says.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use gyrolab::export::Column;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::presets::{PRESETS, Preset};

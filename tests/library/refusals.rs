@@ -1,8 +1,6 @@
 //! What is refused, and in which words: every message names the file, the line, the key and the rule, so that one who
 //! has never seen the code can act on it.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use gyrolab::scenario::Document;
 use gyrolab::scenario::problem::is_steering;
 use std::fs;

@@ -1,12 +1,7 @@
 //! A run is its scenario and its journal: whatever the user does, and in whatever order, the saved run file replays it
 //! to the same last bit, and going back and forward again leads through the same numbers.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-#[path = "support/desk.rs"]
-mod desk;
-
-use desk::Desk;
+use crate::support::desk::Desk;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
 use gyrolab::workbench::keymap::Key;

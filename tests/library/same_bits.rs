@@ -1,7 +1,5 @@
 //! The same run gives the same bits everywhere: what could differ between processors or C libraries is not used.
 
-#![allow(clippy::unwrap_used)]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,6 @@
 //! What every scheme of the table must do: converge with the order it claims, be worth its cost, keep what it keeps, and
 //! take a run over from any other.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use gyrolab::analysis::Trial;
 use gyrolab::export::{CsvWriter, stream};
 use gyrolab::physics::scheme::SCHEMES;

@@ -1,7 +1,5 @@
 //! The ways to state the start: tilt, turn and roll, momentum or spin, a steady precession.
 
-#![allow(clippy::unwrap_used, clippy::panic, non_snake_case)]
-
 use gyrolab::physics::observables::{angular_velocity, tilt_deg};
 use gyrolab::physics::rotation;
 use gyrolab::run::Simulation;

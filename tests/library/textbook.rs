@@ -1,8 +1,6 @@
 //! The textbook's top (ring of 5 kg at 1 m: I1 = 6.6, I3 = 3.2, mgl = 49), measured on runs of the shipped presets
 //! and held against figures from elliptic integrals (30 digits) that know nothing of any stepping.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)]
-
 use gyrolab::run::{Sample, Simulation};
 use gyrolab::scenario::Document;
 use std::sync::Arc;

@@ -1,7 +1,5 @@
 //! What theory says of the textbook's tops, and what the instruments measure on their runs.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use gyrolab::analysis::theory::Path;
 use gyrolab::analysis::{Health, Measured, Monitor, Theory};
 use gyrolab::export::{Readouts, Summary};

@@ -1,12 +1,7 @@
 //! The exact motion of whole scenarios, by `Truth` and by the scheme `exact`, against an independent integration
 //! (Dormand-Prince 8(5,3), tolerance 1e-15) that reads the same numbers and shares no code with either.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, dead_code)]
-
-#[path = "support/dice.rs"]
-mod dice;
-
-use dice::Dice;
+use crate::support::dice::Dice;
 use differential_equations::prelude::*;
 use gyrolab::physics::exact::Kind;
 use gyrolab::physics::{SchemeInfo, State};

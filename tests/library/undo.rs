@@ -1,11 +1,6 @@
 //! Taking back and bringing again, by keys, where several edits meet.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-#[path = "support/desk.rs"]
-mod desk;
-
-use desk::Desk;
+use crate::support::desk::Desk;
 use gyrolab::scenario::Document;
 use gyrolab::scenario::file::PushFile;
 use gyrolab::scenario::journal::{Act, Journal};

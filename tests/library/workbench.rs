@@ -1,8 +1,6 @@
 //! The lab from its keys to its picture, without a terminal: pictures of every mode, journeys, and properties at
 //! random sizes and states.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use gyrolab::scenario::Document;
 use gyrolab::scenario::presets::PRESETS;
 use gyrolab::workbench::app;

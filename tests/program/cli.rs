@@ -1,9 +1,6 @@
 //! The program itself, against what it promises: exit codes, what goes to stdout and what to stderr, files that
 //! appear whole or not at all, and CSVs that run again to the same bytes.
 
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use std::fs;
 use std::io::{Read, Write};
 use std::os::unix::fs::{PermissionsExt, symlink};

@@ -1,8 +1,5 @@
 //! `gyrolab compare`: its table, its CSV, and how it ends.
 
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use std::fs;
 use std::io::Read;
 use std::path::Path;

@@ -1,16 +1,8 @@
 //! What a user does in the lab from its opening to its end, and what is on the screen and the disk then: the program
 //! itself in a pty.
 
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-#[path = "support/dice.rs"]
-mod dice;
-#[path = "support/pty.rs"]
-mod pty;
-
-use dice::Dice;
-use pty::{Ground, Terminal};
+use crate::support::dice::Dice;
+use crate::support::pty::{Ground, Terminal};
 use std::fs;
 use std::thread;
 use std::time::{Duration, Instant};

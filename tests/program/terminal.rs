@@ -1,12 +1,6 @@
 //! The program itself in a pty: what it does to a terminal, and how it gives it back at every end.
 
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-#[path = "support/pty.rs"]
-mod pty;
-
-use pty::{Ground, LEAVES_ALTERNATE_SCREEN, SHOWS_CURSOR, Terminal};
+use crate::support::pty::{Ground, LEAVES_ALTERNATE_SCREEN, SHOWS_CURSOR, Terminal};
 use std::thread;
 use std::time::{Duration, Instant};
 

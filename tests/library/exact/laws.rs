@@ -1,6 +1,6 @@
 //! The closed form against an independent integration (Dormand-Prince 8(5,3), tolerance 1e-15), and the laws it must keep.
 
-use crate::common::{Dice, Start, greatest};
+use super::common::{Dice, Start, greatest};
 use differential_equations::prelude::*;
 use gyrolab::physics::exact::LagrangeTop;
 use nalgebra::{Matrix3, SVector, Vector3};
@@ -181,10 +181,10 @@ fn degenerate_starts_are_limits_of_their_neighbours() {
     // Steady, upright, hanging, free, plane: from one part in 1e3 down to exactly there, the motion moves no farther than its start.
     let load = Vector3::new(0.0, 0.0, -49.0);
     let at = |tilt: f64, momentum: Vector3<f64>, load: Vector3<f64>| {
-        LagrangeTop::new(6.6, 3.2, load, crate::common::tilted(tilt), momentum).at(0.8)
+        LagrangeTop::new(6.6, 3.2, load, super::common::tilted(tilt), momentum).at(0.8)
     };
     let (z, push) = (Vector3::z(), Vector3::new(0.3, -0.2, 0.1));
-    let steady = crate::common::tilted(30.0) * Vector3::new(0.0, 2.945_444_198_542_434_7, 60.0);
+    let steady = super::common::tilted(30.0) * Vector3::new(0.0, 2.945_444_198_542_434_7, 60.0);
     for (tilt, momentum) in [
         (30.0, steady),
         (0.0, z * 40.0),
@@ -227,7 +227,7 @@ fn values_out_of_range_end_in_numbers_or_in_none_but_always_end() {
     let mut pick = || values[(dice.unit() * values.len() as f64) as usize];
     for _ in 0..20_000 {
         let orientation =
-            crate::common::tilted(40.0) * Matrix3::from_diagonal_element(1.0 + 0.0 * pick());
+            super::common::tilted(40.0) * Matrix3::from_diagonal_element(1.0 + 0.0 * pick());
         let (load, momentum) = (
             Vector3::from_fn(|_, _| pick()),
             Vector3::from_fn(|_, _| pick()),

@@ -1,6 +1,6 @@
 //! The closed form against motions known to many digits, and its readouts against the textbook table.
 
-use crate::common::{Known, Start, greatest, table, tilted};
+use super::common::{Known, Start, greatest, table, tilted};
 use gyrolab::physics::exact::LagrangeTop;
 use nalgebra::Vector3;
 
@@ -45,11 +45,11 @@ fn worst_of_reference(text: &str, momentum_body: [f64; 3]) -> f64 {
 #[test]
 fn cusped_and_looping_tops_agree_with_the_reference_to_rounding() {
     let cusped = worst_of_reference(
-        include_str!("../reference/exact/cusped.csv"),
+        include_str!("../../reference/exact/cusped.csv"),
         [0.0, 0.0, 100.0],
     );
     let looping = worst_of_reference(
-        include_str!("../reference/exact/looping.csv"),
+        include_str!("../../reference/exact/looping.csv"),
         [0.0, -20.0, 30.0],
     );
     println!("cusped {cusped:.1e}, looping {looping:.1e}");
@@ -77,7 +77,7 @@ fn allowed(start: &Start) -> f64 {
 
 #[test]
 fn degenerate_starts_agree_with_the_reference() {
-    for (start, known) in table(include_str!("../reference/exact/hard_starts.csv")) {
+    for (start, known) in table(include_str!("../../reference/exact/hard_starts.csv")) {
         let error = greatest(known.errors(&start.top().at(known.t), start.momentum_scale()));
         println!("{:32} {error:.1e}", start.name);
         assert!(error < allowed(&start), "{}: {error:e}", start.name);
@@ -86,7 +86,7 @@ fn degenerate_starts_agree_with_the_reference() {
 
 #[test]
 fn a_million_seconds_cost_no_more_than_rounding_of_the_frequencies() {
-    for (start, known) in table(include_str!("../reference/exact/far.csv")) {
+    for (start, known) in table(include_str!("../../reference/exact/far.csv")) {
         let error = greatest(known.errors(&start.top().at(known.t), start.momentum_scale()));
         let unit = f64::EPSILON * known.t * start.rates();
         println!("{:28} {error:.1e} = {:.2} units", start.name, error / unit);

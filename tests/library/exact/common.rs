@@ -3,9 +3,7 @@
 use gyrolab::physics::exact::LagrangeTop;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-#[path = "../support/dice.rs"]
-mod dice;
-pub use dice::Dice;
+pub use crate::support::dice::Dice;
 
 pub struct Start {
     pub name: String,

@@ -1,7 +1,5 @@
 //! An export in the background: the bytes of `gyrolab run -o`, whole or not at all.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use gyrolab::export::CsvWriter;
 use gyrolab::export::destination::DestinationError;
 use gyrolab::export::stream;
@@ -254,7 +252,7 @@ fn child() {
 fn a_farewell_leaves_nothing_of_it() {
     let folder = tempfile::tempdir().unwrap();
     let status = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "child"])
+        .args(["--exact", "exporting::child"])
         .env(CHILD, folder.path())
         .status();
     assert_eq!(status.unwrap().code(), Some(42));

@@ -1,6 +1,6 @@
 //! The Taylor series against known motions, an independent integration and the laws of any rigid body.
 
-use crate::common::{Dice, greatest, table};
+use super::common::{Dice, greatest, table};
 use differential_equations::prelude::*;
 use gyrolab::physics::exact::{AccurateMotion, LagrangeTop};
 use nalgebra::{Matrix3, Vector3};
@@ -98,15 +98,15 @@ fn growth(body: &Body, t: f64) -> f64 {
 fn the_reference_tops_are_followed_to_a_part_in_1e12() {
     for (text, momentum) in [
         (
-            include_str!("../reference/exact/cusped.csv"),
+            include_str!("../../reference/exact/cusped.csv"),
             Vector3::new(0.0, 0.0, 100.0),
         ),
         (
-            include_str!("../reference/exact/looping.csv"),
+            include_str!("../../reference/exact/looping.csv"),
             Vector3::new(0.0, -20.0, 30.0),
         ),
     ] {
-        let orientation = crate::common::tilted(45.0);
+        let orientation = super::common::tilted(45.0);
         let inertia = Matrix3::from_diagonal(&Vector3::new(8.35, 8.35, 3.2));
         let moment = Vector3::z() * Vector3::new(0.0, 0.0, -63.7).transpose();
         let mut motion = Body {
@@ -141,7 +141,7 @@ fn degenerate_tops_are_followed_too() {
         "pendulum separatrix from bottom",
         "near separatrix from afar",
     ];
-    for (start, known) in table(include_str!("../reference/exact/hard_starts.csv")) {
+    for (start, known) in table(include_str!("../../reference/exact/hard_starts.csv")) {
         if unstable.contains(&start.name.as_str())
             || start.name.contains("random")
             || start.name == "near upright 1e-3 slow"
@@ -258,7 +258,7 @@ fn bodies_on_one_line_and_values_that_are_no_numbers_are_refused() {
 #[test]
 fn the_phase_of_a_fast_top_is_off_by_rounding_of_its_rate_alone() {
     // 400 000 rad of spin. Without the carry of L the rate itself would wander, and the angle with the power 3/2 of time.
-    let orientation = crate::common::tilted(44.0);
+    let orientation = super::common::tilted(44.0);
     let (load, momentum) = (
         Vector3::new(0.0, 0.0, -27.72),
         orientation * Vector3::z() * 1000.0,

@@ -1,8 +1,5 @@
 //! Sessions on the disk, across processes that live, quit and are killed.
 
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use gyrolab::workbench::keep::farewell::{self, Farewell};
 use gyrolab::workbench::keep::session::{Content, Found, Session, resume};
 use std::fs;
@@ -454,7 +451,7 @@ struct Other {
 impl Other {
     fn begin(folder: &Path) -> Self {
         let mut child = Command::new(std::env::current_exe().unwrap())
-            .args(["--exact", "child", "--nocapture"])
+            .args(["--exact", "session::child", "--nocapture"])
             .env(CHILD, folder)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

@@ -1,0 +1,27 @@
+//! The library: physics, files, runs, what they are worth, and the lab without a terminal.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod exact;
+mod health;
+mod journal;
+mod laws;
+mod mangled;
+mod parameters;
+mod pictures;
+mod present;
+mod presets;
+mod reference;
+mod refusals;
+mod replay;
+mod same_bits;
+mod schemes;
+mod start;
+mod textbook;
+mod theory;
+mod truth;
+mod undo;
+mod workbench;

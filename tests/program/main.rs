@@ -1,0 +1,12 @@
+//! The program itself: its commands, and the lab in a pty.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod cli;
+mod compare;
+mod journeys;
+mod terminal;

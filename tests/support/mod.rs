@@ -1,0 +1,7 @@
+//! What several tests need.
+
+#![allow(dead_code, reason = "no test program needs all of it")]
+
+pub mod desk;
+pub mod dice;
+pub mod pty;
