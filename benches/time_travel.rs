@@ -4,8 +4,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+use gyrolab::observe::playback::Playback;
 use gyrolab::scenario::Document;
-use gyrolab::workbench::watch::playback::Playback;
 use std::sync::Arc;
 use std::time::Instant;
 

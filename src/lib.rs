@@ -12,7 +12,10 @@
 //! - [`run`]: a scenario and its journal of edits, played forward step by step. It is the one road forward in time.
 //! - [`analysis`]: what a run's numbers are worth: theory, measurement, health, comparisons.
 //! - [`export`]: what leaves the program: columns, CSV, summaries, and the files they are written to.
-//! - [`workbench`]: the live lab in the terminal; it watches a run and changes nothing in it.
+//! - [`observe`]: a run as it is watched: played at its pace, gone back into, and what the pictures need of it.
+//! - [`storage`]: what outlasts the screen: sessions, and exports in the background.
+//! - [`lab`]: what the user is working on, and everything that can be done to it.
+//! - [`tui`]: the terminal: keys that lead to actions, and the panes that draw the lab.
 //! - [`cli`]: the commands, and what each does with the rooms above.
 //!
 //! Frames: *world* has its origin at the pivot and +z up; *body* is fixed in the body and equals the world frame
@@ -24,7 +27,10 @@
 pub mod analysis;
 pub mod cli;
 pub mod export;
+pub mod lab;
+pub mod observe;
 pub mod physics;
 pub mod run;
 pub mod scenario;
-pub mod workbench;
+pub mod storage;
+pub mod tui;

@@ -2,17 +2,17 @@
 
 use super::args::{Changes, Color, Look, Markers, Screen, ShowArgs, WorkbenchArgs};
 use super::scenario::changed;
+use crate::lab::Lab;
+use crate::lab::view::View;
+use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::{Background, Theme};
 use crate::scenario::problem::printable;
 use crate::scenario::{Document, Scenario};
-use crate::workbench::app;
-use crate::workbench::keep::exporting;
-use crate::workbench::keep::session::{self, KeptAside, Session};
-use crate::workbench::lab::Lab;
-use crate::workbench::picture::screen;
-use crate::workbench::surroundings::{self, ColourChoice};
-use crate::workbench::view::View;
-use crate::workbench::view::markers::Marker;
-use crate::workbench::view::theme::{Background, Theme};
+use crate::storage::exporting;
+use crate::storage::session::{self, KeptAside, Session};
+use crate::tui::app;
+use crate::tui::screen;
+use crate::tui::surroundings::{self, ColourChoice};
 use anyhow::Context;
 use ratatui::layout::Rect;
 use std::io::{self, IsTerminal, Write};

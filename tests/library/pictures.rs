@@ -1,20 +1,20 @@
 //! Single panes on a sheet of their own: the run before, pushes and edits.
 
+use gyrolab::lab::editor::{Editor, Line};
+use gyrolab::lab::form::{Field, Form};
+use gyrolab::lab::view::markers::Marker;
+use gyrolab::lab::view::theme::{Background, Role, Theme};
+use gyrolab::lab::view::{Pane, View};
+use gyrolab::observe::ghost::Ghost;
+use gyrolab::observe::live::LiveRun;
+use gyrolab::observe::pace::Pace;
+use gyrolab::observe::readouts::Readouts;
 use gyrolab::scenario::{Document, presets};
-use gyrolab::workbench::lab::editor::{Editor, Line};
-use gyrolab::workbench::lab::form::{Field, Form};
-use gyrolab::workbench::picture::panes::form::FormPane;
-use gyrolab::workbench::picture::panes::from_above::FromAbove;
-use gyrolab::workbench::picture::panes::parameters::Parameters;
-use gyrolab::workbench::picture::panes::three_d::ThreeD;
-use gyrolab::workbench::picture::panes::traces::Traces;
-use gyrolab::workbench::view::markers::Marker;
-use gyrolab::workbench::view::theme::{Background, Role, Theme};
-use gyrolab::workbench::view::{Pane, View};
-use gyrolab::workbench::watch::ghost::Ghost;
-use gyrolab::workbench::watch::live::LiveRun;
-use gyrolab::workbench::watch::pace::Pace;
-use gyrolab::workbench::watch::readouts::Readouts;
+use gyrolab::tui::panes::form::FormPane;
+use gyrolab::tui::panes::from_above::FromAbove;
+use gyrolab::tui::panes::parameters::Parameters;
+use gyrolab::tui::panes::three_d::ThreeD;
+use gyrolab::tui::panes::traces::Traces;
 use proptest::prelude::*;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;

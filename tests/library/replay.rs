@@ -2,11 +2,11 @@
 //! to the same last bit, and going back and forward again leads through the same numbers.
 
 use crate::support::desk::Desk;
+use gyrolab::observe::playback::Playback;
+use gyrolab::observe::recording::Curve;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
-use gyrolab::workbench::keymap::Key;
-use gyrolab::workbench::watch::playback::Playback;
-use gyrolab::workbench::watch::recording::Curve;
+use gyrolab::tui::keymap::Key;
 use proptest::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;

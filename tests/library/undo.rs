@@ -4,7 +4,7 @@ use crate::support::desk::Desk;
 use gyrolab::scenario::Document;
 use gyrolab::scenario::file::PushFile;
 use gyrolab::scenario::journal::{Act, Journal};
-use gyrolab::workbench::keymap::Key;
+use gyrolab::tui::keymap::Key;
 use proptest::prelude::*;
 use std::time::Duration;
 

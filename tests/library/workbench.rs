@@ -1,15 +1,15 @@
 //! The lab from its keys to its picture, without a terminal: pictures of every mode, journeys, and properties at
 //! random sizes and states.
 
+use gyrolab::lab::view::markers::Marker;
+use gyrolab::lab::view::theme::{Background, Theme};
+use gyrolab::lab::view::{Pane, View};
+use gyrolab::lab::{Lab, Request};
 use gyrolab::scenario::Document;
 use gyrolab::scenario::presets::PRESETS;
-use gyrolab::workbench::app;
-use gyrolab::workbench::keymap::{BINDINGS, Key, Mode};
-use gyrolab::workbench::lab::{Lab, Request};
-use gyrolab::workbench::picture::screen;
-use gyrolab::workbench::view::markers::Marker;
-use gyrolab::workbench::view::theme::{Background, Theme};
-use gyrolab::workbench::view::{Pane, View};
+use gyrolab::tui::app;
+use gyrolab::tui::keymap::{BINDINGS, Key, Mode};
+use gyrolab::tui::screen;
 use proptest::prelude::*;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

@@ -6,8 +6,8 @@ use gyrolab::export::stream;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::presets::PRESETS;
 use gyrolab::scenario::{Document, Scenario};
-use gyrolab::workbench::keep::exporting::{Exporting, Written, estimate};
-use gyrolab::workbench::keep::farewell::{self, Farewell};
+use gyrolab::storage::at_exit::{self, Farewell};
+use gyrolab::storage::exporting::{Exporting, Written, estimate};
 use std::fs;
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
@@ -236,7 +236,7 @@ fn child() {
     let folder = Path::new(&folder);
     let exporting = Exporting::begin(endless(), &folder.join("run.csv"), every(1000), false);
     let mut exporting = exporting.unwrap();
-    farewell::say(Farewell::Stop);
+    at_exit::say(Farewell::Stop);
     let (step, _) = exporting.progress();
     while exporting.progress().0 == step {
         assert!(!exporting.is_done(), "it does not go on");
@@ -244,7 +244,7 @@ fn child() {
     }
     assert!(!exporting.is_done() && exporting.outcome().is_none());
     assert_eq!(names(folder).len(), 1, "the temporary file");
-    farewell::say(Farewell::End);
+    at_exit::say(Farewell::End);
     std::process::exit(42); // nothing is dropped
 }
 

@@ -1,7 +1,7 @@
 //! Sessions on the disk, across processes that live, quit and are killed.
 
-use gyrolab::workbench::keep::farewell::{self, Farewell};
-use gyrolab::workbench::keep::session::{Content, Found, Session, resume};
+use gyrolab::storage::at_exit::{self, Farewell};
+use gyrolab::storage::session::{Content, Found, Session, resume};
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::fs::PermissionsExt;
@@ -434,7 +434,7 @@ fn child() {
     println!("\nbegins at {was}");
     for line in std::io::stdin().lines().map(Result::unwrap) {
         if line == END {
-            farewell::say(Farewell::End);
+            at_exit::say(Farewell::End);
             std::process::exit(0); // nothing is dropped
         }
         session.note(content("run", &line));

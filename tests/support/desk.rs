@@ -2,14 +2,14 @@
 
 #![allow(dead_code, reason = "no test needs all of it")]
 
+use gyrolab::lab::Lab;
+use gyrolab::lab::view::View;
+use gyrolab::lab::view::markers::Marker;
+use gyrolab::lab::view::theme::{Background, Theme};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
-use gyrolab::workbench::app;
-use gyrolab::workbench::keymap::{Key, Mode};
-use gyrolab::workbench::lab::Lab;
-use gyrolab::workbench::view::View;
-use gyrolab::workbench::view::markers::Marker;
-use gyrolab::workbench::view::theme::{Background, Theme};
+use gyrolab::tui::app;
+use gyrolab::tui::keymap::{Key, Mode};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;

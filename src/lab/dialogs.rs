@@ -1,0 +1,424 @@
+//! What the lab asks for in a dialog, and what it does with the answer.
+
+use super::Lab;
+use super::form::{Field, Form};
+use crate::export::Destination;
+use crate::export::destination::DestinationError;
+use crate::lab::action::FieldEdit;
+use crate::scenario::present::scenario_from;
+use crate::scenario::{Document, Scenario, ScenarioFile};
+use crate::storage::exporting::{self, Estimate, Exporting, Written};
+use crate::tui::keymap::Mode;
+use std::io::Write;
+use std::num::NonZeroU64;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The keys that end a dialog.
+const KEYS: &str = "Enter takes it, typing replaces it, Esc leaves it";
+const KEYS_OF_TWO: &str = "Enter writes it, Up and Down the other line, Esc leaves it";
+
+/// A form on top of the lab, and what it is for.
+#[derive(Clone, Debug)]
+pub struct Dialog {
+    asking: Asking,
+    form: Form,
+    /// A file that exists, of which the user has been told.
+    told_of: Option<PathBuf>,
+}
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub(super) enum Asking {
+    /// The value of the line that is selected.
+    Value,
+    /// A step or a time.
+    GoTo,
+    /// Where the rows of a run go, and how many of them.
+    Export(Arc<Scenario>),
+    /// Where a file with this text goes, and what it is called.
+    Save(&'static str, String),
+}
+
+/// Why a file was not written.
+enum Refusal {
+    /// There is one already.
+    Exists(PathBuf),
+    /// For this reason.
+    Because(String),
+}
+
+impl Dialog {
+    /// What it looks like.
+    pub fn form(&self) -> &Form {
+        &self.form
+    }
+}
+
+impl Lab {
+    /// Opens a dialog with `fields` (label and text each).
+    pub(super) fn ask(
+        &mut self,
+        asking: Asking,
+        title: &str,
+        fields: &[(&str, String)],
+        info: &[&str],
+    ) {
+        let keys = if fields.len() > 1 { KEYS_OF_TWO } else { KEYS };
+        let fields = fields
+            .iter()
+            .map(|(label, text)| Field::new(label, text))
+            .collect();
+        let mut form = Form::new(title, fields, keys);
+        form.info = info.iter().map(|line| (*line).to_owned()).collect();
+        self.dialog = Some(Dialog {
+            asking,
+            form,
+            told_of: None,
+        });
+        self.mode = Mode::Dialog;
+    }
+
+    pub(super) fn close_dialog(&mut self) {
+        self.dialog = None;
+        self.mode = Mode::Lab;
+    }
+
+    pub(super) fn type_char(&mut self, typed: char) {
+        match &mut self.dialog {
+            Some(dialog) => dialog.form.type_char(typed),
+            None => self.browser.type_char(typed),
+        }
+        self.look_at_export();
+    }
+
+    pub(super) fn erase(&mut self) {
+        match &mut self.dialog {
+            Some(dialog) => dialog.form.erase(),
+            None => self.browser.erase(),
+        }
+        self.look_at_export();
+    }
+
+    pub(super) fn edit_field(&mut self, edit: FieldEdit) {
+        let Some(form) = self.dialog.as_mut().map(|dialog| &mut dialog.form) else {
+            return;
+        };
+        match edit {
+            FieldEdit::Delete => form.delete(),
+            FieldEdit::Clear => form.clear(),
+            FieldEdit::Left => form.left(),
+            FieldEdit::Right => form.right(),
+            FieldEdit::Home => form.home(),
+            FieldEdit::End => form.end(),
+            FieldEdit::Next => form.next_field(),
+            FieldEdit::Previous => form.previous_field(),
+        }
+        self.look_at_export();
+    }
+
+    /// Does with what is typed what it was asked for. What is refused stays, with the reason.
+    pub(super) fn accept(&mut self) {
+        let Some(dialog) = self.dialog.take() else {
+            return;
+        };
+        self.mode = Mode::Lab;
+        let (text, second) = (dialog.form.text(0), dialog.form.text(1));
+        let path = self.path_of(text);
+        let may_replace = |path: &Path| dialog.told_of.as_deref() == Some(path);
+        let done = match &dialog.asking {
+            Asking::Value => self.take_value(text).map_err(Refusal::Because),
+            Asking::GoTo => self.go_where(text).map_err(Refusal::Because),
+            Asking::Export(scenario) => self.export(scenario, &path, second, may_replace),
+            Asking::Save(what, content) => self.save(what, content, &path, may_replace),
+        };
+        match done {
+            Ok(()) => {}
+            Err(refusal) => {
+                self.dialog = Some(refused(dialog, refusal));
+                self.mode = Mode::Dialog;
+            }
+        }
+    }
+
+    pub(super) fn ask_for_export(&mut self) {
+        if self.exporting.is_some() {
+            return self.say("one export at a time: Esc stops the one under way");
+        }
+        let Some(scenario) = self.run_until_here("export") else {
+            return;
+        };
+        let path = self.free_name("", "csv");
+        let fields = [("file", path), ("every", "1".to_owned())];
+        let title = format!("export steps 0 to {} as CSV", scenario.steps);
+        self.ask(Asking::Export(scenario), &title, &fields, &[]);
+        self.look_at_export();
+    }
+
+    /// The run from step 0 to where it stands, if there is one to `act` on.
+    fn run_until_here(&mut self, act: &str) -> Option<Arc<Scenario>> {
+        let here = self.playback.step_number();
+        if here == 0 {
+            self.say(format!(
+                "there is nothing to {act} yet: the run stands at step 0"
+            ));
+            return None;
+        }
+        let file = self.history.present().journal.file_until(here);
+        match Document::from_file("the run", &file).and_then(|document| document.scenario()) {
+            Ok(scenario) => Some(Arc::new(scenario)),
+            Err(problems) => {
+                self.say(problems.in_one_line());
+                None
+            }
+        }
+    }
+
+    /// Says what the export that is asked for would come to.
+    fn look_at_export(&mut self) {
+        let Some(dialog) = &mut self.dialog else {
+            return;
+        };
+        let Asking::Export(scenario) = &dialog.asking else {
+            return;
+        };
+        dialog.form.info = match every(dialog.form.text(1)) {
+            Ok(every) => {
+                let Estimate { rows, bytes } = exporting::estimate(scenario, every);
+                let rows = format!("{} rows, about {}", super::grouped(rows), in_bytes(bytes));
+                vec![
+                    rows,
+                    "every 10 writes each tenth row, and the last".to_owned(),
+                ]
+            }
+            Err(reason) => vec![reason],
+        };
+    }
+
+    fn export(
+        &mut self,
+        scenario: &Arc<Scenario>,
+        path: &Path,
+        number: &str,
+        may_replace: impl Fn(&Path) -> bool,
+    ) -> Result<(), Refusal> {
+        let every = every(number).map_err(Refusal::Because)?;
+        is_named(path)?;
+        let begun = Exporting::begin(Arc::clone(scenario), path, every, may_replace(path));
+        self.exporting = Some(begun.map_err(refusal)?);
+        self.say("the export goes on in the background");
+        Ok(())
+    }
+
+    pub(super) fn stop_export(&mut self) {
+        if let Some(exporting) = &self.exporting {
+            exporting.cancel();
+        }
+    }
+
+    /// Looks after the export under way; says what has become of it.
+    pub(super) fn follow_export(&mut self) {
+        let Some(exporting) = &mut self.exporting else {
+            return;
+        };
+        self.changed = true;
+        let Some(outcome) = exporting.outcome() else {
+            return;
+        };
+        self.exporting = None;
+        match outcome {
+            Ok(written) => {
+                self.notice.keep_saying(told(&written));
+                self.written.push(written);
+            }
+            Err(reason) => self.notice.keep_saying(reason),
+        }
+    }
+
+    pub(super) fn export_in_words(&self) -> Option<String> {
+        let (step, steps) = self.exporting.as_ref()?.progress();
+        let percent = 100.0 * step as f64 / steps.max(1) as f64;
+        Some(format!("exporting: {percent:.0} %, Esc stops it"))
+    }
+
+    /// The file that is called `name`.
+    fn path_of(&self, name: &str) -> PathBuf {
+        match &self.folder {
+            Some(folder) if !name.is_empty() => folder.join(name),
+            _ => PathBuf::from(name),
+        }
+    }
+
+    /// Whether the lab may end: not at the first word while an export is under way.
+    pub(super) fn may_quit(&mut self, was_warned: bool) -> bool {
+        if self.exporting.is_none() || was_warned {
+            return true;
+        }
+        self.was_warned = true;
+        self.say("an export is under way: q again leaves it unfinished, and writes nothing");
+        false
+    }
+
+    pub(super) fn ask_where_to_save_the_run(&mut self) {
+        let Some(scenario) = self.run_until_here("save") else {
+            return;
+        };
+        let later = self.history.present().journal.later_than(scenario.steps);
+        let left_out =
+            format!("without {later} later actions: go to the end of the run to have them in it");
+        let up_to = format!(
+            "the run up to step {}: gyrolab run FILE gives the same rows as x",
+            scenario.steps
+        );
+        let info = match later {
+            0 => vec![up_to.as_str()],
+            _ => vec![up_to.as_str(), left_out.as_str()],
+        };
+        let path = self.free_name("-run", "toml");
+        self.ask(
+            Asking::Save("the run", scenario.to_toml()),
+            "save the run file",
+            &[("file", path)],
+            &info,
+        );
+    }
+
+    pub(super) fn ask_where_to_save_the_present(&mut self) {
+        match self.present_as_scenario() {
+            Err(reason) => self.say(reason),
+            Ok(file) => {
+                let content = toml::to_string(&file).unwrap_or_default(); // a checked file is one that can be written
+                let path = self.free_name("-from-here", "toml");
+                let info = "a scenario that starts from the state on the screen";
+                self.ask(
+                    Asking::Save("the scenario", content),
+                    "save the present state",
+                    &[("file", path)],
+                    &[info],
+                );
+            }
+        }
+    }
+
+    fn present_as_scenario(&self) -> Result<ScenarioFile, String> {
+        let run = self.run().simulation();
+        let scenario = scenario_from(run.scenario(), run.state(), run.step_number());
+        scenario
+            .map(|scenario| scenario.file)
+            .map_err(|problems| problems.in_one_line())
+    }
+
+    fn save(
+        &mut self,
+        what: &str,
+        content: &str,
+        path: &Path,
+        may_replace: impl Fn(&Path) -> bool,
+    ) -> Result<(), Refusal> {
+        is_named(path)?;
+        let mut destination = Destination::open(path, may_replace(path)).map_err(refusal)?;
+        let written = destination.write_all(content.as_bytes());
+        written.map_err(|error| {
+            Refusal::Because(format!("cannot write {}: {error}", path.display()))
+        })?;
+        destination.keep().map_err(refusal)?;
+        let name = full(path);
+        self.notice
+            .keep_saying(format!("{what} is in {}", name.display()));
+        Ok(())
+    }
+
+    /// A name for a file about the present run that no file here has yet.
+    fn free_name(&self, about: &str, extension: &str) -> String {
+        let stem = Path::new(self.name())
+            .file_stem()
+            .map_or("run".into(), |stem| stem.to_string_lossy());
+        let stem = stem.strip_suffix(about).unwrap_or(&stem);
+        let names = (1_u32..).map(|number| match number {
+            1 => format!("{stem}{about}.{extension}"),
+            _ => format!("{stem}{about}-{number}.{extension}"),
+        });
+        names
+            .take(1000)
+            .find(|name| !self.path_of(name).exists())
+            .unwrap_or_default()
+    }
+}
+
+/// The dialog again, with the reason.
+fn refused(mut dialog: Dialog, refusal: Refusal) -> Dialog {
+    let (complaint, told_of) = match refusal {
+        Refusal::Because(reason) => {
+            dialog.form.mark();
+            (reason, None)
+        }
+        Refusal::Exists(path) => (
+            format!("{} exists: Enter again replaces it", path.display()),
+            Some(path),
+        ),
+    };
+    let form = Form {
+        complaint: Some(complaint),
+        ..dialog.form
+    };
+    Dialog {
+        form,
+        told_of,
+        ..dialog
+    }
+}
+
+fn refusal(error: DestinationError) -> Refusal {
+    match error {
+        DestinationError::Exists(path) => Refusal::Exists(path),
+        other => Refusal::Because(other.fact()),
+    }
+}
+
+fn is_named(path: &Path) -> Result<(), Refusal> {
+    match path.as_os_str().is_empty() {
+        true => Err(Refusal::Because("the file needs a name".to_owned())),
+        false => Ok(()),
+    }
+}
+
+fn every(text: &str) -> Result<NonZeroU64, String> {
+    text.trim()
+        .parse()
+        .map_err(|_| "every must be a whole number, 1 or more".to_owned())
+}
+
+/// What has been written, and how to fetch it.
+fn told(written: &Written) -> String {
+    let rows = super::grouped(written.rows);
+    let end = match &written.not_finite {
+        Some(end) => format!(", as far as the numbers are finite (step {})", end.step - 1),
+        None => String::new(),
+    };
+    format!(
+        "wrote {rows} rows, {}{end}: {} · {}",
+        in_bytes(written.bytes),
+        written.path.display(),
+        exporting::scp_line(&written.path)
+    )
+}
+
+fn in_bytes(bytes: u64) -> String {
+    const UNITS: [&str; 4] = ["kB", "MB", "GB", "TB"];
+    let mut number = bytes as f64;
+    let mut unit = "B";
+    for larger in UNITS {
+        if number < 1000.0 {
+            break;
+        }
+        (number, unit) = (number / 1000.0, larger);
+    }
+    match unit == "B" || number >= 100.0 {
+        true => format!("{number:.0} {unit}"),
+        false => format!("{number:.1} {unit}"),
+    }
+}
+
+fn full(path: &Path) -> PathBuf {
+    std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
+}

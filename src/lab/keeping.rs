@@ -1,0 +1,168 @@
+//! The lab as a session keeps it: the runs with their journals, and where the lab stands.
+
+use super::Lab;
+use super::history::History;
+use super::next_push::NextPush;
+use crate::lab::view::{Pane, View};
+use crate::observe::pace::Speed;
+use crate::scenario::{Document, Problems, Scenario};
+use crate::storage::session::Content;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// The first words of what is kept: another version may have kept it otherwise.
+const FORM: u32 = 1;
+
+/// The runs and what was done to them.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Work {
+    form: u32,
+    history: History,
+}
+
+/// Where the lab stands.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Place {
+    step: u64,
+    /// Simulated seconds a second; none at top speed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    speed: Option<f64>,
+    shows_exact: bool,
+    window_s: f64,
+    focus: Pane,
+    filled: bool,
+    /// The file an export was being written to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    exporting: Option<String>,
+    next_push: NextPush,
+}
+
+/// What is kept cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Unreadable(String);
+
+impl Lab {
+    /// What a session is to keep of it.
+    pub fn content(&mut self) -> Content {
+        let work = match &self.work {
+            Some(work) => Arc::clone(work),
+            None => self.written_work(),
+        };
+        self.work = Some(Arc::clone(&work));
+        Content {
+            work,
+            place: toml::to_string(&self.place()).unwrap_or_default(),
+        }
+    }
+
+    fn written_work(&self) -> Arc<str> {
+        let work = Work {
+            form: FORM,
+            history: self.history.clone(),
+        };
+        toml::to_string(&work).unwrap_or_default().into()
+    }
+
+    fn place(&self) -> Place {
+        let speed = match self.playback.speed() {
+            Speed::Times(speed) => Some(speed),
+            Speed::Top => None,
+        };
+        Place {
+            step: self.step_to_keep(),
+            speed,
+            shows_exact: self.run().overlay().is_some(),
+            window_s: self.view.window_s,
+            focus: self.view.focus,
+            filled: self.view.filled,
+            exporting: self
+                .exporting
+                .as_ref()
+                .map(|exporting| exporting.path().display().to_string()),
+            next_push: self.next_push.clone(),
+        }
+    }
+
+    /// The lab that `content` was kept of, on its way to the step where it stood, and paused there; `view` says what it looks like on this screen.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    pub fn resumed(
+        content: &Content,
+        view: impl FnOnce(&Scenario) -> View,
+    ) -> Result<Self, Unreadable> {
+        let work: Work = read("the run", &content.work)?;
+        if work.form != FORM {
+            return Err(Unreadable(
+                "it was kept by another version of gyrolab".to_owned(),
+            ));
+        }
+        let place: Place = read("the place in it", &content.place)?;
+        let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
+        work.history.check().map_err(unreadable)?;
+        let present = work.history.present();
+        let scenario = present.journal.scenario().map_err(unreadable)?;
+        let scenario = Arc::new(scenario);
+        let mut view = view(&scenario);
+        (view.focus, view.filled) = (place.focus, place.filled);
+        if place.window_s.is_finite() && place.window_s >= 2.0 * scenario.motion.time_step_s {
+            view.window_s = place.window_s;
+        }
+        let mut lab = Self::new(&present.name.clone(), scenario, view, false);
+        lab.history = work.history;
+        lab.set_file(lab.file_as_opened());
+        lab.next_push = place.next_push.suited_to(lab.run().scenario());
+        lab.playback.set_end(lab.history.present().end_s);
+        lab.playback
+            .set_speed(place.speed.map_or(Speed::Top, Speed::Times));
+        lab.playback.set_exact(place.shows_exact);
+        lab.playback.go_to(place.step);
+        lab.returning_to = Some(place.step);
+        lab.is_another();
+        lab.notice.keep_saying(match place.exporting {
+            Some(path) => {
+                format!("as it was left; the export to {path} was cut off, x begins another")
+            }
+            None => "as it was left; space goes on".to_owned(),
+        });
+        lab.read_now();
+        Ok(lab)
+    }
+
+    /// Where it stands, or is on its way back to.
+    pub(super) fn step_to_keep(&self) -> u64 {
+        let to_go = self.playback.steps_to_go();
+        let bound_for = to_go.map(|to_go| self.playback.step_number().saturating_add(to_go));
+        let returning_to = self.returning_to.filter(|step| bound_for == Some(*step));
+        let destination = self.run().destination().or(returning_to);
+        destination.unwrap_or(self.playback.step_number())
+    }
+
+    /// What the run was opened from, where that is still there; else the run itself.
+    fn file_as_opened(&self) -> Arc<Scenario> {
+        let file = Document::open(self.name()).and_then(|document| document.scenario());
+        file.map_or_else(|_| Arc::clone(self.run().scenario()), Arc::new)
+    }
+
+    /// Says `text` before what is being said already.
+    pub fn tell_first(&mut self, text: &str) {
+        let said = self.notice.text().unwrap_or_default();
+        self.tell(format!("{text}{said}"));
+    }
+
+    /// Says `text` until the next key: something about the session that the user should know.
+    pub fn tell(&mut self, text: impl Into<String>) {
+        self.notice.keep_saying(text);
+        self.changed = true;
+    }
+}
+
+fn read<'a, T: Deserialize<'a>>(what: &str, text: &'a str) -> Result<T, Unreadable> {
+    toml::from_str(text).map_err(|error| {
+        let line = error.message().lines().next().unwrap_or_default();
+        Unreadable(format!("{what} is not what gyrolab keeps: {line}"))
+    })
+}

@@ -1,0 +1,329 @@
+//! A run on its way into a CSV file, in the background; and, before that, what it will come to.
+
+use super::at_exit::{self, Farewell, Registered};
+use crate::export::destination::{Destination, DestinationError};
+use crate::export::stream::{self, Ended};
+use crate::export::{COLUMNS, CsvWriter};
+use crate::run::{Clock, NotFinite, Sample, Simulation};
+use crate::scenario::Scenario;
+use std::io;
+use std::num::NonZeroU64;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+/// How long the end of the process waits for an export to clear its temporary file away.
+const PATIENCE: Duration = Duration::from_millis(300);
+
+/// An export under way, or done. Dropped, it is cancelled, and nothing is left of it unless it was done.
+pub struct Exporting {
+    path: PathBuf,
+    shared: Arc<Shared>,
+    worker: Option<JoinHandle<Result<Written, String>>>,
+    _at_end: Registered,
+}
+
+/// What an export has written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// The file's full name.
+    pub path: PathBuf,
+    /// How many rows it has.
+    pub rows: u64,
+    /// How long it is.
+    pub bytes: u64,
+    /// Where the numbers stopped being finite, if they did: the rows before that have been written.
+    pub not_finite: Option<NotFinite>,
+}
+
+struct Shared {
+    step: AtomicU64,
+    steps: u64,
+    is_cancelled: AtomicBool,
+    has_ended: AtomicBool,
+}
+
+struct Job {
+    scenario: Arc<Scenario>,
+    csv: CsvWriter<Destination>,
+    path: PathBuf,
+    every: NonZeroU64,
+}
+
+impl Exporting {
+    /// Begins to write the run of `scenario`, from step 0 to its last, into the file `path`: the bytes that
+    /// `gyrolab run -o` writes, rows 0, `every`, twice `every` and so on, and the last. The file appears when it is whole.
+    ///
+    /// # Errors
+    /// [`Exists`](DestinationError::Exists) when there is such a file and it is not to be replaced; and whatever else
+    /// makes it impossible to begin.
+    pub fn begin(
+        scenario: Arc<Scenario>,
+        path: &Path,
+        every: NonZeroU64,
+        replace: bool,
+    ) -> Result<Self, DestinationError> {
+        let path = match path == Path::new("-") {
+            true => Path::new("./-"), // a file: the picture has stdout
+            false => path,
+        };
+        let refused = |error| refused(path, error);
+        // A device or FIFO may take no bytes for as long as it likes: that can be waited for at the command line.
+        if Destination::may_wait(path) {
+            let text = "it is not a regular file: use gyrolab run -o";
+            return Err(refused(io::Error::other(text)));
+        }
+        let destination = Destination::open(path, replace)?;
+        let job = Job {
+            csv: CsvWriter::new(destination, &scenario).map_err(refused)?,
+            path: std::path::absolute(path).map_err(refused)?,
+            every,
+            scenario,
+        };
+        Self::spawn(job).map_err(refused)
+    }
+
+    fn spawn(job: Job) -> io::Result<Self> {
+        let shared = Arc::new(Shared {
+            step: AtomicU64::new(0),
+            steps: job.scenario.steps,
+            is_cancelled: AtomicBool::new(false),
+            has_ended: AtomicBool::new(false),
+        });
+        let (at_work, at_end) = (Arc::clone(&shared), Arc::clone(&shared));
+        let path = job.path.clone();
+        let work = move || {
+            let result = job.write(&at_work);
+            at_work.has_ended.store(true, Ordering::SeqCst);
+            result
+        };
+        let worker = thread::Builder::new()
+            .name("export".to_owned())
+            .spawn(work)?;
+        Ok(Self {
+            path,
+            shared,
+            worker: Some(worker),
+            _at_end: at_exit::hook(move |farewell| at_end.part(farewell)),
+        })
+    }
+
+    /// The full name that the file will have.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The step it has come to, and the one at which it ends.
+    pub fn progress(&self) -> (u64, u64) {
+        (self.shared.step.load(Ordering::Relaxed), self.shared.steps)
+    }
+
+    /// Has it stop, and leave nothing behind; the outcome says so in a moment.
+    pub fn cancel(&self) {
+        self.shared.cancel();
+    }
+
+    /// Whether it has come to an end, of whatever kind.
+    pub fn is_done(&self) -> bool {
+        self.worker.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
+    /// What has become of it, once it is done and once only: what was written, or why nothing was.
+    pub fn outcome(&mut self) -> Option<Result<Written, String>> {
+        let worker = self.worker.take_if(|worker| worker.is_finished())?;
+        let broken = || Err("the export broke off, and nothing was written".to_owned());
+        Some(worker.join().unwrap_or_else(|_| broken()))
+    }
+}
+
+impl Drop for Exporting {
+    fn drop(&mut self) {
+        self.cancel();
+        if let Some(worker) = self.worker.take() {
+            let _ = worker.join();
+        }
+    }
+}
+
+impl Shared {
+    fn cancel(&self) {
+        self.is_cancelled.store(true, Ordering::SeqCst);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.is_cancelled.load(Ordering::SeqCst)
+    }
+
+    /// At an end, waits until the temporary file has gone; a process that only stops goes on with it later.
+    fn part(&self, farewell: Farewell) {
+        if farewell == Farewell::Stop {
+            return;
+        }
+        self.cancel();
+        let begin = Instant::now();
+        while !self.has_ended.load(Ordering::SeqCst) && begin.elapsed() < PATIENCE {
+            thread::sleep(Duration::from_millis(2));
+        }
+    }
+}
+
+impl Job {
+    fn write(mut self, shared: &Shared) -> Result<Written, String> {
+        let every = self.every.get();
+        let mut simulation = Simulation::new(self.scenario);
+        let csv = Some(&mut self.csv);
+        let watch = |progress: &stream::Progress| {
+            shared.step.store(progress.step, Ordering::Relaxed);
+            match shared.is_cancelled() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        };
+        let (path, steps) = (self.path, shared.steps);
+        let cannot_write = |error| refused(&path, error).fact();
+        let (ended, _) = stream::play(&mut simulation, steps, every, csv, |_| {}, watch)
+            .map_err(cannot_write)?;
+        let destination = self.csv.finish().map_err(cannot_write)?;
+        if ended == Ended::Stopped || shared.is_cancelled() {
+            return Err("the export was stopped, and nothing was written".to_owned());
+        }
+        let last = simulation.step_number();
+        shared.step.store(last, Ordering::Relaxed);
+        let bytes = destination.bytes().map_err(cannot_write)?;
+        destination.keep().map_err(|error| error.fact())?;
+        Ok(Written {
+            path,
+            rows: rows(last, every),
+            bytes,
+            not_finite: match ended {
+                Ended::NotFinite(error) => Some(error),
+                Ended::Done | Ended::Stopped => None,
+            },
+        })
+    }
+}
+
+fn refused(path: &Path, error: io::Error) -> DestinationError {
+    DestinationError::Refused {
+        path: path.to_owned(),
+        error,
+    }
+}
+
+/// What an export would come to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Estimate {
+    /// How many rows; fewer only where the numbers stop being finite.
+    pub rows: u64,
+    /// How many bytes, within a few percent.
+    pub bytes: u64,
+}
+
+/// What the export of `scenario` from step 0 to its last, a row `every` so many steps, would come to, in a few
+/// milliseconds: from a few rows of its beginning, with the steps and times of all of it.
+pub fn estimate(scenario: &Arc<Scenario>, every: NonZeroU64) -> Estimate {
+    let rows = rows(scenario.steps, every.get());
+    let text = few_rows(scenario, every.get()).unwrap_or_default(); // memory takes all that is written
+    let text = String::from_utf8_lossy(&text);
+    let lines = text
+        .lines()
+        .rev()
+        .take_while(|line| !line.starts_with(COLUMNS[0].name));
+    let lengths: Vec<_> = lines.map(|line| line.len() + 1).collect();
+    let few: usize = lengths.iter().sum();
+    let row = few as f64 / lengths.len().max(1) as f64;
+    Estimate {
+        rows,
+        bytes: ((row * rows as f64).round() as u64).saturating_add((text.len() - few) as u64),
+    }
+}
+
+/// The rows of a run that ends at the step `last`: 0, `every`, twice `every` and so on, and the last.
+fn rows(last: u64, every: u64) -> u64 {
+    last / every + 1 + u64::from(!last.is_multiple_of(every))
+}
+
+/// The CSV of a few rows: their numbers are those of the run's beginning, their steps and times are from all over it.
+fn few_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
+    const ROWS: u64 = 64;
+    let points = scenario.body.mechanics.points().len() as u64;
+    let apart = ((1 << 15) / points).clamp(4, 32); // a larger body takes longer for a step
+    let apart = apart.min(scenario.steps / ROWS).max(1);
+    let mut simulation = Simulation::new(Arc::clone(scenario));
+    let mut csv = CsvWriter::new(Vec::new(), scenario)?;
+    for row in 0..ROWS {
+        let part = row as f64 / (ROWS - 1) as f64;
+        let step = (part * scenario.steps as f64) as u64 / every * every;
+        csv.write(&Sample {
+            step,
+            time_s: Clock::at(scenario, step).time_s(step),
+            ..simulation.sample()
+        })?;
+        let _ = simulation.step_to(((row + 1) * apart).min(scenario.steps)); // it stays where the numbers end
+    }
+    csv.finish()
+}
+
+/// What the user types at home to fetch the file `path` from this machine.
+pub fn scp_line(path: &Path) -> String {
+    let user = ["USER", "LOGNAME"]
+        .into_iter()
+        .find_map(|name| std::env::var(name).ok());
+    let host = gethostname::gethostname();
+    // "client its-port server our-port": what ssh says of the line.
+    let line = std::env::var("SSH_CONNECTION").unwrap_or_default();
+    scp_line_from(
+        line.split(' ').nth(3).unwrap_or_default(),
+        user.as_deref(),
+        &host.to_string_lossy(),
+        &path.to_string_lossy(),
+    )
+}
+
+fn scp_line_from(port: &str, user: Option<&str>, host: &str, path: &str) -> String {
+    let port = match port.parse::<u16>() {
+        Ok(22) | Err(_) => String::new(),
+        Ok(port) => format!("-P {port} "),
+    };
+    let user = user
+        .filter(|user| !user.is_empty())
+        .map(|user| format!("{user}@"));
+    let place = format!("{}{host}:{path}", user.unwrap_or_default());
+    format!("scp {port}{} .", quoted(&place))
+}
+
+/// `text` as one word of a shell.
+fn quoted(text: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "@:/._-+=,%".contains(c);
+    match text.chars().all(is_plain) {
+        true => text.to_owned(),
+        false => format!("'{}'", text.replace('\'', r"'\''")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_counted_as_they_are_written() {
+        for (last, every, count) in [(0, 1, 1), (10, 1, 11), (10, 5, 3), (10, 7, 3), (10, 20, 2)] {
+            assert_eq!(rows(last, every), count, "{last} {every}");
+        }
+    }
+
+    #[test]
+    fn an_scp_line_can_be_pasted() {
+        assert_eq!(
+            scp_line_from("22", Some("ada"), "lab.example.org", "/home/ada/run-1.csv"),
+            "scp ada@lab.example.org:/home/ada/run-1.csv ."
+        );
+        assert_eq!(
+            scp_line_from("2222", None, "lab", "/tmp/Ada's run $1.csv"),
+            r"scp -P 2222 'lab:/tmp/Ada'\''s run $1.csv' ."
+        );
+    }
+}

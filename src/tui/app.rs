@@ -1,0 +1,134 @@
+//! The loop: events to actions, time to steps, and a frame where something has changed.
+
+use crate::lab::{Lab, Request};
+use crate::storage::session::Session;
+use crate::tui::keymap::{self, Key};
+use crate::tui::screen;
+use crate::tui::terminal::{Event, Screen};
+use std::io;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+/// How long to sleep where nothing moves and nothing is due.
+const IDLE: Duration = Duration::from_millis(500);
+/// The same while an export is under way in the background.
+const ATTENTIVE: Duration = Duration::from_millis(100);
+
+/// Runs `lab` on the terminal at up to `frames` a second, until the user leaves; `session` keeps it, where there is one.
+///
+/// # Errors
+/// When there is no terminal, or it is gone; it has been given back then as far as that can be.
+pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<()> {
+    let mut screen = Screen::enter()?;
+    let frame = Duration::from_secs(1) / frames.max(1);
+    let begin = Instant::now();
+    let mut next_frame = Duration::ZERO;
+    lab.resize(screen.size()?);
+    loop {
+        let wait = wait(lab, next_frame.saturating_sub(begin.elapsed()));
+        let events = screen.events(wait)?;
+        let acted = !events.is_empty();
+        for event in events {
+            if handle(event, lab, &mut screen, session)?.is_break() {
+                return Ok(());
+            }
+        }
+        #[cfg(debug_assertions)]
+        panic_if_asked(begin.elapsed());
+        lab.advance(&mut || begin.elapsed());
+        keep(lab, session);
+        let now = begin.elapsed();
+        // An action is answered at once, whenever the next frame would be.
+        if (acted || now >= next_frame) && lab.take_changed() {
+            screen.draw(|area, buf| screen::draw(lab, true, area, buf))?;
+            next_frame = now + frame;
+        }
+    }
+}
+
+/// Has `session` keep `lab` as it stands; says so where it cannot.
+fn keep(lab: &mut Lab, session: Option<&Session>) {
+    let Some(session) = session else {
+        return;
+    };
+    session.note(lab.content());
+    if let Some(trouble) = session.new_trouble() {
+        lab.tell(trouble);
+    }
+}
+
+/// For the tests of the end, which are built with debug assertions: `GYROLAB_PANIC_AFTER_MS=1000` makes this thread panic
+/// after a second, `GYROLAB_PANIC_ASIDE_AFTER_MS=1000` one in the background.
+#[cfg(debug_assertions)]
+#[expect(clippy::panic, reason = "it is what the tests ask for")]
+fn panic_if_asked(elapsed: Duration) {
+    static ASIDE: std::sync::Once = std::sync::Once::new();
+    let is_time = |name: &str| {
+        let after_ms = std::env::var(name).ok().and_then(|ms| ms.parse().ok());
+        after_ms.is_some_and(|ms| elapsed >= Duration::from_millis(ms))
+    };
+    if is_time("GYROLAB_PANIC_AFTER_MS") {
+        panic!("a panic was asked for");
+    }
+    if is_time("GYROLAB_PANIC_ASIDE_AFTER_MS") {
+        ASIDE.call_once(|| drop(std::thread::spawn(|| panic!("a panic was asked for aside"))));
+    }
+}
+
+/// How long there is time for events alone, with `to_frame` to go to the next frame.
+fn wait(lab: &Lab, to_frame: Duration) -> Duration {
+    if lab.playback().is_flat_out() {
+        Duration::ZERO
+    } else if lab.playback().is_busy() || lab.has_changed() {
+        // At least a little: a run too slow to change anything by the next frame must not spin.
+        to_frame.max(Duration::from_millis(1))
+    } else {
+        let rest = if lab.is_exporting() { ATTENTIVE } else { IDLE };
+        lab.notice_ends_in().unwrap_or(rest).min(rest)
+    }
+}
+
+fn handle(
+    event: Event,
+    lab: &mut Lab,
+    screen: &mut Screen,
+    session: Option<&Session>,
+) -> io::Result<ControlFlow<()>> {
+    let request = match event {
+        Event::Key(key) => press(key, lab),
+        Event::Suspend => Some(Request::Suspend),
+        Event::Resized => {
+            // Of a screen that was smaller for a moment and is as large as before, a part is gone.
+            screen.forget()?;
+            lab.resize(screen.size()?);
+            None
+        }
+        Event::Resumed => {
+            screen.resume()?;
+            lab.resize(screen.size()?);
+            None
+        }
+    };
+    if matches!(request, Some(Request::Quit | Request::Suspend)) {
+        keep(lab, session); // what was pressed just before it came with it
+    }
+    match request {
+        None => return Ok(ControlFlow::Continue(())),
+        Some(Request::Quit) => return Ok(ControlFlow::Break(())),
+        Some(Request::Redraw) => screen.forget()?,
+        Some(Request::Suspend) => screen.suspend()?,
+    }
+    lab.resize(screen.size()?); // all of it is to be drawn, at the size there is now
+    Ok(ControlFlow::Continue(()))
+}
+
+/// Carries out what `key` means, or says that it means nothing.
+pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
+    match keymap::action(lab.mode(), key) {
+        Some(action) => lab.update(action),
+        None => {
+            lab.refuse(key);
+            None
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! The one table of keys: what is pressed, in which mode, what it means, and what the footer and the help say of it.
+
+use crate::lab::action::{Action, Direction, FieldEdit};
+use Key::{
+    BackTab, Backspace, Char, Ctrl, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp,
+    Right, ShiftDown, ShiftLeft, ShiftRight, ShiftUp, Tab, Up,
+};
+use Mode::{Browser, Dialog, Filter, Help, Lab};
+
+/// A key, as no terminal library names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "they are on the keyboard")]
+pub enum Key {
+    Char(char),
+    Ctrl(char),
+    Enter,
+    Esc,
+    Tab,
+    BackTab,
+    Backspace,
+    Delete,
+    Home,
+    End,
+    Up,
+    Down,
+    Left,
+    Right,
+    ShiftUp,
+    ShiftDown,
+    ShiftLeft,
+    ShiftRight,
+    PageUp,
+    PageDown,
+}
+
+/// What lies on top of the screen and gets the keys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// The panes.
+    Lab,
+    /// The browser of presets and files.
+    Browser,
+    /// The line in which its filter is typed.
+    Filter,
+    /// The list of keys.
+    Help,
+    /// A dialog that is typed into.
+    Dialog,
+}
+
+impl Mode {
+    /// Every mode.
+    pub const ALL: [Self; 5] = [Lab, Browser, Filter, Help, Dialog];
+}
+
+/// One row of the table.
+#[derive(Debug)]
+pub struct Binding {
+    /// In which modes.
+    pub modes: &'static [Mode],
+    /// Which keys; the first is the one that is shown.
+    pub keys: &'static [Key],
+    /// What they mean.
+    pub action: Action,
+    /// What the footer says, empty where it says nothing.
+    pub footer: &'static str,
+    /// What the help says.
+    pub help: &'static str,
+}
+
+const fn row(
+    modes: &'static [Mode],
+    keys: &'static [Key],
+    action: Action,
+    footer: &'static str,
+    help: &'static str,
+) -> Binding {
+    Binding {
+        modes,
+        keys,
+        action,
+        footer,
+        help,
+    }
+}
+
+/// Every binding but digits and typed text, in the order of footer and help.
+#[rustfmt::skip]
+pub static BINDINGS: &[Binding] = &[
+    row(&[Lab], &[Char(' ')], Action::TogglePause, "pause", "stop the run, or let it go on"),
+    row(&[Lab], &[Char('.')], Action::Step, "step", "one time step on; 10. takes ten"),
+    row(&[Lab], &[Char(',')], Action::StepBack, "back", "one time step back; 10, goes ten"),
+    row(&[Lab], &[Char('+'), Char('='), PageUp], Action::Faster, "faster", "play faster"),
+    row(&[Lab], &[Char('-'), PageDown], Action::Slower, "slower", "play slower; the time step stays as it is"),
+    row(&[Lab], &[Char('g')], Action::GoTo, "go to", "go to a step or a time; 400g goes to step 400"),
+    row(&[Lab], &[Char('r')], Action::Restart, "restart", "back to step 0; what was done stays"),
+    row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge"),
+    row(&[Lab], &[Enter], Action::Edit, "", "type the value that is selected"),
+    row(&[Lab], &[Char('p')], Action::Push, "push", "give the push that is chosen, now"),
+    row(&[Lab], &[Char('P')], Action::ChoosePush, "", "choose the push: point, force, direction, length"),
+    row(&[Lab], &[Char('u')], Action::Undo, "undo", "take back what was done last"),
+    row(&[Lab], &[Char('U'), Ctrl('r')], Action::Redo, "", "do it again"),
+    row(&[Lab], &[Char('t')], Action::ToggleExact, "exact", "the exact motion beside the run, and how far apart they are"),
+    row(&[Lab], &[Char('x')], Action::Export, "export", "write the run up to here as CSV"),
+    row(&[Lab], &[Char('s')], Action::SaveRun, "", "save the run file: scenario and all that was done"),
+    row(&[Lab], &[Char('S')], Action::SavePresent, "", "save the present state as a scenario"),
+    row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file"),
+    row(&[Lab], &[Tab], Action::NextPane, "pane", "the next pane"),
+    row(&[Lab], &[BackTab], Action::PreviousPane, "", "the pane before"),
+    row(&[Lab], &[Char('f')], Action::FillScreen, "fill", "fill the screen with the pane, or show all panes again"),
+    row(&[Lab], &[Char('d')], Action::ThreeD, "3-D", "fill the screen with the 3-D view, or show all panes again"),
+    row(&[Lab, Browser, Help], &[Up, Char('k')], Action::Move(Direction::Up), "", "up: in lists and values; in 3-D the camera"),
+    row(&[Lab, Browser, Help], &[Down, Char('j')], Action::Move(Direction::Down), "", "down"),
+    row(&[Lab], &[Left, Char('h')], Action::Move(Direction::Left), "", "values: nudge down; 3-D: turn the camera left"),
+    row(&[Lab], &[Right, Char('l')], Action::Move(Direction::Right), "", "values: nudge up; 3-D: turn the camera right"),
+    row(&[Lab], &[ShiftLeft], Action::MoveFar(Direction::Left), "", "the same ten times; a count does it too: 10 Left"),
+    row(&[Lab], &[ShiftRight], Action::MoveFar(Direction::Right), "", "the same ten times"),
+    row(&[Lab, Browser, Help], &[ShiftUp], Action::MoveFar(Direction::Up), "", "ten lines up"),
+    row(&[Lab, Browser, Help], &[ShiftDown], Action::MoveFar(Direction::Down), "", "ten lines down"),
+    row(&[Filter], &[Up], Action::Move(Direction::Up), "", "up"),
+    row(&[Filter], &[Down], Action::Move(Direction::Down), "", "down"),
+    row(&[Browser, Filter, Help], &[PageUp], Action::Move(Direction::PageUp), "", "a page up"),
+    row(&[Browser, Filter, Help], &[PageDown], Action::Move(Direction::PageDown), "", "a page down"),
+    row(&[Lab], &[Char('w')], Action::WiderWindow, "", "traces: show twice the time"),
+    row(&[Lab], &[Char('W')], Action::NarrowerWindow, "", "traces: show half the time"),
+    row(&[Lab], &[Char('m')], Action::NextMarker, "", "dots: Braille, half blocks, points, ASCII"),
+    row(&[Lab], &[Char('c')], Action::ToggleColour, "", "with colour, or without"),
+    row(&[Lab], &[Char('b')], Action::ToggleBackground, "", "colours for a dark or a light screen"),
+    row(&[Browser, Filter], &[Enter], Action::Choose, "open", "open what is selected"),
+    row(&[Browser], &[Char('/')], Action::Filter, "filter", "type a part of a name"),
+    row(&[Filter, Dialog], &[Backspace, Ctrl('h')], Action::Erase, "", "take the last character away"),
+    row(&[Dialog], &[Enter], Action::Accept, "take it", "take what is typed"),
+    row(&[Dialog], &[Delete, Ctrl('d')], Action::InField(FieldEdit::Delete), "", "take the character at the cursor away"),
+    row(&[Dialog], &[Ctrl('u')], Action::InField(FieldEdit::Clear), "", "take all of it away"),
+    row(&[Dialog], &[Left, Ctrl('b')], Action::InField(FieldEdit::Left), "", "the cursor to the left"),
+    row(&[Dialog], &[Right, Ctrl('f')], Action::InField(FieldEdit::Right), "", "the cursor to the right"),
+    row(&[Dialog], &[Home, Ctrl('a')], Action::InField(FieldEdit::Home), "", "to the beginning"),
+    row(&[Dialog], &[End, Ctrl('e')], Action::InField(FieldEdit::End), "", "to the end"),
+    row(&[Dialog], &[Down, Tab], Action::InField(FieldEdit::Next), "", "the next line"),
+    row(&[Dialog], &[Up, BackTab], Action::InField(FieldEdit::Previous), "", "the line before"),
+    row(&[Lab, Browser, Filter, Help, Dialog], &[Esc], Action::Close, "", "close what lies on top"),
+    row(&[Lab, Browser, Help], &[Char('?')], Action::Help, "help", "this list, and away again"),
+    row(&[Lab, Browser, Filter, Help, Dialog], &[Ctrl('l')], Action::Redraw, "", "draw the whole screen again"),
+    row(&[Lab, Browser, Filter, Help, Dialog], &[Ctrl('z')], Action::Suspend, "", "back to the shell; fg returns"),
+    row(&[Lab, Browser, Help], &[Char('q')], Action::Quit, "quit", "leave the lab"),
+    row(&[Lab, Browser, Filter, Help, Dialog], &[Ctrl('c')], Action::Quit, "", "leave the lab"),
+];
+
+/// What `key` means in `mode`.
+pub fn action(mode: Mode, key: Key) -> Option<Action> {
+    let bound = BINDINGS
+        .iter()
+        .find(|row| row.modes.contains(&mode) && row.keys.contains(&key));
+    match (bound, mode, key) {
+        (Some(row), _, _) => Some(row.action),
+        (None, Lab, Char(digit)) => digit.to_digit(10).map(|digit| Action::Digit(digit as u8)),
+        (None, Filter | Dialog, Char(typed)) => Some(Action::Type(typed)),
+        _ => None,
+    }
+}
+
+impl std::fmt::Display for Key {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Char(' ') => f.write_str("space"),
+            Char(c) => write!(f, "{c}"),
+            Ctrl(c) => write!(f, "Ctrl-{}", c.to_ascii_uppercase()),
+            BackTab => f.write_str("Shift-Tab"),
+            ShiftUp => f.write_str("Shift-Up"),
+            ShiftDown => f.write_str("Shift-Down"),
+            ShiftLeft => f.write_str("Shift-Left"),
+            ShiftRight => f.write_str("Shift-Right"),
+            PageUp => f.write_str("PgUp"),
+            PageDown => f.write_str("PgDn"),
+            other => write!(f, "{other:?}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_key_is_bound_twice_in_a_mode() {
+        for mode in Mode::ALL {
+            let keys: Vec<_> = BINDINGS
+                .iter()
+                .filter(|row| row.modes.contains(&mode))
+                .flat_map(|row| row.keys)
+                .collect();
+            for (index, key) in keys.iter().enumerate() {
+                assert!(!keys[..index].contains(key), "{key} in {mode:?}");
+                assert!(!matches!(key, Char('0'..='9')), "{key} is a count");
+            }
+        }
+    }
+
+    #[test]
+    fn every_row_has_a_key_a_mode_and_a_text() {
+        for row in BINDINGS {
+            assert!(
+                !row.keys.is_empty() && !row.modes.is_empty() && !row.help.is_empty(),
+                "{row:?}"
+            );
+        }
+    }
+
+    /// The compiler refuses this match when an action is added to the enum and not here.
+    #[test]
+    fn every_action_has_a_key() {
+        use Action as A;
+        let bound = |action: A| BINDINGS.iter().any(|row| row.action == action);
+        let all = [
+            A::TogglePause,
+            A::Step,
+            A::StepBack,
+            A::GoTo,
+            A::Undo,
+            A::Redo,
+            A::Push,
+            A::ChoosePush,
+            A::Parameters,
+            A::Edit,
+            A::Export,
+            A::SaveRun,
+            A::SavePresent,
+            A::MoveFar(Direction::Left),
+            A::InField(FieldEdit::Clear),
+            A::Accept,
+            A::Digit(3),
+            A::Faster,
+            A::Slower,
+            A::Restart,
+            A::ToggleExact,
+            A::NextPane,
+            A::PreviousPane,
+            A::FillScreen,
+            A::ThreeD,
+            A::Move(Direction::Up),
+            A::Move(Direction::Down),
+            A::Move(Direction::Left),
+            A::Move(Direction::Right),
+            A::Move(Direction::PageUp),
+            A::Move(Direction::PageDown),
+            A::WiderWindow,
+            A::NarrowerWindow,
+            A::NextMarker,
+            A::ToggleColour,
+            A::ToggleBackground,
+            A::Browse,
+            A::Choose,
+            A::Filter,
+            A::Type('x'),
+            A::Erase,
+            A::Help,
+            A::Close,
+            A::Redraw,
+            A::Suspend,
+            A::Quit,
+        ];
+        for wanted in all {
+            let has_key = match wanted {
+                A::Digit(digit) => action(Lab, Char(char::from(b'0' + digit))) == Some(wanted),
+                A::Type(typed) => action(Filter, Char(typed)) == Some(wanted),
+                A::TogglePause
+                | A::Step
+                | A::StepBack
+                | A::GoTo
+                | A::Undo
+                | A::Redo
+                | A::Push
+                | A::ChoosePush
+                | A::Parameters
+                | A::Edit
+                | A::Export
+                | A::SaveRun
+                | A::SavePresent
+                | A::MoveFar(_)
+                | A::InField(_)
+                | A::Accept
+                | A::Faster
+                | A::Slower
+                | A::Restart
+                | A::ToggleExact
+                | A::NextPane
+                | A::PreviousPane
+                | A::FillScreen
+                | A::ThreeD
+                | A::Move(_)
+                | A::WiderWindow
+                | A::NarrowerWindow
+                | A::NextMarker
+                | A::ToggleColour
+                | A::ToggleBackground
+                | A::Browse
+                | A::Choose
+                | A::Filter
+                | A::Erase
+                | A::Help
+                | A::Close
+                | A::Redraw
+                | A::Suspend
+                | A::Quit => bound(wanted),
+            };
+            assert!(has_key, "{wanted:?}");
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! The terminal: the loop, the keys, and what is drawn of the lab.
+//!
+//! ```text
+//! key ─keymap→ Action ─→ lab.update ┐
+//! clock ───────────────→ lab.advance ┴→ Lab { history, live run, pace, view, readouts, ... } ─borrowed→ screen → panes
+//!                                            ├ history: journals ─→ scenario ─→ the run, any export, any saved file
+//!                                            └ live: simulation ─moment→ recording, path   (exact motion → overlay)
+//! ```
+//!
+//! - [`app`] is the loop, [`terminal`] the only file that talks to the terminal, [`surroundings`] what the environment
+//!   says about it.
+//! - [`keymap`] is the one table of keys.
+//! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`sweep`] is the
+//!   traces' geometry, [`dots`] sets the dots.
+
+pub mod app;
+pub mod dots;
+pub mod keymap;
+pub mod panes;
+pub mod screen;
+pub mod surroundings;
+pub mod sweep;
+pub mod terminal;

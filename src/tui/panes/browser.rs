@@ -1,0 +1,180 @@
+//! The list of presets and files, with a preview of what is selected.
+
+use super::{frame_on_top, wrapped, write};
+use crate::lab::browser::Browser;
+use crate::lab::view::theme::{Role, Theme};
+use crate::scenario::Scenario;
+use crate::scenario::problem::printable;
+use crate::tui::keymap::Mode;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::widgets::Widget;
+
+/// Width of the list; the preview has the rest.
+const LIST: u16 = 30;
+
+/// The browser on top of the panes.
+pub struct BrowserPane<'a> {
+    /// Its state.
+    pub browser: &'a Browser,
+    /// Whether the filter is being typed.
+    pub mode: Mode,
+    /// Colours.
+    pub theme: &'a Theme,
+}
+
+impl Widget for BrowserPane<'_> {
+    fn render(self, area: Rect, buf: &mut Buffer) {
+        let inside = frame_on_top("open a preset or a file", area, self.theme, buf);
+        if inside.is_empty() {
+            return;
+        }
+        self.filter_line(
+            Rect {
+                height: 1,
+                ..inside
+            },
+            buf,
+        );
+        let below = Rect {
+            y: inside.y + 1,
+            height: inside.height - 1,
+            ..inside
+        };
+        let width = if below.width >= 2 * LIST {
+            LIST
+        } else {
+            below.width
+        };
+        self.list(Rect { width, ..below }, buf);
+        let rest = Rect {
+            x: below.x + width,
+            width: below.width - width,
+            ..below
+        };
+        self.preview(rest, buf);
+    }
+}
+
+/// What can be done with the list, and what is in it beside the presets.
+fn keys(files: usize) -> String {
+    match files {
+        0 => "/ filters by name, Enter opens".to_owned(),
+        1 => "/ filters by name, Enter opens; a file of this folder stands below".to_owned(),
+        _ => format!("/ filters by name, Enter opens; {files} files of this folder stand below"),
+    }
+}
+
+impl BrowserPane<'_> {
+    fn filter_line(&self, area: Rect, buf: &mut Buffer) {
+        let shown = self.browser.shown().len();
+        let (text, role) = match (self.mode, self.browser.filter()) {
+            (Mode::Filter, filter) => (format!("/{filter}_  ({shown})"), Role::Focus),
+            (_, "") => (keys(self.browser.files()), Role::Quiet),
+            (_, filter) => (format!("/{filter}  ({shown})"), Role::Text),
+        };
+        write(area, (1, 0), &text, self.theme.style(role), buf);
+    }
+
+    fn list(&self, area: Rect, buf: &mut Buffer) {
+        let shown = self.browser.shown();
+        if shown.is_empty() {
+            write(
+                area,
+                (1, 0),
+                "nothing has that in its name",
+                self.theme.style(Role::Text),
+                buf,
+            );
+        }
+        let height = area.height as usize;
+        let first = self
+            .browser
+            .selected()
+            .saturating_sub(height.saturating_sub(1));
+        for ((index, entry), y) in shown.iter().enumerate().skip(first).zip(0..area.height) {
+            let selected = index == self.browser.selected();
+            let role = if selected { Role::Selected } else { Role::Text };
+            let mark = if selected { ">" } else { " " };
+            let line = format!("{mark} {:<width$}", entry.name, width = LIST as usize - 4);
+            let room = Rect {
+                width: area.width.min(LIST - 1),
+                ..area
+            };
+            write(room, (0, y), &line, self.theme.style(role), buf);
+        }
+    }
+
+    fn preview(&self, area: Rect, buf: &mut Buffer) {
+        let width = area.width.saturating_sub(2) as usize;
+        if width == 0 {
+            return;
+        }
+        let lines = match self.browser.preview() {
+            Some(Ok(scenario)) => described(scenario, width),
+            Some(Err(problem)) => refused(problem, width),
+            None => Vec::new(),
+        };
+        let more = lines.len() > area.height as usize;
+        for ((text, role), y) in lines.iter().zip(0..area.height) {
+            let last = more && y + 1 == area.height;
+            let text = if last {
+                format!("{text} ...")
+            } else {
+                text.clone()
+            };
+            let room = area.width - 1;
+            let line = Rect {
+                width: room,
+                ..area
+            };
+            write(
+                line,
+                (1, y),
+                text.trim_start(),
+                self.theme.style(*role),
+                buf,
+            );
+        }
+    }
+}
+
+fn described(scenario: &Scenario, width: usize) -> Vec<(String, Role)> {
+    let file = &scenario.file;
+    let look_at = file
+        .view
+        .as_ref()
+        .and_then(|view| view.look_at.as_deref())
+        .unwrap_or_default();
+    let motion = &scenario.motion;
+    let run = format!(
+        "{} scheme, {} steps of {} s",
+        motion.scheme.name, scenario.steps, motion.time_step_s
+    );
+    let paragraphs = [
+        (file.title.as_str(), Role::Heading),
+        (file.about.as_deref().unwrap_or_default(), Role::Text),
+        (look_at, Role::Text),
+        (run.as_str(), Role::Quiet),
+        (file.source.as_deref().unwrap_or_default(), Role::Quiet),
+    ];
+    let mut lines = Vec::new();
+    for (text, role) in paragraphs.into_iter().filter(|(text, _)| !text.is_empty()) {
+        lines.extend(
+            wrapped(&printable(&text.replace('\n', " ")), width)
+                .into_iter()
+                .map(|line| (line, role)),
+        );
+        lines.push((String::new(), Role::Text));
+    }
+    lines
+}
+
+fn refused(problem: &str, width: usize) -> Vec<(String, Role)> {
+    let begin = ("cannot be opened".to_owned(), Role::Warning);
+    let lines = problem
+        .lines()
+        .flat_map(|line| wrapped(line, width))
+        .map(|line| (line, Role::Text));
+    std::iter::once(begin).chain(lines).collect()
+}

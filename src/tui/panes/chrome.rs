@@ -1,0 +1,194 @@
+//! The lines around the panes: title, health, hint and keys.
+
+use super::{shortened, wrapped_to, write};
+use crate::lab::Lab;
+use crate::lab::action::Action;
+use crate::lab::view::theme::Role;
+use crate::observe::health::remarks;
+use crate::observe::readouts::Readouts;
+use crate::tui::keymap::{BINDINGS, Mode};
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+/// Columns without which a title is none.
+const LEAST_TITLE: usize = 8;
+/// What a screen says that has no room for everything.
+const CRAMPED: &str = "80x24 shows more";
+/// Between two remarks.
+const SEPARATOR: &str = " · ";
+
+/// Title, scheme and time step on the left, what fits of it; time, step and pace on the right, in fixed columns.
+pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let theme = &lab.view().theme;
+    let motion = lab.motion();
+    let clock = clock(lab.readouts(), motion.time_step_s, area.width as usize);
+    let clock_x = area.width.saturating_sub(clock.chars().count() as u16);
+    write(area, (clock_x, 0), &clock, theme.style(Role::Text), buf);
+    let left = Rect {
+        width: clock_x.saturating_sub(1),
+        ..area
+    };
+    let room = left.width.saturating_sub(1) as usize;
+    let details = [
+        format!(
+            " · {} scheme · dt {} s",
+            motion.scheme.name, motion.time_step_s
+        ),
+        format!(" · {} scheme", motion.scheme.name),
+        format!(" · dt {} s", motion.time_step_s),
+        String::new(),
+    ];
+    let title = &lab.run().scenario().file.title;
+    let least = title.chars().count().min(LEAST_TITLE);
+    let found = details
+        .iter()
+        .map(|details| (details, details.chars().count()))
+        .find(|(_, length)| length + least <= room);
+    if let Some((details, length)) = found {
+        let title = shortened(title, room - length);
+        let x = write(left, (1, 0), &title, theme.style(Role::Heading), buf);
+        write(left, (x, 0), details, theme.style(Role::Quiet), buf);
+    }
+}
+
+/// Time, step and pace in fixed columns, or closer together where `width` is short of them.
+fn clock(readouts: &Readouts, time_step_s: f64, width: usize) -> String {
+    let digits = (-time_step_s.log10()).ceil().clamp(0.0, 6.0) as usize;
+    let (t, step) = (readouts.sample.time_s, readouts.sample.step);
+    let pace = &readouts.pace;
+    let moves = pace.split([' ', ',']).next().unwrap_or_default();
+    let clocks = [
+        format!("t {t:>8.digits$} s  step {step:<8} {pace:<11}"),
+        format!("t {t:.digits$} s  step {step}  {pace} "),
+        format!("t {t:.digits$} s step {step} {moves}"),
+    ];
+    let fits = |clock: &&String| clock.chars().count() <= width;
+    match clocks.iter().find(fits) {
+        Some(clock) => clock.clone(),
+        None => shortened(&clocks[2], width).into_owned(),
+    }
+}
+
+/// What the time step makes of the numbers, in words: at length if all of it fits, else in short, as much as fits.
+pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let theme = &lab.view().theme;
+    let remarks = remarks(&lab.readouts().health, lab.advice());
+    let length = |text: &String| text.chars().count() + SEPARATOR.chars().count();
+    let whole: usize = remarks.iter().map(|remark| length(&remark.long)).sum();
+    let mut x = 1;
+    for remark in &remarks {
+        let text = if whole <= area.width as usize {
+            &remark.long
+        } else {
+            &remark.short
+        };
+        if x > 1 && x as usize + length(text) > area.width as usize {
+            return;
+        }
+        if x > 1 {
+            x = write(area, (x, 0), SEPARATOR, theme.style(Role::Quiet), buf);
+        }
+        let role = if remark.warns {
+            Role::Warning
+        } else {
+            Role::Text
+        };
+        x = write(area, (x, 0), text, theme.style(role), buf);
+    }
+}
+
+/// What is to be said now; else what there is to see. On a small screen, that there would be more, if there is room.
+pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
+    let (text, role) = said(lab);
+    let theme = &lab.view().theme;
+    let width = area.width.saturating_sub(2) as usize;
+    let lines = wrapped_to(&text, width, area.height as usize);
+    let mut end = 0;
+    for (line, y) in lines.iter().zip(0..area.height) {
+        end = write(area, (1, y), line, theme.style(role), buf);
+    }
+    let last = area.height.saturating_sub(1);
+    if lines.len() < area.height as usize {
+        end = 0; // the last line is free
+    }
+    let x = area.width.saturating_sub(CRAMPED.len() as u16 + 1);
+    if is_cramped && x >= end + 2 {
+        write(area, (x, last), CRAMPED, theme.style(Role::Quiet), buf);
+    }
+}
+
+fn said(lab: &Lab) -> (String, Role) {
+    match (lab.count(), lab.notice()) {
+        (Some(count), _) => (
+            format!("{count}: now the key, such as . for that many steps; Esc forgets it"),
+            Role::Focus,
+        ),
+        (None, Some(notice)) => (notice, Role::Focus),
+        (None, None) => (lab.note().to_owned(), Role::Text),
+    }
+}
+
+/// The keys of the mode, as many as fit; help and quit always.
+pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let theme = &lab.view().theme;
+    let mut x = 1;
+    for (key, word) in footer(lab.mode(), lab.playback().is_running(), area.width as usize) {
+        x = write(area, (x, 0), &key, theme.style(Role::Focus), buf);
+        x = write(area, (x + 1, 0), word, theme.style(Role::Quiet), buf) + 2;
+    }
+}
+
+fn footer(mode: Mode, is_running: bool, width: usize) -> Vec<(String, &'static str)> {
+    let rows = BINDINGS
+        .iter()
+        .filter(|row| row.modes.contains(&mode) && !row.footer.is_empty());
+    let mut words: Vec<_> = rows
+        .map(|row| {
+            let word = if row.footer == "pause" && !is_running {
+                "go on"
+            } else {
+                row.footer
+            };
+            (row.keys[0].to_string(), word, is_kept(row.action))
+        })
+        .collect();
+    if mode != Mode::Lab {
+        words.insert(0, ("Esc".to_owned(), "close", true));
+    }
+    let length = |words: &[(String, &str, bool)]| {
+        let lengths = words
+            .iter()
+            .map(|(key, word, _)| key.len() + word.len() + 3);
+        lengths.sum::<usize>()
+    };
+    while words.len() > 2 && length(&words) > width {
+        let least = words.iter().rposition(|(_, _, kept)| !kept);
+        words.remove(least.unwrap_or(words.len() - 3)); // the last two are help and quit
+    }
+    words
+        .into_iter()
+        .map(|(key, word, _)| (key, word))
+        .collect()
+}
+
+/// Whether the footer names `action` as long as it can.
+fn is_kept(action: Action) -> bool {
+    use Action::{
+        Accept, Browse, Choose, Export, Help, Parameters, Push, Quit, Step, ToggleExact,
+        TogglePause,
+    };
+    matches!(
+        action,
+        TogglePause
+            | Step
+            | Parameters
+            | Push
+            | ToggleExact
+            | Export
+            | Browse
+            | Choose
+            | Accept
+            | Help
+            | Quit
+    )
+}

@@ -1,0 +1,201 @@
+//! A form, over the bottom of the panes.
+
+use super::{columns, frame_on_top, wrapped, wrapped_to, write};
+use crate::lab::form::{Field, Form};
+use crate::lab::view::theme::{Role, Theme};
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::widgets::{Clear, Widget};
+
+/// The widest a form is.
+const WIDTH: u16 = 80;
+/// Below this height or width there is no room for a frame.
+const LEAST_FRAMED: u16 = 3;
+/// The most lines of a complaint.
+const MOST_COMPLAINT: usize = 3;
+
+/// A form on top of the panes, as high as it needs to be, at the bottom of the area it is drawn on.
+pub struct FormPane<'a> {
+    /// Its state.
+    pub form: &'a Form,
+    /// Colours.
+    pub theme: &'a Theme,
+}
+
+/// One line of a form.
+enum Row<'a> {
+    Field(usize, &'a Field),
+    Text(String, Role),
+}
+
+impl Widget for FormPane<'_> {
+    fn render(self, area: Rect, buf: &mut Buffer) {
+        let width = area.width.min(WIDTH);
+        let area = Rect {
+            x: area.x + (area.width - width) / 2,
+            width,
+            ..area
+        };
+        if area.is_empty() {
+            return;
+        }
+        let is_framed = area.height >= LEAST_FRAMED && width >= LEAST_FRAMED;
+        let border = if is_framed { 2 } else { 0 };
+        let rows = self.rows(width - border, (area.height - border) as usize);
+        let height = rows.len() as u16 + border;
+        let place = Rect {
+            y: area.bottom() - height,
+            height,
+            ..area
+        };
+        let inside = match is_framed {
+            true => frame_on_top(&self.form.title, place, self.theme, buf),
+            false => {
+                Clear.render(place, buf);
+                place
+            }
+        };
+        for (row, y) in rows.iter().zip(0..inside.height) {
+            self.row(row, y, inside, buf);
+        }
+    }
+}
+
+impl FormPane<'_> {
+    /// What there is room for in `height` lines: the selected field first and a line of why it was refused, then the
+    /// other fields, the rest of the reason, the keys, and what is known.
+    fn rows(&self, width: u16, height: usize) -> Vec<Row<'_>> {
+        let form = self.form;
+        let mut room = height;
+        let reserved = usize::from(form.complaint.is_some() && height > 1);
+        room -= reserved;
+        let fields = taken(&mut room, form.fields.len());
+        room += reserved;
+        let complaint = self.complaint(width, room.min(MOST_COMPLAINT));
+        room -= complaint.len();
+        let keys = taken(&mut room, 1);
+        let info = form
+            .info
+            .iter()
+            .flat_map(|text| wrapped(text, width as usize));
+        let mut info: Vec<_> = info.collect();
+        info.truncate(taken(&mut room, info.len()));
+        // The selected field is among those that are shown.
+        let first = (form.selected + 1).saturating_sub(fields);
+        let fields = form.fields.iter().enumerate().skip(first).take(fields);
+        let mut rows: Vec<_> = fields.map(|(at, field)| Row::Field(at, field)).collect();
+        let quiet = |text: &str| Row::Text(text.to_owned(), Role::Quiet);
+        rows.extend(info.iter().map(|text| quiet(text)));
+        let complaint = complaint.into_iter();
+        rows.extend(complaint.map(|line| Row::Text(line, Role::Warning)));
+        rows.extend((keys == 1).then(|| quiet(form.keys)));
+        rows
+    }
+
+    fn complaint(&self, width: u16, height: usize) -> Vec<String> {
+        match &self.form.complaint {
+            Some(complaint) if height > 0 => wrapped_to(complaint, width as usize, height),
+            _ => Vec::new(),
+        }
+    }
+
+    fn row(&self, row: &Row<'_>, y: u16, area: Rect, buf: &mut Buffer) {
+        match row {
+            Row::Text(text, role) => {
+                write(area, (0, y), text, self.theme.style(*role), buf);
+            }
+            Row::Field(index, field) => {
+                let line = Rect {
+                    y: area.y + y,
+                    height: 1,
+                    ..area
+                };
+                self.field(*index == self.form.selected, field, line, buf);
+            }
+        }
+    }
+
+    /// The labels in one column, and the texts beside it.
+    fn field(&self, is_selected: bool, field: &Field, area: Rect, buf: &mut Buffer) {
+        let labels = self.form.fields.iter().map(|field| columns(&field.label));
+        let widest = labels.max().unwrap_or(0) as u16 + 1;
+        let begin = widest.min(area.width / 2);
+        let label = Rect {
+            width: begin.saturating_sub(1),
+            ..area
+        };
+        let role = if is_selected {
+            Role::Focus
+        } else {
+            Role::Quiet
+        };
+        write(label, (0, 0), &field.label, self.theme.style(role), buf);
+        let room = Rect {
+            x: area.x + begin,
+            width: area.width - begin,
+            ..area
+        };
+        self.text(is_selected, field, room, buf);
+    }
+
+    /// As much of the text as there is room for, the cursor in it where it is typed into.
+    fn text(&self, is_selected: bool, field: &Field, area: Rect, buf: &mut Buffer) {
+        if area.is_empty() {
+            return;
+        }
+        let chars: Vec<char> = field.text.chars().collect();
+        let cursor = if is_selected { field.cursor } else { 0 };
+        let first = first_shown(&chars, cursor, area.width as usize);
+        let is_marked = is_selected && field.is_marked;
+        let role = if is_marked {
+            Role::Selected
+        } else {
+            Role::Text
+        };
+        let style = self.theme.style(role);
+        let shown: String = chars[first..].iter().collect();
+        buf.set_stringn(area.x, area.y, &shown, area.width as usize, style);
+        if !is_selected {
+            return;
+        }
+        let before: String = chars[first..cursor.min(chars.len())].iter().collect();
+        let at = area.x + columns(&before) as u16;
+        if at >= area.right() {
+            return;
+        }
+        match chars.get(cursor) {
+            Some(_) if is_marked => {}
+            Some(_) => {
+                let cell = Rect::new(at, area.y, 1, 1);
+                buf.set_style(cell, self.theme.style(Role::Selected));
+            }
+            None => {
+                buf.set_stringn(at, area.y, "_", 1, self.theme.style(Role::Focus));
+            }
+        }
+    }
+}
+
+/// At most `wanted` of the lines there is `room` for, which are then taken.
+fn taken(room: &mut usize, wanted: usize) -> usize {
+    let taken = wanted.min(*room);
+    *room -= taken;
+    taken
+}
+
+/// The first of `chars` that is shown on `width` columns, so that what is at `cursor` is seen.
+fn first_shown(chars: &[char], cursor: usize, width: usize) -> usize {
+    let cursor = cursor.min(chars.len());
+    let at_cursor = chars.get(cursor).map_or(1, |&c| wide(c).max(1));
+    let mut room = width.saturating_sub(at_cursor);
+    let mut first = cursor;
+    while first > 0 && wide(chars[first - 1]) <= room {
+        first -= 1;
+        room -= wide(chars[first]);
+    }
+    first
+}
+
+fn wide(c: char) -> usize {
+    columns(c.encode_utf8(&mut [0; 4]))
+}

@@ -1,0 +1,305 @@
+//! The path of the traced point from above, x to the right and y up: a true circle at every size.
+
+use super::{frame, write};
+use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Role;
+use crate::lab::view::{Pane, View};
+use crate::observe::ghost::Ghost;
+use crate::observe::live::LiveRun;
+use crate::observe::overlay::Overlay;
+use crate::observe::path::Path;
+use crate::tui::dots::{Dots, Ink};
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::widgets::Widget;
+
+/// Dots that are drawn of the exact motion and of the run before, and out of how many: without colours, dashes and
+/// dots tell them from the run.
+const DASH: (usize, usize) = (2, 4);
+const DOT: (usize, usize) = (1, 3);
+/// The run before where dots are as large as cells.
+const LARGE_DOT: (usize, usize) = (1, 2);
+
+/// Length of a push's line, of the radius shown: its direction is what there is to see.
+const ARROW: f64 = 0.35;
+/// A force with less than this part of it in the plane is straight up or down as far as one sees from above.
+const UPRIGHT: f64 = 0.1;
+/// More pushes than this at one time are no picture.
+const MOST_PUSHES: usize = 20;
+
+/// The least radius shown, m: a path that never leaves the vertical has none of its own.
+const LEAST: f64 = 1e-6;
+
+/// The radius shown grows by this factor's exponential, or not at all.
+const STEP: f64 = 0.05;
+
+/// The view from above on a run.
+pub struct FromAbove<'a> {
+    /// The run.
+    pub run: &'a LiveRun,
+    /// The run before, faint under it.
+    pub ghost: Option<&'a Ghost>,
+    /// How it is looked at.
+    pub view: &'a View,
+}
+
+impl Widget for FromAbove<'_> {
+    fn render(self, area: Rect, buf: &mut Buffer) {
+        let theme = &self.view.theme;
+        let inside = frame(
+            "from above",
+            area,
+            self.view.focus == Pane::FromAbove,
+            theme,
+            buf,
+        );
+        if inside.height < 2 || inside.width == 0 {
+            return;
+        }
+        let picture = Rect {
+            height: inside.height - 1,
+            ..inside
+        };
+        let plan = Plan::new(picture, self.radius(), self.view);
+        self.path(&plan, picture, buf);
+        self.pushes(&plan, picture, buf);
+        self.marks(&plan, picture, buf);
+        let scale = Rect {
+            y: picture.bottom(),
+            height: 1,
+            ..inside
+        };
+        self.scale_bar(&plan, scale, buf);
+    }
+}
+
+impl FromAbove<'_> {
+    fn radius(&self) -> f64 {
+        let exact = self.run.overlay().map(Overlay::path);
+        let before = self.ghost.map(Ghost::path);
+        let paths = [Some(self.run.path()), exact, before];
+        let radius = paths
+            .into_iter()
+            .flatten()
+            .map(Path::radius)
+            .fold(LEAST, f64::max);
+        // In steps of 5 %: the picture shall not breathe with every millimetre.
+        libm::exp((libm::log(radius) / STEP).ceil() * STEP) * 1.02
+    }
+
+    fn path(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
+        let mut dots = Dots::new(picture, self.view.marker);
+        if let Some(ghost) = self.ghost {
+            let before = ghost.path().dots().map(|(x, y)| plan.dot(x, y));
+            let dotted = match self.view.marker {
+                Marker::Braille => DOT,
+                _ => LARGE_DOT,
+            };
+            for (x, y) in on_and_off(before, dotted) {
+                dots.set(x, y, Ink::Ghost);
+            }
+        }
+        if let Some(overlay) = self.run.overlay() {
+            let exact = overlay.path().dots().map(|(x, y)| plan.dot(x, y));
+            for (x, y) in on_and_off(exact, DASH) {
+                dots.set(x, y, Ink::Faint(Role::Exact));
+            }
+        }
+        for (x, y) in self.run.path().dots() {
+            let (x, y) = plan.dot(x, y);
+            dots.set(x, y, Ink::Strong(Role::Path));
+        }
+        dots.render(&self.view.theme, buf);
+    }
+
+    /// Each push that acts: a line from the pushed point with a head, or a word where it is straight up or down.
+    fn pushes(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
+        let simulation = self.run.simulation();
+        let points = self.run.scenario().body.mechanics.points();
+        let mut dots = Dots::new(picture, self.view.marker);
+        let mut signs = Vec::new();
+        for push in simulation.loads().pushes.iter().take(MOST_PUSHES) {
+            let at = simulation.state().orientation * points[push.point].at;
+            let plane = push.force.xy();
+            match plane.try_normalize(UPRIGHT * push.force.norm()) {
+                Some(direction) => {
+                    let tip = at.xy() + direction * (ARROW * plan.radius_m);
+                    dots.line(
+                        plan.dot(at.x, at.y),
+                        plan.dot(tip.x, tip.y),
+                        Ink::Strong(Role::Push),
+                    );
+                    signs.push((plan.cell(tip.x, tip.y), head(direction.x, direction.y)));
+                }
+                None => signs.push(upright(plan.cell(at.x, at.y), push.force.z, picture)),
+            }
+        }
+        dots.render(&self.view.theme, buf);
+        for (cell, sign) in signs {
+            write(picture, cell, sign, self.view.theme.style(Role::Push), buf);
+        }
+    }
+
+    /// The pivot, the axes' names, and where the point is now.
+    fn marks(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
+        let theme = &self.view.theme;
+        let (right, middle) = (picture.width - 1, picture.height / 2);
+        write(picture, (right, middle), "x", theme.style(Role::X), buf);
+        write(
+            picture,
+            (picture.width / 2, 0),
+            "y",
+            theme.style(Role::Y),
+            buf,
+        );
+        write(
+            picture,
+            plan.cell(0.0, 0.0),
+            "+",
+            theme.style(Role::Quiet),
+            buf,
+        );
+        let at = self.run.now().position;
+        let here = plan.cell(at.x, at.y);
+        let mut mark = "o";
+        if let Some(overlay) = self.run.overlay() {
+            let at = overlay.now().position;
+            let exact = plan.cell(at.x, at.y);
+            write(picture, exact, "e", theme.style(Role::Exact), buf);
+            mark = if exact == here { "*" } else { mark };
+        }
+        write(picture, here, mark, theme.style(Role::Focus), buf);
+    }
+
+    /// What a metre is, and what the marks mean, where there is room for it.
+    fn scale_bar(&self, plan: &Plan, area: Rect, buf: &mut Buffer) {
+        let theme = &self.view.theme;
+        // The longer legend beside it leaves less room for the bar.
+        let share = if self.run.overlay().is_some() {
+            0.25
+        } else {
+            0.4
+        };
+        let length_m = nice_below(share * area.width as f64 * plan.cell_width_m);
+        let cells = (length_m / plan.cell_width_m).round() as usize;
+        let bar = format!("├{}┤ {length_m} m", "─".repeat(cells.saturating_sub(2)));
+        let end = write(area, (0, 0), &bar, theme.style(Role::Quiet), buf);
+        let legends: &[&str] = match self.run.overlay() {
+            Some(_) => &["o now e exact * both", "o now e exact", "e exact"],
+            None if self.ghost.is_some() => {
+                &["o now, dotted: the other run", "o now, dotted: other"]
+            }
+            None => &["o now"],
+        };
+        let place = |legend: &&str| {
+            area.width
+                .checked_sub(legend.len() as u16)
+                .filter(|&x| x > end)
+        };
+        if let Some((legend, x)) = legends
+            .iter()
+            .find_map(|legend| Some((legend, place(legend)?)))
+        {
+            write(area, (x, 0), legend, theme.style(Role::Quiet), buf);
+        }
+    }
+}
+
+/// The head of an arrow that points to the right by `x` and up by `y`.
+fn head(x: f64, y: f64) -> &'static str {
+    match (x.abs() > y.abs(), x > 0.0, y > 0.0) {
+        (true, true, _) => ">",
+        (true, false, _) => "<",
+        (false, _, true) => "^",
+        (false, _, false) => "v",
+    }
+}
+
+/// What says that a force at `cell` is straight up or down, beside that cell and inside `picture`.
+fn upright((x, y): (u16, u16), up: f64, picture: Rect) -> ((u16, u16), &'static str) {
+    let sign = if up < 0.0 { "F down" } else { "F up" };
+    let width = sign.len() as u16;
+    let right = x + 2;
+    let left = x.saturating_sub(width + 1);
+    let place = if right + width <= picture.width {
+        right
+    } else {
+        left
+    };
+    ((place, y), sign)
+}
+
+/// From metres to dots and cells, the pivot in the middle.
+struct Plan {
+    width: f64,
+    height: f64,
+    /// Dots in a metre, across and down.
+    across: f64,
+    down: f64,
+    dots: (f64, f64),
+    cell_width_m: f64,
+    radius_m: f64,
+}
+
+impl Plan {
+    fn new(picture: Rect, radius_m: f64, view: &View) -> Self {
+        let (in_x, in_y) = view.marker.dots();
+        let (width, height) = (
+            picture.width as f64 * in_x as f64,
+            picture.height as f64 * in_y as f64,
+        );
+        // A dot is `aspect` times as wide as high: this is what keeps circles round.
+        let aspect = view.marker.dot_aspect();
+        let down = (0.5 * height).min(0.5 * width * aspect) / radius_m;
+        let across = down / aspect;
+        let cell_width_m = in_x as f64 / across;
+        Self {
+            width,
+            height,
+            across,
+            down,
+            dots: (in_x as f64, in_y as f64),
+            cell_width_m,
+            radius_m,
+        }
+    }
+
+    fn dot(&self, x: f64, y: f64) -> (f64, f64) {
+        (
+            0.5 * self.width + x * self.across,
+            0.5 * self.height - y * self.down,
+        )
+    }
+
+    fn cell(&self, x: f64, y: f64) -> (u16, u16) {
+        let (column, row) = self.dot(x, y);
+        let inside = |dot: f64, dots: f64| dot.clamp(0.0, dots - 1.0);
+        let column = inside(column, self.width) / self.dots.0;
+        let row = inside(row, self.height) / self.dots.1;
+        (column as u16, row as u16)
+    }
+}
+
+/// The first `drawn` of every `out_of` dots of the screen that a path goes through one after the other.
+fn on_and_off(
+    path: impl Iterator<Item = (f64, f64)>,
+    (drawn, out_of): (usize, usize),
+) -> impl Iterator<Item = (f64, f64)> {
+    let (mut passed, mut last) = (0, None);
+    path.filter(move |&(x, y)| {
+        let dot = (x.floor(), y.floor());
+        passed += usize::from(last.replace(dot) != Some(dot));
+        passed % out_of < drawn
+    })
+}
+
+/// The largest of 1, 2, 5 times a power of ten that is not above `value` (> 0).
+fn nice_below(value: f64) -> f64 {
+    let exponent = value.log10().floor() as i32;
+    let near =
+        [(5, exponent), (2, exponent), (1, exponent)].map(|(digit, e)| format!("{digit}e{e}"));
+    near.iter()
+        .filter_map(|text| text.parse().ok())
+        .find(|&step: &f64| step <= value)
+        .unwrap_or(value)
+}

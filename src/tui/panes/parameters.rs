@@ -1,0 +1,394 @@
+//! The scenario's values and the readouts, each with its unit, in fixed columns.
+//!
+//! In focus it is an editor: the values one by one above, one of them selected, and the readouts to watch below.
+
+mod rows;
+
+use super::{columns, frame, shortened, write};
+use crate::lab::editor::{Editor, Line};
+use crate::lab::view::theme::Role;
+use crate::lab::view::{Pane, View};
+use crate::observe::readouts::Readouts;
+use crate::scenario::problem::printable;
+use crate::scenario::{Motion, Scenario};
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::widgets::Widget;
+use rows::{
+    Row, body_rows, derived_rows, heading, motion_rows, now_rows, start_rows, watched_rows,
+};
+use std::borrow::Cow;
+
+/// Column of the last character of values.
+const VALUE_END: u16 = 18;
+/// Column of units.
+const UNIT: u16 = 19;
+/// Width of a column of lines.
+const COLUMN: u16 = 26;
+/// How many columns of values that can be edited stand side by side at most; the readouts have one more.
+const MOST_EDITED: u16 = 6;
+/// What marks the selected line, and a list that goes on above or below.
+const SELECTED: &str = "►";
+const ABOVE: &str = "▲";
+const BELOW: &str = "▼";
+/// From this height on the readouts to watch have a place below the editor's lines.
+const WATCHED_FROM: usize = 8;
+
+/// The values of a scenario and of its run.
+pub struct Parameters<'a> {
+    /// The scenario.
+    pub scenario: &'a Scenario,
+    /// Gravity, scheme and time step as they are now: edits may have changed them.
+    pub motion: &'a Motion,
+    /// The latest reading of its run.
+    pub readouts: &'a Readouts,
+    /// What can be edited.
+    pub editor: &'a Editor,
+    /// How it is looked at.
+    pub view: &'a View,
+}
+
+impl Widget for Parameters<'_> {
+    fn render(self, area: Rect, buf: &mut Buffer) {
+        let focus = self.view.focus == Pane::Parameters;
+        let editor = Some(self.editor).filter(|_| focus);
+        let inside = frame(&title(editor), area, focus, &self.view.theme, buf);
+        if inside.is_empty() {
+            return;
+        }
+        match (editor, self.view.filled) {
+            (Some(editor), true) => self.edited_and_read(editor, inside, buf),
+            (Some(editor), false) => self.edited_above_read(editor, inside, buf),
+            (None, _) => self.most_important(inside, buf),
+        }
+    }
+}
+
+impl Parameters<'_> {
+    fn columns<'r>(&self, columns: impl Iterator<Item = &'r [Row]>, area: Rect, buf: &mut Buffer) {
+        for (rows, column) in columns.zip(0..MOST_EDITED) {
+            let place = Rect {
+                x: area.x + column * COLUMN,
+                width: area.width.saturating_sub(column * COLUMN).min(COLUMN),
+                ..area
+            };
+            self.lines(rows, place, buf);
+        }
+    }
+
+    /// The lines there is room for, and how to see the others.
+    fn most_important(&self, area: Rect, buf: &mut Buffer) {
+        let rows = self.rows();
+        if rows.len() <= area.height as usize {
+            return self.lines(&rows, area, buf);
+        }
+        let (lines, note) = above_last(area);
+        let rows = fitting(rows, lines.height as usize);
+        self.lines(&rows, lines, buf);
+        self.note("e, then f: all of them", note, buf);
+    }
+
+    /// The values to edit above, the key of the selected one, and the readouts to watch below.
+    fn edited_above_read(&self, editor: &Editor, area: Rect, buf: &mut Buffer) {
+        let height = area.height as usize;
+        let edited = edited_rows(editor);
+        let spare = height.saturating_sub(edited.len() + 1);
+        let room = match height {
+            WATCHED_FROM.. => spare.max(height * 2 / 5),
+            _ => 0,
+        };
+        let read = read_rows(self.readouts, room);
+        let lower = read.len() as u16;
+        let upper = Rect {
+            height: area.height - lower,
+            ..area
+        };
+        self.edited(&edited, editor, upper, 1, buf);
+        let lower = Rect {
+            y: upper.bottom(),
+            height: lower,
+            ..area
+        };
+        self.lines(&read, lower, buf);
+    }
+
+    /// The values to edit in columns, and the readouts in one more.
+    fn edited_and_read(&self, editor: &Editor, area: Rect, buf: &mut Buffer) {
+        let count = (area.width / COLUMN).saturating_sub(1).min(MOST_EDITED);
+        if count == 0 {
+            return self.edited_above_read(editor, area, buf);
+        }
+        let mut read = derived_rows(self.scenario);
+        read.extend(now_rows(self.readouts));
+        let edited = edited_rows(editor);
+        let height = area.height.saturating_sub(1) as usize;
+        let grouped = by_group(&edited, height).map_or(usize::MAX, |columns| columns.len());
+        let count = grouped.min(count as usize) as u16;
+        let width = COLUMN * count;
+        self.edited(&edited, editor, Rect { width, ..area }, count, buf);
+        let right = Rect {
+            x: area.x + width,
+            width: area.width - width,
+            ..area
+        };
+        let rows = fitting(read, right.height as usize);
+        self.lines(&rows, right, buf);
+    }
+
+    /// `rows` of `editor` in `count` columns, as many as there is room for around the selected one, and below them what
+    /// `--set` takes for it.
+    fn edited(&self, rows: &[Row], editor: &Editor, area: Rect, count: u16, buf: &mut Buffer) {
+        let (lines, last) = match area.height {
+            0..=1 => (area, Rect { height: 0, ..area }),
+            _ => above_last(area),
+        };
+        if let Some(selected) = editor.selected() {
+            let width = last.width as usize;
+            self.note(&key_line(selected, width), last, buf);
+        }
+        let height = lines.height as usize;
+        let grouped = by_group(rows, height).filter(|columns| columns.len() <= count as usize);
+        if let Some(columns) = grouped {
+            return self.columns(columns.into_iter(), lines, buf);
+        }
+        let room = height * count as usize;
+        let (shown, above, below) = around_selected(rows, room);
+        self.columns(shown.chunks(height.max(1)), lines, buf);
+        // On the frame, or where columns of lines are empty.
+        let x = match self.view.filled && area.width == count * COLUMN {
+            true => area.right() - 1,
+            false => area.right(),
+        };
+        self.hint(above, (x, lines.y), ABOVE, buf);
+        self.hint(below, (x, lines.bottom().saturating_sub(1)), BELOW, buf);
+    }
+
+    /// Says at `place` that a list goes on, where it does.
+    fn hint(&self, goes_on: bool, place: (u16, u16), sign: &str, buf: &mut Buffer) {
+        if let Some(cell) = buf.cell_mut(place).filter(|_| goes_on) {
+            cell.set_symbol(sign)
+                .set_style(self.view.theme.style(Role::Focus));
+        }
+    }
+
+    fn note(&self, text: &str, area: Rect, buf: &mut Buffer) {
+        write(area, (0, 0), text, self.view.theme.style(Role::Quiet), buf);
+    }
+
+    fn lines(&self, rows: &[Row], area: Rect, buf: &mut Buffer) {
+        for (row, y) in rows.iter().zip(0..area.height) {
+            let line = Rect {
+                y: area.y + y,
+                height: 1,
+                ..area
+            };
+            self.line(row, line, buf);
+        }
+    }
+
+    fn line(&self, row: &Row, area: Rect, buf: &mut Buffer) {
+        let theme = &self.view.theme;
+        let indent = u16::from(!row.is_heading());
+        let label = theme.style(row.label_role);
+        let end = write(area, (indent, 0), &row.label, label, buf);
+        let room = VALUE_END.saturating_sub(end + 1) as usize;
+        let value = fewer_digits(&row.value, room);
+        let style = theme.style(row.value_role);
+        if row.unit.is_empty() && columns(&value) > room {
+            // Words have no unit beside them.
+            write(area, (end + 1, 0), &value, style, buf);
+        } else {
+            let value = shortened(&value, room);
+            let begin = VALUE_END.saturating_sub(columns(&value) as u16);
+            write(area, (begin, 0), &value, style, buf);
+        }
+        write(area, (UNIT, 0), &row.unit, theme.style(Role::Quiet), buf);
+        if row.is_selected {
+            write(area, (0, 0), SELECTED, theme.style(Role::Focus), buf);
+            buf.set_style(area, theme.style(Role::Selected));
+        }
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        let mut rows = Vec::with_capacity(32);
+        rows.extend(body_rows(self.scenario));
+        rows.extend(start_rows(self.scenario));
+        rows.extend(motion_rows(self.scenario, self.motion));
+        rows.extend(now_rows(self.readouts));
+        rows
+    }
+}
+
+/// The pane's title, which tells where in the list the selected line is.
+fn title(editor: Option<&Editor>) -> String {
+    match editor.map(|editor| (editor.selected_index() + 1, editor.lines().len())) {
+        Some((at, all @ 1..)) => format!("parameters {at} of {all}"),
+        _ => "parameters".to_owned(),
+    }
+}
+
+/// The lines of `editor`, its groups with their headings.
+fn edited_rows(editor: &Editor) -> Vec<Row> {
+    let mut rows = Vec::with_capacity(2 * editor.lines().len());
+    let mut at = 0;
+    for group in editor.lines().chunk_by(|a, b| a.group == b.group) {
+        rows.extend(group.first().map(|line| heading(on_one_line(&line.group))));
+        for line in group {
+            rows.push(edited_row(line, at == editor.selected_index()));
+            at += 1;
+        }
+    }
+    rows
+}
+
+fn edited_row(line: &Line, is_selected: bool) -> Row {
+    let value_role = if line.is_default {
+        Role::Quiet
+    } else {
+        Role::Text
+    };
+    Row {
+        rank: 0,
+        label: on_one_line(&line.label).into(),
+        label_role: Role::Quiet,
+        value: on_one_line(&line.value),
+        value_role,
+        unit: line.unit.clone().into(),
+        is_selected,
+    }
+}
+
+/// `text` as it can stand on a line, whatever it holds.
+fn on_one_line(text: &str) -> String {
+    printable(&text.replace('\n', " "))
+}
+
+/// What `--set` takes for `line`: with its value where there is room for it on `width` columns.
+fn key_line(line: &Line, width: usize) -> String {
+    if line.key.is_empty() {
+        return String::new();
+    }
+    let value = on_one_line(&line.value);
+    let whole = format!("{}={value}", line.key);
+    if columns(&whole) <= width {
+        whole
+    } else {
+        line.key.clone()
+    }
+}
+
+/// The `room` rows around the selected one, its group's heading kept on top; whether there are more above and below.
+fn around_selected(rows: &[Row], room: usize) -> (Vec<Row>, bool, bool) {
+    let selected = rows.iter().position(|row| row.is_selected).unwrap_or(0);
+    let most = rows.len().saturating_sub(room);
+    let first = selected.saturating_sub(room / 2).min(most);
+    let end = (first + room).min(rows.len());
+    let mut shown = rows[first..end].to_vec();
+    let before = rows.get(..=first).unwrap_or(rows);
+    let heading = before.iter().rfind(|row| row.is_heading());
+    if let (Some(top), Some(heading)) = (shown.first_mut(), heading)
+        && !top.is_selected
+    {
+        top.clone_from(heading);
+    }
+    (shown, first > 0, end < rows.len())
+}
+
+/// `text`, or with fewer decimals where it is a number that is wider than `room`.
+fn fewer_digits(text: &str, room: usize) -> Cow<'_, str> {
+    let is_number = text.contains('.') && text.len() > room;
+    let number = text.parse::<f64>().ok().filter(|_| is_number);
+    let Some(number) = number else {
+        return text.into();
+    };
+    let decimals = (1..room).rev().map(|digits| format!("{number:.digits$}"));
+    let exponents = (0..room).rev().map(|digits| format!("{number:.digits$e}"));
+    let is_told = |text: &String| text.parse::<f64>().is_ok_and(|told| near(told, number));
+    let mut fitting = decimals.chain(exponents).filter(|text| text.len() <= room);
+    fitting.find(is_told).map_or(text.into(), Cow::from)
+}
+
+/// Whether `told` is `number` to within a thousandth.
+fn near(told: f64, number: f64) -> bool {
+    (told - number).abs() <= 1e-3 * number.abs()
+}
+
+/// The readouts for `room` lines: all of them, or those to watch.
+fn read_rows(readouts: &Readouts, room: usize) -> Vec<Row> {
+    let all = now_rows(readouts);
+    if all.len() <= room {
+        return all;
+    }
+    let mut watched = vec![heading("now")];
+    watched.extend(watched_rows(readouts));
+    let mut rows = fitting(watched, room);
+    rows.truncate(room);
+    rows
+}
+
+/// `area` without its last line, and that line.
+fn above_last(area: Rect) -> (Rect, Rect) {
+    let height = area.height.saturating_sub(1);
+    let last = Rect {
+        y: area.y + height,
+        height: area.height - height,
+        ..area
+    };
+    (Rect { height, ..area }, last)
+}
+
+/// `rows` in columns of at most `height` that begin with a heading; `None` where a group is higher than that.
+fn by_group(rows: &[Row], height: usize) -> Option<Vec<&[Row]>> {
+    let mut columns = Vec::new();
+    let (mut begin, mut end) = (0, 0);
+    for group in rows.chunk_by(|_, next| !next.is_heading()) {
+        if end + group.len() - begin > height {
+            columns.push(&rows[begin..end]);
+            begin = end;
+        }
+        end += group.len();
+    }
+    columns.push(&rows[begin..]);
+    columns
+        .iter()
+        .all(|rows| rows.len() <= height)
+        .then_some(columns)
+}
+
+/// The lines for which there is room, the least important left out.
+fn fitting(mut rows: Vec<Row>, room: usize) -> Vec<Row> {
+    while rows.len() > room {
+        let ranks = rows.iter().map(|row| row.rank).enumerate();
+        match ranks.max_by_key(|&(_, rank)| rank) {
+            Some((index, 1..)) => drop(rows.remove(index)),
+            _ => break, // all of it matters: the rest is cut off
+        }
+        rows = without_empty_groups(rows);
+    }
+    rows
+}
+
+/// No heading stands alone.
+fn without_empty_groups(rows: Vec<Row>) -> Vec<Row> {
+    let alone =
+        |index: usize| rows[index].is_heading() && rows.get(index + 1).is_none_or(Row::is_heading);
+    let keep: Vec<bool> = (0..rows.len()).map(|index| !alone(index)).collect();
+    let kept = rows.into_iter().zip(keep).filter(|&(_, keep)| keep);
+    kept.map(|(row, _)| row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rows::value;
+    use super::*;
+
+    #[test]
+    fn groups_stay_together_where_they_fit() {
+        let row = |label| value(0, label, String::new(), "");
+        let rows = [heading("a"), row("1"), heading("b"), row("2"), row("3")];
+        let columns = |height| by_group(&rows, height).map(|columns| columns.len());
+        assert_eq!(columns(5), Some(1));
+        assert_eq!(columns(3), Some(2));
+        assert_eq!(columns(2), None);
+    }
+}

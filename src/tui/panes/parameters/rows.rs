@@ -1,0 +1,225 @@
+//! What stands in the pane's lines, each number with as many decimals as there is room for.
+
+use super::VALUE_END;
+use crate::lab::view::theme::Role;
+use crate::observe::readouts::Readouts;
+use crate::physics::Body;
+use crate::scenario::{Motion, Scenario, Window};
+use std::borrow::Cow;
+
+/// One line: a heading, or a value.
+#[derive(Clone)]
+pub(super) struct Row {
+    /// Lines with larger numbers go first where there is no room for all.
+    pub(super) rank: u8,
+    pub(super) label: Cow<'static, str>,
+    pub(super) label_role: Role,
+    pub(super) value: String,
+    pub(super) value_role: Role,
+    pub(super) unit: Cow<'static, str>,
+    pub(super) is_selected: bool,
+}
+
+impl Row {
+    pub(super) fn is_heading(&self) -> bool {
+        self.label_role == Role::Heading
+    }
+}
+
+pub(super) fn heading(label: impl Into<Cow<'static, str>>) -> Row {
+    Row {
+        label: label.into(),
+        label_role: Role::Heading,
+        ..value(0, "", String::new(), "")
+    }
+}
+
+pub(super) fn value(rank: u8, label: &'static str, value: String, unit: &'static str) -> Row {
+    Row {
+        rank,
+        label: label.into(),
+        label_role: Role::Quiet,
+        value,
+        value_role: Role::Text,
+        unit: unit.into(),
+        is_selected: false,
+    }
+}
+
+/// A number, with as many of `digits` decimals as stand beside its label.
+fn number(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'static str) -> Row {
+    value(rank, label, fixed(label, Some(number), digits), unit)
+}
+
+/// What follows from the body's values.
+pub(super) fn derived_rows(scenario: &Scenario) -> Vec<Row> {
+    let body: &Body = &scenario.body.mechanics;
+    let height = body.first_moment().z / body.mass();
+    vec![
+        heading("body"),
+        number(3, "mass", body.mass(), 3, "kg"),
+        number(6, "mass at z", height, 4, "m"),
+    ]
+}
+
+pub(super) fn body_rows(scenario: &Scenario) -> Vec<Row> {
+    let mut rows = derived_rows(scenario);
+    if let Some(rim) = &scenario.file.body.rim {
+        rows.push(number(4, "rim radius", rim.radius_m, 4, "m"));
+        rows.push(value(6, "rim points", rim.points.to_string(), ""));
+    }
+    rows
+}
+
+pub(super) fn start_rows(scenario: &Scenario) -> Vec<Row> {
+    let tilt = scenario.file.start.tilt_deg.unwrap_or(0.0);
+    let momentum = scenario.file.start.momentum_Js;
+    let [x, y, z] = momentum.unwrap_or(scenario.start.momentum.into());
+    let frame = match scenario.file.start.momentum_frame {
+        Some(crate::scenario::file::Frame::Body) => "body",
+        _ => "world",
+    };
+    vec![
+        heading("start"),
+        number(2, "tilt", tilt, 3, "deg"),
+        number(0, "|L|", scenario.start.momentum.norm(), 3, "J s"),
+        number(5, "Lx", x, 3, "J s"),
+        number(5, "Ly", y, 3, "J s"),
+        number(5, "Lz", z, 3, "J s"),
+        value(5, "L given in", frame.to_owned(), ""),
+    ]
+}
+
+pub(super) fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
+    let pushes = match (scenario.pushes.len(), scenario.pushes.first()) {
+        (0, _) => "none".to_owned(),
+        (1, Some(push)) => format!("{:.0} N", push.force.norm()),
+        (more, _) => more.to_string(),
+    };
+    let mut rows = vec![
+        heading("motion"),
+        value(0, "dt", format!("{}", motion.time_step_s), "s"),
+        value(3, "scheme", motion.scheme.name.to_owned(), ""),
+        number(4, "gravity", motion.gravity, 3, "m/s2"),
+        value(6, "steps", scenario.steps.to_string(), ""),
+        value(
+            if scenario.pushes.is_empty() { 5 } else { 1 },
+            "push",
+            pushes,
+            "",
+        ),
+    ];
+    if let [push] = scenario.pushes[..] {
+        let (when, unit) = match push.window {
+            Window::Steps { first, count } => (
+                format!("{first} to {}", (first - 1).saturating_add(count)),
+                "step",
+            ),
+            Window::Time { from_s, for_s } => (format!("{from_s} to {}", from_s + for_s), "s"),
+        };
+        rows.push(value(3, "acts", when, unit));
+    }
+    rows
+}
+
+pub(super) fn now_rows(readouts: &Readouts) -> Vec<Row> {
+    let sample = &readouts.sample;
+    let axis = |label, role, metres: f64| Row {
+        label_role: role,
+        ..number(0, label, metres, 4, "m")
+    };
+    let mut rows = vec![
+        heading("now"),
+        axis("x", Role::X, sample.position.x),
+        axis("y", Role::Y, sample.position.y),
+        axis("z", Role::Z, sample.position.z),
+    ];
+    rows.extend(watched_rows(readouts));
+    let after_nutation = rows.len() - 1;
+    let predicted = readouts.predicted_nutation_s;
+    rows.insert(after_nutation, measured(1, "predicted", predicted, 5, "s"));
+    rows.extend([
+        number(3, "|L|", sample.momentum.norm(), 3, "J s"),
+        number(4, "Lz", sample.momentum.z, 3, "J s"),
+        number(4, "energy", sample.energy, 2, "J"),
+    ]);
+    rows
+}
+
+/// The readouts to watch while values are edited; the last is the energy's drift.
+pub(super) fn watched_rows(readouts: &Readouts) -> [Row; 5] {
+    let precession = readouts.precession_deg_per_s;
+    let predicted = readouts.predicted_precession_deg_per_s;
+    let nutation = match readouts.nutation_is_strobed {
+        true => "nutation?", // a strobe's picture: the line below the panes says whose swing it is
+        false => "nutation",
+    };
+    let drift = readouts.health.energy_drift;
+    let drift = drift.map_or("n/a".to_owned(), |drift| signed("E drift", drift, 4));
+    [
+        number(0, "tilt", readouts.sample.tilt_deg, 3, "deg"),
+        measured(0, "precession", precession, 3, "deg/s"),
+        measured(1, "predicted", predicted, 3, "deg/s"),
+        measured(1, nutation, readouts.nutation_s, 5, "s"),
+        value(2, "E drift", drift, "mgl"),
+    ]
+}
+
+/// A number that may not be known (yet).
+fn measured(
+    rank: u8,
+    label: &'static str,
+    number: Option<f64>,
+    digits: usize,
+    unit: &'static str,
+) -> Row {
+    value(rank, label, fixed(label, number, digits), unit)
+}
+
+/// `number` beside `label` with `digits` decimals, or fewer; a dash where there is none.
+fn fixed(label: &str, number: Option<f64>, digits: usize) -> String {
+    number.map_or("-".to_owned(), |number| {
+        fitted(label, digits, |digits| format!("{number:.digits$}"), number)
+    })
+}
+
+/// As [`fixed`], with its sign.
+fn signed(label: &str, number: f64, digits: usize) -> String {
+    let is_zero = format!("{number:.digits$}")
+        .trim_matches(['-', '0', '.'])
+        .is_empty();
+    let number = if is_zero { 0.0 } else { number }; // no -0.0000
+    fitted(
+        label,
+        digits,
+        |digits| format!("{number:+.digits$}"),
+        number,
+    )
+}
+
+/// The most decimals with which `format` keeps off `label`, a blank between them; an exponent where none do.
+fn fitted(label: &str, digits: usize, format: impl Fn(usize) -> String, number: f64) -> String {
+    let room = (VALUE_END as usize).saturating_sub(label.len() + 2);
+    let decimals = (0..=digits).rev().map(format);
+    let exponents = (0..=3).rev().map(|digits| format!("{number:.digits$e}"));
+    let fits = |text: &String| text.len() <= room;
+    let text = decimals.chain(exponents).find(fits);
+    text.unwrap_or_else(|| format!("{number:.0e}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_off_their_labels() {
+        assert_eq!(fixed("precession", Some(1.5881), 3), "1.588");
+        assert_eq!(fixed("precession", Some(171.185), 3), "171.19");
+        assert_eq!(fixed("precession", Some(-171.185), 3), "-171.2");
+        assert_eq!(fixed("nutation", Some(0.80972), 5), "0.80972");
+        assert_eq!(fixed("nutation", None, 5), "-");
+        assert_eq!(signed("E drift", 9493.8434, 4), "+9493.843");
+        assert_eq!(fixed("precession", Some(-1.2345e12), 3), "-1e12");
+        assert_eq!(fixed("precession", Some(1.2345e12), 3), "1.2e12");
+    }
+}

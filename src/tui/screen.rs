@@ -1,0 +1,114 @@
+//! The whole picture: every pane in its place, and on top what has been opened.
+
+use super::panes::browser::BrowserPane;
+use super::panes::chrome;
+use super::panes::form::FormPane;
+use super::panes::from_above::FromAbove;
+use super::panes::help::Help;
+use super::panes::parameters::Parameters;
+use super::panes::three_d::ThreeD;
+use super::panes::traces::Traces;
+use crate::lab::Lab;
+use crate::lab::view::Pane;
+use crate::lab::view::layout::Layout;
+use crate::lab::view::markers::{self, Marker};
+use crate::tui::keymap::Mode;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::widgets::Widget;
+
+/// Draws `lab` on `area`; `keys` says whether with the line of keys.
+pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
+    let layout = Layout::new(area, lab.view(), keys);
+    for &(pane, place) in &layout.panes {
+        draw_pane(lab, pane, place, buf);
+    }
+    chrome::title(lab, layout.title, buf);
+    chrome::health(lab, layout.health, buf);
+    chrome::hint(lab, keys && layout.is_cramped, layout.hint, buf);
+    chrome::keys(lab, layout.keys, buf);
+    draw_on_top(lab, body(&layout), buf);
+    if lab.view().marker == Marker::Ascii {
+        to_ascii(area, buf);
+    }
+}
+
+/// Draws one pane of `lab` on `area`.
+pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
+    let (run, view, readouts) = (lab.run(), lab.view(), lab.readouts());
+    let ghost = lab.ghost();
+    match pane {
+        Pane::Traces => Traces { run, ghost, view }.render(area, buf),
+        Pane::FromAbove => FromAbove { run, ghost, view }.render(area, buf),
+        Pane::ThreeD => ThreeD { run, view }.render(area, buf),
+        Pane::Parameters => Parameters {
+            scenario: run.scenario(),
+            motion: &lab.motion(),
+            readouts,
+            editor: lab.editor(),
+            view,
+        }
+        .render(area, buf),
+    }
+}
+
+fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let theme = &lab.view().theme;
+    match lab.mode() {
+        Mode::Lab => {}
+        Mode::Dialog => {
+            if let Some(dialog) = lab.dialog() {
+                let form = dialog.form();
+                FormPane { form, theme }.render(area, buf);
+            }
+        }
+        Mode::Browser | Mode::Filter => {
+            BrowserPane {
+                browser: lab.browser(),
+                mode: lab.mode(),
+                theme,
+            }
+            .render(area, buf);
+        }
+        Mode::Help => Help {
+            scroll: lab.view().scroll,
+            theme,
+        }
+        .render(area, buf),
+    }
+}
+
+/// The area of all panes together.
+fn body(layout: &Layout) -> Rect {
+    layout
+        .panes
+        .iter()
+        .map(|(_, area)| *area)
+        .reduce(Rect::union)
+        .unwrap_or_default()
+}
+
+/// Nothing but ASCII, whatever a scenario's title holds.
+fn to_ascii(area: Rect, buf: &mut Buffer) {
+    for position in area.positions() {
+        if let Some(cell) = buf
+            .cell_mut(position)
+            .filter(|cell| !cell.symbol().is_ascii())
+        {
+            let ascii = markers::ascii(cell.symbol());
+            cell.set_symbol(ascii);
+        }
+    }
+}
+
+/// The picture of `lab` at `area` as plain text, a line each, without blanks at their ends.
+pub fn text(lab: &Lab, keys: bool, area: Rect) -> String {
+    let mut buf = Buffer::empty(area);
+    draw(lab, keys, area, &mut buf);
+    let line = |y: u16| {
+        let cells = (area.left()..area.right()).filter_map(|x| buf.cell((x, y)));
+        let line: String = cells.map(ratatui::buffer::Cell::symbol).collect();
+        line.trim_end().to_owned() + "\n"
+    };
+    (area.top()..area.bottom()).map(line).collect()
+}

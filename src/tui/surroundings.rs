@@ -1,0 +1,100 @@
+//! What the environment says about the terminal: whether it can show more than ASCII, and colours.
+
+use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::{Background, Theme};
+
+/// When there are colours.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColourChoice {
+    /// Unless NO_COLOR is set or the terminal has none.
+    #[default]
+    Auto,
+    /// In any case.
+    Always,
+    /// In no case.
+    Never,
+}
+
+/// The dots for these environment variables: ASCII where the locale is not UTF-8, half blocks on the Linux console,
+/// whose fonts have no Braille, else Braille.
+pub fn marker(variable: impl Fn(&str) -> Option<String>) -> Marker {
+    let locale = ["LC_ALL", "LC_CTYPE", "LANG"]
+        .into_iter()
+        .filter_map(&variable)
+        .find(|value| !value.is_empty());
+    let is_utf8 = locale.is_some_and(|locale| {
+        let locale = locale.to_lowercase();
+        locale.contains("utf-8") || locale.contains("utf8")
+    });
+    match (is_utf8, variable("TERM").as_deref()) {
+        (false, _) | (_, Some("dumb")) => Marker::Ascii,
+        (true, Some("linux")) => Marker::HalfBlock,
+        (true, _) => Marker::Braille,
+    }
+}
+
+/// The theme for `choice` and these environment variables (<https://no-color.org>; COLORFGBG as rxvt sets it).
+pub fn theme(choice: ColourChoice, variable: impl Fn(&str) -> Option<String>) -> Theme {
+    let refused = variable("NO_COLOR").is_some_and(|value| !value.is_empty());
+    let has_none = variable("TERM").is_none_or(|term| term == "dumb" || term.starts_with("vt"));
+    let colour = match choice {
+        ColourChoice::Auto => !refused && !has_none,
+        ColourChoice::Always => true,
+        ColourChoice::Never => false,
+    };
+    let light = variable("COLORFGBG")
+        .is_some_and(|value| matches!(value.rsplit(';').next(), Some("7" | "15")));
+    Theme {
+        colour,
+        background: if light {
+            Background::Light
+        } else {
+            Background::Dark
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with<'a>(variables: &'a [(&str, &str)]) -> impl Fn(&str) -> Option<String> + 'a {
+        |wanted| {
+            variables
+                .iter()
+                .find(|(name, _)| *name == wanted)
+                .map(|(_, value)| (*value).to_owned())
+        }
+    }
+
+    #[test]
+    fn the_locale_decides_on_ascii() {
+        assert_eq!(
+            marker(with(&[("LANG", "de_DE.UTF-8"), ("TERM", "xterm")])),
+            Marker::Braille
+        );
+        assert_eq!(
+            marker(with(&[("LANG", "de_DE.UTF-8"), ("LC_ALL", "C")])),
+            Marker::Ascii
+        );
+        assert_eq!(
+            marker(with(&[("LC_ALL", ""), ("LANG", "C.utf8")])),
+            Marker::Braille
+        );
+        assert_eq!(
+            marker(with(&[("LANG", "C.UTF-8"), ("TERM", "linux")])),
+            Marker::HalfBlock
+        );
+        assert_eq!(marker(with(&[])), Marker::Ascii);
+    }
+
+    #[test]
+    fn no_color_is_honoured_unless_colour_is_asked_for() {
+        let no_color = with(&[("NO_COLOR", "1"), ("TERM", "xterm")]);
+        assert!(!theme(ColourChoice::Auto, &no_color).colour);
+        assert!(theme(ColourChoice::Always, &no_color).colour);
+        let empty = with(&[("NO_COLOR", ""), ("TERM", "xterm")]);
+        assert!(theme(ColourChoice::Auto, &empty).colour);
+        assert!(!theme(ColourChoice::Never, &empty).colour);
+    }
+}
