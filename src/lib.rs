@@ -10,6 +10,7 @@
 //! - [`scenario`]: a TOML file becomes a checked [`Scenario`](scenario::Scenario); every refusal names file,
 //!   line, key, value and rule. The shipped presets live here too.
 //! - [`run`]: a scenario and its journal of edits, played forward step by step. It is the one road forward in time.
+//! - [`work`]: what a user makes of a scenario: changed values, pushes, the journal of both, undo.
 //! - [`analysis`]: what a run's numbers are worth: theory, measurement, health, comparisons.
 //! - [`export`]: what leaves the program: columns, CSV, summaries, and the files they are written to.
 //! - [`observe`]: a run as it is watched: played at its pace, gone back into, and what the pictures need of it.
@@ -34,3 +35,4 @@ pub mod run;
 pub mod scenario;
 pub mod storage;
 pub mod tui;
+pub mod work;

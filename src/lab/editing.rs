@@ -1,17 +1,18 @@
 //! Changing the run: a value of its scenario, a push; and taking it back.
 
 use super::editor::Line;
-use super::history::Turn;
-use super::next_push::{Field, NextPush};
 use super::{BELONGS, Lab, dialogs::Asking};
 use crate::lab::action::Direction;
 use crate::lab::view::Pane;
 use crate::run::Clock;
 use crate::run::pushes::acts_s;
 use crate::scenario::Scenario;
-use crate::scenario::journal::{Act, Effect, number_of_push};
-use crate::scenario::parameters::{self, Parameter, parameters};
-use crate::scenario::present::in_force;
+use crate::scenario::keys::Effect;
+use crate::work::history::Turn;
+use crate::work::journal::{Act, number_of_push};
+use crate::work::next_push::{Field, NextPush};
+use crate::work::parameters::{self, Parameter, parameters};
+use crate::work::restart::in_force;
 use std::sync::Arc;
 use std::time::Duration;
 use toml::Value;

@@ -1,12 +1,12 @@
 //! The lab as a session keeps it: the runs with their journals, and where the lab stands.
 
 use super::Lab;
-use super::history::History;
-use super::next_push::NextPush;
 use crate::lab::view::{Pane, View};
 use crate::observe::pace::Speed;
 use crate::scenario::{Document, Problems, Scenario};
 use crate::storage::session::Content;
+use crate::work::history::History;
+use crate::work::next_push::NextPush;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 

@@ -2,9 +2,9 @@
 //!
 //! This file has the state, the dispatch of actions and the passing of time; the rooms beside it carry out what
 //! belongs together: `travel` through the run, `looking` at it, `editing` it, `opening` another, `dialogs` and what
-//! they ask for, `keeping` all of it. What they work on has rooms of its own: [`history`] the runs one after the other, each with its
-//! journal; [`editor`] the list of what can be edited; [`next_push`] the push to come; [`form`] what is typed into;
-//! [`browser`] the list of presets and files; [`note`] says what there is to see, [`notice`] what has just happened.
+//! they ask for, `keeping` all of it. What they work on has rooms of its own: [`history`](crate::work::history) the runs one after the other, each with its
+//! journal; [`editor`] the list of what can be edited; [`next_push`](crate::work::next_push) the push to come; [`form`] what is typed into;
+//! [`browser`] the list of presets and files; [`changed`](crate::work::changed) says what there is to see, [`notice`] what has just happened.
 
 pub mod action;
 pub mod browser;
@@ -12,11 +12,8 @@ mod dialogs;
 mod editing;
 pub mod editor;
 pub mod form;
-pub mod history;
 mod keeping;
 mod looking;
-pub mod next_push;
-pub mod note;
 pub mod notice;
 mod opening;
 mod travel;
@@ -36,15 +33,16 @@ use crate::observe::pace::Speed;
 use crate::observe::playback::{Halt, Playback};
 use crate::observe::readouts::{self, Readouts};
 use crate::run::NotFinite;
-use crate::scenario::present::in_force;
 use crate::scenario::{Motion, Scenario};
 use crate::storage::exporting::{Exporting, Written};
 use crate::tui::keymap::{Key, Mode};
+use crate::work::changed;
+use crate::work::history::History;
+use crate::work::next_push::NextPush;
+use crate::work::restart::in_force;
 use browser::Browser;
 use editing::Target;
 use editor::Editor;
-use history::History;
-use next_push::NextPush;
 use notice::Notice;
 use ratatui::layout::Rect;
 use std::path::{Path, PathBuf};
@@ -161,7 +159,7 @@ impl Lab {
 
     /// Says that its scenario was `file` before it was changed: the file's note is shown only where it still holds.
     pub fn set_file(&mut self, file: Arc<Scenario>) {
-        self.changed_from_file = note::changed(&file, self.run().scenario());
+        self.changed_from_file = changed::changed(&file, self.run().scenario());
         self.file = file;
     }
 
@@ -470,7 +468,7 @@ impl Lab {
 
     /// What there is to see in the run.
     pub fn note(&self) -> &str {
-        let file = || note::look_at(self.run().scenario());
+        let file = || changed::look_at(self.run().scenario());
         let note = self.changed_from_file.as_deref().or_else(file);
         note.unwrap_or("r begins the run again, o opens another")
     }

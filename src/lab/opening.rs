@@ -1,12 +1,13 @@
 //! Opening another preset or file, and going from one run to another.
 
+use super::Lab;
 use super::browser::Browser;
-use super::next_push::NextPush;
-use super::{Lab, note};
 use crate::observe::ghost::Ghost;
 use crate::observe::playback::Playback;
 use crate::scenario::{Document, Scenario};
 use crate::tui::keymap::Mode;
+use crate::work::changed;
+use crate::work::next_push::NextPush;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -79,7 +80,7 @@ impl Lab {
     pub(super) fn is_another(&mut self) {
         self.advisor = None;
         self.work = None;
-        self.changed_from_file = note::changed(&self.file, self.run().scenario());
+        self.changed_from_file = changed::changed(&self.file, self.run().scenario());
         self.list_parameters();
     }
 

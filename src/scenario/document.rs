@@ -137,7 +137,7 @@ impl Document {
     ///
     /// # Errors
     /// When the key leads nowhere, or the scenario is wrong before it has the value.
-    pub(super) fn write(&mut self, key: &str, value: Value) -> Result<(), Problems> {
+    pub(crate) fn write(&mut self, key: &str, value: Value) -> Result<(), Problems> {
         start::make_room(&mut self.table, key);
         if start::is_other_way(&self.table, key, &value) {
             let now = self.scenario()?;
@@ -179,7 +179,7 @@ impl Document {
     ///
     /// # Errors
     /// When it has another shape.
-    pub(super) fn file(&self) -> Result<ScenarioFile, Problems> {
+    pub(crate) fn file(&self) -> Result<ScenarioFile, Problems> {
         let file = self.table.clone().try_into();
         file.map_err(|error: toml::de::Error| {
             self.placed(vec![Problem::at("", error.message().to_owned())])

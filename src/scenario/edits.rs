@@ -2,8 +2,7 @@
 
 use super::dotted::set_key;
 use super::file::{EditFile, MotionFile, PushFile, ScenarioFile};
-use super::journal::Effect;
-use super::keys::{self, EDITABLE_MOTION, KEYS};
+use super::keys::{self, EDITABLE_MOTION, Effect, KEYS};
 use super::model::{Body, Edit, Touches};
 use super::parts::{motion, pushes};
 use super::problem::{Problem, nearest};

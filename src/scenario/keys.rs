@@ -336,6 +336,32 @@ pub fn join(under: &str, name: &str) -> String {
     }
 }
 
+/// What setting a key does to a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// It acts from the next step on.
+    FromHere,
+    /// A new run begins.
+    NewRun,
+    /// No number depends on it.
+    None,
+}
+
+impl Effect {
+    /// What setting the dotted `key` does.
+    pub fn of(key: &str) -> Self {
+        const IDLE: [&str; 4] = ["title", "about", "source", "motion.steps"];
+        const IDLE_TABLES: [&str; 2] = ["view.", "expected."];
+        if EDITABLE_MOTION.contains(&key) || key.starts_with("push.") {
+            Self::FromHere
+        } else if IDLE.contains(&key) || IDLE_TABLES.iter().any(|table| key.starts_with(table)) {
+            Self::None
+        } else {
+            Self::NewRun
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

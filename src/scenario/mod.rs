@@ -3,29 +3,24 @@
 //! A [`Document`] is the text with its `--set` overrides; [`keys`] is the one table of every key a file may hold;
 //! [`file`](mod@file) is the file's shape as serde reads and writes it; `parts`, `start` and `edits` make checked numbers
 //! of its tables, and `checks` a [`Scenario`] of those. What is refused comes back as [`Problems`], each with place, key,
-//! value and rule. [`parameters`] lists and changes the values of a scenario one at a time, [`present`] makes one that
-//! starts where a run stands.
+//! value and rule.
 
 mod checks;
 pub mod document;
-mod dotted;
+pub mod dotted;
 mod edits;
 pub mod file;
-pub mod journal;
 pub mod keys;
 mod kind;
 mod model;
 pub mod nudge;
-pub mod parameters;
 mod parts;
-pub mod present;
 pub mod presets;
 pub mod problem;
 pub mod rescale;
-mod start;
+pub mod start;
 
 pub use document::Document;
 pub use file::ScenarioFile;
 pub use model::{Body, Edit, Motion, Push, Scenario, Touches, Window};
-pub use parameters::Parameter;
 pub use problem::{Problem, Problems};

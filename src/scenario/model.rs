@@ -34,7 +34,7 @@ pub struct Scenario {
 pub struct Body {
     /// The mechanics.
     pub mechanics: physics::Body,
-    pub(super) names: HashMap<String, usize>,
+    pub(crate) names: HashMap<String, usize>,
 }
 
 /// Gravity, scheme and time step: what edits may change as the run goes on.

@@ -16,7 +16,7 @@ pub fn number(value: f64, size: f64, nudge: Nudge, times: i32) -> Option<f64> {
 }
 
 /// `value` nudged `times` times in whole numbers.
-pub(super) fn whole(value: i64, times: i32) -> i64 {
+pub(crate) fn whole(value: i64, times: i32) -> i64 {
     let step = hundredth(value.unsigned_abs() as f64)
         .unwrap_or(1.0)
         .max(1.0) as i64;

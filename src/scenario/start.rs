@@ -45,12 +45,12 @@ pub(super) fn start(file: &StartFile, body: &Body, gravity: f64) -> Result<State
 }
 
 /// ω3, the component of the angular velocity along the axle, rad/s.
-pub(super) fn spin_of(body: &Body, state: &State) -> f64 {
+pub(crate) fn spin_of(body: &Body, state: &State) -> f64 {
     state.axle().dot(&angular_velocity(body, state))
 }
 
 /// The same in revolutions a minute.
-pub(super) fn rpm(rad_per_s: f64) -> f64 {
+pub(crate) fn rpm(rad_per_s: f64) -> f64 {
     rad_per_s / RPM
 }
 
@@ -238,6 +238,6 @@ pub(super) fn tell_other_way(
     }
 }
 
-pub(super) fn vector(vector: &Vector3<f64>) -> Value {
+pub(crate) fn vector(vector: &Vector3<f64>) -> Value {
     Value::Array(vector.iter().map(|&number| Value::Float(number)).collect())
 }

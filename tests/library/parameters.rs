@@ -1,9 +1,10 @@
 //! The values of a scenario one at a time: listed, nudged, typed, changed.
 
 use gyrolab::scenario::file::ScenarioFile;
-use gyrolab::scenario::parameters::{changed, parameters, table_at, table_of};
 use gyrolab::scenario::presets::PRESETS;
-use gyrolab::scenario::{Document, Parameter, Scenario};
+use gyrolab::scenario::{Document, Scenario};
+use gyrolab::work::Parameter;
+use gyrolab::work::parameters::{changed, parameters, table_at, table_of};
 use toml::Value;
 
 fn preset(name: &str) -> Scenario {

@@ -3,8 +3,8 @@
 use gyrolab::physics::State;
 use gyrolab::physics::observables::position;
 use gyrolab::run::Simulation;
-use gyrolab::scenario::present::{in_force, scenario_from};
 use gyrolab::scenario::{Document, Scenario};
+use gyrolab::work::restart::{in_force, scenario_from};
 use proptest::prelude::*;
 use std::sync::Arc;
 

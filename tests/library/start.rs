@@ -3,8 +3,8 @@
 use gyrolab::physics::observables::{angular_velocity, tilt_deg};
 use gyrolab::physics::rotation;
 use gyrolab::run::Simulation;
-use gyrolab::scenario::parameters::{changed, parameters, table_of};
 use gyrolab::scenario::{Document, Problems, Scenario};
+use gyrolab::work::parameters::{changed, parameters, table_of};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::TAU;

@@ -3,8 +3,8 @@
 use crate::support::desk::Desk;
 use gyrolab::scenario::Document;
 use gyrolab::scenario::file::PushFile;
-use gyrolab::scenario::journal::{Act, Journal};
 use gyrolab::tui::keymap::Key;
+use gyrolab::work::journal::{Act, Journal};
 use proptest::prelude::*;
 use std::time::Duration;
 

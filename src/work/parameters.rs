@@ -1,11 +1,11 @@
 //! The values of a scenario one at a time: what the lab lists, nudges and lets the user type. Labels, units, nudges and
-//! defaults are in the one table of [`keys`](super::keys).
+//! defaults are in the one table of [`keys`](crate::scenario::keys).
 
-use super::dotted::{find, set_key};
-use super::file::{BodyFile, ScenarioFile};
-use super::keys::{InLab, KEYS, Key, Kind, Nudge, Range, join};
-use super::problem::brief;
-use super::{Document, Problems, Scenario, nudge, start};
+use crate::scenario::dotted::{find, set_key};
+use crate::scenario::file::{BodyFile, ScenarioFile};
+use crate::scenario::keys::{InLab, KEYS, Key, Kind, Nudge, Range, join};
+use crate::scenario::problem::brief;
+use crate::scenario::{Document, Problems, Scenario, nudge, start};
 use toml::{Table, Value};
 
 /// Points and pushes beyond so many are not listed: nobody changes them one at a time.

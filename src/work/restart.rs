@@ -1,11 +1,11 @@
 //! A scenario that starts where a run stands: the present state, loads and settings, told as a start of its own.
 
-use super::file::{MotionFile, PushFile, ScenarioFile, StartFile, ViewFile};
-use super::model::{Motion, Push, Scenario, Window};
-use super::problem::{Problem, Problems};
-use super::rescale::MOST_STEPS;
-use super::{Document, nudge};
 use crate::physics::{State, rotation};
+use crate::scenario::file::{MotionFile, PushFile, ScenarioFile, StartFile, ViewFile};
+use crate::scenario::problem::{Problem, Problems};
+use crate::scenario::rescale::MOST_STEPS;
+use crate::scenario::{Document, nudge};
+use crate::scenario::{Motion, Push, Scenario, Window};
 use nalgebra::{Matrix3, Vector3};
 
 /// A push that lasts less than this part of a time step from now on is over but for rounding.

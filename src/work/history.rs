@@ -1,8 +1,8 @@
 //! The runs one after the other: an edit of the body, or another file, begins a new one, and the old one is one undo away.
 
+use super::journal::{Act, Journal};
 use super::next_push::NextPush;
 use crate::run::Clock;
-use crate::scenario::journal::{Act, Journal};
 use crate::scenario::{Problems, Scenario};
 use serde::{Deserialize, Serialize};
 use toml::Value;

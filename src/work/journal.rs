@@ -4,10 +4,11 @@
 //! next one on; doing something earlier than what was done before drops the later entries. The last entry can be taken
 //! back, and brought again.
 
-use super::file::{EditFile, PushFile, ScenarioFile};
-use super::keys::EDITABLE_MOTION;
-use super::problem::brief;
-use super::{Document, Problems, Scenario, parameters, rescale};
+use super::parameters;
+use crate::scenario::file::{EditFile, PushFile, ScenarioFile};
+use crate::scenario::keys::Effect;
+use crate::scenario::problem::brief;
+use crate::scenario::{Document, Problems, Scenario, rescale};
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
@@ -56,32 +57,6 @@ pub enum Act {
     Edit(Table),
     /// Keys that no number depends on: title, length of the run, what the lab starts with.
     Describe(Table),
-}
-
-/// What setting a key does to a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Effect {
-    /// It acts from the next step on.
-    FromHere,
-    /// A new run begins.
-    NewRun,
-    /// No number depends on it.
-    None,
-}
-
-impl Effect {
-    /// What setting the dotted `key` does.
-    pub fn of(key: &str) -> Self {
-        const IDLE: [&str; 4] = ["title", "about", "source", "motion.steps"];
-        const IDLE_TABLES: [&str; 2] = ["view.", "expected."];
-        if EDITABLE_MOTION.contains(&key) || key.starts_with("push.") {
-            Self::FromHere
-        } else if IDLE.contains(&key) || IDLE_TABLES.iter().any(|table| key.starts_with(table)) {
-            Self::None
-        } else {
-            Self::NewRun
-        }
-    }
 }
 
 impl Act {
