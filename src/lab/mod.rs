@@ -2,9 +2,9 @@
 //!
 //! This file has the state, the dispatch of actions and the passing of time; the rooms beside it carry out what
 //! belongs together: `travel` through the run, `looking` at it, `editing` it, `opening` another, `dialogs` and what
-//! they ask for, `keeping` all of it. What they work on has rooms of its own: [`history`](crate::work::history) the runs one after the other, each with its
-//! journal; [`editor`] the list of what can be edited; [`next_push`](crate::work::next_push) the push to come; [`form`] what is typed into;
-//! [`browser`] the list of presets and files; [`changed`](crate::work::changed) says what there is to see, [`notice`] what has just happened.
+//! they ask for, `keeping` all of it. What they work on has rooms of its own: [`history`](mod@crate::work::history) the runs one after the other, each with its
+//! journal; [`editor`] the list of what can be edited; [`next_push`](mod@crate::work::next_push) the push to come; [`form`] what is typed into;
+//! [`browser`] the list of presets and files; [`changed`](mod@crate::work::changed) says what there is to see, [`notice`] what has just happened.
 
 pub mod action;
 pub mod browser;
