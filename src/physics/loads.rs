@@ -36,12 +36,18 @@ impl Loads {
 /// Torque about the pivot, world frame, N m, of forces whose `moment` is Σ x Fᵀ: τᵢ = εᵢⱼₖ (Q Σ x Fᵀ)ⱼₖ.
 ///
 /// Under vertical forces the first two columns are zeros, so that τ_z is zero to the bit and L_z is conserved.
+#[inline]
 pub fn torque(orientation: &Matrix3<f64>, moment: &Matrix3<f64>) -> Vector3<f64> {
-    let turned = orientation * moment;
+    axial(&(orientation * moment))
+}
+
+/// εᵢⱼₖ mⱼₖ, twice the axial vector of the antisymmetric part of `m`: the sum of x × F where `m` is the sum of x Fᵀ.
+#[inline]
+pub fn axial(m: &Matrix3<f64>) -> Vector3<f64> {
     Vector3::new(
-        turned[(1, 2)] - turned[(2, 1)],
-        turned[(2, 0)] - turned[(0, 2)],
-        turned[(0, 1)] - turned[(1, 0)],
+        m[(1, 2)] - m[(2, 1)],
+        m[(2, 0)] - m[(0, 2)],
+        m[(0, 1)] - m[(1, 0)],
     )
 }
 

@@ -4,7 +4,11 @@
 use super::{Body, Loads};
 use nalgebra::Vector3;
 
-/// Differences below this part of the whole are the rounding of a scenario's digits, not a lack of symmetry.
+/// A body whose moments differ by less than this part of the whole is symmetric, and a point that is off the axle by less
+/// than this part of the body's size is on it: such differences are the rounding of a scenario's digits.
+///
+/// The splitting schemes ask for equality to the rounding of a sum instead (`splitting::principal::ROUNDING`): what they
+/// take as zero is left out of every step.
 const WITHIN: f64 = 1e-9;
 
 /// The moments of a body that is symmetric about its axle (the body's z axis), its centre of mass on the axle.
@@ -39,6 +43,12 @@ impl SymmetricTop {
         })
     }
 
+    /// Whether the point `at` (body frame, m) of `body` is on its axle: forces there leave the closed form as it is.
+    pub fn has_on_axle(&self, body: &Body, at: &Vector3<f64>) -> bool {
+        let size = (self.across.max(self.along) / body.mass()).sqrt();
+        at.x.abs().max(at.y.abs()) <= WITHIN * size.max(at.z.abs())
+    }
+
     /// κ = I3/I1: below 1 a long axle, above 1 a flat body.
     pub fn kappa(&self) -> f64 {
         self.along / self.across
@@ -63,11 +73,9 @@ impl Loads {
     /// times this. `None` where a force acts off the axle. `body` must be symmetric.
     pub fn on_axle(&self, body: &Body, top: &SymmetricTop) -> Option<Vector3<f64>> {
         let weight = Vector3::new(0.0, 0.0, -self.gravity * top.first_moment);
-        let size = (top.across.max(top.along) / body.mass()).sqrt();
         self.pushes.iter().try_fold(weight, |sum, push| {
             let at = body.points()[push.point].at;
-            let on_axle = at.x.abs().max(at.y.abs()) <= WITHIN * size.max(at.z.abs());
-            on_axle.then(|| sum + at.z * push.force)
+            top.has_on_axle(body, &at).then(|| sum + at.z * push.force)
         })
     }
 }

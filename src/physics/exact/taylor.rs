@@ -14,6 +14,7 @@
 //! Source: A. Jorba and M. Zou, A software package for the numerical integration of ODEs by means of high-order Taylor
 //! methods, Experimental Mathematics 14 (2005) 99-117.
 
+use crate::physics::loads::axial;
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 /// Order of the series. At 53 bits the cost per second of motion is lowest near 20 (Jorba and Zou, section 3.2).
@@ -130,7 +131,7 @@ impl AccurateMotion {
             let rate = convolve(k, |i, j| times_vector(&self.turn[i], &spin[j]));
             let next = (k + 1) as f64;
             self.turn[k + 1] = rate * 0.5 / next;
-            self.momentum[k + 1] = torque(&(matrix[k] * self.moment)) / next;
+            self.momentum[k + 1] = axial(&(matrix[k] * self.moment)) / next;
         }
         self.radius = self.reach(ORDER - 1).min(self.reach(ORDER));
     }
@@ -174,15 +175,6 @@ fn times_vector(q: &Quaternion<f64>, v: &Vector3<f64>) -> Quaternion<f64> {
         q.w * v.x + q.j * v.z - q.k * v.y,
         q.w * v.y + q.k * v.x - q.i * v.z,
         q.w * v.z + q.i * v.y - q.j * v.x,
-    )
-}
-
-/// sum_jk eps_ijk a_jk.
-fn torque(a: &Matrix3<f64>) -> Vector3<f64> {
-    Vector3::new(
-        a[(1, 2)] - a[(2, 1)],
-        a[(2, 0)] - a[(0, 2)],
-        a[(0, 1)] - a[(1, 0)],
     )
 }
 

@@ -12,6 +12,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::State;
+use crate::physics::loads::torque;
 use crate::physics::trig::sin_cos;
 use free_body::{FreeBody, SymmetricBody, orthonormal};
 use principal::ROUNDING;
@@ -30,47 +31,18 @@ pub use scheme::SplittingScheme;
 pub enum Kind {
     /// Kick, free motion, kick: order 2 (G. Strang, SIAM J. Numer. Anal. 5, 506, 1968).
     Strang,
-    /// Order 4 with 6 free motions: SRKN_6^b of Blanes & Moan.
-    Srkn6b,
     /// Order 6 with 11 free motions: SRKN_11^b of Blanes & Moan.
     Srkn11b,
 }
 
 impl Kind {
-    /// Order of convergence in the time step.
-    pub fn order(self) -> u32 {
-        match self {
-            Self::Strang => 2,
-            Self::Srkn6b => 4,
-            Self::Srkn11b => 6,
-        }
-    }
-
     /// Pairs (kick, free motion) in parts of the step; the last kick, which follows them, is the first once more.
     fn stages(self) -> &'static [(f64, f64)] {
         match self {
             Self::Strang => &[(0.5, 1.0)],
-            Self::Srkn6b => &srkn6b::STAGES,
             Self::Srkn11b => &srkn11b::STAGES,
         }
     }
-}
-
-/// Blanes & Moan (2002), table 3; the middle coefficients from the sums, which must be 1.
-mod srkn6b {
-    const B: [f64; 3] = [0.0829844064174052, 0.396309801498368, -0.0390563049223486];
-    const B4: f64 = 1.0 - 2.0 * (B[0] + B[1] + B[2]);
-    const A: [f64; 2] = [0.245298957184271, 0.604872665711080];
-    const A3: f64 = 0.5 - (A[0] + A[1]);
-
-    pub const STAGES: [(f64, f64); 6] = [
-        (B[0], A[0]),
-        (B[1], A[1]),
-        (B[2], A3),
-        (B4, A3),
-        (B[2], A[1]),
-        (B[1], A[0]),
-    ];
 }
 
 /// Blanes & Moan (2002), table 3; the middle coefficients from the sums, which must be 1.
@@ -153,6 +125,9 @@ impl Splitting {
 }
 
 /// The third row, if the others are rounding beside it: all forces act on the body's z axis, the axle.
+///
+/// Why not the wider tolerance of [`symmetry`](crate::physics::symmetry): what is off the axle is dropped here from every
+/// kick, so it must be no more than the rounding of the sums.
 fn force_on_axle(moment: &Matrix3<f64>) -> Option<Vector3<f64>> {
     let row = |i: usize| moment.row(i).transpose();
     let off = row(0).amax().max(row(1).amax());
@@ -213,18 +188,12 @@ struct AnyTop {
 impl AnyTop {
     fn step(&self, stages: &[(f64, f64)], state: &mut State, h: f64) {
         for &(kick, free) in stages {
-            state.momentum += self.torque(&state.orientation) * (kick * h);
+            state.momentum += torque(&state.orientation, &self.moment) * (kick * h);
             self.body
                 .advance(&mut state.orientation, &state.momentum, free * h);
         }
         state.orientation = orthonormal(&state.orientation);
-        state.momentum += self.torque(&state.orientation) * (stages[0].0 * h);
-    }
-
-    /// The sum of Q x cross F: the antisymmetric part of Q moment, N m, world frame.
-    fn torque(&self, orientation: &Matrix3<f64>) -> Vector3<f64> {
-        let m = orientation * self.moment;
-        Vector3::new(m.m23 - m.m32, m.m31 - m.m13, m.m12 - m.m21)
+        state.momentum += torque(&state.orientation, &self.moment) * (stages[0].0 * h);
     }
 }
 
