@@ -4,7 +4,7 @@
 //! A = 1 − κ + κ e^{iψ} each step, where the truth is e^{iκψ}; a torque that turns L by δ = |τ|dt/|L| a step makes the
 //! axle lag by δ/|1 − A|, where the truth is δ/(κψ).
 
-use super::monitor::{AFFORDABLE_RAD, integration_rad, is_affordable};
+use super::cost::{AFFORDABLE_RAD, integration_rad, is_affordable};
 use super::trial::{Deviation, Trial};
 use crate::physics::loads::torque;
 use crate::physics::{SchemeInfo, SymmetricTop, observables};

@@ -4,6 +4,7 @@
 //! These rooms follow a run and read it; none of them changes a number of it.
 
 pub mod compare;
+pub mod cost;
 pub mod health;
 pub mod measure;
 pub mod monitor;

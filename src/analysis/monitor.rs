@@ -1,14 +1,14 @@
 //! What follows a run step by step and can say at any moment how it stands: instruments, theory, health.
 
+use super::cost::is_affordable;
+use super::health::Health;
+use super::measure::Instruments;
+use super::theory::Theory;
 use super::trial::{Deviation, stride};
-use super::{Health, Instruments, Theory};
-use crate::physics::{SymmetricTop, observables};
+use crate::physics::SymmetricTop;
 use crate::run::{Simulation, Truth};
 use crate::scenario::Scenario;
 use std::sync::Arc;
-
-/// Radians of rotation through which the exact motion may be integrated on the side: less than a second's work.
-pub const AFFORDABLE_RAD: f64 = 5e5;
 
 /// Follows one run from its start.
 #[derive(Clone, Debug)]
@@ -98,32 +98,4 @@ impl Monitor {
     pub fn instruments(&self) -> &Instruments {
         &self.instruments
     }
-}
-
-/// Whether the exact motion of `scenario` can be had on the side: in closed form always, by integration for a while.
-pub fn is_affordable(scenario: &Scenario) -> bool {
-    integration_rad(scenario) <= AFFORDABLE_RAD
-}
-
-/// Radians of rotation through which the exact motion of `scenario` has to be integrated; 0 where it has a closed form.
-pub fn integration_rad(scenario: &Scenario) -> f64 {
-    let body = &scenario.body.mechanics;
-    let on_axle = |point: usize| {
-        let at = body.points()[point].at;
-        at.x == 0.0 && at.y == 0.0
-    };
-    let edited = scenario.edits.iter().flat_map(|edit| &edit.pushes);
-    let closed = scenario
-        .pushes
-        .iter()
-        .chain(edited)
-        .all(|push| on_axle(push.point));
-    if closed && SymmetricTop::of(body).is_some() {
-        return 0.0;
-    }
-    let spin = observables::angular_velocity(body, &scenario.start).norm();
-    // A body at rest will swing and turn under its weight, at about this rate.
-    let weight = scenario.motion.gravity.abs() * body.first_moment().norm();
-    let swing = (weight * body.inverse_inertia().trace()).sqrt();
-    (spin + swing) * crate::run::Clock::end_s(scenario)
 }

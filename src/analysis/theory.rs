@@ -120,11 +120,6 @@ impl Theory {
             },
         }
     }
-
-    /// Whether this top, stood upright, would sleep.
-    pub fn sleeps(&self) -> bool {
-        self.spin.abs() > self.sleeping_limit
-    }
 }
 
 fn path((low, high): (f64, f64), cusp: Option<f64>) -> Path {

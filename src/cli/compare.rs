@@ -5,7 +5,7 @@ use super::args::CompareArgs;
 use super::progress::{Meter, interruption};
 use super::scenario::scenario_of;
 use crate::analysis::compare::{Row, Table, compare as table_of};
-use crate::analysis::monitor::is_affordable;
+use crate::analysis::cost::is_affordable;
 use crate::export::Destination;
 use crate::export::csv::commented;
 use crate::physics::SchemeInfo;

@@ -551,7 +551,7 @@ fn a_body_at_rest_counts_as_one_that_will_swing() {
         "[start]\ntilt_deg = 45\nmomentum_Js = [0, 0, 0]\n[motion]\ntime_step_s = 0.1\nsteps = 100000000\n[[push]]\npoint = 'top'\nforce_N = [1, 0, 0]\nsteps = 3\n",
     );
     assert!(
-        gyrolab::analysis::monitor::is_affordable(&at_rest),
+        gyrolab::analysis::cost::is_affordable(&at_rest),
         "pushed on the axle: closed form"
     );
     let mut lopsided = at_rest.file.clone();
@@ -560,7 +560,7 @@ fn a_body_at_rest_counts_as_one_that_will_swing() {
         .unwrap()
         .scenario()
         .unwrap();
-    assert!(!gyrolab::analysis::monitor::is_affordable(&lopsided));
+    assert!(!gyrolab::analysis::cost::is_affordable(&lopsided));
 }
 
 #[test]

@@ -1,0 +1,60 @@
+//! What the exact motion of a scenario costs: nothing in closed form, the turning of the body where it is integrated.
+
+use crate::physics::{SymmetricTop, observables};
+use crate::run::Clock;
+use crate::scenario::Scenario;
+
+/// Radians of rotation through which the exact motion may be integrated on the side: less than a second's work.
+pub const AFFORDABLE_RAD: f64 = 5e5;
+
+/// Whether the exact motion of `scenario` can be had on the side: in closed form always, by integration for a while.
+pub fn is_affordable(scenario: &Scenario) -> bool {
+    integration_rad(scenario) <= AFFORDABLE_RAD
+}
+
+/// Radians of rotation through which the exact motion of `scenario` has to be integrated; 0 where it has a closed form.
+pub fn integration_rad(scenario: &Scenario) -> f64 {
+    if has_closed_form(scenario) {
+        return 0.0;
+    }
+    let body = &scenario.body.mechanics;
+    let spin = observables::angular_velocity(body, &scenario.start).norm();
+    // A body at rest will swing and turn under its weight, at about this rate.
+    let weight = scenario.motion.gravity.abs() * body.first_moment().norm();
+    let swing = (weight * body.inverse_inertia().trace()).sqrt();
+    (spin + swing) * Clock::end_s(scenario)
+}
+
+/// Whether the body is symmetric and every push, those of edits too, acts on its axle.
+fn has_closed_form(scenario: &Scenario) -> bool {
+    let body = &scenario.body.mechanics;
+    let edited = scenario.edits.iter().flat_map(|edit| &edit.pushes);
+    let mut pushed = scenario.pushes.iter().chain(edited).map(|push| push.point);
+    SymmetricTop::of(body)
+        .is_some_and(|top| pushed.all(|point| top.has_on_axle(body, &body.points()[point].at)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Document;
+
+    /// The wheel of a preset with a point `aside` m off its axle, which is pushed.
+    fn pushed_beside_the_axle(aside: f64) -> Scenario {
+        let mut document = Document::open("method-2").unwrap();
+        for set in [
+            format!("body.point.2={{name='aside',at_m=[{aside:e},0,1.5],mass_kg=0}}"),
+            "push.0={point='aside',force_N=[1,0,0],from_s=1,for_s=1}".to_owned(),
+        ] {
+            document.set(&set).unwrap();
+        }
+        document.scenario().unwrap()
+    }
+
+    #[test]
+    fn a_push_as_near_to_the_axle_as_the_closed_form_takes_costs_no_integration() {
+        assert_eq!(integration_rad(&pushed_beside_the_axle(0.0)), 0.0);
+        assert_eq!(integration_rad(&pushed_beside_the_axle(1e-12)), 0.0);
+        assert!(integration_rad(&pushed_beside_the_axle(1e-3)) > 0.0);
+    }
+}
