@@ -2,6 +2,7 @@
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -107,10 +108,10 @@ impl Destination {
 
     fn file(path: PathBuf, replace: bool) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
-        builder.prefix(".gyrolab-").suffix(".part");
-        if let Some(permissions) = new_permissions() {
-            builder.permissions(permissions);
-        }
+        builder
+            .prefix(".gyrolab-")
+            .suffix(".part")
+            .permissions(new_permissions());
         let temporary = builder
             .tempfile_in(folder_of(&path))
             .map_err(|error| plain(&error))?;
@@ -123,11 +124,6 @@ impl Destination {
             path,
             replace,
         })
-    }
-
-    /// Whether this is standard output.
-    pub fn is_stdout(&self) -> bool {
-        matches!(self, Self::Stdout(_))
     }
 
     /// How long a file has become so far, bytes; 0 for a stream.
@@ -198,15 +194,8 @@ fn folder_of(path: &Path) -> &Path {
 }
 
 /// The rights of a new file are those the user's umask leaves.
-#[cfg(unix)]
-fn new_permissions() -> Option<fs::Permissions> {
-    use std::os::unix::fs::PermissionsExt;
-    Some(fs::Permissions::from_mode(0o666))
-}
-
-#[cfg(not(unix))]
-fn new_permissions() -> Option<fs::Permissions> {
-    None
+fn new_permissions() -> fs::Permissions {
+    fs::Permissions::from_mode(0o666)
 }
 
 /// The system's words without the temporary name, which means nothing to the user.

@@ -126,11 +126,6 @@ impl Exporting {
         self.shared.cancel();
     }
 
-    /// Whether it has come to an end, of whatever kind.
-    pub fn is_done(&self) -> bool {
-        self.worker.as_ref().is_none_or(JoinHandle::is_finished)
-    }
-
     /// What has become of it, once it is done and once only: what was written, or why nothing was.
     pub fn outcome(&mut self) -> Option<Result<Written, String>> {
         let worker = self.worker.take_if(|worker| worker.is_finished())?;
