@@ -6,6 +6,7 @@
 //!
 //! The rooms, in the order in which data flows through them:
 //!
+//! - [`text`]: numbers and words as people read them; every room writes with it.
 //! - [`physics`]: body, state, loads, schemes, observables. It knows no file, no clock on the wall, no terminal.
 //! - [`scenario`]: a TOML file becomes a checked [`Scenario`](scenario::Scenario); every refusal names file,
 //!   line, key, value and rule. The shipped presets live here too.
@@ -34,5 +35,6 @@ pub mod physics;
 pub mod run;
 pub mod scenario;
 pub mod storage;
+pub mod text;
 pub mod tui;
 pub mod work;

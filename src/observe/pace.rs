@@ -1,13 +1,14 @@
 //! How fast the run is played: simulated time for wall time, apart from the time step.
 
+use crate::text::ladder::rung;
+use std::ops::RangeInclusive;
 use std::time::Duration;
 
 /// A frame that lasted longer than this (a suspended program, a slow line) is not caught up with.
 const LONGEST_FRAME: Duration = Duration::from_millis(250);
 
-/// The speeds there are to choose from, simulated seconds a second: 1, 2, 5 in every decade.
-const SLOWEST_DECADE: i32 = -4;
-const FASTEST_DECADE: i32 = 5;
+/// Rungs of the ladder that are speeds to choose from, simulated seconds a second: 1e-4 to 5e5.
+const SPEEDS: RangeInclusive<i64> = -12..=17;
 
 /// Playback speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,9 +125,7 @@ impl Pace {
 
 /// Every speed of the ladder, slowest first.
 fn ladder() -> impl DoubleEndedIterator<Item = f64> {
-    (SLOWEST_DECADE..=FASTEST_DECADE)
-        .flat_map(|decade| [1, 2, 5].map(|digit| format!("{digit}e{decade}")))
-        .filter_map(|speed| speed.parse().ok())
+    SPEEDS.map(rung)
 }
 
 fn faster(speed: Speed) -> Speed {

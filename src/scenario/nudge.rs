@@ -1,9 +1,7 @@
 //! Numbers as they are nudged and typed: steps of 1, 2 and 5 times a power of ten, free of binary noise, and units.
 
 use super::keys::Nudge;
-
-/// Relative differences below this are rounding: 0.01 · 100 is 1.
-const ROUNDING: f64 = 1e-12;
+use crate::text::ladder::{at_or_below, climbed};
 
 /// `value` nudged `times` times by the rule `nudge`, its size being `size`; `None` where the rule is not one for numbers.
 pub fn number(value: f64, size: f64, nudge: Nudge, times: i32) -> Option<f64> {
@@ -39,37 +37,8 @@ fn decimals(value: f64) -> usize {
 
 /// The largest rung not above a hundredth of `size`; `None` where that is nothing.
 fn hundredth(size: f64) -> Option<f64> {
-    let step = rung(rung_below(size / 100.0));
+    let step = at_or_below(size / 100.0);
     (step > 0.0).then_some(step)
-}
-
-/// `value` moved `times` rungs up the ladder; a value between two rungs goes to the next.
-fn climbed(value: f64, times: i32) -> f64 {
-    let below = rung_below(value);
-    let is_between = value > rung(below) * (1.0 + ROUNDING);
-    rung(below + i64::from(times) + i64::from(is_between && times < 0))
-}
-
-/// Number of the largest rung that is not above `value`.
-fn rung_below(value: f64) -> i64 {
-    const FARTHEST: i64 = 400; // decades; beyond them there are no numbers
-    let decade = (libm::log10(value).floor() as i64).clamp(-FARTHEST, FARTHEST);
-    let top = 3 * decade + 3;
-    let is_above = |number: &i64| rung(*number) <= value * (1.0 + ROUNDING);
-    (top - 4..=top).rev().find(is_above).unwrap_or(top - 4)
-}
-
-/// Rung `number` of the ladder ..., 1, 2, 5, 10, ...; rung 0 is 1.
-fn rung(number: i64) -> f64 {
-    let digit = ["1", "2", "5"][number.rem_euclid(3) as usize];
-    let text = format!("{digit}e{}", number.div_euclid(3));
-    text.parse().unwrap_or_default()
-}
-
-/// The shortest text that is read back as `number`.
-pub fn shown(number: f64) -> String {
-    let text = format!("{number:?}");
-    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
 /// The number at the beginning of `text`, which may be followed by its unit `unit`.
@@ -148,25 +117,9 @@ mod tests {
     }
 
     #[test]
-    fn the_ladder_has_1_2_and_5_in_every_decade() {
-        let up = |value, times| number(value, value, Nudge::Ladder, times);
-        for (value, times, next) in [
-            (0.1, 1, 0.2),
-            (0.1, -1, 0.05),
-            (0.5, 1, 1.0),
-            (0.03, 1, 0.05),
-            (0.03, -1, 0.02),
-            (0.03, 2, 0.1),
-            (0.03, -2, 0.01),
-            (1.0 / 60.0, -1, 0.01),
-            (1e-3, 3, 1e-2),
-            (5.0, -3, 0.5),
-            (1.0, 0, 1.0),
-        ] {
-            assert_eq!(up(value, times), Some(next), "{value} {times}");
-        }
-        assert_eq!(up(1e300, i32::MAX), Some(f64::INFINITY));
-        assert_eq!(up(1e-300, i32::MIN), Some(0.0));
+    fn the_ladder_is_climbed() {
+        assert_eq!(number(0.1, 0.1, Nudge::Ladder, 1), Some(0.2));
+        assert_eq!(number(0.03, 0.03, Nudge::Ladder, -1), Some(0.02));
     }
 
     #[test]

@@ -3,11 +3,11 @@
 use super::dotted::find;
 use super::file::{Frame, StartFile};
 use super::keys::STATED;
-use super::nudge;
 use super::problem::Problem;
 use crate::physics::observables::{VERTICAL_WITHIN, angular_velocity};
 use crate::physics::symmetry::steady_precession;
 use crate::physics::{Body, State, SymmetricTop, rotation};
+use crate::text::number;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::TAU;
 use toml::{Table, Value};
@@ -179,7 +179,7 @@ fn too_slow(least: f64) -> String {
 /// A number of four digits not below `number`, and hardly above it.
 fn above(number: f64) -> String {
     let up = number * (1.0 + 6e-4);
-    nudge::shown(format!("{up:.3e}").parse().unwrap_or(up))
+    number::significant(up, 4)
 }
 
 /// The two ways to tell the momentum: the keys of each.

@@ -2,8 +2,9 @@
 
 use crate::physics::{State, observables};
 use crate::scenario::file::PushFile;
-use crate::scenario::keys::Nudge;
 use crate::scenario::{Scenario, Window, nudge};
+use crate::text::ladder::{at_or_below, climbed};
+use crate::text::number::shortest;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -110,7 +111,7 @@ impl Toward {
     fn shown(self) -> String {
         match (self.name(), self) {
             (Some(name), _) => name.to_owned(),
-            (None, Self::Along(direction)) => direction.map(nudge::shown).join(" "),
+            (None, Self::Along(direction)) => direction.map(shortest).join(" "),
             (None, _) => String::new(),
         }
     }
@@ -205,9 +206,9 @@ impl NextPush {
                 .copied()
                 .unwrap_or_default()
                 .to_owned(),
-            size_N: round(WEIGHTS * weight),
+            size_N: at_or_below(WEIGHTS * weight),
             toward: Toward::Down,
-            for_s: round(SHARE * length_s),
+            for_s: at_or_below(SHARE * length_s),
         }
     }
 
@@ -226,9 +227,9 @@ impl NextPush {
     pub fn shown(&self, field: Field) -> String {
         match field {
             Field::Point => self.point.clone(),
-            Field::Size => nudge::shown(self.size_N),
+            Field::Size => shortest(self.size_N),
             Field::Toward => self.toward.shown(),
-            Field::Length => nudge::shown(self.for_s),
+            Field::Length => shortest(self.for_s),
         }
     }
 
@@ -238,8 +239,6 @@ impl NextPush {
     /// Why it cannot be.
     pub fn nudged(&self, field: Field, times: i32, scenario: &Scenario) -> Result<Self, String> {
         let names = scenario.body.names();
-        let climbed =
-            |number: f64| nudge::number(number, number, Nudge::Ladder, times).unwrap_or(number);
         let next = match field {
             Field::Point => Self {
                 point: turned(&names, |name| **name == *self.point, times)
@@ -254,11 +253,11 @@ impl NextPush {
                 ..self.clone()
             },
             Field::Size => Self {
-                size_N: climbed(self.size_N),
+                size_N: climbed(self.size_N, times),
                 ..self.clone()
             },
             Field::Length => Self {
-                for_s: climbed(self.for_s),
+                for_s: climbed(self.for_s, times),
                 ..self.clone()
             },
         };
@@ -337,12 +336,6 @@ impl NextPush {
         let [point, size, toward, length] = Field::ALL.map(|field| self.shown(field));
         format!("{size} N on {point}, {toward}, for {length} s")
     }
-}
-
-/// The largest rung of 1, 2, 5 times a power of ten that is not above `number`.
-fn round(number: f64) -> f64 {
-    let step = |times| move |number| nudge::number(number, number, Nudge::Ladder, times);
-    step(1)(number).and_then(step(-1)).unwrap_or(number)
 }
 
 /// The element `times` further on than the one that `is_now`, around the end.

@@ -6,6 +6,7 @@ use crate::scenario::file::{BodyFile, ScenarioFile};
 use crate::scenario::keys::{InLab, KEYS, Key, Kind, Nudge, Range, join};
 use crate::scenario::problem::brief;
 use crate::scenario::{Document, Problems, Scenario, nudge, start};
+use crate::text::number::shortest;
 use toml::{Table, Value};
 
 /// Points and pushes beyond so many are not listed: nobody changes them one at a time.
@@ -238,7 +239,7 @@ impl Parameter {
     /// The value with all its digits; text without quotes, its line ends as `\n`.
     pub fn shown(&self) -> String {
         match &self.value {
-            Value::Float(number) => nudge::shown(*number),
+            Value::Float(number) => shortest(*number),
             Value::String(text) if self.kind == Kind::Paragraph => {
                 text.replace('\\', "\\\\").replace('\n', "\\n")
             }

@@ -4,8 +4,8 @@ use crate::physics::{State, rotation};
 use crate::scenario::file::{MotionFile, PushFile, ScenarioFile, StartFile, ViewFile};
 use crate::scenario::problem::{Problem, Problems};
 use crate::scenario::rescale::MOST_STEPS;
-use crate::scenario::{Document, nudge};
-use crate::scenario::{Motion, Push, Scenario, Window};
+use crate::scenario::{Document, Motion, Push, Scenario, Window};
+use crate::text::number;
 use nalgebra::{Matrix3, Vector3};
 
 /// A push that lasts less than this part of a time step from now on is over but for rounding.
@@ -40,7 +40,11 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
     let speed = old.view.as_ref().and_then(|view| view.speed);
     let file = ScenarioFile {
         gyrolab: None,
-        title: format!("{}, from t = {} s", old.title, short(state.time_s)),
+        title: format!(
+            "{}, from t = {} s",
+            old.title,
+            number::significant(state.time_s, 7)
+        ),
         about: None,
         source: None,
         trace: old.trace.clone(),
@@ -109,11 +113,6 @@ fn angles_deg(orientation: &Matrix3<f64>) -> [f64; 3] {
     let rolled = upright.tr_mul(orientation);
     let roll = libm::atan2(rolled[(1, 0)], rolled[(0, 0)]);
     [tilt, turn, roll].map(f64::to_degrees)
-}
-
-/// A time for reading, s.
-fn short(time_s: f64) -> String {
-    nudge::shown(format!("{time_s:.6e}").parse().unwrap_or(time_s))
 }
 
 /// The moment from which the new scenario counts.
@@ -243,12 +242,5 @@ mod tests {
             let back = from_angles(angles_deg(&orientation));
             prop_assert!((back - orientation).amax() < 4e-15, "{}", (back - orientation).amax());
         }
-    }
-
-    #[test]
-    fn times_are_short() {
-        assert_eq!(short(421.0 * 0.1), "42.1");
-        assert_eq!(short(0.0), "0");
-        assert_eq!(short(1e-9 / 3.0), "3.333333e-10");
     }
 }

@@ -1,10 +1,11 @@
 //! The list of presets and files, with a preview of what is selected.
 
-use super::{frame_on_top, wrapped, write};
+use super::{frame_on_top, write};
 use crate::lab::browser::Browser;
 use crate::lab::view::theme::{Role, Theme};
 use crate::scenario::Scenario;
 use crate::scenario::problem::printable;
+use crate::text::wrap::wrapped;
 use crate::tui::keymap::Mode;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

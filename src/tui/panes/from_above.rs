@@ -8,6 +8,7 @@ use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::overlay::Overlay;
 use crate::observe::path::Path;
+use crate::text::ladder::at_or_below;
 use crate::tui::dots::{Dots, Ink};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -180,7 +181,7 @@ impl FromAbove<'_> {
         } else {
             0.4
         };
-        let length_m = nice_below(share * area.width as f64 * plan.cell_width_m);
+        let length_m = at_or_below(share * area.width as f64 * plan.cell_width_m);
         let cells = (length_m / plan.cell_width_m).round() as usize;
         let bar = format!("├{}┤ {length_m} m", "─".repeat(cells.saturating_sub(2)));
         let end = write(area, (0, 0), &bar, theme.style(Role::Quiet), buf);
@@ -291,15 +292,4 @@ fn on_and_off(
         passed += usize::from(last.replace(dot) != Some(dot));
         passed % out_of < drawn
     })
-}
-
-/// The largest of 1, 2, 5 times a power of ten that is not above `value` (> 0).
-fn nice_below(value: f64) -> f64 {
-    let exponent = value.log10().floor() as i32;
-    let near =
-        [(5, exponent), (2, exponent), (1, exponent)].map(|(digit, e)| format!("{digit}e{e}"));
-    near.iter()
-        .filter_map(|text| text.parse().ok())
-        .find(|&step: &f64| step <= value)
-        .unwrap_or(value)
 }

@@ -1,7 +1,8 @@
 //! The list of keys, from the table of keys.
 
-use super::{frame_on_top, wrapped, write};
+use super::{frame_on_top, write};
 use crate::lab::view::theme::{Role, Theme};
+use crate::text::wrap::wrapped;
 use crate::tui::keymap::{BINDINGS, Binding, Mode};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

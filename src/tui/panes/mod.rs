@@ -10,10 +10,10 @@ pub mod three_d;
 pub mod traces;
 
 use crate::lab::view::theme::{Role, Theme};
+use crate::text::wrap::{columns, wrapped};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
-use ratatui::text::Span;
 use ratatui::widgets::{Block, Clear, Widget};
 use std::borrow::Cow;
 
@@ -68,26 +68,6 @@ pub(super) fn shortened(text: &str, width: usize) -> Cow<'_, str> {
     while columns(&begin) + REST.len() > width && begin.pop().is_some() {}
     let rest = &REST[..REST.len().min(width)];
     (begin.trim_end().to_owned() + rest).into()
-}
-
-fn columns(text: &str) -> usize {
-    Span::raw(text).width()
-}
-
-/// `text` in lines of at most `width` characters, broken between words.
-pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        let Some(line) = lines.last_mut() else { break };
-        if line.is_empty() || line.chars().count() + 1 + word.chars().count() <= width {
-            let space = if line.is_empty() { "" } else { " " };
-            line.push_str(space);
-            line.push_str(word);
-        } else {
-            lines.push(word.to_owned());
-        }
-    }
-    lines
 }
 
 /// As [`wrapped`], in no more than `height` lines; dots stand for what does not fit.

@@ -75,14 +75,13 @@ type Label = (&'static str, Role, Vector3<f64>);
 impl ThreeD<'_> {
     fn reach(&self) -> f64 {
         let scenario = self.run.scenario();
-        let traced = scenario.body.mechanics.points()[scenario.trace].at.norm();
         let furthest = scenario
             .file
             .body
             .rim
             .as_ref()
             .map_or(0.0, |rim| rim.radius_m.hypot(rim.height_m));
-        traced.max(furthest).max(f64::MIN_POSITIVE)
+        scenario.arm_m().max(furthest).max(f64::MIN_POSITIVE)
     }
 
     fn axes(&self, scene: &mut Scene<'_>) {

@@ -9,6 +9,7 @@ use crate::observe::live::LiveRun;
 use crate::observe::marks::Marks;
 use crate::observe::overlay::Overlay;
 use crate::observe::recording::{Curve, Extent, Recording};
+use crate::text::number::decimal;
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::sweep::Sweep;
 use ratatui::buffer::Buffer;
@@ -140,9 +141,13 @@ impl Traces<'_> {
         match curve {
             Curve::X | Curve::Y => {
                 let both = extent(Curve::X).and(extent(Curve::Y));
-                Scale::about_zero(both.max.max(-both.min).max(PLANE_LEAST * self.reach()))
+                Scale::about_zero(
+                    both.max
+                        .max(-both.min)
+                        .max(PLANE_LEAST * self.run.scenario().arm_m()),
+                )
             }
-            Curve::Z => Scale::around(extent(curve), Z_LEAST * self.reach()),
+            Curve::Z => Scale::around(extent(curve), Z_LEAST * self.run.scenario().arm_m()),
             Curve::Tilt => Scale::around(extent(curve), TILT_LEAST),
         }
     }
@@ -159,11 +164,6 @@ impl Traces<'_> {
             .filter_map(Recording::whole);
         let extents = blocks.map(|block| block.extent(curve));
         extents.reduce(Extent::and).unwrap_or(Extent::of(0.0))
-    }
-
-    fn reach(&self) -> f64 {
-        let scenario = self.run.scenario();
-        scenario.body.mechanics.points()[scenario.trace].at.norm()
     }
 
     /// The pen: a line where the next dots will stand.
@@ -405,7 +405,7 @@ fn nice_above(value: f64) -> f64 {
 fn ends(sweep: &Sweep, width: usize) -> (String, String) {
     let (begin_s, end_s) = (sweep.begin_s, sweep.begin_s + sweep.window_s);
     if end_s < LONG_TIME_S {
-        return (short(begin_s), format!("{} s", short(end_s)));
+        return (decimal(begin_s), format!("{} s", decimal(end_s)));
     }
     let digits = (1.0 - sweep.window_s.log10()).ceil().clamp(0.0, 6.0) as usize;
     let begin = format!("{begin_s:.digits$}");
@@ -413,20 +413,12 @@ fn ends(sweep: &Sweep, width: usize) -> (String, String) {
     if begin.len() + end.len() < width {
         return (begin, end);
     }
-    let later = format!("+ {} s", short(sweep.window_s));
+    let later = format!("+ {} s", decimal(sweep.window_s));
     let whole = format!("{begin} s");
     if whole.len() + later.len() < width {
         return (whole, later);
     }
     (format!("{begin_s:.3e} s"), later)
-}
-
-/// A time without digits it does not need.
-fn short(time_s: f64) -> String {
-    match time_s {
-        t if t >= LONG_TIME_S => format!("{t:.3e}"),
-        t => format!("{}", (t * 1e6).round() / 1e6),
-    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,75 @@
+//! The ladder ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ...: round numbers about twice apart, numbered by rungs; rung 0 is 1.
+
+/// Relative differences below this are rounding: 0.01 · 100 is 1.
+const ROUNDING: f64 = 1e-12;
+
+/// The number on rung `number`: the one nearest to its decimal.
+pub fn rung(number: i64) -> f64 {
+    let digit = ["1", "2", "5"][number.rem_euclid(3) as usize];
+    let text = format!("{digit}e{}", number.div_euclid(3));
+    text.parse().unwrap_or_default()
+}
+
+/// Number of the largest rung that is not above `value` (> 0).
+pub fn rung_below(value: f64) -> i64 {
+    const FARTHEST: i64 = 400; // decades; beyond them there are no numbers
+    let decade = (libm::log10(value).floor() as i64).clamp(-FARTHEST, FARTHEST);
+    let top = 3 * decade + 3;
+    let is_above = |number: &i64| rung(*number) <= value * (1.0 + ROUNDING);
+    (top - 4..=top).rev().find(is_above).unwrap_or(top - 4)
+}
+
+/// The largest number of the ladder that is not above `value`; 0 where there is none above zero.
+pub fn at_or_below(value: f64) -> f64 {
+    rung(rung_below(value))
+}
+
+/// `value` moved `times` rungs up, or down where `times` is negative; a value between two rungs goes to the next.
+pub fn climbed(value: f64, times: i32) -> f64 {
+    let below = rung_below(value);
+    let is_between = value > rung(below) * (1.0 + ROUNDING);
+    rung(below + i64::from(times) + i64::from(is_between && times < 0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_is_1_2_and_5_in_every_decade() {
+        for (value, times, next) in [
+            (0.1, 1, 0.2),
+            (0.1, -1, 0.05),
+            (0.5, 1, 1.0),
+            (0.03, 1, 0.05),
+            (0.03, -1, 0.02),
+            (0.03, 2, 0.1),
+            (0.03, -2, 0.01),
+            (1.0 / 60.0, -1, 0.01),
+            (1e-3, 3, 1e-2),
+            (5.0, -3, 0.5),
+            (1.0, 0, 1.0),
+            (1e300, i32::MAX, f64::INFINITY),
+            (1e-300, i32::MIN, 0.0),
+        ] {
+            assert_eq!(climbed(value, times), next, "{value} {times}");
+        }
+    }
+
+    #[test]
+    fn the_number_below_is_the_nearest_of_the_ladder() {
+        for (value, below) in [
+            (1.0, 1.0),
+            (0.01 * 100.0, 1.0),
+            (1.99, 1.0),
+            (4.9, 2.0),
+            (9.99, 5.0),
+            (0.3, 0.2),
+            (7e-11, 5e-11),
+            (0.0, 0.0),
+        ] {
+            assert_eq!(at_or_below(value), below, "{value}");
+        }
+        assert_eq!([-12, -1, 0, 1, 17].map(rung), [1e-4, 0.5, 1.0, 2.0, 5e5]);
+    }
+}

@@ -1,0 +1,9 @@
+//! Numbers and words as people read them: what every other room writes with. It knows nothing of gyroscopes.
+//!
+//! - [`ladder`]: the numbers 1, 2 and 5 times a power of ten.
+//! - [`number`]: numbers in as few digits as a reader needs.
+//! - [`wrap`]: text in lines of a width.
+
+pub mod ladder;
+pub mod number;
+pub mod wrap;
