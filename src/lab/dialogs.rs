@@ -9,6 +9,7 @@ use crate::scenario::{Document, Scenario, ScenarioFile};
 use crate::storage::exporting::{self, Estimate, Exporting, Written};
 use crate::tui::keymap::Mode;
 use crate::work::restart::scenario_from;
+use indicatif::{DecimalBytes, HumanCount};
 use std::io::Write;
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
@@ -185,7 +186,7 @@ impl Lab {
         dialog.form.info = match every(dialog.form.text(1)) {
             Ok(every) => {
                 let Estimate { rows, bytes } = exporting::estimate(scenario, every);
-                let rows = format!("{} rows, about {}", super::grouped(rows), in_bytes(bytes));
+                let rows = format!("{} rows, about {}", HumanCount(rows), DecimalBytes(bytes));
                 vec![
                     rows,
                     "every 10 writes each tenth row, and the last".to_owned(),
@@ -390,33 +391,17 @@ fn every(text: &str) -> Result<NonZeroU64, String> {
 
 /// What has been written, and how to fetch it.
 fn told(written: &Written) -> String {
-    let rows = super::grouped(written.rows);
+    let rows = HumanCount(written.rows);
     let end = match &written.not_finite {
         Some(end) => format!(", as far as the numbers are finite (step {})", end.step - 1),
         None => String::new(),
     };
     format!(
         "wrote {rows} rows, {}{end}: {} · {}",
-        in_bytes(written.bytes),
+        DecimalBytes(written.bytes),
         written.path.display(),
         exporting::scp_line(&written.path)
     )
-}
-
-fn in_bytes(bytes: u64) -> String {
-    const UNITS: [&str; 4] = ["kB", "MB", "GB", "TB"];
-    let mut number = bytes as f64;
-    let mut unit = "B";
-    for larger in UNITS {
-        if number < 1000.0 {
-            break;
-        }
-        (number, unit) = (number / 1000.0, larger);
-    }
-    match unit == "B" || number >= 100.0 {
-        true => format!("{number:.0} {unit}"),
-        false => format!("{number:.1} {unit}"),
-    }
 }
 
 fn full(path: &Path) -> PathBuf {

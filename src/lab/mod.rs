@@ -43,6 +43,7 @@ use crate::work::restart::in_force;
 use browser::Browser;
 use editing::Target;
 use editor::Editor;
+use indicatif::HumanCount;
 use notice::Notice;
 use ratatui::layout::Rect;
 use std::path::{Path, PathBuf};
@@ -478,7 +479,7 @@ impl Lab {
         let stepping = self
             .playback
             .steps_to_go()
-            .map(|left| format!("stepping: {} to go, Esc stops", grouped(left)));
+            .map(|left| format!("stepping: {} to go, Esc stops", HumanCount(left)));
         let said = || self.notice.text().map(str::to_owned);
         stepping.or_else(said).or_else(|| self.export_in_words())
     }
@@ -486,19 +487,6 @@ impl Lab {
 
 fn counted(count: Option<u64>, digit: u8) -> u64 {
     (count.unwrap_or(0) * 10 + u64::from(digit)).min(MOST_COUNTED)
-}
-
-/// `number` with its digits in groups of three.
-fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
 }
 
 /// How often to repeat what needs no more than `MOST_REPEATED` repetitions.

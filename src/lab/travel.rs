@@ -1,9 +1,10 @@
 //! Through the run: at which speed, back, and to any step or time.
 
-use super::{Lab, dialogs::Asking, grouped};
+use super::{Lab, dialogs::Asking};
 use crate::observe::pace::Speed;
 use crate::run::Simulation;
 use crate::tui::keymap::Mode;
+use indicatif::HumanCount;
 
 /// A step that takes longer than this is announced, s.
 const LONG_STEP_S: f64 = 3.0;
@@ -23,7 +24,7 @@ impl Lab {
             return false;
         };
         self.playback.set_running(false);
-        self.say(format!("stopped with {} steps to go", grouped(left)));
+        self.say(format!("stopped with {} steps to go", HumanCount(left)));
         true
     }
 
