@@ -1,25 +1,24 @@
 //! A small dialog of a few fields to type into.
 
 use crate::scenario::problem::is_steering;
+use tui_input::{Input, InputRequest};
 
 /// Characters a field holds at most.
 const MOST_TYPED: usize = 1000;
 
-/// One line to type into.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+/// One line to type into. The cursor goes by characters as they are seen, of whatever code points they consist.
+#[derive(Clone, Debug, Default)]
 pub struct Field {
     /// What is asked for.
     pub label: String,
-    /// What is typed so far.
-    pub text: String,
-    /// How many characters stand before the cursor.
-    pub cursor: usize,
+    /// What is typed so far, and where the cursor is in it.
+    input: Input,
     /// Whether the whole text is marked, as it was put there: what is typed takes its place.
-    pub is_marked: bool,
+    is_marked: bool,
 }
 
 /// A few fields, and what there is to say about them.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default)]
 pub struct Form {
     /// What it is about.
     pub title: String,
@@ -40,20 +39,24 @@ impl Field {
     pub fn new(label: &str, text: &str) -> Self {
         Self {
             label: label.to_owned(),
-            text: text.to_owned(),
-            cursor: text.chars().count(),
+            input: Input::new(text.to_owned()),
             is_marked: !text.is_empty(),
         }
     }
 
-    fn length(&self) -> usize {
-        self.text.chars().count()
+    /// What is typed so far.
+    pub fn text(&self) -> &str {
+        self.input.value()
     }
 
-    /// Where in the text the `index`th character begins, in bytes.
-    fn byte(&self, index: usize) -> usize {
-        let mut begins = self.text.char_indices().map(|(byte, _)| byte);
-        begins.nth(index).unwrap_or(self.text.len())
+    /// How many code points stand before the cursor.
+    pub fn cursor(&self) -> usize {
+        self.input.cursor()
+    }
+
+    /// Whether the whole text is marked: what is typed takes its place.
+    pub fn is_marked(&self) -> bool {
+        self.is_marked
     }
 
     fn type_char(&mut self, typed: char) {
@@ -61,27 +64,18 @@ impl Field {
             return;
         }
         self.take_marked();
-        if self.length() >= MOST_TYPED {
-            return;
+        if self.text().chars().count() < MOST_TYPED {
+            self.input.handle(InputRequest::InsertChar(typed));
         }
-        let at = self.cursor.min(self.length());
-        self.text.insert(self.byte(at), typed);
-        self.cursor = at + 1;
     }
 
     /// Takes the text away if it is marked; gives whether it did.
     fn take_marked(&mut self) -> bool {
         let was_marked = std::mem::take(&mut self.is_marked);
         if was_marked {
-            (self.text, self.cursor) = (String::new(), 0);
+            self.input.reset();
         }
         was_marked
-    }
-
-    /// Takes the `index`th character away, if there is one.
-    fn take(&mut self, index: usize) {
-        let (begin, end) = (self.byte(index), self.byte(index + 1));
-        self.text.replace_range(begin..end, "");
     }
 }
 
@@ -98,7 +92,7 @@ impl Form {
 
     /// What stands in the `index`th field; nothing where there is none.
     pub fn text(&self, index: usize) -> &str {
-        self.fields.get(index).map_or("", |field| &field.text)
+        self.fields.get(index).map_or("", Field::text)
     }
 
     /// Puts `typed` before the cursor; characters that would steer a terminal are refused.
@@ -106,62 +100,47 @@ impl Form {
         self.edit(|field| field.type_char(typed));
     }
 
-    /// Takes the character before the cursor away.
+    /// Takes the character before the cursor away, or what is marked.
     pub fn erase(&mut self) {
-        self.edit(|field| {
-            if field.take_marked() {
-                return;
-            }
-            if let Some(before) = field.cursor.checked_sub(1) {
-                field.take(before);
-                field.cursor = before;
-            }
-        });
+        self.take(InputRequest::DeletePrevChar);
     }
 
-    /// Takes the character at the cursor away.
+    /// Takes the character at the cursor away, or what is marked.
     pub fn delete(&mut self) {
-        self.edit(|field| {
-            if !field.take_marked() {
-                field.take(field.cursor);
-            }
-        });
+        self.take(InputRequest::DeleteNextChar);
     }
 
     /// Takes the whole of the field away.
     pub fn clear(&mut self) {
-        self.edit(|field| {
-            field.is_marked = true;
-            field.take_marked();
-        });
+        self.take(InputRequest::DeleteLine);
     }
 
     /// Marks the whole of the field: what is typed takes its place.
     pub fn mark(&mut self) {
+        self.end();
         if let Some(field) = self.fields.get_mut(self.selected) {
-            field.is_marked = !field.text.is_empty();
-            field.cursor = field.length();
+            field.is_marked = !field.text().is_empty();
         }
     }
 
     /// The cursor one character to the left.
     pub fn left(&mut self) {
-        self.move_cursor(|field| field.cursor.saturating_sub(1));
+        self.move_cursor(InputRequest::GoToPrevChar);
     }
 
     /// The cursor one character to the right.
     pub fn right(&mut self) {
-        self.move_cursor(|field| field.cursor + 1);
+        self.move_cursor(InputRequest::GoToNextChar);
     }
 
     /// The cursor to the beginning.
     pub fn home(&mut self) {
-        self.move_cursor(|_| 0);
+        self.move_cursor(InputRequest::GoToStart);
     }
 
     /// The cursor to the end.
     pub fn end(&mut self) {
-        self.move_cursor(Field::length);
+        self.move_cursor(InputRequest::GoToEnd);
     }
 
     /// The field below; after the last the first.
@@ -186,9 +165,17 @@ impl Form {
         }
     }
 
-    fn move_cursor(&mut self, to: impl FnOnce(&Field) -> usize) {
+    fn take(&mut self, what: InputRequest) {
+        self.edit(|field| {
+            if !field.take_marked() {
+                field.input.handle(what);
+            }
+        });
+    }
+
+    fn move_cursor(&mut self, to: InputRequest) {
         if let Some(field) = self.fields.get_mut(self.selected) {
-            field.cursor = to(field).min(field.length());
+            field.input.handle(to);
             field.is_marked = false;
         }
     }
@@ -228,9 +215,19 @@ mod tests {
         form.erase();
         form.erase();
         form.delete();
-        assert_eq!((form.text(0), form.fields[0].cursor), ("", 0));
+        assert_eq!((form.text(0), form.fields[0].cursor()), ("", 0));
         form.clear();
         assert_eq!(form.text(7), "");
+    }
+
+    #[test]
+    fn a_character_of_several_code_points_goes_at_once() {
+        let mut form = form("e\u{301}x");
+        form.left();
+        form.left();
+        assert_eq!(form.fields[0].cursor(), 0);
+        form.delete();
+        assert_eq!(form.text(0), "x");
     }
 
     #[test]
@@ -307,7 +304,7 @@ mod tests {
                     _ => form.type_char(c),
                 }
                 let field = &form.fields[form.selected];
-                prop_assert!(field.cursor <= field.text.chars().count());
+                prop_assert!(field.cursor() <= field.text().chars().count());
             }
         }
     }

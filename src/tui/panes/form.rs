@@ -1,8 +1,9 @@
 //! A form, over the bottom of the panes.
 
-use super::{columns, frame_on_top, wrapped, wrapped_to, write};
+use super::{frame_on_top, wrapped_to, write};
 use crate::lab::form::{Field, Form};
 use crate::lab::view::theme::{Role, Theme};
+use crate::text::wrap::{columns, wrapped};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::{Clear, Widget};
@@ -143,10 +144,10 @@ impl FormPane<'_> {
         if area.is_empty() {
             return;
         }
-        let chars: Vec<char> = field.text.chars().collect();
-        let cursor = if is_selected { field.cursor } else { 0 };
+        let chars: Vec<char> = field.text().chars().collect();
+        let cursor = if is_selected { field.cursor() } else { 0 };
         let first = first_shown(&chars, cursor, area.width as usize);
-        let is_marked = is_selected && field.is_marked;
+        let is_marked = is_selected && field.is_marked();
         let role = if is_marked {
             Role::Selected
         } else {
