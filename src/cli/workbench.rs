@@ -14,7 +14,6 @@ use crate::tui::app;
 use crate::tui::screen;
 use crate::tui::surroundings::{self, ColourChoice};
 use anyhow::Context;
-use ratatui::layout::Rect;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
@@ -183,7 +182,7 @@ fn print(
     let mut lab = lab(name, changes, markers, plain, false)?;
     let end = at.unwrap_or(lab.run().scenario().steps);
     let ended = lab.begin_at(end);
-    let picture = screen::text(&lab, false, Rect::new(0, 0, width, height));
+    let picture = screen::text(&lab, false, (width, height));
     let mut stdout = io::stdout().lock();
     stdout.write_all(picture.as_bytes())?;
     stdout.flush()?;

@@ -74,16 +74,14 @@ impl Lab {
     }
 
     pub(super) fn turn_to_parameters(&mut self) {
-        self.view
-            .turn_to(Pane::Parameters, &self.layout().focusable());
+        self.turn_to(Pane::Parameters);
         self.say(
             "Up and Down choose a value, Left and Right nudge it, Enter types it; u takes it back",
         );
     }
 
     pub(super) fn choose_push(&mut self) {
-        self.view
-            .turn_to(Pane::Parameters, &self.layout().focusable());
+        self.turn_to(Pane::Parameters);
         self.editor.select(NEXT_PUSH, Field::Size.label().0);
         self.say("the push to come: p gives it");
     }

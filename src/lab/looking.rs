@@ -33,6 +33,30 @@ impl Lab {
         }
     }
 
+    /// Every pane that can have the focus: those on the screen, or all where there is room for one or two.
+    fn focusable(&self) -> Vec<Pane> {
+        if self.view.filled || self.side_by_side.len() <= 2 {
+            Pane::ALL.to_vec()
+        } else {
+            self.side_by_side.clone()
+        }
+    }
+
+    pub(super) fn shift_focus(&mut self, forward: bool) {
+        let focusable = self.focusable();
+        self.view.shift_focus(&focusable, forward);
+    }
+
+    pub(super) fn keep_focus(&mut self) {
+        let focusable = self.focusable();
+        self.view.keep_focus(&focusable);
+    }
+
+    pub(super) fn turn_to(&mut self, pane: Pane) {
+        let focusable = self.focusable();
+        self.view.turn_to(pane, &focusable);
+    }
+
     fn turn_camera(&mut self, direction: Direction, degrees: f64) {
         let (yaw, pitch) = match direction {
             Direction::Left => (-degrees, 0.0),

@@ -24,8 +24,7 @@ pub use keeping::Unreadable;
 
 use crate::analysis::health::Advice;
 use crate::lab::action::Action;
-use crate::lab::view::View;
-use crate::lab::view::layout::Layout;
+use crate::lab::view::{Pane, View};
 use crate::observe::advisor::Advisor;
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
@@ -45,7 +44,6 @@ use editing::Target;
 use editor::Editor;
 use indicatif::HumanCount;
 use notice::Notice;
-use ratatui::layout::Rect;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -113,7 +111,8 @@ pub struct Lab {
     count: Option<u64>,
     notice: Notice,
     now: Duration,
-    size: Rect,
+    /// The panes that stand side by side while none fills the screen, in the order in which the focus goes through them.
+    side_by_side: Vec<Pane>,
     changed: bool,
 }
 
@@ -151,7 +150,7 @@ impl Lab {
             count: None,
             notice: Notice::default(),
             now: Duration::ZERO,
-            size: Rect::new(0, 0, 80, 24),
+            side_by_side: Pane::ALL.to_vec(),
             changed: true,
         };
         lab.list_parameters();
@@ -267,8 +266,8 @@ impl Lab {
             Action::SaveRun => self.ask_where_to_save_the_run(),
             Action::SavePresent => self.ask_where_to_save_the_present(),
             Action::ToggleExact => self.toggle_exact(),
-            Action::NextPane => self.view.shift_focus(&self.layout().focusable(), true),
-            Action::PreviousPane => self.view.shift_focus(&self.layout().focusable(), false),
+            Action::NextPane => self.shift_focus(true),
+            Action::PreviousPane => self.shift_focus(false),
             Action::FillScreen => self.view.toggle_filled(),
             Action::ThreeD => self.view.toggle_three_d(),
             Action::Move(direction) => self.shift(direction, repeated(count)),
@@ -297,7 +296,7 @@ impl Lab {
                 }
             }
         }
-        self.view.keep_focus(&self.layout().focusable());
+        self.keep_focus();
         self.read_now();
         None
     }
@@ -369,10 +368,11 @@ impl Lab {
         }
     }
 
-    /// The screen has this size now.
-    pub fn resize(&mut self, size: Rect) {
-        self.size = size;
-        self.view.keep_focus(&self.layout().focusable());
+    /// Says which panes stand side by side on the screen, as it is now, while none fills it, from left to right. Until
+    /// this is said, it is all of them. The whole picture is to be drawn again.
+    pub fn set_side_by_side(&mut self, panes: Vec<Pane>) {
+        self.side_by_side = panes;
+        self.keep_focus();
         self.changed = true;
     }
 
@@ -389,16 +389,6 @@ impl Lab {
     /// How long until the notice goes away by itself.
     pub fn notice_ends_in(&self) -> Option<Duration> {
         self.notice.ends_in(self.now)
-    }
-
-    /// The size of the screen.
-    pub fn size(&self) -> Rect {
-        self.size
-    }
-
-    /// The layout of the screen as it is now.
-    pub fn layout(&self) -> Layout {
-        Layout::new(self.size, &self.view, true)
     }
 
     /// The run on its pace.

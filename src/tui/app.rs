@@ -23,7 +23,7 @@ pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<
     let frame = Duration::from_secs(1) / frames.max(1);
     let begin = Instant::now();
     let mut next_frame = Duration::ZERO;
-    lab.resize(screen.size()?);
+    screen::fit(lab, screen.size()?);
     loop {
         let wait = wait(lab, next_frame.saturating_sub(begin.elapsed()));
         let events = screen.events(wait)?;
@@ -100,12 +100,12 @@ fn handle(
         Event::Resized => {
             // Of a screen that was smaller for a moment and is as large as before, a part is gone.
             screen.forget()?;
-            lab.resize(screen.size()?);
+            screen::fit(lab, screen.size()?);
             None
         }
         Event::Resumed => {
             screen.resume()?;
-            lab.resize(screen.size()?);
+            screen::fit(lab, screen.size()?);
             None
         }
     };
@@ -118,7 +118,7 @@ fn handle(
         Some(Request::Redraw) => screen.forget()?,
         Some(Request::Suspend) => screen.suspend()?,
     }
-    lab.resize(screen.size()?); // all of it is to be drawn, at the size there is now
+    screen::fit(lab, screen.size()?); // all of it is to be drawn, at the size there is now
     Ok(ControlFlow::Continue(()))
 }
 

@@ -1,7 +1,8 @@
 //! A sheet of dots: what panes draw curves on, whatever the dots are made of.
 
 use crate::lab::view::markers::Marker;
-use crate::lab::view::theme::{Role, Theme};
+use crate::lab::view::theme::Theme;
+use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 

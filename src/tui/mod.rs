@@ -10,14 +10,16 @@
 //! - [`app`] is the loop, [`terminal`] the only file that talks to the terminal, [`surroundings`] what the environment
 //!   says about it.
 //! - [`keymap`] is the one table of keys.
-//! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`sweep`] is the
-//!   traces' geometry, [`dots`] sets the dots.
+//! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`layout`] says which
+//!   places those are, [`theme`] and [`markers`] what colours and dots look like, [`dots`] sets the dots.
 
 pub mod app;
 pub mod dots;
 pub mod keymap;
+pub mod layout;
+pub mod markers;
 pub mod panes;
 pub mod screen;
 pub mod surroundings;
-pub mod sweep;
 pub mod terminal;
+pub mod theme;

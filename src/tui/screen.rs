@@ -10,12 +10,19 @@ use super::panes::three_d::ThreeD;
 use super::panes::traces::Traces;
 use crate::lab::Lab;
 use crate::lab::view::Pane;
-use crate::lab::view::layout::Layout;
-use crate::lab::view::markers::{self, Marker};
+use crate::lab::view::markers::Marker;
 use crate::tui::keymap::Mode;
+use crate::tui::layout::Layout;
+use crate::tui::markers;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
+
+/// Fits `lab` to a screen of this size.
+pub fn fit(lab: &mut Lab, size: Rect) {
+    let panes = Layout::side_by_side(size, lab.view());
+    lab.set_side_by_side(panes);
+}
 
 /// Draws `lab` on `area`; `keys` says whether with the line of keys.
 pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
@@ -101,8 +108,9 @@ fn to_ascii(area: Rect, buf: &mut Buffer) {
     }
 }
 
-/// The picture of `lab` at `area` as plain text, a line each, without blanks at their ends.
-pub fn text(lab: &Lab, keys: bool, area: Rect) -> String {
+/// The picture of `lab` on a screen of this width and height as plain text, a line each, without blanks at their ends.
+pub fn text(lab: &Lab, keys: bool, (width, height): (u16, u16)) -> String {
+    let area = Rect::new(0, 0, width, height);
     let mut buf = Buffer::empty(area);
     draw(lab, keys, area, &mut buf);
     let line = |y: u16| {

@@ -17,6 +17,7 @@ mod presets;
 mod reference;
 mod refusals;
 mod replay;
+mod rooms;
 mod same_bits;
 mod schemes;
 mod start;

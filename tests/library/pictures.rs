@@ -3,7 +3,7 @@
 use gyrolab::lab::editor::{Editor, Line};
 use gyrolab::lab::form::{Field, Form};
 use gyrolab::lab::view::markers::Marker;
-use gyrolab::lab::view::theme::{Background, Role, Theme};
+use gyrolab::lab::view::theme::{Background, Theme};
 use gyrolab::lab::view::{Pane, View};
 use gyrolab::observe::ghost::Ghost;
 use gyrolab::observe::live::LiveRun;
@@ -15,6 +15,7 @@ use gyrolab::tui::panes::from_above::FromAbove;
 use gyrolab::tui::panes::parameters::Parameters;
 use gyrolab::tui::panes::three_d::ThreeD;
 use gyrolab::tui::panes::traces::Traces;
+use gyrolab::tui::theme::Role;
 use proptest::prelude::*;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;

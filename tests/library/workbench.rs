@@ -54,7 +54,7 @@ impl Stage {
         lab.set_file(Arc::new(file));
         let folder = tempfile::tempdir().unwrap();
         lab.work_in(folder.path());
-        lab.resize(size);
+        screen::fit(&mut lab, size);
         Self {
             lab,
             now: Duration::ZERO,
@@ -100,7 +100,7 @@ impl Stage {
     }
 
     fn picture(&self) -> String {
-        screen::text(&self.lab, true, self.size)
+        screen::text(&self.lab, true, (self.size.width, self.size.height))
     }
 
     fn step(&self) -> u64 {
@@ -378,12 +378,12 @@ fn resizing_at_any_moment_shows_what_there_is_room_for() {
         (60, 20, "from above", "parameters"),
     ] {
         stage.size = Rect::new(0, 0, width, height);
-        stage.lab.resize(stage.size);
+        screen::fit(&mut stage.lab, stage.size);
         stage.shows(shown).shows_no(hidden);
     }
     stage.shows("almost a circle").shows("makes that swing");
     stage.size = Rect::new(0, 0, 79, 23);
-    stage.lab.resize(stage.size);
+    screen::fit(&mut stage.lab, stage.size);
     stage.shows("almost a circle").shows("80x24 shows more");
 }
 
@@ -647,7 +647,7 @@ proptest! {
         for (index, key) in keys.into_iter().enumerate() {
             let (width, height) = sizes[index % sizes.len()];
             stage.size = Rect::new(0, 0, width, height);
-            stage.lab.resize(stage.size);
+            screen::fit(&mut stage.lab, stage.size);
             stage.key(key);
             stage.wait(0.1);
             prop_assert_eq!(stage.picture().lines().count(), height as usize);

@@ -1,17 +1,15 @@
-//! How the lab is looked at: what has the focus, what the dots are, how much time the traces show. A run's numbers
-//! never depend on it.
+//! How the user looks at a run: which pane has the focus, how much time the traces show, and which dots and colours
+//! are chosen. All of it is plain values: the terminal gives them their places and their looks. A run's numbers never
+//! depend on them.
 //!
-//! [`layout`] says where the panes stand, [`camera`] from where the 3-D view is seen, [`markers`] and [`theme`] what dots
-//! and colours there are.
+//! [`markers`] lists the kinds of dots, [`theme`] the choice of colours.
 
-pub mod camera;
-pub mod layout;
 pub mod markers;
 pub mod theme;
 
+use crate::observe::camera::Camera;
 use crate::run::Clock;
 use crate::scenario::{Scenario, keys};
-use camera::Camera;
 use markers::Marker;
 use serde::{Deserialize, Serialize};
 use theme::{Background, Theme};

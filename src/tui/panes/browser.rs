@@ -2,11 +2,12 @@
 
 use super::{frame_on_top, write};
 use crate::lab::browser::Browser;
-use crate::lab::view::theme::{Role, Theme};
+use crate::lab::view::theme::Theme;
 use crate::scenario::Scenario;
 use crate::scenario::problem::printable;
 use crate::text::wrap::wrapped;
 use crate::tui::keymap::Mode;
+use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;

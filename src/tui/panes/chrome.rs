@@ -3,10 +3,10 @@
 use super::{shortened, wrapped_to, write};
 use crate::lab::Lab;
 use crate::lab::action::Action;
-use crate::lab::view::theme::Role;
 use crate::observe::health::remarks;
 use crate::observe::readouts::Readouts;
 use crate::tui::keymap::{BINDINGS, Mode};
+use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 

@@ -2,8 +2,9 @@
 
 use super::{frame_on_top, wrapped_to, write};
 use crate::lab::form::{Field, Form};
-use crate::lab::view::theme::{Role, Theme};
+use crate::lab::view::theme::Theme;
 use crate::text::wrap::{columns, wrapped};
+use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::{Clear, Widget};

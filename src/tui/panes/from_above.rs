@@ -2,7 +2,6 @@
 
 use super::{frame, write};
 use crate::lab::view::markers::Marker;
-use crate::lab::view::theme::Role;
 use crate::lab::view::{Pane, View};
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
@@ -10,6 +9,7 @@ use crate::observe::overlay::Overlay;
 use crate::observe::path::Path;
 use crate::text::ladder::at_or_below;
 use crate::tui::dots::{Dots, Ink};
+use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;

@@ -1,9 +1,11 @@
 //! The list of keys, from the table of keys.
 
 use super::{frame_on_top, write};
-use crate::lab::view::theme::{Role, Theme};
 use crate::text::wrap::wrapped;
+
+use crate::lab::view::theme::Theme;
 use crate::tui::keymap::{BINDINGS, Binding, Mode};
+use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;

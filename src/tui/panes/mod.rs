@@ -9,8 +9,9 @@ pub mod parameters;
 pub mod three_d;
 pub mod traces;
 
-use crate::lab::view::theme::{Role, Theme};
+use crate::lab::view::theme::Theme;
 use crate::text::wrap::{columns, wrapped};
+use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;

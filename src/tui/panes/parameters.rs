@@ -6,12 +6,12 @@ mod rows;
 
 use super::{frame, shortened, write};
 use crate::lab::editor::{Editor, Line};
-use crate::lab::view::theme::Role;
 use crate::lab::view::{Pane, View};
 use crate::observe::readouts::Readouts;
 use crate::scenario::problem::printable;
 use crate::scenario::{Motion, Scenario};
 use crate::text::wrap::columns;
+use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;

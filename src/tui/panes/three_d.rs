@@ -1,11 +1,11 @@
 //! The scene in space: wheel, axle, the path of the axle's top, and the vectors L and Ω.
 
 use super::{frame, write};
-use crate::lab::view::theme::Role;
 use crate::lab::view::{Pane, View};
 use crate::observe::live::LiveRun;
 use crate::observe::recording::{Curve, Recording};
 use crate::tui::dots::{Dots, Ink};
+use crate::tui::theme::Role;
 use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

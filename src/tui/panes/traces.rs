@@ -2,16 +2,16 @@
 
 use super::{frame, write};
 use crate::lab::view::markers::Marker;
-use crate::lab::view::theme::Role;
 use crate::lab::view::{Pane, View};
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::marks::Marks;
 use crate::observe::overlay::Overlay;
 use crate::observe::recording::{Curve, Extent, Recording};
+use crate::observe::sweep::Sweep;
 use crate::text::number::decimal;
 use crate::tui::dots::{Dots, Ink};
-use crate::tui::sweep::Sweep;
+use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;

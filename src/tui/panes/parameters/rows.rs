@@ -1,10 +1,10 @@
 //! What stands in the pane's lines, each number with as many decimals as there is room for.
 
 use super::VALUE_END;
-use crate::lab::view::theme::Role;
 use crate::observe::readouts::Readouts;
 use crate::physics::Body;
 use crate::scenario::{Motion, Scenario, Window};
+use crate::tui::theme::Role;
 use std::borrow::Cow;
 
 /// One line: a heading, or a value.

@@ -3,7 +3,7 @@
 //! Right of the pen, behind a gap, the sweep before is still to be seen. Only the pen's column changes from frame to
 //! frame, which a slow line can carry where a scrolling window is too much for it.
 
-use crate::observe::recording::{Block, Curve, Extent, Recording};
+use super::recording::{Block, Curve, Extent, Recording};
 
 /// Parts of a column smaller than this are rounding, not time.
 const ROUNDING: f64 = 1e-6;
@@ -234,8 +234,8 @@ fn nearest(from: Extent, to: Extent) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::recording::Moment;
     use super::*;
-    use crate::observe::recording::Moment;
     use nalgebra::Vector3;
     use proptest::prelude::*;
 

@@ -3,7 +3,7 @@
 //! From 80x24 on all of them stand side by side, from 120 columns on with the 3-D view; on smaller screens there are
 //! fewer, the most important first, and the hint line says so.
 
-use super::{Pane, View};
+use crate::lab::view::{Pane, View};
 use ratatui::layout::Rect;
 
 /// From this width on all panes but 3-D stand side by side.
@@ -63,12 +63,14 @@ impl Layout {
         }
     }
 
-    /// Every pane that may have the focus: those on the screen, or all where there is room for one or two.
-    pub fn focusable(&self) -> Vec<Pane> {
-        match self.panes.len() {
-            0..=2 => Pane::ALL.to_vec(),
-            _ => self.panes.iter().map(|(pane, _)| *pane).collect(),
-        }
+    /// The panes that stand side by side on `area`, with the lines of the whole lab around them, while none fills it.
+    pub fn side_by_side(area: Rect, view: &View) -> Vec<Pane> {
+        let unfilled = View {
+            filled: false,
+            ..view.clone()
+        };
+        let layout = Self::new(area, &unfilled, true);
+        layout.panes.iter().map(|(pane, _)| *pane).collect()
     }
 }
 

@@ -1,0 +1,89 @@
+//! How each kind of dots looks: how many fit in a cell of the screen, and which characters stand for them.
+
+use crate::lab::view::markers::Marker;
+
+impl Marker {
+    /// Dots in a cell, across and down.
+    pub fn dots(self) -> (usize, usize) {
+        match self {
+            Self::Braille => (2, 4),
+            Self::HalfBlock => (1, 2),
+            Self::Dot | Self::Ascii => (1, 1),
+        }
+    }
+
+    /// Width over height of one dot, in cells twice as high as wide.
+    pub fn dot_aspect(self) -> f64 {
+        let (across, down) = self.dots();
+        0.5 * down as f64 / across as f64
+    }
+
+    /// The bit of the dot at `x`, `y` of a cell.
+    pub fn bit(self, x: usize, y: usize) -> u8 {
+        /// Rows of the Braille patterns' bits, left and right (Unicode, block U+2800).
+        const BRAILLE: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
+        match self {
+            Self::Braille => BRAILLE[y % 4][x % 2],
+            _ => 1 << (y % 2),
+        }
+    }
+
+    /// The character of a cell with these `bits` of the motion itself.
+    pub fn strong(self, bits: u8) -> char {
+        match self {
+            Self::Braille => braille(bits),
+            Self::HalfBlock => half_block(bits),
+            Self::Dot => '•',
+            Self::Ascii => '*',
+        }
+    }
+
+    /// The character of a cell with these `bits` of what lies under it: the exact motion, axes, what is old.
+    pub fn faint(self, bits: u8) -> char {
+        match self {
+            Self::Braille => braille(bits),
+            Self::HalfBlock | Self::Dot => '·',
+            Self::Ascii => '.',
+        }
+    }
+
+    /// The character of a cell with these `bits` of the run before, under all others.
+    pub fn ghost(self, bits: u8) -> char {
+        match self {
+            Self::Braille => braille(bits),
+            Self::HalfBlock | Self::Dot => '°',
+            Self::Ascii => ',',
+        }
+    }
+}
+
+fn braille(bits: u8) -> char {
+    char::from_u32(0x2800 + u32::from(bits)).unwrap_or(' ')
+}
+
+fn half_block(bits: u8) -> char {
+    match bits & 3 {
+        1 => '▀',
+        2 => '▄',
+        _ => '█',
+    }
+}
+
+/// `symbol` in ASCII, for terminals whose locale is not UTF-8: a stand-in of the same width.
+pub fn ascii(symbol: &str) -> &'static str {
+    match symbol {
+        "─" => "-",
+        "│" => "|",
+        "┌" | "┐" | "└" | "┘" | "├" | "┤" => "+",
+        "×" => "x",
+        "═" => "=",
+        "°" => ",",
+        "▲" => "^",
+        "▼" => "v",
+        "·" | "•" => ".",
+        "►" => ">",
+        "Ω" => "W",
+        "–" | "—" => "-",
+        _ => "?",
+    }
+}
