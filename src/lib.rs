@@ -6,7 +6,8 @@
 //!
 //! The rooms, in the order in which data flows through them:
 //!
-//! - [`text`]: numbers and words as people read them; every room writes with it.
+//! - [`text`](mod@text): numbers and words as people read them, with nothing in them that steers a terminal; every room
+//!   writes with it.
 //! - [`physics`]: body, state, loads, schemes, observables. It knows no file, no clock on the wall, no terminal.
 //! - [`scenario`]: a TOML file becomes a checked [`Scenario`](scenario::Scenario); every refusal names file,
 //!   line, key, value and rule. The shipped presets live here too.

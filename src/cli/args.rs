@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 /// A terminal lab for the precession of a gyroscope: a report's stepper, better schemes, and any run as CSV.
 #[derive(Debug, Parser)]
-#[command(name = "gyrolab", version, about, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+#[command(name = "gyrolab", bin_name = "gyrolab", version, about, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub(super) struct Cli {
     #[command(subcommand)]
     pub(super) command: Option<Command>,

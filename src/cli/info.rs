@@ -4,8 +4,9 @@ use super::args::Cli;
 use crate::physics::scheme::SCHEMES;
 use crate::scenario::keys::{KEYS, Key};
 use crate::scenario::presets::{self, PRESETS, Preset};
-use crate::scenario::problem::{nearest, printable};
+use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problems, Scenario};
+use crate::text::printable::{Shown, printable, printable_lines};
 use anyhow::{Context, bail};
 use clap::CommandFactory;
 use std::fmt::Write as _;
@@ -89,11 +90,7 @@ pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
     for file in files {
         match Document::read(file).and_then(|document| document.scenario()) {
             Ok(scenario) => {
-                print(&format!(
-                    "{}: {}\n",
-                    printable(&file.display().to_string()),
-                    described(&scenario)
-                ))?;
+                print(&format!("{}: {}\n", Shown(file), described(&scenario)))?;
             }
             Err(problems) => {
                 refuse(&problems)?;
@@ -121,7 +118,7 @@ fn described(scenario: &Scenario) -> String {
 }
 
 fn refuse(problems: &Problems) -> io::Result<()> {
-    writeln!(io::stderr(), "{problems}")
+    writeln!(io::stderr(), "{}", printable_lines(&problems.to_string()))
 }
 
 pub(super) fn completions(shell: clap_complete::Shell) -> anyhow::Result<ExitCode> {

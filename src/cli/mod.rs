@@ -10,6 +10,7 @@ mod run;
 mod scenario;
 mod workbench;
 
+use crate::text::printable::printable_lines;
 use args::{Cli, Command};
 use clap::Parser;
 use std::io;
@@ -20,7 +21,11 @@ const INTERRUPTED: u8 = 130;
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    match execute(Cli::parse()) {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return misused(&error),
+    };
+    match execute(cli) {
         Ok(code) => code,
         Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
@@ -47,10 +52,26 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
     }
 }
 
+/// Prints what clap has to say instead of going on: help, or why it takes no such arguments. It repeats them as they
+/// are, so what could steer a terminal is printed without clap's own colours.
+fn misused(error: &clap::Error) -> ExitCode {
+    use io::Write;
+    let plain = error.render().to_string();
+    let safe = printable_lines(&plain);
+    let printed = match (safe == plain, error.use_stderr()) {
+        (true, _) => error.print(),
+        (false, true) => io::stderr().write_all(safe.as_bytes()),
+        (false, false) => io::stdout().write_all(safe.as_bytes()),
+    };
+    let _ = printed; // where even that cannot be written there is nobody to tell
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+}
+
 /// Says on stderr what went wrong; where even that cannot be written there is nobody to tell.
 fn complain(error: &anyhow::Error) {
     use io::Write;
-    let _ = writeln!(io::stderr(), "gyrolab: {error:#}");
+    let error = format!("{error:#}");
+    let _ = writeln!(io::stderr(), "gyrolab: {}", printable_lines(&error));
 }
 
 /// Whether the reader of our output has gone, as in `gyrolab run ... -o - | head`: that is no failure.

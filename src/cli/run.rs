@@ -9,6 +9,7 @@ use crate::analysis::{Health, Monitor};
 use crate::export::stream::{self, Ended};
 use crate::export::{CsvWriter, Destination, Readouts, Summary};
 use crate::run::Simulation;
+use crate::text::printable::Shown;
 use anyhow::Context;
 use clap::CommandFactory;
 use clap::error::ErrorKind;
@@ -78,7 +79,7 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 fn cannot_write(path: &Path) -> String {
     match path == Path::new("-") {
         true => "cannot write to stdout".to_owned(),
-        false => format!("cannot write {}", path.display()),
+        false => format!("cannot write {}", Shown(path)),
     }
 }
 

@@ -6,10 +6,10 @@ use crate::lab::Lab;
 use crate::lab::view::View;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::{Background, Theme};
-use crate::scenario::problem::printable;
 use crate::scenario::{Document, Scenario};
 use crate::storage::exporting;
 use crate::storage::session::{self, KeptAside, Session};
+use crate::text::printable::{Shown, printable};
 use crate::tui::app;
 use crate::tui::screen;
 use crate::tui::surroundings::{self, ColourChoice};
@@ -29,7 +29,8 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
         anyhow::ensure!(!args.resume, "--resume needs a terminal to come back to");
         writeln!(
             io::stderr(),
-            "gyrolab: no terminal, so this is the picture that gyrolab show {name} prints"
+            "gyrolab: no terminal, so this is the picture that gyrolab show {} prints",
+            printable(name)
         )?;
         return print(name, &args.changes, args.at, (80, 24), args.look.markers);
     }
@@ -135,7 +136,7 @@ fn put_aside(damaged: &[KeptAside]) -> String {
     let names = damaged.iter().map(|one| {
         format!(
             "a damaged session is put aside as {} ({}); ",
-            one.path.display(),
+            Shown(&one.path),
             one.reason
         )
     });
@@ -146,7 +147,7 @@ fn put_aside(damaged: &[KeptAside]) -> String {
 fn tell_of_exports(lab: &Lab) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
     for written in lab.written() {
-        let path = written.path.display();
+        let path = Shown(&written.path);
         writeln!(
             stdout,
             "{path}: {} rows\n  {}",

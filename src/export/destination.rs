@@ -1,5 +1,6 @@
 //! Where an export goes: a file that appears whole or not at all, or a stream.
 
+use crate::text::printable::Shown;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::os::unix::fs::PermissionsExt;
@@ -28,13 +29,13 @@ pub enum Destination {
 #[derive(Debug, thiserror::Error)]
 pub enum DestinationError {
     /// There is such a file, and it was not said that it may go.
-    #[error("{} exists; --force replaces it", .0.display())]
+    #[error("{} exists; --force replaces it", Shown(.0))]
     Exists(PathBuf),
     /// The name is that of a folder.
-    #[error("{} is a folder: name a file in it", .0.display())]
+    #[error("{} is a folder: name a file in it", Shown(.0))]
     Folder(PathBuf),
     /// There is no folder to put the file in.
-    #[error("cannot write {}: there is no folder {}", path.display(), folder.display())]
+    #[error("cannot write {}: there is no folder {}", Shown(path), Shown(folder))]
     NoFolder {
         /// The place.
         path: PathBuf,
@@ -42,7 +43,7 @@ pub enum DestinationError {
         folder: PathBuf,
     },
     /// The system refused.
-    #[error("cannot write {}: {error}", path.display())]
+    #[error("cannot write {}: {error}", Shown(path))]
     Refused {
         /// The place.
         path: PathBuf,
@@ -55,7 +56,7 @@ impl DestinationError {
     /// What is wrong, without the remedy that only the command line has.
     pub fn fact(&self) -> String {
         match self {
-            Self::Exists(path) => format!("{} exists", path.display()),
+            Self::Exists(path) => format!("{} exists", Shown(path)),
             other => other.to_string(),
         }
     }

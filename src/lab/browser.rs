@@ -1,9 +1,9 @@
 //! The list of presets and files: what there is, which of it the filter lets through, which is selected.
 
+use super::preview::{Loader, Preview, read};
 use crate::scenario::presets::PRESETS;
-use crate::scenario::problem::printable;
-use crate::scenario::{Document, Scenario};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Files beyond this many are not listed.
 const MOST_FILES: usize = 1000;
@@ -18,19 +18,28 @@ pub struct Entry {
 }
 
 /// The browser's state.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Browser {
     entries: Vec<Entry>,
     /// What the lab has open.
     open: String,
     filter: String,
     selected: usize,
-    preview: Option<(String, Result<Scenario, String>)>,
+    /// The selected entry, and what it holds.
+    preview: Option<(Entry, Preview)>,
+    loader: Loader,
 }
 
 impl Browser {
     /// Presets, and the scenario, run and CSV files in `folder`, with `name` selected.
     pub fn new(folder: &Path, name: &str) -> Self {
+        let mut browser = Self::default();
+        browser.begin(folder, name);
+        browser
+    }
+
+    /// Lists what there is anew, as [`new`](Self::new) does.
+    pub fn begin(&mut self, folder: &Path, name: &str) {
         let presets = PRESETS.iter().map(|preset| Entry {
             name: preset.name.to_owned(),
             is_file: false,
@@ -39,14 +48,11 @@ impl Browser {
             name,
             is_file: true,
         });
-        let entries: Vec<_> = presets.chain(files).collect();
-        let mut browser = Self {
-            entries,
-            open: name.to_owned(),
-            ..Self::default()
-        };
-        browser.refilter();
-        browser
+        self.entries = presets.chain(files).collect();
+        self.open = name.to_owned();
+        self.filter.clear();
+        self.preview = None;
+        self.refilter();
     }
 
     /// The entries the filter lets through.
@@ -73,9 +79,25 @@ impl Browser {
         self.shown().get(self.selected).copied()
     }
 
-    /// What the selected entry holds, or why it cannot be opened.
-    pub fn preview(&self) -> Option<&Result<Scenario, String>> {
+    /// What the selected entry holds, as far as that is known.
+    pub fn preview(&self) -> Option<&Preview> {
         self.preview.as_ref().map(|(_, preview)| preview)
+    }
+
+    /// Whether the selected entry is still being read.
+    pub fn is_loading(&self) -> bool {
+        matches!(self.preview(), Some(Preview::Loading))
+    }
+
+    /// Takes what has been found out about the selected entry since; gives whether there was anything.
+    pub fn take_news(&mut self) -> bool {
+        match (&mut self.preview, self.loader.news()) {
+            (Some((_, preview @ Preview::Loading)), Some(news)) => {
+                *preview = news;
+                true
+            }
+            _ => false,
+        }
     }
 
     /// The filter as it is typed.
@@ -122,15 +144,16 @@ impl Browser {
     }
 
     fn load_preview(&mut self) {
-        let name = self.choice().map(|entry| entry.name.clone());
-        if self.preview.as_ref().map(|(of, _)| of) == name.as_ref() {
+        let choice = self.choice().cloned();
+        if self.preview.as_ref().map(|(of, _)| of) == choice.as_ref() {
             return;
         }
-        self.preview = name.map(|name| {
-            let preview = Document::open(&name)
-                .and_then(|document| document.scenario())
-                .map_err(|problems| problems.to_string());
-            (name, preview)
+        self.preview = choice.map(|entry| {
+            let preview = match entry.is_file {
+                true => self.loader.ask(&entry.name),
+                false => Preview::Known(Arc::new(read(&entry.name))),
+            };
+            (entry, preview)
         });
     }
 }
@@ -145,7 +168,6 @@ fn files(folder: &Path) -> Vec<String> {
         .filter(|entry| entry.path().is_file())
         .filter_map(|entry| entry.file_name().into_string().ok())
         .filter(|name| name.ends_with(".toml") || name.ends_with(".csv"))
-        .filter(|name| printable(name) == *name)
         .take(MOST_FILES)
         .map(|name| {
             if folder == Path::new(".") {

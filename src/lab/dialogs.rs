@@ -7,6 +7,7 @@ use crate::export::destination::DestinationError;
 use crate::lab::action::FieldEdit;
 use crate::scenario::{Document, Scenario, ScenarioFile};
 use crate::storage::exporting::{self, Estimate, Exporting, Written};
+use crate::text::printable::{Shown, is_steering};
 use crate::tui::keymap::Mode;
 use crate::work::restart::scenario_from;
 use indicatif::{DecimalBytes, HumanCount};
@@ -319,13 +320,12 @@ impl Lab {
         is_named(path)?;
         let mut destination = Destination::open(path, may_replace(path)).map_err(refusal)?;
         let written = destination.write_all(content.as_bytes());
-        written.map_err(|error| {
-            Refusal::Because(format!("cannot write {}: {error}", path.display()))
-        })?;
+        written
+            .map_err(|error| Refusal::Because(format!("cannot write {}: {error}", Shown(path))))?;
         destination.keep().map_err(refusal)?;
         let name = full(path);
         self.notice
-            .keep_saying(format!("{what} is in {}", name.display()));
+            .keep_saying(format!("{what} is in {}", Shown(&name)));
         Ok(())
     }
 
@@ -335,6 +335,7 @@ impl Lab {
             .file_stem()
             .map_or("run".into(), |stem| stem.to_string_lossy());
         let stem = stem.strip_suffix(about).unwrap_or(&stem);
+        let stem = stem.replace(is_steering, "_"); // what is offered can be seen and typed
         let names = (1_u32..).map(|number| match number {
             1 => format!("{stem}{about}.{extension}"),
             _ => format!("{stem}{about}-{number}.{extension}"),
@@ -354,7 +355,7 @@ fn refused(mut dialog: Dialog, refusal: Refusal) -> Dialog {
             (reason, None)
         }
         Refusal::Exists(path) => (
-            format!("{} exists: Enter again replaces it", path.display()),
+            format!("{} exists: Enter again replaces it", Shown(&path)),
             Some(path),
         ),
     };
@@ -399,7 +400,7 @@ fn told(written: &Written) -> String {
     format!(
         "wrote {rows} rows, {}{end}: {} · {}",
         DecimalBytes(written.bytes),
-        written.path.display(),
+        Shown(&written.path),
         exporting::scp_line(&written.path)
     )
 }

@@ -1,6 +1,6 @@
 //! A small dialog of a few fields to type into.
 
-use crate::scenario::problem::is_steering;
+use crate::text::printable::is_steering;
 use tui_input::{Input, InputRequest};
 
 /// Characters a field holds at most.

@@ -5,6 +5,7 @@ use crate::lab::view::{Pane, View};
 use crate::observe::pace::Speed;
 use crate::scenario::{Document, Problems, Scenario};
 use crate::storage::session::Content;
+use crate::text::printable::Shown;
 use crate::work::history::History;
 use crate::work::next_push::NextPush;
 use serde::{Deserialize, Serialize};
@@ -81,7 +82,7 @@ impl Lab {
             exporting: self
                 .exporting
                 .as_ref()
-                .map(|exporting| exporting.path().display().to_string()),
+                .map(|exporting| Shown(exporting.path()).to_string()),
             next_push: self.next_push.clone(),
         }
     }

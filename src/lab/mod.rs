@@ -16,6 +16,7 @@ mod keeping;
 mod looking;
 pub mod notice;
 mod opening;
+pub mod preview;
 mod travel;
 pub mod view;
 
@@ -204,6 +205,7 @@ impl Lab {
             self.changed = true;
         }
         self.changed |= self.advisor.as_mut().is_some_and(Advisor::has_news);
+        self.changed |= self.browser.take_news();
         self.follow_export();
         let is_due = self.is_fast() || now >= self.read_at + readouts::EVERY;
         if self.changed && is_due {

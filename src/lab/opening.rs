@@ -1,7 +1,6 @@
 //! Opening another preset or file, and going from one run to another.
 
 use super::Lab;
-use super::browser::Browser;
 use crate::observe::ghost::Ghost;
 use crate::observe::playback::Playback;
 use crate::scenario::{Document, Scenario};
@@ -16,10 +15,9 @@ const SHORT: f64 = 0.1;
 
 impl Lab {
     pub(super) fn browse(&mut self) {
-        self.browser = Browser::new(
-            self.folder.as_deref().unwrap_or(Path::new(".")),
-            self.name(),
-        );
+        let folder = self.folder.as_deref().unwrap_or(Path::new("."));
+        let name = &self.history.present().name;
+        self.browser.begin(folder, name);
         self.mode = Mode::Browser;
     }
 

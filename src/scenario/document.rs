@@ -2,8 +2,9 @@
 
 use super::checks;
 use super::dotted::{find, is_in, set_key};
-use super::problem::{Problem, Problems, brief, nearest, printable};
+use super::problem::{Problem, Problems, nearest};
 use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, start};
+use crate::text::printable::{brief, printable, printable_lines};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -306,7 +307,7 @@ fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
     let picture = error.to_string();
     let mut lines = picture.trim_end().lines();
     let rule = if lines.clone().all(|line| line.len() <= WIDEST) {
-        lines.map(printable).collect::<Vec<_>>().join("\n")
+        printable_lines(picture.trim_end()).into_owned()
     } else {
         // A picture of a line that fills the screen shows nothing.
         let place = brief(lines.next().unwrap_or_default(), WIDEST);

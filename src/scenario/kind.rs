@@ -1,6 +1,7 @@
 //! What a key may hold, and the rules by which a value is refused.
 
-use super::problem::{is_steering, nearest};
+use super::problem::nearest;
+use crate::text::printable::is_steering;
 use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole};
 use Range::{NotNegative, Positive};
 use toml::Value;
@@ -114,7 +115,7 @@ fn check_characters(text: &str, allowed: &str) -> Result<(), String> {
         .find(|&c| is_steering(c) && !allowed.contains(c))
     {
         Some(c) => Err(format!(
-            "must hold no control or direction characters (here U+{:04X})",
+            "must hold no control, direction or invisible characters (here U+{:04X})",
             c as u32
         )),
         None => Ok(()),

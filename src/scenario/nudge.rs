@@ -51,7 +51,7 @@ pub fn typed(text: &str, unit: &str) -> Result<f64, String> {
         true => "must be a number".to_owned(),
         false => format!(
             "must be a number, not \"{}\"",
-            super::problem::brief(text, 20)
+            crate::text::printable::brief(text, 20)
         ),
     };
     let ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
@@ -67,7 +67,7 @@ pub fn typed(text: &str, unit: &str) -> Result<f64, String> {
         "" => Err(wrong()),
         _ => Err(format!(
             "is in {unit}, not in \"{}\"",
-            super::problem::brief(rest, 20)
+            crate::text::printable::brief(rest, 20)
         )),
     }
 }

@@ -1,5 +1,6 @@
 //! What is wrong with a scenario, in words that one who has never seen the code can act on.
 
+use crate::text::printable::{brief, printable};
 use std::fmt;
 
 /// One thing refused: where, which key, what it holds, and the rule it breaks.
@@ -113,37 +114,6 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
-/// `text` without anything that could steer the terminal it is printed on.
-pub fn printable(text: &str) -> String {
-    text.chars()
-        .flat_map(|c| {
-            if is_steering(c) {
-                c.escape_default().collect()
-            } else {
-                vec![c]
-            }
-        })
-        .collect()
-}
-
-/// Control characters, and those that turn the direction of text: a name must look as it is.
-pub fn is_steering(c: char) -> bool {
-    let bidirectional = matches!(c,
-        '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    c.is_control() || bidirectional
-}
-
-/// `text` made printable, at most `most` characters of it: a message is for reading, however long what it is about.
-pub fn brief(text: &str, most: usize) -> String {
-    let beginning: String = text.chars().take(most).collect();
-    let rest = if beginning.len() < text.len() {
-        "..."
-    } else {
-        ""
-    };
-    printable(&beginning) + rest
-}
-
 /// A value on one line, at most 40 characters of it.
 fn shown(value: &toml::Value) -> String {
     match value {
@@ -207,6 +177,7 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::text::printable::is_steering;
 
     #[test]
     fn the_nearest_name_is_offered() {
@@ -228,11 +199,6 @@ mod tests {
     #[test]
     fn nothing_printed_steers_the_terminal() {
         let nasty = "a\u{1b}[2Jb\u{202e}c\rd";
-        assert!(
-            !printable(nasty).chars().any(is_steering),
-            "{}",
-            printable(nasty)
-        );
         assert!(!Problem::at(nasty, "x").to_string().chars().any(is_steering));
     }
 }

@@ -6,6 +6,8 @@ use crate::export::stream::{self, Ended};
 use crate::export::{COLUMNS, CsvWriter};
 use crate::run::{Clock, NotFinite, Sample, Simulation};
 use crate::scenario::Scenario;
+use crate::text::printable::printable;
+use std::ffi::OsStr;
 use std::io;
 use std::num::NonZeroU64;
 use std::ops::ControlFlow;
@@ -262,41 +264,49 @@ fn few_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
     csv.finish()
 }
 
-/// What the user types at home to fetch the file `path` from this machine.
+/// What the user types at home to fetch the file `path` from this machine, or why no such line can be given: the name of
+/// the file, the user or the machine cannot be typed.
 pub fn scp_line(path: &Path) -> String {
     let user = ["USER", "LOGNAME"]
         .into_iter()
-        .find_map(|name| std::env::var(name).ok());
-    let host = gethostname::gethostname();
+        .find_map(std::env::var_os)
+        .unwrap_or_default();
     // "client its-port server our-port": what ssh says of the line.
     let line = std::env::var("SSH_CONNECTION").unwrap_or_default();
-    scp_line_from(
-        line.split(' ').nth(3).unwrap_or_default(),
-        user.as_deref(),
-        &host.to_string_lossy(),
-        &path.to_string_lossy(),
-    )
+    let port = line.split(' ').nth(3).unwrap_or_default();
+    let made = scp_line_from(port, &user, &gethostname::gethostname(), path.as_os_str());
+    made.unwrap_or_else(|what| {
+        format!("no scp line: {what} holds characters that cannot be typed in a shell")
+    })
 }
 
-fn scp_line_from(port: &str, user: Option<&str>, host: &str, path: &str) -> String {
+/// The line, or what of it cannot be typed. An empty `user` is left out.
+fn scp_line_from(
+    port: &str,
+    user: &OsStr,
+    host: &OsStr,
+    path: &OsStr,
+) -> Result<String, &'static str> {
     let port = match port.parse::<u16>() {
         Ok(22) | Err(_) => String::new(),
         Ok(port) => format!("-P {port} "),
     };
-    let user = user
-        .filter(|user| !user.is_empty())
-        .map(|user| format!("{user}@"));
-    let place = format!("{}{host}:{path}", user.unwrap_or_default());
-    format!("scp {port}{} .", quoted(&place))
+    let user = match user.is_empty() {
+        true => String::new(),
+        false => format!("{}@", name(user).ok_or("the user's name")?),
+    };
+    let host = name(host).ok_or("this machine's name")?;
+    let path = path.to_str().filter(|path| printable(path) == *path);
+    let place = format!("{user}{host}:{}", path.ok_or("its name")?);
+    let quoted = shlex::try_quote(&place).map_err(|_| "its name")?;
+    Ok(format!("scp {port}{quoted} ."))
 }
 
-/// `text` as one word of a shell.
-fn quoted(text: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "@:/._-+=,%".contains(c);
-    match text.chars().all(is_plain) {
-        true => text.to_owned(),
-        false => format!("'{}'", text.replace('\'', r"'\''")),
-    }
+/// `text` as the name of a user or a machine: scp takes it neither for an option nor for a path.
+fn name(text: &OsStr) -> Option<&str> {
+    let is_plain = |c: char| c.is_alphanumeric() || "._-@+%\\$".contains(c);
+    text.to_str()
+        .filter(|name| !name.is_empty() && !name.starts_with('-') && name.chars().all(is_plain))
 }
 
 #[cfg(test)]
@@ -310,15 +320,40 @@ mod tests {
         }
     }
 
+    fn line(port: &str, user: &str, host: &str, path: &str) -> Result<String, &'static str> {
+        let [user, host, path] = [user, host, path].map(OsStr::new);
+        scp_line_from(port, user, host, path)
+    }
+
     #[test]
     fn an_scp_line_can_be_pasted() {
         assert_eq!(
-            scp_line_from("22", Some("ada"), "lab.example.org", "/home/ada/run-1.csv"),
+            line("22", "ada", "lab.example.org", "/home/ada/run-1.csv").unwrap(),
             "scp ada@lab.example.org:/home/ada/run-1.csv ."
         );
-        assert_eq!(
-            scp_line_from("2222", None, "lab", "/tmp/Ada's run $1.csv"),
-            r"scp -P 2222 'lab:/tmp/Ada'\''s run $1.csv' ."
-        );
+        for path in [
+            "/tmp/Ada's run $1.csv",
+            "/tmp/a\"b`c!d\\e;f&g|h<i>j(k)l*m?n[o]p{q}r~s#t.csv",
+            "/tmp/速い.csv",
+        ] {
+            let line = line("2222", "", "lab", path).unwrap();
+            let words = ["scp", "-P", "2222", &format!("lab:{path}"), "."];
+            assert_eq!(shlex::split(&line).unwrap(), words, "{line}");
+        }
+    }
+
+    #[test]
+    fn where_no_scp_line_can_be_pasted_there_is_none() {
+        for (user, host, path) in [
+            ("ada", "lab", "/tmp/a\u{1b}]0;x\u{7}.csv"),
+            ("ada", "lab", "/tmp/a\nb.csv"),
+            ("ada", "lab", "/tmp/a\u{200b}.csv"),
+            ("a\u{1b}[2Jda", "lab", "/tmp/a.csv"),
+            ("-oProxyCommand=sh", "lab", "/tmp/a.csv"),
+            ("ada", "la\u{202e}b", "/tmp/a.csv"),
+            ("ada", "", "/tmp/a.csv"),
+        ] {
+            line("22", user, host, path).unwrap_err();
+        }
     }
 }

@@ -14,6 +14,7 @@ mod slot;
 pub use slot::KeptAside;
 
 use super::at_exit::{self, Registered};
+use crate::text::printable::Shown;
 use etcetera::{BaseStrategy, base_strategy::Xdg};
 use slot::Slot;
 use std::io;
@@ -135,7 +136,7 @@ fn earlier(folder: &Path) -> io::Result<Vec<String>> {
     match slot::sessions(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
         Err(error) => {
-            let text = format!("cannot look for sessions in {}: {error}", folder.display());
+            let text = format!("cannot look for sessions in {}: {error}", Shown(folder));
             Err(io::Error::new(error.kind(), text))
         }
         found => found,
@@ -153,7 +154,7 @@ impl Session {
         let _door = slot::door(folder);
         slot::prune(folder);
         let slot = Slot::new(folder).map_err(|error| {
-            let text = format!("sessions cannot be kept in {}: {error}", folder.display());
+            let text = format!("sessions cannot be kept in {}: {error}", Shown(folder));
             io::Error::new(error.kind(), text)
         })?;
         Self::keep(slot)

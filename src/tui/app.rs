@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 /// How long to sleep where nothing moves and nothing is due.
 const IDLE: Duration = Duration::from_millis(500);
-/// The same while an export is under way in the background.
+/// The same while an export is under way in the background, or a file is being read for the browser.
 const ATTENTIVE: Duration = Duration::from_millis(100);
 
 /// Runs `lab` on the terminal at up to `frames` a second, until the user leaves; `session` keeps it, where there is one.
@@ -83,7 +83,8 @@ fn wait(lab: &Lab, to_frame: Duration) -> Duration {
         // At least a little: a run too slow to change anything by the next frame must not spin.
         to_frame.max(Duration::from_millis(1))
     } else {
-        let rest = if lab.is_exporting() { ATTENTIVE } else { IDLE };
+        let is_attentive = lab.is_exporting() || lab.browser().is_loading();
+        let rest = if is_attentive { ATTENTIVE } else { IDLE };
         lab.notice_ends_in().unwrap_or(rest).min(rest)
     }
 }

@@ -7,8 +7,8 @@
 use super::parameters;
 use crate::scenario::file::{EditFile, PushFile, ScenarioFile};
 use crate::scenario::keys::Effect;
-use crate::scenario::problem::brief;
 use crate::scenario::{Document, Problems, Scenario, rescale};
+use crate::text::printable::brief;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 

@@ -4,9 +4,9 @@
 use crate::scenario::dotted::{find, set_key};
 use crate::scenario::file::{BodyFile, ScenarioFile};
 use crate::scenario::keys::{InLab, KEYS, Key, Kind, Nudge, Range, join};
-use crate::scenario::problem::brief;
 use crate::scenario::{Document, Problems, Scenario, nudge, start};
 use crate::text::number::shortest;
+use crate::text::printable::brief;
 use toml::{Table, Value};
 
 /// Points and pushes beyond so many are not listed: nobody changes them one at a time.

@@ -2,7 +2,7 @@
 //! has never seen the code can act on it.
 
 use gyrolab::scenario::Document;
-use gyrolab::scenario::problem::is_steering;
+use gyrolab::text::printable::is_steering;
 use std::fs;
 use std::path::Path;
 

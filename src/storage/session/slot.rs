@@ -12,6 +12,7 @@
 //! it is processes that die here, not machines, and the system keeps what a dead process has written.
 
 use super::Content;
+use crate::text::printable::Shown;
 use std::fs::{self, DirBuilder, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
@@ -65,7 +66,7 @@ pub(super) fn make_folder(folder: &Path) -> io::Result<()> {
         .mode(0o700)
         .create(folder)
         .map_err(|error| {
-            let text = format!("sessions cannot be kept in {}: {error}", folder.display());
+            let text = format!("sessions cannot be kept in {}: {error}", Shown(folder));
             io::Error::new(error.kind(), text)
         })
 }

@@ -2,9 +2,10 @@
 
 use super::{frame_on_top, write};
 use crate::lab::browser::Browser;
+use crate::lab::preview::Preview;
 use crate::lab::view::theme::Theme;
 use crate::scenario::Scenario;
-use crate::scenario::problem::printable;
+use crate::text::printable::printable;
 use crate::text::wrap::wrapped;
 use crate::tui::keymap::Mode;
 use crate::tui::theme::Role;
@@ -113,8 +114,15 @@ impl BrowserPane<'_> {
             return;
         }
         let lines = match self.browser.preview() {
-            Some(Ok(scenario)) => described(scenario, width),
-            Some(Err(problem)) => refused(problem, width),
+            Some(Preview::Known(known)) => match known.as_ref() {
+                Ok(scenario) => described(scenario, width),
+                Err(problem) => refused(problem, width),
+            },
+            Some(Preview::Loading) => vec![("reading ...".to_owned(), Role::Quiet)],
+            Some(Preview::Unknown) => vec![(
+                "no preview: the system is out of threads".to_owned(),
+                Role::Quiet,
+            )],
             None => Vec::new(),
         };
         let more = lines.len() > area.height as usize;

@@ -10,6 +10,7 @@ pub mod three_d;
 pub mod traces;
 
 use crate::lab::view::theme::Theme;
+use crate::text::printable::printable;
 use crate::text::wrap::{columns, wrapped};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -24,7 +25,8 @@ pub(super) fn frame(title: &str, area: Rect, focus: bool, theme: &Theme, buf: &m
         true => (Role::Focus, Role::Focus),
         false => (Role::Quiet, Role::Heading),
     };
-    let title = shortened(title, area.width.saturating_sub(4) as usize);
+    let title = printable(title);
+    let title = shortened(&title, area.width.saturating_sub(4) as usize);
     let block = Block::bordered()
         .border_style(theme.style(border))
         .title(format!(" {title} "))
@@ -40,7 +42,7 @@ pub(super) fn frame_on_top(title: &str, area: Rect, theme: &Theme, buf: &mut Buf
     frame(title, area, true, theme, buf)
 }
 
-/// Writes `text` at `x`, `y` relative to `area`, [`shortened`] at its right edge; gives the column after it.
+/// Writes `text`, made printable, at `x`, `y` relative to `area`, [`shortened`] at its right edge; gives the column after it.
 pub(super) fn write(
     area: Rect,
     (x, y): (u16, u16),
@@ -52,7 +54,8 @@ pub(super) fn write(
         return x;
     }
     let room = (area.width - x) as usize;
-    let text = shortened(text, room);
+    let text = printable(text);
+    let text = shortened(&text, room);
     let (end, _) = buf.set_stringn(area.x + x, area.y + y, text, room, style);
     end - area.x
 }

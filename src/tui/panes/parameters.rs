@@ -8,8 +8,8 @@ use super::{frame, shortened, write};
 use crate::lab::editor::{Editor, Line};
 use crate::lab::view::{Pane, View};
 use crate::observe::readouts::Readouts;
-use crate::scenario::problem::printable;
 use crate::scenario::{Motion, Scenario};
+use crate::text::printable::printable;
 use crate::text::wrap::columns;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -261,7 +261,7 @@ fn edited_row(line: &Line, is_selected: bool) -> Row {
 
 /// `text` as it can stand on a line, whatever it holds.
 fn on_one_line(text: &str) -> String {
-    printable(&text.replace('\n', " "))
+    printable(&text.replace('\n', " ")).into_owned()
 }
 
 /// What `--set` takes for `line`: with its value where there is room for it on `width` columns.
