@@ -2,11 +2,15 @@
 
 use super::preview::{Loader, Preview, read};
 use crate::scenario::presets::PRESETS;
+use crate::text::printable::is_steering;
 use std::path::Path;
 use std::sync::Arc;
 
 /// Files beyond this many are not listed.
 const MOST_FILES: usize = 1000;
+
+/// Characters the filter holds at most.
+pub(super) const MOST_TYPED: usize = 100;
 
 /// What may be opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -112,10 +116,19 @@ impl Browser {
         self.load_preview();
     }
 
-    /// Adds a character to the filter.
+    /// Adds a character to the filter, if it has room.
     pub fn type_char(&mut self, typed: char) {
-        self.filter.push(typed);
+        self.paste(typed.encode_utf8(&mut [0; 4]));
+    }
+
+    /// Adds `text` to the filter, as far as it has room; gives whether it had.
+    pub fn paste(&mut self, text: &str) -> bool {
+        let typed = text.chars().filter(|&c| !is_steering(c));
+        let room = MOST_TYPED.saturating_sub(self.filter.chars().count());
+        let is_cut = typed.clone().nth(room).is_some();
+        self.filter.extend(typed.take(room));
         self.refilter();
+        !is_cut
     }
 
     /// Takes the filter's last character away.

@@ -94,6 +94,27 @@ impl Lab {
         self.look_at_export();
     }
 
+    /// Takes a pasted `text` where text is typed. Anywhere else it does nothing: its letters are not meant as keys.
+    pub fn paste(&mut self, text: &str) {
+        self.count = None;
+        self.notice.take_back();
+        self.was_warned = false;
+        self.changed = true;
+        match (&mut self.dialog, self.mode) {
+            (Some(dialog), _) => dialog.form.paste(text),
+            (None, Mode::Filter) => {
+                if !self.browser.paste(text) {
+                    let most = super::browser::MOST_TYPED;
+                    self.say(format!(
+                        "the filter takes at most {most} characters: what was pasted is cut"
+                    ));
+                }
+            }
+            _ => self.say("what is pasted goes into fields and the filter; here it does nothing"),
+        }
+        self.look_at_export();
+    }
+
     pub(super) fn erase(&mut self) {
         match &mut self.dialog {
             Some(dialog) => dialog.form.erase(),

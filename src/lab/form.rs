@@ -100,6 +100,25 @@ impl Form {
         self.edit(|field| field.type_char(typed));
     }
 
+    /// Puts the pasted `text` before the cursor, as if it had been typed, as far as the field has room; says so where
+    /// it has not.
+    pub fn paste(&mut self, text: &str) {
+        let mut typed = text.chars().filter(|&c| !is_steering(c)).peekable();
+        self.edit(|field| {
+            while field.is_marked || field.text().chars().count() < MOST_TYPED {
+                match typed.next() {
+                    Some(c) => field.type_char(c),
+                    None => break,
+                }
+            }
+        });
+        if typed.peek().is_some() {
+            self.complaint = Some(format!(
+                "a field takes at most {MOST_TYPED} characters: what was pasted is cut"
+            ));
+        }
+    }
+
     /// Takes the character before the cursor away, or what is marked.
     pub fn erase(&mut self) {
         self.take(InputRequest::DeletePrevChar);

@@ -72,17 +72,25 @@ impl Registry {
         let (done, all_done) = mpsc::channel::<()>();
         for (_, hook) in hooks {
             let done = done.clone();
-            let call = move || {
-                let _ = catch_unwind(AssertUnwindSafe(|| hook(farewell)));
+            let same = Arc::clone(&hook);
+            let aside = move || {
+                call(&same, farewell);
                 drop(done);
             };
-            let _ = thread::Builder::new()
+            let spawned = thread::Builder::new()
                 .name("farewell".to_owned())
-                .spawn(call);
+                .spawn(aside);
+            if spawned.is_err() {
+                call(&hook, farewell); // no thread is to be had
+            }
         }
         drop(done);
         let _ = all_done.recv_timeout(patience); // nobody sends: it ends when the last sender is gone
     }
+}
+
+fn call(hook: &Hook, farewell: Farewell) {
+    let _ = catch_unwind(AssertUnwindSafe(|| hook(farewell)));
 }
 
 impl Drop for Registered {

@@ -97,6 +97,10 @@ fn handle(
 ) -> io::Result<ControlFlow<()>> {
     let request = match event {
         Event::Key(key) => press(key, lab),
+        Event::Paste(text) => {
+            lab.paste(&text);
+            None
+        }
         Event::Suspend => Some(Request::Suspend),
         Event::Resized => {
             // Of a screen that was smaller for a moment and is as large as before, a part is gone.

@@ -9,12 +9,15 @@
 //!
 //! - [`app`] is the loop, [`terminal`] the only file that talks to the terminal, [`surroundings`] what the environment
 //!   says about it.
+//! - [`keyboard`] takes the terminal's bytes, [`decoder`] makes keys of them.
 //! - [`keymap`] is the one table of keys.
 //! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`layout`] says which
 //!   places those are, [`theme`] and [`markers`] what colours and dots look like, [`dots`] sets the dots.
 
 pub mod app;
+pub mod decoder;
 pub mod dots;
+pub mod keyboard;
 pub mod keymap;
 pub mod layout;
 pub mod markers;

@@ -2,20 +2,21 @@
 //!
 //! Before it is given back, whoever has something to bring home is told ([`at_exit`]).
 //!
-//! The one room that knows crossterm. Nothing here waits for an answer from the terminal: over slow lines, and in
+//! The one room that knows crossterm, which draws; what is typed is read by [`keyboard`]. Nothing here waits for an answer from the terminal: over slow lines, and in
 //! bare ptys, there may be none.
 
 use crate::storage::at_exit::{self, Farewell};
+use crate::tui::decoder::Typed;
+use crate::tui::keyboard::{self, Keyboard};
 use crate::tui::keymap::Key;
 use crossterm::cursor::{Hide, Show};
-use crossterm::event::{self, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
 use crossterm::terminal::{self, Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};
 use crossterm::{execute, style};
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use rustix::termios::{self, OptionalActions};
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGWINCH, SIGXFSZ};
 use signal_hook::iterator::Signals;
 use std::fs::File;
@@ -36,10 +37,13 @@ static PEN: Mutex<()> = Mutex::new(());
 static ENDING: AtomicBool = AtomicBool::new(false);
 /// Somebody asked from outside to stop until resumed.
 static SUSPEND: AtomicBool = AtomicBool::new(false);
-/// The screen has another size: crossterm forgets to say so where a key comes at the same moment.
+/// The screen has another size.
 static RESIZED: AtomicBool = AtomicBool::new(false);
 /// The shell resumed us.
 static RESUMED: AtomicBool = AtomicBool::new(false);
+
+/// The signals that the process has handlers for, until a thread takes them.
+static SIGNALS: Mutex<Option<Signals>> = Mutex::new(None);
 
 /// The thread that draws: when it panics, the lab ends.
 static DRAWING: OnceLock<ThreadId> = OnceLock::new();
@@ -52,10 +56,12 @@ const PATIENCE: Duration = Duration::from_millis(500);
 const MOST_EVENTS: usize = 256;
 
 /// What comes from the user.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
     /// A key was pressed.
     Key(Key),
+    /// A text was pasted.
+    Paste(String),
     /// The screen has another size.
     Resized,
     /// The program is to stop until resumed.
@@ -68,6 +74,7 @@ pub enum Event {
 pub struct Screen {
     /// Not dropped: ratatui's own farewell prints to a stderr that may be gone.
     terminal: ManuallyDrop<Terminal<CrosstermBackend<BufWriter<File>>>>,
+    keyboard: Keyboard,
 }
 
 impl Screen {
@@ -81,11 +88,12 @@ impl Screen {
         style::force_color_output(true);
         let taken = take_over().and_then(|()| {
             let backend = CrosstermBackend::new(BufWriter::with_capacity(1 << 16, stdout()?));
-            Terminal::new(backend)
+            Ok((Terminal::new(backend)?, Keyboard::new()?))
         });
         match taken {
-            Ok(terminal) => Ok(Self {
+            Ok((terminal, keyboard)) => Ok(Self {
                 terminal: ManuallyDrop::new(terminal),
+                keyboard,
             }),
             Err(error) => {
                 give_back();
@@ -152,25 +160,25 @@ impl Screen {
     ///
     /// # Errors
     /// When the terminal is gone.
-    pub fn events(&self, wait: Duration) -> io::Result<Vec<Event>> {
-        let mut events = Vec::new();
-        let mut wait = wait;
-        while events.len() < MOST_EVENTS && event::poll(wait)? {
-            events.extend(understood(&event::read()?));
-            wait = Duration::ZERO;
-        }
+    pub fn events(&mut self, wait: Duration) -> io::Result<Vec<Event>> {
+        self.keyboard.wait(wait)?;
+        listen_without_thread();
+        let typed = std::iter::from_fn(|| self.keyboard.take_typed()).take(MOST_EVENTS);
+        let mut events: Vec<_> = typed
+            .map(|typed| match typed {
+                Typed::Key(key) => Event::Key(key),
+                Typed::Paste(text) => Event::Paste(text),
+            })
+            .collect();
         let signals = [
             (&RESIZED, Event::Resized),
             (&SUSPEND, Event::Suspend),
             (&RESUMED, Event::Resumed),
         ];
         for (signal, event) in signals {
-            if signal.swap(false, Ordering::Relaxed) && !events.contains(&event) {
+            if signal.swap(false, Ordering::Relaxed) {
                 events.push(event);
             }
-        }
-        if events.contains(&Event::Resized) {
-            wake_the_keys();
         }
         Ok(events)
     }
@@ -179,20 +187,6 @@ impl Screen {
 impl Drop for Screen {
     fn drop(&mut self) {
         leave();
-    }
-}
-
-/// Has the system tell once more that there are keys to be read. Where a key and a change of size come at the same
-/// moment, crossterm 0.29 takes the one and forgets that it was told of the other: the key would wait for the next one.
-/// Setting the terminal's attributes, to what they are, wakes whoever waits for its keys.
-fn wake_the_keys() {
-    let _pen = PEN.lock().unwrap_or_else(PoisonError::into_inner);
-    if ENDING.load(Ordering::SeqCst) {
-        return; // the attributes are given back
-    }
-    let stdin = io::stdin();
-    if let Ok(attributes) = termios::tcgetattr(&stdin) {
-        let _ = termios::tcsetattr(&stdin, OptionalActions::Now, &attributes);
     }
 }
 
@@ -205,7 +199,13 @@ fn take_over() -> io::Result<()> {
     ENTERED.store(true, Ordering::SeqCst);
     terminal::enable_raw_mode()?;
     // A lab that was killed has left its picture there.
-    execute!(stdout()?, EnterAlternateScreen, Clear(ClearType::All), Hide)
+    execute!(
+        stdout()?,
+        EnterAlternateScreen,
+        Clear(ClearType::All),
+        Hide,
+        EnableBracketedPaste
+    )
 }
 
 /// The one way out for every end there is: what others have to bring home first, then the terminal, then what
@@ -229,7 +229,7 @@ fn give_back() {
         return;
     }
     if let Ok(mut stdout) = stdout() {
-        let _ = execute!(stdout, LeaveAlternateScreen, Show);
+        let _ = execute!(stdout, DisableBracketedPaste, LeaveAlternateScreen, Show);
     }
     let _ = terminal::disable_raw_mode();
 }
@@ -253,33 +253,52 @@ fn guard() -> io::Result<()> {
             }
         }));
         let ends = [SIGHUP, SIGTERM, SIGINT, SIGQUIT];
-        result = Signals::new(ends.iter().chain(&[SIGTSTP, SIGCONT, SIGWINCH, SIGXFSZ]))
-            .and_then(|signals| {
-                thread::Builder::new()
+        result = Signals::new(ends.iter().chain(&[SIGTSTP, SIGCONT, SIGWINCH, SIGXFSZ])).map(
+            |signals| {
+                *SIGNALS.lock().unwrap_or_else(PoisonError::into_inner) = Some(signals);
+                // Where there is no thread to be had, the loop looks after them: see listen_without_thread().
+                let _ = thread::Builder::new()
                     .name("signals".to_owned())
-                    .spawn(|| listen(signals))
-            })
-            .map(|_| ());
+                    .spawn(listen);
+            },
+        );
     });
     result
 }
 
 /// The end by a signal comes from here, not from the loop: a terminal that has hung up answers the loop with errors
 /// or not at all.
-fn listen(mut signals: Signals) {
-    for signal in signals.forever() {
-        match signal {
-            SIGTSTP => SUSPEND.store(true, Ordering::Relaxed),
-            SIGWINCH => RESIZED.store(true, Ordering::Relaxed),
-            SIGCONT => RESUMED.store(true, Ordering::Relaxed),
-            SIGXFSZ => {} // a file past `ulimit -f`: the write fails then, like one to a full disk
-            end => {
-                at_exit::say(Farewell::End);
-                ENDING.store(true, Ordering::SeqCst);
-                let _pen = take_pen();
-                leave_in_time();
-                std::process::exit(128 + end);
-            }
+fn listen() {
+    let mut signals = SIGNALS
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .take();
+    for signal in signals.iter_mut().flat_map(Signals::forever) {
+        heed(signal);
+        keyboard::wake();
+    }
+}
+
+/// Heeds the signals that have come, where [`listen`] could not be given a thread.
+fn listen_without_thread() {
+    let mut signals = SIGNALS.lock().unwrap_or_else(PoisonError::into_inner);
+    let pending: Vec<_> = signals.iter_mut().flat_map(Signals::pending).collect();
+    drop(signals);
+    pending.into_iter().for_each(heed);
+}
+
+fn heed(signal: i32) {
+    match signal {
+        SIGTSTP => SUSPEND.store(true, Ordering::Relaxed),
+        SIGWINCH => RESIZED.store(true, Ordering::Relaxed),
+        SIGCONT => RESUMED.store(true, Ordering::Relaxed),
+        SIGXFSZ => {} // a file past `ulimit -f`: the write fails then, like one to a full disk
+        end => {
+            at_exit::say(Farewell::End);
+            ENDING.store(true, Ordering::SeqCst);
+            let _pen = take_pen();
+            leave_in_time();
+            std::process::exit(128 + end);
         }
     }
 }
@@ -304,43 +323,11 @@ fn leave_in_time() {
         tell_panics();
         let _ = done.send(());
     });
-    if spawned.is_ok() {
-        let _ = left.recv_timeout(PATIENCE);
+    match spawned {
+        Ok(_) => drop(left.recv_timeout(PATIENCE)),
+        Err(_) => {
+            give_back();
+            tell_panics();
+        }
     }
-}
-
-fn understood(event: &event::Event) -> Option<Event> {
-    match event {
-        event::Event::Key(key) if key.kind != KeyEventKind::Release => pressed(key).map(Event::Key),
-        event::Event::Resize(..) => Some(Event::Resized),
-        _ => None,
-    }
-}
-
-fn pressed(key: &KeyEvent) -> Option<Key> {
-    let control = key.modifiers.contains(KeyModifiers::CONTROL);
-    let shift = key.modifiers.contains(KeyModifiers::SHIFT);
-    Some(match key.code {
-        KeyCode::Char(c) if control => Key::Ctrl(c.to_ascii_lowercase()),
-        KeyCode::Char(c) => Key::Char(c),
-        KeyCode::Enter => Key::Enter,
-        KeyCode::Esc => Key::Esc,
-        KeyCode::Tab => Key::Tab,
-        KeyCode::BackTab => Key::BackTab,
-        KeyCode::Backspace => Key::Backspace,
-        KeyCode::Delete => Key::Delete,
-        KeyCode::Home => Key::Home,
-        KeyCode::End => Key::End,
-        KeyCode::Up if shift => Key::ShiftUp,
-        KeyCode::Down if shift => Key::ShiftDown,
-        KeyCode::Left if shift => Key::ShiftLeft,
-        KeyCode::Right if shift => Key::ShiftRight,
-        KeyCode::Up => Key::Up,
-        KeyCode::Down => Key::Down,
-        KeyCode::Left => Key::Left,
-        KeyCode::Right => Key::Right,
-        KeyCode::PageUp => Key::PageUp,
-        KeyCode::PageDown => Key::PageDown,
-        _ => return None,
-    })
 }

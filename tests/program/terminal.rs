@@ -134,6 +134,91 @@ fn a_lost_line_ends_it() {
 }
 
 #[test]
+fn a_line_lost_without_a_signal_ends_it_and_keeps_the_session() {
+    for args in [&["--paused"][..], &[]] {
+        let ground = Ground::new();
+        let mut terminal = ground.open_uncontrolled(args);
+        terminal.wait_for("q quit");
+        terminal.press("120g");
+        terminal.wait_until("the step", |terminal| terminal.step() >= Some(120));
+        terminal.lose_line();
+        assert_eq!(terminal.wait_for_end().exit_code(), 1);
+        let mut again = ground.open(&["--resume"]);
+        again.wait_for("q quit");
+        again.wait_until("the step where it was left", |again| {
+            again.step() >= Some(120)
+        });
+        again.quit();
+    }
+}
+
+#[test]
+fn keys_in_bulk_are_all_taken_at_once() {
+    let mut terminal = Terminal::open(&["--paused"]);
+    terminal.wait_for("q quit");
+    terminal.press(&".".repeat(2000));
+    terminal.wait_for_step(2000);
+    // More than a terminal holds, with sequences that come apart anywhere in it.
+    terminal.ask("r", "step 0");
+    terminal.press(&"..\u{1b}[6~,\u{1b}[5~".repeat(1000));
+    terminal.wait_for_step(1000);
+    terminal.quit();
+}
+
+#[test]
+fn a_sequence_that_never_ends_does_not_swallow_what_follows() {
+    for begun in [
+        "\u{1b}[200~",
+        "\u{1b}[<",
+        "\u{1b}[1;",
+        "\u{1b}]0;",
+        "\u{1b}P",
+        "\u{1b}O",
+    ] {
+        let mut terminal = Terminal::open(&["--paused"]);
+        terminal.wait_for("q quit");
+        // Ctrl-C ends the lab, however soon it follows.
+        terminal.press(&format!("{begun}abc\u{3}"));
+        assert_eq!(terminal.wait_for_end().exit_code(), 0, "{begun:?}");
+        let mut terminal = Terminal::open(&["--paused"]);
+        terminal.wait_for("q quit");
+        // And after a while any key means what it says.
+        terminal.press(begun);
+        thread::sleep(Duration::from_millis(1500));
+        terminal.ask("?", "keys: Esc");
+        terminal.kill();
+    }
+}
+
+#[test]
+fn a_paste_into_a_field_is_cut_and_says_so() {
+    let mut terminal = Terminal::open(&["--paused", "--at", "10"]);
+    terminal.wait_for("q quit");
+    let paste = |text: &str| format!("\u{1b}[200~{text}\u{1b}[201~");
+    terminal.ask("x", "export steps 0 to 10");
+    terminal.ask(&paste(&"q".repeat(20_000)), "at most 1000 characters");
+    terminal.ask("\u{15}", "file");
+    terminal.ask(&paste("from-the\n-clipboard.csv"), "from-the-clipboard.csv");
+    terminal.ask("\r", "wrote 11 rows");
+    assert_eq!(
+        terminal.ground().names(),
+        ["from-the-clipboard.csv", "state"]
+    );
+    terminal.ask("o/", "(");
+    terminal.ask(&paste(&"x".repeat(20_000)), "at most 100 characters");
+    terminal.ask("\u{15}\u{7f}", "nothing has that in its name");
+    terminal.press("\u{1b}");
+    terminal.wait_for("/ filters by name");
+    // Where nothing is typed, pasted letters are no keys.
+    terminal.press("\u{1b}");
+    terminal.wait_until("the lab", |terminal| {
+        !terminal.words().contains("/ filters by name")
+    });
+    terminal.ask(&paste("qqq"), "what is pasted goes into");
+    terminal.quit();
+}
+
+#[test]
 fn a_terminal_that_takes_no_bytes_does_not_hold_up_the_end() {
     let mut terminal = Terminal::open(&["--fps", "60", "--set", "motion.steps=1000000000"]);
     terminal.wait_for("q quit");

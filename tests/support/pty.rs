@@ -62,6 +62,15 @@ impl Ground {
         self.spawn(command, variables)
     }
 
+    /// The program where its terminal is not the one that controls it, as after `su -c`: a line that is lost sends it no
+    /// signal.
+    pub fn open_uncontrolled(&self, args: &[&str]) -> Terminal {
+        let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_gyrolab"));
+        command.args(args);
+        command.set_controlling_tty(false);
+        self.spawn(command, &VARIABLES)
+    }
+
     /// A shell with job control, and the program on its path.
     pub fn open_shell(&self) -> Terminal {
         let mut command = CommandBuilder::new("sh");
