@@ -4,6 +4,7 @@ use super::Trial;
 use crate::physics::SchemeInfo;
 use crate::run::resample::resampled;
 use crate::scenario::Scenario;
+use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -53,7 +54,8 @@ fn or_na<S: Serializer>(number: &Option<f64>, serializer: S) -> Result<S::Ok, S:
     }
 }
 
-/// Runs `scenario` by every scheme at every time step (s), on all cores, and holds each against the exact motion. What
+/// Runs `scenario` by every scheme at every time step (s), on all cores (on one where no threads are to be
+/// had), and holds each against the exact motion. What
 /// is counted in steps keeps its seconds. `watch` is told the steps taken so far, of how many, and says whether to go
 /// on; `None` where it said no.
 pub fn compare(
@@ -75,18 +77,20 @@ pub fn compare(
         .map(|cell| cell.steps)
         .fold(0, u64::saturating_add);
     let taken = AtomicU64::new(0);
-    let rows: Option<Vec<Row>> = cells
-        .par_iter()
-        .map(|cell| {
-            let mut before = 0;
-            let trial = Trial::run(cell, |step| {
-                let now = taken.fetch_add(step - before, Ordering::Relaxed) + (step - before);
-                before = step;
-                watch(now, total)
-            });
-            trial.map(|trial| Row::new(cell, &trial))
-        })
-        .collect();
+    let row = |cell: &Arc<Scenario>| {
+        let mut before = 0;
+        let trial = Trial::run(cell, |step| {
+            let now = taken.fetch_add(step - before, Ordering::Relaxed) + (step - before);
+            before = step;
+            watch(now, total)
+        });
+        trial.map(|trial| Row::new(cell, &trial))
+    };
+    // Not rayon's own threads, without which it would panic.
+    let rows: Option<Vec<Row>> = match ThreadPoolBuilder::new().build() {
+        Ok(pool) => pool.install(|| cells.par_iter().map(row).collect()),
+        Err(_) => cells.iter().map(row).collect(),
+    };
     rows.map(|rows| with_orders(rows, ROUNDING * scenario.arm_m()))
 }
 

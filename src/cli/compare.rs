@@ -2,7 +2,7 @@
 
 use super::INTERRUPTED;
 use super::args::CompareArgs;
-use super::progress::{Meter, interruption};
+use super::progress::{self, Meter};
 use super::scenario::scenario_of;
 use crate::analysis::compare::{Row, Table, compare as table_of};
 use crate::analysis::cost::is_affordable;
@@ -15,9 +15,7 @@ use crate::scenario::Scenario;
 use anyhow::{Context, bail};
 use std::io::{self, Write};
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::process::ExitCode;
-use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, PoisonError};
 
 pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
@@ -29,12 +27,7 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
             duration_s(&scenario)
         );
     }
-    let interrupted = interruption()?;
-    let output = args
-        .output
-        .as_deref()
-        .map(|path| Destination::open(path, args.force))
-        .transpose()?;
+    let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let meter = Mutex::new(Meter::new());
     let rows = table_of(
         &scenario,
@@ -45,7 +38,7 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner)
                 .show(taken, total);
-            match interrupted.load(Ordering::Relaxed) {
+            match interruption.has_come() {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
             }
@@ -55,12 +48,18 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let Some(rows) = rows else {
         return Ok(ExitCode::from(INTERRUPTED));
     };
-    let on_stdout = args.output.as_deref() == Some(Path::new("-"));
+    let on_stdout = args
+        .output
+        .as_deref()
+        .is_some_and(Destination::is_for_stdout);
     if let Some(output) = output {
         write_csv(output, &scenario, &rows).context("cannot write the table")?;
     }
     if on_stdout {
         return Ok(ExitCode::SUCCESS);
+    }
+    if interruption.may_act_at_once() {
+        return Ok(ExitCode::from(INTERRUPTED));
     }
     let mut stdout = io::stdout().lock();
     write!(stdout, "{}\n\n{}", heading(&scenario), Table(&rows))?;

@@ -1,31 +1,80 @@
 //! What stands between a long command and its user: progress on stderr, and signals that end it.
 
 use super::INTERRUPTED;
+use crate::export::Destination;
+use crate::export::destination::DestinationError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use signal_hook::consts::{SIGHUP, TERM_SIGNALS};
 use std::io::{self, IsTerminal};
+use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// A flag that the first signal to end raises; a second one ends the process on the spot, should it be stuck.
+/// What a signal to end does: the first one raises a flag, a second one ends the process on the spot, should it be stuck.
+#[derive(Clone, Debug)]
+pub(super) struct Interruption {
+    has_come: Arc<AtomicBool>,
+    at_once: Arc<AtomicBool>,
+}
+
+impl Interruption {
+    /// Whether a signal has come.
+    pub(super) fn has_come(&self) -> bool {
+        self.has_come.load(Ordering::SeqCst)
+    }
+
+    /// From now on, with no file to clear away, the first signal ends the process on the spot. Gives whether one has
+    /// come before.
+    pub(super) fn may_act_at_once(&self) -> bool {
+        self.at_once.store(true, Ordering::SeqCst);
+        self.has_come()
+    }
+}
+
+/// Opens `path` for writing, if there is one to open, and has signals end what follows.
+///
+/// The signals must have their handlers before there is a temporary file that one of them could leave behind. But a FIFO
+/// is opened first: that may wait for ever, and a signal shall end the wait.
+pub(super) fn open(
+    path: Option<&Path>,
+    replace: bool,
+) -> anyhow::Result<(Option<Destination>, Interruption)> {
+    let open = || -> Result<_, DestinationError> {
+        path.map(|path| Destination::open(path, replace))
+            .transpose()
+    };
+    if path.is_some_and(Destination::may_wait) {
+        let output = open()?;
+        return Ok((output, interruption()?));
+    }
+    let interruption = interruption()?;
+    Ok((open()?, interruption))
+}
+
+/// Has signals raise the flag.
 ///
 /// A write past the limit on a file's size (`ulimit -f`) fails like one to a full disk: its signal, left to itself,
 /// would end the process with the temporary file still there.
-pub(super) fn interruption() -> io::Result<Arc<AtomicBool>> {
-    let flag = Arc::new(AtomicBool::new(false));
+fn interruption() -> io::Result<Interruption> {
+    let interruption = Interruption {
+        has_come: Arc::default(),
+        at_once: Arc::default(),
+    };
     let hangup = (!hangup_is_ignored()).then_some(SIGHUP);
     for signal in TERM_SIGNALS.iter().copied().chain(hangup) {
-        signal_hook::flag::register_conditional_shutdown(
-            signal,
-            INTERRUPTED.into(),
-            Arc::clone(&flag),
-        )?;
-        signal_hook::flag::register(signal, Arc::clone(&flag))?;
+        for condition in [&interruption.has_come, &interruption.at_once] {
+            signal_hook::flag::register_conditional_shutdown(
+                signal,
+                INTERRUPTED.into(),
+                Arc::clone(condition),
+            )?;
+        }
+        signal_hook::flag::register(signal, Arc::clone(&interruption.has_come))?;
     }
     #[cfg(unix)]
     signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
-    Ok(flag)
+    Ok(interruption)
 }
 
 /// Whether the process was started to outlive its terminal (`nohup`): a handler of ours would undo that. Linux says so

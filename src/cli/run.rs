@@ -1,7 +1,7 @@
 //! `gyrolab run`: a run from its start to its end, without a terminal.
 
 use super::args::{Cli, RunArgs};
-use super::progress::{Meter, interruption};
+use super::progress::{self, Interruption, Meter};
 use super::scenario::scenario_of;
 use super::{INTERRUPTED, complain};
 use crate::analysis::health::{Advice, advise};
@@ -18,11 +18,13 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
-    let to_stdout = args.output.as_deref() == Some(Path::new("-"));
+    let to_stdout = args
+        .output
+        .as_deref()
+        .is_some_and(Destination::is_for_stdout);
     if args.json && to_stdout {
         let message =
             "--json and -o - both claim stdout: write the CSV to a file, or leave --json out";
@@ -31,21 +33,12 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
             .exit();
     }
     let scenario = Arc::new(scenario_of(&args.scenario, &args.length)?);
-    // The signals must have their handlers before there is a temporary file that one of them could leave behind. But
-    // a FIFO is opened first: that may wait for ever, and a signal shall end the wait.
-    let waits = args.output.as_deref().is_some_and(Destination::may_wait);
-    let early = if waits { None } else { Some(interruption()?) };
-    let mut output = match &args.output {
-        Some(path) => {
-            let destination = Destination::open(path, args.force)?;
-            Some(CsvWriter::new(destination, &scenario).context(cannot_write(path))?)
-        }
-        None => None,
-    };
-    let interrupted = match early {
-        Some(flag) => flag,
-        None => interruption()?,
-    };
+    let output_path = args.output.as_deref().unwrap_or(Path::new("the output"));
+    let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
+    let mut output = output
+        .map(|destination| CsvWriter::new(destination, &scenario))
+        .transpose()
+        .with_context(|| cannot_write(output_path))?;
     let mut simulation = Simulation::new(Arc::clone(&scenario));
     let mut monitor = Monitor::new(&simulation);
     let every = args.every.get();
@@ -54,14 +47,19 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         &mut monitor,
         every,
         output.as_mut(),
-        &interrupted,
+        &interruption,
     )
-    .with_context(|| cannot_write(args.output.as_deref().unwrap_or(Path::new("the output"))))?;
+    .with_context(|| cannot_write(output_path))?;
     if ended == Ended::Stopped {
         return Ok(ExitCode::from(INTERRUPTED)); // what was written so far goes with its temporary name
     }
-    if let (Some(csv), Some(path)) = (output, &args.output) {
-        csv.finish().with_context(|| cannot_write(path))?.keep()?;
+    if let Some(csv) = output {
+        csv.finish()
+            .with_context(|| cannot_write(output_path))?
+            .keep()?;
+    }
+    if interruption.may_act_at_once() {
+        return Ok(ExitCode::from(INTERRUPTED));
     }
     let health = monitor.health(&simulation);
     let advice = advice(&health, &simulation);
@@ -89,14 +87,14 @@ fn play(
     monitor: &mut Monitor,
     every: u64,
     output: Option<&mut CsvWriter<Destination>>,
-    interrupted: &AtomicBool,
+    interruption: &Interruption,
 ) -> io::Result<(Ended, Duration)> {
     let steps = simulation.scenario().steps;
     let mut meter = Meter::new();
     let each = |simulation: &Simulation| monitor.follow(simulation);
     let ended = stream::play(simulation, steps, every, output, each, |progress| {
         meter.show(progress.step, progress.steps);
-        match interrupted.load(Ordering::Relaxed) {
+        match interruption.has_come() {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }

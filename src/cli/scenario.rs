@@ -29,8 +29,14 @@ pub(super) fn scenario_of(args: &ScenarioArgs, length: &LengthArgs) -> Result<Sc
 }
 
 /// What SCENARIO names, with what the command line changes in it.
-pub(super) fn changed(scenario: &str, changes: &Changes) -> Result<Document, Problems> {
+fn changed(scenario: &str, changes: &Changes) -> Result<Document, Problems> {
     let mut document = Document::open(scenario)?;
+    change(&mut document, changes)?;
+    Ok(document)
+}
+
+/// Changes in `document` what the command line changes.
+pub(super) fn change(document: &mut Document, changes: &Changes) -> Result<(), Problems> {
     for set in &changes.set {
         document.set(set)?;
     }
@@ -40,5 +46,5 @@ pub(super) fn changed(scenario: &str, changes: &Changes) -> Result<Document, Pro
     if let Some(time_step_s) = changes.time_step {
         document.set_time_step(time_step_s)?;
     }
-    Ok(document)
+    Ok(())
 }

@@ -1,7 +1,7 @@
 //! `gyrolab` and `gyrolab show`: the lab, live or as one picture.
 
 use super::args::{Changes, Color, Look, Markers, Screen, ShowArgs, WorkbenchArgs};
-use super::scenario::changed;
+use super::scenario::change;
 use crate::lab::Lab;
 use crate::lab::view::View;
 use crate::lab::view::markers::Marker;
@@ -199,11 +199,15 @@ fn lab(
     theme: Theme,
     running: bool,
 ) -> anyhow::Result<Lab> {
-    let scenario = Arc::new(changed(name, changes)?.scenario()?);
+    // Read once: what is read from a FIFO is not there again.
+    let mut document = Document::open(name)?;
+    // What a change has mended is no scenario before it, and has no note to lose.
+    let file = document.scenario().ok();
+    change(&mut document, changes)?;
+    let scenario = Arc::new(document.scenario()?);
     let view = View::new(&scenario, marker(markers), theme);
     let mut lab = Lab::new(name, scenario, view, running);
-    // What a change has mended is no scenario before it, and has no note to lose.
-    if let Ok(file) = Document::open(name).and_then(|document| document.scenario()) {
+    if let Some(file) = file {
         lab.set_file(Arc::new(file));
     }
     Ok(lab)

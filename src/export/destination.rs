@@ -3,7 +3,7 @@
 use crate::text::printable::Shown;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
-use std::os::unix::fs::PermissionsExt;
+use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -34,6 +34,9 @@ pub enum DestinationError {
     /// The name is that of a folder.
     #[error("{} is a folder: name a file in it", Shown(.0))]
     Folder(PathBuf),
+    /// It is a device, a FIFO or a socket, where a file is wanted.
+    #[error("cannot write {}: it is not a regular file, and could take no bytes for as long as it likes; gyrolab run -o writes to such", Shown(.0))]
+    NotAFile(PathBuf),
     /// There is no folder to put the file in.
     #[error("cannot write {}: there is no folder {}", Shown(path), Shown(folder))]
     NoFolder {
@@ -63,15 +66,43 @@ impl DestinationError {
 }
 
 impl Destination {
-    /// Opens `path` for writing, before the long run begins; `-` is standard output. An existing regular file is
-    /// replaced only if `replace`, and only by a whole one.
+    /// Opens `path` for writing, before the long run begins; `-` is standard output. A device, a FIFO, and what the
+    /// process was given open, such as `/dev/stdout`, are written as they are. An existing regular file is replaced
+    /// only if `replace`, and only by a whole one.
     ///
     /// # Errors
     /// When it exists and is not to be replaced, is a folder, or the system refuses.
     pub fn open(path: &Path, replace: bool) -> Result<Self, DestinationError> {
-        if path == Path::new("-") {
+        if Self::is_for_stdout(path) {
             return Ok(Self::Stdout(io::stdout()));
         }
+        let mut options = OpenOptions::new();
+        let is_stream = match (descriptor(path), fs::metadata(path)) {
+            (Some(_), _) => {
+                options.append(true); // what has been written to it stays
+                true
+            }
+            (None, Ok(there)) => !there.is_file() && !there.is_dir(),
+            (None, Err(_)) => false,
+        };
+        if !is_stream {
+            return Self::open_file(path, replace);
+        }
+        let opened = options.write(true).open(path);
+        opened
+            .map(Self::Stream)
+            .map_err(|error| DestinationError::Refused {
+                path: path.to_owned(),
+                error,
+            })
+    }
+
+    /// The same for a regular file alone, for where nothing may wait and stdout is not to be written to; `-` is a name
+    /// like others.
+    ///
+    /// # Errors
+    /// When it exists and is not to be replaced, is anything but a regular file, or the system refuses.
+    pub fn open_file(path: &Path, replace: bool) -> Result<Self, DestinationError> {
         let refused = |error| DestinationError::Refused {
             path: path.to_owned(),
             error,
@@ -79,11 +110,8 @@ impl Destination {
         match fs::metadata(path) {
             Ok(there) if there.is_dir() => Err(DestinationError::Folder(path.to_owned())),
             Err(_) if !names_a_file(path) => Err(DestinationError::Folder(path.to_owned())),
-            Ok(there) if !there.is_file() => OpenOptions::new()
-                .write(true)
-                .open(path)
-                .map(Self::Stream)
-                .map_err(refused),
+            Ok(there) if !there.is_file() => Err(DestinationError::NotAFile(path.to_owned())),
+            _ if descriptor(path).is_some() => Err(DestinationError::NotAFile(path.to_owned())),
             Ok(_) if !replace => Err(DestinationError::Exists(path.to_owned())),
             // A link stays a link: the file it leads to is replaced.
             Ok(_) => {
@@ -102,23 +130,25 @@ impl Destination {
         }
     }
 
+    /// Whether `path` means standard output.
+    pub fn is_for_stdout(path: &Path) -> bool {
+        path == Path::new("-") || descriptor(path) == Some(1)
+    }
+
     /// Whether opening `path` may wait without end, as a FIFO waits for its reader.
     pub fn may_wait(path: &Path) -> bool {
         fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir())
     }
 
     fn file(path: PathBuf, replace: bool) -> io::Result<Self> {
-        let mut builder = tempfile::Builder::new();
-        builder
+        let temporary = tempfile::Builder::new()
             .prefix(".gyrolab-")
             .suffix(".part")
-            .permissions(new_permissions());
-        let temporary = builder
+            .permissions(new_permissions())
             .tempfile_in(folder_of(&path))
             .map_err(|error| plain(&error))?;
-        // A file that is replaced keeps its rights, whatever the umask.
         if let Ok(there) = fs::metadata(&path) {
-            temporary.as_file().set_permissions(there.permissions())?;
+            keep_rights(temporary.as_file(), &there)?;
         }
         Ok(Self::File {
             temporary,
@@ -179,6 +209,38 @@ impl Destination {
             }
         }
     }
+}
+
+/// Gives the new `file` the rights of the one that it replaces and that was `there`, whatever the umask. Set-user-ID
+/// and its like are never passed on; of a file that belongs to another user nothing is.
+fn keep_rights(file: &File, there: &fs::Metadata) -> io::Result<()> {
+    let new = file.metadata()?;
+    if new.uid() != there.uid() {
+        return Ok(());
+    }
+    let mut mode = there.mode() & 0o777;
+    if new.gid() != there.gid() && fchown(file, None, Some(there.gid())).is_err() {
+        // The new file's group is another one: it may do no more than others may.
+        let of_others = (mode & 0o007) << 3;
+        mode = mode & 0o707 | mode & of_others;
+    }
+    file.set_permissions(fs::Permissions::from_mode(mode))
+}
+
+/// The number of the open file that `path` names, by itself or through links, as `/dev/stdout` and `/dev/fd/3` do.
+fn descriptor(path: &Path) -> Option<u32> {
+    const MOST_LINKS: usize = 40;
+    let own = fs::canonicalize("/proc/self/fd").ok();
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let folder = fs::canonicalize(folder_of(&path)).ok()?;
+        let number = path.file_name()?.to_str()?.parse().ok();
+        if number.is_some() && (folder == Path::new("/dev/fd") || Some(&folder) == own.as_ref()) {
+            return number;
+        }
+        path = folder_of(&path).join(fs::read_link(&path).ok()?);
+    }
+    None
 }
 
 /// Whether `path` ends in a name, not in `/`, `/.` or `..`.

@@ -339,7 +339,7 @@ impl Lab {
         may_replace: impl Fn(&Path) -> bool,
     ) -> Result<(), Refusal> {
         is_named(path)?;
-        let mut destination = Destination::open(path, may_replace(path)).map_err(refusal)?;
+        let mut destination = Destination::open_file(path, may_replace(path)).map_err(refusal)?;
         let written = destination.write_all(content.as_bytes());
         written
             .map_err(|error| Refusal::Because(format!("cannot write {}: {error}", Shown(path))))?;

@@ -3,7 +3,7 @@
 use super::Lab;
 use crate::lab::view::{Pane, View};
 use crate::observe::pace::Speed;
-use crate::scenario::{Document, Problems, Scenario};
+use crate::scenario::{Problems, Scenario};
 use crate::storage::session::Content;
 use crate::text::printable::Shown;
 use crate::work::history::History;
@@ -144,7 +144,7 @@ impl Lab {
 
     /// What the run was opened from, where that is still there; else the run itself.
     fn file_as_opened(&self) -> Arc<Scenario> {
-        let file = Document::open(self.name()).and_then(|document| document.scenario());
+        let file = super::opening::again(self.name()).and_then(|document| document.scenario());
         file.map_or_else(|_| Arc::clone(self.run().scenario()), Arc::new)
     }
 

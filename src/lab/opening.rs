@@ -1,9 +1,10 @@
 //! Opening another preset or file, and going from one run to another.
 
 use super::Lab;
+use crate::export::Destination;
 use crate::observe::ghost::Ghost;
 use crate::observe::playback::Playback;
-use crate::scenario::{Document, Scenario};
+use crate::scenario::{Document, Problem, Problems, Scenario, presets};
 use crate::tui::keymap::Mode;
 use crate::work::changed;
 use crate::work::next_push::NextPush;
@@ -25,7 +26,7 @@ impl Lab {
         let Some(name) = self.browser.choice().map(|entry| entry.name.clone()) else {
             return self.say("nothing is selected: Esc clears the filter");
         };
-        match Document::open(&name).and_then(|document| document.scenario()) {
+        match again(&name).and_then(|document| document.scenario()) {
             Ok(scenario) => self.open(&name, Arc::new(scenario)),
             Err(problems) => self.say(format!("{}: {}", problems.origin, problems.in_one_line())),
         }
@@ -86,4 +87,17 @@ impl Lab {
     pub(super) fn name(&self) -> &str {
         &self.history.present().name
     }
+}
+
+/// Opens what `name` names while the lab is on the screen: a FIFO or a device, which may have nothing to give for as long
+/// as it likes, is read at the command line only.
+pub(super) fn again(name: &str) -> Result<Document, Problems> {
+    if presets::find(name).is_none() && Destination::may_wait(Path::new(name)) {
+        let rule = "is not a regular file: it can be opened at the command line only";
+        return Err(Problems {
+            origin: name.to_owned(),
+            list: vec![Problem::at("", rule)],
+        });
+    }
+    Document::open(name)
 }

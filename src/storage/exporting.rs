@@ -68,17 +68,8 @@ impl Exporting {
         every: NonZeroU64,
         replace: bool,
     ) -> Result<Self, DestinationError> {
-        let path = match path == Path::new("-") {
-            true => Path::new("./-"), // a file: the picture has stdout
-            false => path,
-        };
         let refused = |error| refused(path, error);
-        // A device or FIFO may take no bytes for as long as it likes: that can be waited for at the command line.
-        if Destination::may_wait(path) {
-            let text = "it is not a regular file: use gyrolab run -o";
-            return Err(refused(io::Error::other(text)));
-        }
-        let destination = Destination::open(path, replace)?;
+        let destination = Destination::open_file(path, replace)?;
         let job = Job {
             csv: CsvWriter::new(destination, &scenario).map_err(refused)?,
             path: std::path::absolute(path).map_err(refused)?,

@@ -591,6 +591,142 @@ fn fifos_and_devices_are_written_directly() {
 }
 
 #[test]
+fn an_open_file_that_is_named_as_output_is_written_as_it_is() {
+    let lab = Lab::new();
+    let run = "\"$G\" run method-1 --steps 3";
+    done(lab.shell(&format!("{run} -o a.csv")));
+    let rows = lab.read("a.csv");
+    for name in ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1", "link"] {
+        if name == "link" {
+            symlink("/dev/stdout", lab.path().join("link")).unwrap();
+        }
+        // What stands in the file stays, and so does the file.
+        lab.write("b.csv", "first\n");
+        fs::hard_link(lab.path().join("b.csv"), lab.path().join("same.csv")).unwrap();
+        done(lab.shell(&format!("{run} -o {name} >> b.csv")));
+        assert_eq!(lab.read("same.csv"), format!("first\n{rows}"), "{name}");
+        done(lab.shell(&format!("(echo a; {run} -o {name}; echo b) > b.csv")));
+        assert_eq!(lab.read("same.csv"), format!("a\n{rows}b\n"), "{name}");
+        let both = lab.shell(&format!("{run} --json -o {name}"));
+        assert_eq!(code(&both), 2, "{name}");
+        fs::remove_file(lab.path().join("same.csv")).unwrap();
+    }
+    done(lab.shell(&format!("{run} -o /dev/fd/3 3> b.csv")));
+    assert_eq!(lab.read("b.csv"), rows);
+    done(lab.shell("\"$G\" compare method-1 --steps 3 -o /dev/stdout > b.csv"));
+    let table = lab.read("b.csv");
+    assert!(
+        table.starts_with("# ") && !table.contains("scheme  "),
+        "{table}"
+    );
+    assert_eq!(lab.files(), ["a.csv", "b.csv", "link"]);
+}
+
+#[test]
+fn a_scenario_comes_from_a_fifo_too() {
+    let lab = Lab::new();
+    let preset = done(lab.run(&["presets", "cusps"]));
+    lab.write("cusps.toml", stdout(&preset));
+    for command in [
+        "show FILE",
+        "FILE",
+        "run FILE --steps 3 -o -",
+        "compare FILE --steps 3 -o -",
+        "check FILE",
+    ] {
+        let from_file = lab.shell(&format!(
+            "\"$G\" {}",
+            command.replace("FILE", "./cusps.toml")
+        ));
+        // A second reading would wait for ever.
+        let script = format!(
+            "mkfifo fifo.toml; cat cusps.toml > fifo.toml & timeout 20 \"$G\" {}; end=$?; rm fifo.toml; exit $end",
+            command.replace("FILE", "./fifo.toml")
+        );
+        let from_fifo = done(lab.shell(&script));
+        if !command.contains("compare") {
+            let expected = stdout(&from_file).replace("cusps.toml", "fifo.toml");
+            assert_eq!(stdout(&from_fifo), expected, "{command}");
+        }
+    }
+}
+
+#[test]
+fn a_replaced_file_keeps_its_rights_but_not_those_of_a_set_user_id() {
+    let lab = Lab::new();
+    let run = || done(lab.run(&["run", "method-1", "--steps", "3", "-o", "a.csv", "--force"]));
+    for (before, after) in [(0o640, 0o640), (0o6755, 0o755), (0o1604, 0o604)] {
+        lab.write("a.csv", "old");
+        let rights = fs::Permissions::from_mode(before);
+        fs::set_permissions(lab.path().join("a.csv"), rights).unwrap();
+        run();
+        assert_eq!(lab.mode("a.csv"), after, "{before:o}");
+    }
+    // Only the superuser can leave a file of somebody else's here.
+    lab.write("a.csv", "old");
+    if std::os::unix::fs::chown(lab.path().join("a.csv"), Some(12345), Some(12345)).is_ok() {
+        let rights = fs::Permissions::from_mode(0o6777);
+        fs::set_permissions(lab.path().join("a.csv"), rights).unwrap();
+        done(lab.shell("umask 027; \"$G\" run method-1 --steps 3 -o a.csv --force"));
+        assert_eq!(lab.mode("a.csv"), 0o640);
+    }
+}
+
+#[test]
+fn ctrl_c_acts_at_once_when_the_steps_are_done() {
+    let lab = Lab::new();
+    // A summary that nobody reads holds the program up after its last step, as a long search for advice does.
+    done(lab.shell("mkfifo fifo"));
+    let mut child = lab
+        .command(&["run", "method-1", "--steps", "3", "-o", "a.csv", "--json"])
+        .stdout(
+            fs::OpenOptions::new()
+                .read(true)
+                .write(true)
+                .open(lab.path().join("fifo"))
+                .map(full)
+                .unwrap(),
+        )
+        .spawn()
+        .unwrap();
+    while !lab.files().contains(&"a.csv".to_owned()) {
+        std::thread::yield_now();
+    }
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    assert!(child.try_wait().unwrap().is_none(), "it waits");
+    let kill = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(kill.unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+}
+
+/// The FIFO `fifo`, open at both ends, with as much in it as it holds.
+fn full(mut fifo: fs::File) -> fs::File {
+    let mut other = fifo.try_clone().unwrap();
+    let filling = std::thread::spawn(move || other.write_all(&[b'x'; 1 << 16]).unwrap());
+    filling.join().unwrap();
+    fifo.flush().unwrap();
+    fifo
+}
+
+#[test]
+fn a_signal_ends_the_wait_of_a_comparison_for_the_reader_of_a_fifo() {
+    let lab = Lab::new();
+    done(lab.shell("mkfifo fifo"));
+    let mut child = lab
+        .command(&["compare", "cusps", "-o", "fifo"])
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(500)); // until it waits
+    let kill = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(kill.unwrap().success());
+    assert!(!child.wait().unwrap().success());
+}
+
+#[test]
 fn ctrl_c_ends_a_run_with_130_and_leaves_nothing() {
     let lab = Lab::new();
     lab.write("old.csv", "precious");

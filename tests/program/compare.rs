@@ -105,6 +105,26 @@ const ORDERS: [(&str, &str, f64); 4] = [
     ("srkn11b", "0.1,0.0625,0.04", 6.0),
 ];
 
+/// A stack larger than any memory: no thread can be had.
+#[test]
+fn without_threads_it_takes_one_core() {
+    let compare = |least_stack: &str| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_gyrolab"))
+            .args(["compare", "cusps", "--steps", "100"])
+            .env("RUST_MIN_STACK", least_stack)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{output:?}");
+        let text = String::from_utf8(output.stdout).unwrap();
+        // All but the last column, which is the time it took.
+        let lines = text
+            .lines()
+            .map(|line| line.get(..78).unwrap_or(line).to_owned());
+        lines.collect::<Vec<_>>()
+    };
+    assert_eq!(compare("4611686018427387904"), compare("2097152"));
+}
+
 #[test]
 fn the_orders_of_the_schemes_are_in_the_table() {
     let lab = Lab::new();

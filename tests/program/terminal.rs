@@ -219,6 +219,57 @@ fn a_paste_into_a_field_is_cut_and_says_so() {
 }
 
 #[test]
+fn without_threads_the_lab_opens_acts_and_ends() {
+    // A stack larger than any memory: no thread can be had.
+    let variables = [
+        ("TERM", "xterm"),
+        ("LANG", "C.UTF-8"),
+        ("RUST_MIN_STACK", "4611686018427387904"),
+    ];
+    for (signal, code) in [("", 0), ("TERM", 143), ("INT", 130)] {
+        let mut terminal = Terminal::open_with(&["--paused"], &variables);
+        terminal.wait_for("q quit");
+        terminal.ask("30.", "step 30");
+        terminal.resize((100, 30));
+        terminal.ask("x\r", "cannot write");
+        terminal.ask("\u{1b}", "step 30");
+        match signal {
+            "" => terminal.press("q"),
+            signal => terminal.signal(signal),
+        }
+        assert_eq!(terminal.wait_for_end().exit_code(), code, "{signal}");
+        terminal.has_given_the_terminal_back();
+        assert!(!terminal.sent_text().contains("panicked"));
+    }
+}
+
+#[test]
+fn nothing_is_saved_where_it_could_hang_the_lab_or_write_over_the_picture() {
+    let mut terminal = Terminal::open(&["--paused", "--at", "10"]);
+    let fifo = terminal.ground().file("fifo");
+    let made = std::process::Command::new("mkfifo").arg(fifo).status();
+    assert!(made.unwrap().success());
+    terminal.wait_for("q quit");
+    for (key, title) in [
+        ("s", "save the run file"),
+        ("S", "save the present state"),
+        ("x", "export steps"),
+    ] {
+        for path in ["fifo", "/dev/tty", "/dev/stdout", "/dev/fd/1", "/dev/null"] {
+            terminal.ask(key, title);
+            terminal.ask(&format!("\u{15}{path}\r"), "not a regular file");
+            terminal.press("\u{1b}");
+            terminal.wait_until("the lab", |terminal| !terminal.words().contains(title));
+        }
+    }
+    // "-" is a name like others: the picture has stdout.
+    terminal.ask("s", "save the run file");
+    terminal.ask("\u{15}-\r", "the run is in");
+    terminal.quit();
+    assert_eq!(terminal.ground().names(), ["-", "fifo", "state"]);
+}
+
+#[test]
 fn a_terminal_that_takes_no_bytes_does_not_hold_up_the_end() {
     let mut terminal = Terminal::open(&["--fps", "60", "--set", "motion.steps=1000000000"]);
     terminal.wait_for("q quit");
