@@ -687,6 +687,7 @@ fn ctrl_c_acts_at_once_when_the_steps_are_done() {
                 .map(full)
                 .unwrap(),
         )
+        .stderr(Stdio::null())
         .spawn()
         .unwrap();
     while !lab.files().contains(&"a.csv".to_owned()) {
