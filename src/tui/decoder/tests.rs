@@ -1,0 +1,237 @@
+use super::*;
+use proptest::prelude::*;
+
+/// What `pieces` say, each as it comes with a moment between.
+fn typed(pieces: &[&[u8]]) -> Vec<Typed> {
+    let (mut decoder, begin) = (Decoder::default(), Instant::now());
+    for (piece, number) in pieces.iter().zip(0..) {
+        decoder.feed(piece, begin + Duration::from_millis(number));
+    }
+    all(&mut decoder)
+}
+
+fn all(decoder: &mut Decoder) -> Vec<Typed> {
+    std::iter::from_fn(|| decoder.take_typed()).collect()
+}
+
+fn keys(keys: &[Key]) -> Vec<Typed> {
+    keys.iter().copied().map(Typed::Key).collect()
+}
+
+#[test]
+fn every_key_is_known_however_its_sequence_comes_apart() {
+    use Key::*;
+    let cases: &[(&str, Key)] = &[
+        ("a", Char('a')),
+        (" ", Char(' ')),
+        ("ü", Char('ü')),
+        ("速", Char('速')),
+        ("🎡", Char('🎡')),
+        ("\r", Enter),
+        ("\n", Ctrl('j')),
+        ("\t", Tab),
+        ("\u{7f}", Backspace),
+        ("\u{8}", Ctrl('h')),
+        ("\u{3}", Ctrl('c')),
+        ("\u{1a}", Ctrl('z')),
+        ("\0", Ctrl(' ')),
+        ("\u{1b}[A", Up),
+        ("\u{1b}[B", Down),
+        ("\u{1b}[C", Right),
+        ("\u{1b}[D", Left),
+        ("\u{1b}OA", Up),
+        ("\u{1b}OH", Home),
+        ("\u{1b}OF", End),
+        ("\u{1b}[H", Home),
+        ("\u{1b}[F", End),
+        ("\u{1b}[1~", Home),
+        ("\u{1b}[4~", End),
+        ("\u{1b}[7~", Home),
+        ("\u{1b}[8~", End),
+        ("\u{1b}[3~", Delete),
+        ("\u{1b}[5~", PageUp),
+        ("\u{1b}[6~", PageDown),
+        ("\u{1b}[5;5~", PageUp),
+        ("\u{1b}[Z", BackTab),
+        ("\u{1b}[1;2A", ShiftUp),
+        ("\u{1b}[1;2B", ShiftDown),
+        ("\u{1b}[1;2C", ShiftRight),
+        ("\u{1b}[1;2D", ShiftLeft),
+        ("\u{1b}[1;5C", Right),
+        ("\u{1b}[1;6C", ShiftRight),
+        ("\u{1b}[1;2:1C", ShiftRight),
+        ("\u{1b}[a", ShiftUp),
+        ("\u{1b}[99;5u", Ctrl('c')),
+        ("\u{1b}[27u", Esc),
+        ("\u{1b}[9;2u", BackTab),
+        ("\u{1b}[13;5u", Enter),
+        ("\u{1b}[252u", Char('ü')),
+    ];
+    for (text, key) in cases {
+        let bytes = text.as_bytes();
+        assert_eq!(typed(&[bytes]), keys(&[*key]), "{text:?}");
+        let pieces: Vec<_> = bytes.chunks(1).collect();
+        assert_eq!(typed(&pieces), keys(&[*key]), "{text:?} byte by byte");
+        let twice = [bytes, bytes, b"x"].concat();
+        assert_eq!(typed(&[&twice]), keys(&[*key, *key, Char('x')]), "{text:?}");
+    }
+}
+
+#[test]
+fn what_is_no_key_is_passed_over_as_a_whole() {
+    for text in [
+        "\u{1b}[<0;10;20M",
+        "\u{1b}[<35;10;20m",
+        "\u{1b}[M !!",
+        "\u{1b}[[A",
+        "\u{1b}[I",
+        "\u{1b}[O",
+        "\u{1b}[24;80R",
+        "\u{1b}[?62;4c",
+        "\u{1b}[?2026;2$y",
+        "\u{1b}[15~",
+        "\u{1b}[201~",
+        "\u{1b}OP",
+        "\u{1b}]11;rgb:0000/0000/0000\u{1b}\\",
+        "\u{1b}]0;a title\u{7}",
+        "\u{1b}P>|a terminal\u{1b}\\",
+    ] {
+        let with_key = format!("{text}x");
+        assert_eq!(
+            typed(&[with_key.as_bytes()]),
+            keys(&[Key::Char('x')]),
+            "{text:?}"
+        );
+    }
+    for garbage in [
+        &b"\xff\x80\xc3x"[..],
+        b"\xe9\x80x",
+        b"\xf4\x90\x80\x80x",
+        b"\xc0x",
+    ] {
+        assert_eq!(typed(&[garbage]), keys(&[Key::Char('x')]), "{garbage:?}");
+    }
+}
+
+#[test]
+fn escape_is_a_key_after_a_moment_and_loses_none_that_follows() {
+    let (mut decoder, begin) = (Decoder::default(), Instant::now());
+    decoder.feed(b"\x1b", begin);
+    assert_eq!(
+        (decoder.ready(), decoder.deadline()),
+        (0, Some(begin + GAP))
+    );
+    decoder.expire(begin + GAP / 2);
+    assert_eq!(decoder.ready(), 0);
+    decoder.expire(begin + GAP);
+    assert_eq!(all(&mut decoder), keys(&[Key::Esc]));
+    assert_eq!(decoder.deadline(), None);
+    // A sequence that comes too late is no sequence.
+    decoder.feed(b"\x1b", begin);
+    decoder.feed(b"[A", begin + 2 * GAP);
+    assert_eq!(
+        all(&mut decoder),
+        keys(&[Key::Esc, Key::Char('['), Key::Char('A')])
+    );
+    assert_eq!(typed(&[b"\x1bq"]), keys(&[Key::Esc, Key::Char('q')]));
+    assert_eq!(typed(&[b"\x1b\x1b[A"]), keys(&[Key::Esc, Key::Up]));
+    assert_eq!(typed(&[b"\x1b\x03"]), keys(&[Key::Esc, Key::Ctrl('c')]));
+    assert_eq!(
+        typed(&["\u{1b}ü".as_bytes()]),
+        keys(&[Key::Esc, Key::Char('ü')])
+    );
+    decoder.feed(b"\x1bP", begin);
+    decoder.expire(begin + GAP);
+    assert_eq!(all(&mut decoder), keys(&[Key::Esc, Key::Char('P')]));
+}
+
+#[test]
+fn a_sequence_without_an_end_is_given_up() {
+    for begun in [
+        "\u{1b}[",
+        "\u{1b}[<",
+        "\u{1b}[<1;2",
+        "\u{1b}]0;a",
+        "\u{1b}P",
+        "\u{1b}O",
+    ] {
+        let begun_bytes = begun.as_bytes();
+        let both = [begun_bytes, b"\x03"].concat();
+        let ends = |typed: &[Typed]| typed.last() == Some(&Typed::Key(Key::Ctrl('c')));
+        assert!(ends(&typed(&[&both])), "{begun:?}");
+        let (mut decoder, begin) = (Decoder::default(), Instant::now());
+        decoder.feed(begun_bytes, begin);
+        decoder.expire(begin + GAP);
+        all(&mut decoder);
+        decoder.feed(b"x", begin + GAP);
+        assert_eq!(all(&mut decoder), keys(&[Key::Char('x')]), "{begun:?}");
+    }
+    // Nor do keys that are held down keep it alive for ever.
+    let (mut decoder, begin) = (Decoder::default(), Instant::now());
+    decoder.feed(b"\x1b]", begin);
+    for number in 1..100 {
+        decoder.feed(b"j", begin + GAP / 2 * number);
+    }
+    assert!(decoder.ready() > 70, "{}", decoder.ready());
+}
+
+#[test]
+fn the_time_of_a_sequence_is_its_own() {
+    // Every piece ends within a sequence: none of them waits longer than a moment.
+    let (mut decoder, begin) = (Decoder::default(), Instant::now());
+    decoder.feed(b"\x1b[", begin);
+    for number in 1..=100 {
+        decoder.feed(b"A\x1b[", begin + GAP / 2 * number);
+    }
+    assert_eq!(all(&mut decoder), keys(&[Key::Up; 100]));
+}
+
+#[test]
+fn a_long_sequence_takes_no_room() {
+    let (mut decoder, begin) = (Decoder::default(), Instant::now());
+    for long in ["\u{1b}[<", "\u{1b}]0;"] {
+        decoder.feed(long.as_bytes(), begin);
+        decoder.feed(&b"1".repeat(1 << 20), begin);
+        assert!(decoder.pending.len() <= LONGEST + 2);
+        decoder.feed(b"\x1b\\", begin);
+        all(&mut decoder);
+    }
+}
+
+#[test]
+fn a_paste_comes_as_one() {
+    let paste = |text: &str| vec![Typed::Paste(text.to_owned())];
+    let text = "\u{1b}[200~a ü\u{1b}[20q\u{1b}\u{1b}[201~";
+    assert_eq!(typed(&[text.as_bytes()]), paste("a ü\u{1b}[20q\u{1b}"));
+    let pieces: Vec<_> = text.as_bytes().chunks(1).collect();
+    assert_eq!(typed(&pieces), paste("a ü\u{1b}[20q\u{1b}"));
+    let unfinished = b"\x1b[200~a\x03";
+    assert_eq!(typed(&[unfinished]), keys(&[Key::Ctrl('c')]));
+    let (mut decoder, begin) = (Decoder::default(), Instant::now());
+    decoder.feed(b"\x1b[200~", begin);
+    decoder.feed(&b"1".repeat(1 << 20), begin);
+    decoder.expire(begin + GAP);
+    assert_eq!(decoder.ready(), 0);
+    decoder.expire(begin + GAP_IN_PASTE);
+    assert_eq!(all(&mut decoder), paste(&"1".repeat(LONGEST_PASTE)));
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_break_it_and_it_always_comes_back(
+        pieces in prop::collection::vec(prop::collection::vec(
+            prop_oneof![any::<u8>(), prop::sample::select(b"\x1b[O<MP]~;0123".to_vec())], 0..40), 0..20)
+    ) {
+        let (mut decoder, mut now) = (Decoder::default(), Instant::now());
+        for piece in pieces {
+            decoder.feed(&piece, now);
+            now += Duration::from_millis(7);
+        }
+        now += GAP_IN_PASTE;
+        decoder.expire(now);
+        prop_assert_eq!(decoder.deadline(), None);
+        while decoder.take_typed().is_some() {}
+        decoder.feed(b"x", now);
+        prop_assert_eq!(decoder.take_typed(), Some(Typed::Key(Key::Char('x'))));
+    }
+}
