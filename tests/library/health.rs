@@ -1,9 +1,9 @@
 //! The health of a run: when it warns, whether what it advises is right, and whether its numbers are those of the run.
 
 use crate::support::dice::Dice;
+use crate::support::scenarios::{find_scheme, parse, preset};
 use gyrolab::analysis::health::{Advice, BELIEVED_WITHIN, Health, Picture, advise};
 use gyrolab::analysis::{Monitor, Trial};
-use gyrolab::physics::SchemeInfo;
 use gyrolab::physics::scheme::SCHEMES;
 use gyrolab::run::resample::resampled;
 use gyrolab::run::{Simulation, Truth};
@@ -13,23 +13,6 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 use std::sync::Arc;
-
-fn preset(name: &str, set: &[&str]) -> Scenario {
-    let mut document = Document::open(name).unwrap();
-    set.iter().for_each(|set| document.set(set).unwrap());
-    document
-        .scenario()
-        .unwrap_or_else(|problems| panic!("{problems}"))
-}
-
-fn parse(text: &str) -> Scenario {
-    let scenario = Document::parse("x.toml", text).and_then(|document| document.scenario());
-    scenario.unwrap_or_else(|problems| panic!("{problems}\n{text}"))
-}
-
-fn find(name: &str) -> &'static SchemeInfo {
-    SchemeInfo::find(name).unwrap()
-}
 
 /// The health of the whole run, as `gyrolab run` has it.
 fn health(scenario: Scenario) -> Health {
@@ -145,7 +128,7 @@ fn advice_is_right(name: &str, scenario: &Scenario) -> Advice {
             time_step_s,
             tried_s,
         } => {
-            is_held(time_step_s, find("srkn11b"));
+            is_held(time_step_s, find_scheme("srkn11b"));
             assert!(
                 held(tried_s, scheme) > 0.9 * BELIEVED_WITHIN && tried_s <= step,
                 "{case}"
@@ -182,8 +165,8 @@ fn the_advice_is_right_for_every_preset_under_every_scheme() {
 fn a_scheme_is_advised_at_a_time_step_at_which_it_holds() {
     // Where the report's scheme cannot be mended, and at the run's own time step the better one does not hold either.
     for name in ["falling", "sleeping-unstable"] {
-        let scenario = resampled(&preset(name, &[]), 2.0, find("report"));
-        assert!(strays(resampled(&scenario, 2.0, find("srkn11b"))) > BELIEVED_WITHIN);
+        let scenario = resampled(&preset(name, &[]), 2.0, find_scheme("report"));
+        assert!(strays(resampled(&scenario, 2.0, find_scheme("srkn11b"))) > BELIEVED_WITHIN);
         let advice = advice_is_right(name, &scenario);
         assert!(
             matches!(advice, Advice::Scheme { time_step_s, .. } if time_step_s < 2.0),
@@ -363,7 +346,7 @@ fn the_multiplier_is_that_of_a_measured_run() {
     }
     let isotropic = turning(0.8 / 2_f64.sqrt(), 31.25, 1e-6, 1);
     assert!((health(isotropic).nutation.unwrap().multiplier - 1.0).abs() < 1e-12);
-    let other = resampled(&turning(1.0, 1.0, 0.0, 1), 1.0, find("rk4"));
+    let other = resampled(&turning(1.0, 1.0, 0.0, 1), 1.0, find_scheme("rk4"));
     assert_eq!(
         health(other).nutation,
         None,
@@ -412,7 +395,7 @@ fn the_lag_of_method_2_is_188_times_the_true_one() {
     let exact = resampled(
         &preset("method-2", &["motion.steps=10"]),
         0.0007,
-        find("exact"),
+        find_scheme("exact"),
     );
     let measured = largest_lag(&exact) / 2.0;
     println!("true lag {}, measured {measured}", nutation.true_lag_deg);
@@ -499,7 +482,7 @@ fn lz_drifts_where_a_push_from_the_side_meets_the_wrong_axle() {
         &["push.0={point='top',force_N=[30,0,0],from_s=0.5,for_s=2}"],
     );
     let drift = |step, scheme| {
-        let scenario = Arc::new(resampled(&scenario, step, find(scheme)));
+        let scenario = Arc::new(resampled(&scenario, step, find_scheme(scheme)));
         Trial::run(&scenario, |_| ControlFlow::Continue(()))
             .unwrap()
             .lz_drift

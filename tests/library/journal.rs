@@ -1,5 +1,6 @@
 //! A run is a scenario and its journal: what an edit made at a step changes, from when on, and what it leaves alone.
 
+use crate::support::scenarios::parse;
 use gyrolab::export::{CsvWriter, stream};
 use gyrolab::physics::{Loads, SchemeInfo};
 use gyrolab::run::{Sample, Simulation};
@@ -32,10 +33,7 @@ fn simulation(motion: &str, edits: &[(u64, &str)]) -> Simulation {
     for (step, set) in edits {
         write!(text, "[[edit]]\nstep = {step}\nset = {{ {set} }}\n").unwrap();
     }
-    let scenario = Document::parse("wheel.toml", &text).and_then(|document| document.scenario());
-    Simulation::new(Arc::new(
-        scenario.unwrap_or_else(|problems| panic!("{problems}")),
-    ))
+    Simulation::new(Arc::new(parse(&text)))
 }
 
 /// The samples of step 0 to the last.

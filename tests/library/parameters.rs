@@ -1,22 +1,12 @@
 //! The values of a scenario one at a time: listed, nudged, typed, changed.
 
+use crate::support::scenarios::{parse, preset};
 use gyrolab::scenario::file::ScenarioFile;
 use gyrolab::scenario::presets::PRESETS;
-use gyrolab::scenario::{Document, Scenario};
+use gyrolab::scenario::Scenario;
 use gyrolab::work::Parameter;
 use gyrolab::work::parameters::{changed, parameters, table_at, table_of};
 use toml::Value;
-
-fn preset(name: &str) -> Scenario {
-    Document::open(name).unwrap().scenario().unwrap()
-}
-
-fn scenario(text: &str) -> Scenario {
-    Document::parse("test.toml", text)
-        .unwrap()
-        .scenario()
-        .unwrap()
-}
 
 fn listed(scenario: &Scenario) -> Vec<Parameter> {
     parameters(&table_of(&scenario.file), scenario)
@@ -70,7 +60,7 @@ for_s = 2
 fn what_is_nudged_shows_or_is_refused_in_words() {
     let mut nudged = 0;
     for preset in PRESETS {
-        let scenario = self::preset(preset.name);
+        let scenario = self::preset(preset.name, &[]);
         for row in listed(&scenario) {
             for times in [1, -1, 10] {
                 let value = match row.nudged(times) {
@@ -102,7 +92,7 @@ fn what_is_nudged_shows_or_is_refused_in_words() {
 #[test]
 fn what_is_shown_can_be_typed() {
     for preset in PRESETS {
-        for row in listed(&self::preset(preset.name)) {
+        for row in listed(&self::preset(preset.name, &[])) {
             let shown = row.shown();
             assert!(!shown.contains('\n'), "{shown}");
             assert_eq!(
@@ -122,7 +112,7 @@ fn what_is_shown_can_be_typed() {
 
 #[test]
 fn every_value_of_a_file_is_listed_in_groups() {
-    let scenario = scenario(TWO_PUSHES);
+    let scenario = parse(TWO_PUSHES);
     let rows = listed(&scenario);
     let mut groups: Vec<_> = rows.iter().map(|row| row.group.as_str()).collect();
     groups.dedup();
@@ -176,12 +166,12 @@ fn no_rim_no_rows_of_it() {
         )
         .replace("at_m = [3, 0, 4]", "at_m = [3, 0, 4]\nmass_kg = 1");
     let rimless = rimless.replace("at_m = [0, 0, 2]", "at_m = [0, 1, 2]\nmass_kg = 1");
-    assert_eq!(keys(&scenario(&rimless), "body"), Vec::<String>::new());
+    assert_eq!(keys(&parse(&rimless), "body"), Vec::<String>::new());
 }
 
 #[test]
 fn nudges_follow_the_size() {
-    let scenario = scenario(TWO_PUSHES);
+    let scenario = parse(TWO_PUSHES);
     let next = |key: &str, times| named(&scenario, key).nudged(times);
     assert_eq!(next("push.0.force_N.0", 1), Ok(Value::Float(0.05))); // norm 5
     assert_eq!(next("push.1.force_N.0", -1), Ok(Value::Float(-1.0))); // norm 0
@@ -202,7 +192,7 @@ fn nudges_follow_the_size() {
 
 #[test]
 fn what_is_typed_is_held_against_the_rule() {
-    let scenario = scenario(TWO_PUSHES);
+    let scenario = parse(TWO_PUSHES);
     let typed = |key: &str, text| named(&scenario, key).typed(text);
     assert_eq!(
         typed("motion.time_step_s", "0.05 s"),
@@ -232,7 +222,7 @@ fn what_is_typed_is_held_against_the_rule() {
 
 #[test]
 fn a_refused_change_is_told_in_one_line() {
-    let file = scenario(TWO_PUSHES).file;
+    let file = parse(TWO_PUSHES).file;
     assert_eq!(
         refusal(&file, "motion.time_step_s", -0.1),
         "motion.time_step_s (-0.1) must be greater than zero"
@@ -260,7 +250,7 @@ fn the_values_of_a_run_are_those_after_its_edits() {
     let text = format!(
         "{TWO_PUSHES}[[edit]]\nstep = 7\nset = {{ 'motion.time_step_s' = 0.02, 'push.1.for_s' = 9 }}\n"
     );
-    let run = scenario(&text);
+    let run = parse(&text);
     let at = |step, key: &str| {
         let rows = parameters(&table_at(&run, step), &run).into_iter();
         rows.filter(|row| row.key == key)
@@ -281,7 +271,7 @@ fn of_many_points_the_first_fifty_are_listed() {
     let text = format!(
         "title = 'x'\ntrace = 'p99'\n{points}[start]\nmomentum_Js = [0, 0, 1]\n[motion]\ntime_step_s = 0.1\nsteps = 1\n"
     );
-    let scenario = scenario(&text);
+    let scenario = parse(&text);
     let count = listed(&scenario)
         .iter()
         .filter(|row| row.key.ends_with(".name"))

@@ -1,5 +1,6 @@
 //! Single panes on a sheet of their own: the run before, pushes and edits.
 
+use crate::support::scenarios::view as seen;
 use gyrolab::lab::editor::{Editor, Line};
 use gyrolab::lab::form::{Field, Form};
 use gyrolab::lab::view::markers::Marker;
@@ -38,11 +39,7 @@ fn run(preset: &str, set: &[&str], more: &str, steps: u64) -> LiveRun {
 }
 
 fn view(run: &LiveRun, marker: Marker) -> View {
-    let theme = Theme {
-        colour: true,
-        background: Background::Dark,
-    };
-    View::new(run.scenario(), marker, theme)
+    seen(run.scenario(), marker, true)
 }
 
 fn drawn(widget: impl Widget, (width, height): (u16, u16)) -> String {

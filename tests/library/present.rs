@@ -1,5 +1,6 @@
 //! A scenario that starts where a run stands goes on as the run does.
 
+use crate::support::scenarios::parse;
 use gyrolab::physics::State;
 use gyrolab::physics::observables::position;
 use gyrolab::run::Simulation;
@@ -16,8 +17,7 @@ fn text(scheme: &str, lump: f64, start: &str, more: &str) -> String {
 }
 
 fn read(text: &str) -> Arc<Scenario> {
-    let scenario = Document::parse("x.toml", text).and_then(|document| document.scenario());
-    Arc::new(scenario.unwrap_or_else(|problems| panic!("{problems}\n{text}")))
+    Arc::new(parse(text))
 }
 
 fn at(scenario: &Arc<Scenario>, step: u64) -> Simulation {

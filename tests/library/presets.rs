@@ -1,18 +1,12 @@
 //! Every shipped preset: it is complete, and it does what it says.
 
+use crate::support::scenarios::preset as preset_named;
 use gyrolab::export::Column;
 use gyrolab::run::Simulation;
-use gyrolab::scenario::presets::{PRESETS, Preset};
-use gyrolab::scenario::{Document, Scenario};
+use gyrolab::scenario::presets::PRESETS;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
-
-fn scenario(preset: &Preset) -> Scenario {
-    Document::open(preset.name)
-        .and_then(|document| document.scenario())
-        .unwrap_or_else(|e| panic!("{e}"))
-}
 
 #[test]
 fn the_table_of_presets_is_the_folder() {
@@ -42,7 +36,7 @@ fn the_table_of_presets_is_the_folder() {
 #[test]
 fn every_preset_says_what_it_is_and_what_to_look_at() {
     for preset in PRESETS {
-        let file = scenario(preset).file;
+        let file = preset_named(preset.name, &[]).file;
         assert!(
             file.about.is_some_and(|about| about.len() > 80),
             "{}",
@@ -70,7 +64,7 @@ fn every_preset_says_what_it_is_and_what_to_look_at() {
 #[test]
 fn every_preset_does_what_it_expects() {
     for preset in PRESETS {
-        let scenario = scenario(preset);
+        let scenario = preset_named(preset.name, &[]);
         let mut expected = scenario.file.expected.clone();
         expected.sort_by_key(|entry| entry.at_step);
         let mut simulation = Simulation::new(Arc::new(scenario));

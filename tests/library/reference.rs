@@ -5,8 +5,8 @@
 
 #![allow(clippy::expect_used)]
 
+use crate::support::scenarios::preset;
 use gyrolab::run::Simulation;
-use gyrolab::scenario::Document;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -23,10 +23,7 @@ fn reference(name: &str) -> Vec<[f64; 8]> {
 
 /// Largest deviations in position (m) and momentum (J s) over all rows of the reference.
 fn deviations(name: &str) -> (f64, f64) {
-    let scenario = Document::open(name)
-        .and_then(|document| document.scenario())
-        .expect("a preset");
-    let mut simulation = Simulation::new(Arc::new(scenario));
+    let mut simulation = Simulation::new(Arc::new(preset(name, &[])));
     let (mut of_position, mut of_momentum) = (0.0f64, 0.0f64);
     let rows = reference(name);
     assert!(rows.len() > 40, "{name} has its rows");

@@ -1,13 +1,14 @@
 //! What every scheme of the table must do: converge with the order it claims, be worth its cost, keep what it keeps, and
 //! take a run over from any other.
 
+use crate::support::scenarios::{find_scheme, parse};
 use gyrolab::analysis::Trial;
 use gyrolab::export::{CsvWriter, stream};
 use gyrolab::physics::scheme::SCHEMES;
 use gyrolab::physics::{Loads, SchemeInfo, State};
 use gyrolab::run::Simulation;
 use gyrolab::run::resample::resampled;
-use gyrolab::scenario::{Document, Scenario};
+use gyrolab::scenario::Scenario;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -59,12 +60,7 @@ time_step_s = 0.1
 steps = 15
 {rest}"
     );
-    let scenario = Document::parse("wheel.toml", &text).and_then(|document| document.scenario());
-    scenario.unwrap_or_else(|problems| panic!("{problems}"))
-}
-
-fn find(name: &str) -> &'static SchemeInfo {
-    SchemeInfo::find(name).unwrap()
+    parse(&text)
 }
 
 /// The error at the end, m.
@@ -146,7 +142,7 @@ fn a_better_scheme_beats_a_worse_one_at_the_same_time_step() {
 /// Largest |energy drift| in each tenth of a million steps.
 fn drifts(side_kg: &str, scheme: &str, time_step_s: f64) -> Vec<f64> {
     const TENTH: u64 = 100_000;
-    let scenario = resampled(&scenario(side_kg, ""), time_step_s, find(scheme));
+    let scenario = resampled(&scenario(side_kg, ""), time_step_s, find_scheme(scheme));
     let mut simulation = Simulation::new(Arc::new(scenario));
     let drifts = (1..=10).map(|tenth| {
         let mut worst = 0.0_f64;
@@ -234,7 +230,7 @@ fn vertical_forces_conserve_the_bits_of_lz() {
 
 /// `state`, `steps` steps of 0.01 s further by a scheme that knows nothing of what was before.
 fn alone(scenario: &Scenario, scheme: &str, mut state: State, steps: u64) -> State {
-    let mut scheme = find(scheme).make(&scenario.body.mechanics);
+    let mut scheme = find_scheme(scheme).make(&scenario.body.mechanics);
     scheme.load(&Loads {
         gravity: 9.8,
         pushes: Vec::new(),

@@ -1,9 +1,10 @@
 //! The ways to state the start: tilt, turn and roll, momentum or spin, a steady precession.
 
+use crate::support::scenarios::{parse, read};
 use gyrolab::physics::observables::{angular_velocity, tilt_deg};
 use gyrolab::physics::rotation;
 use gyrolab::run::Simulation;
-use gyrolab::scenario::{Document, Problems, Scenario};
+use gyrolab::scenario::{Document, Scenario};
 use gyrolab::work::parameters::{changed, parameters, table_of};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
@@ -18,12 +19,8 @@ fn text(start: &str, motion: &str) -> String {
     )
 }
 
-fn read(text: &str) -> Result<Scenario, Problems> {
-    Document::parse("x.toml", text)?.scenario()
-}
-
 fn ring(start: &str) -> Scenario {
-    read(&text(start, "")).unwrap_or_else(|problems| panic!("{problems}"))
+    parse(&text(start, ""))
 }
 
 fn refusal(start: &str) -> String {

@@ -1,14 +1,12 @@
 //! The textbook's top (ring of 5 kg at 1 m: I1 = 6.6, I3 = 3.2, mgl = 49), measured on runs of the shipped presets
 //! and held against figures from elliptic integrals (30 digits) that know nothing of any stepping.
 
+use crate::support::scenarios::preset as preset_with;
 use gyrolab::run::{Sample, Simulation};
-use gyrolab::scenario::Document;
 use std::sync::Arc;
 
 fn samples(preset: &str, set: &[&str]) -> Vec<Sample> {
-    let mut document = Document::open(preset).unwrap();
-    set.iter().for_each(|set| document.set(set).unwrap());
-    let scenario = document.scenario().unwrap();
+    let scenario = preset_with(preset, set);
     let steps = scenario.steps;
     let mut simulation = Simulation::new(Arc::new(scenario));
     let mut samples = vec![simulation.sample()];

@@ -1,24 +1,19 @@
 //! What theory says of the textbook's tops, and what the instruments measure on their runs.
 
+use crate::support::scenarios::preset as opened;
 use gyrolab::analysis::theory::Path;
 use gyrolab::analysis::{Health, Measured, Monitor, Theory};
 use gyrolab::export::{Readouts, Summary};
 use gyrolab::physics::SchemeInfo;
 use gyrolab::run::resample::resampled;
 use gyrolab::run::{Simulation, Truth};
-use gyrolab::scenario::{Document, Scenario};
+use gyrolab::scenario::Scenario;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::time::Duration;
 
 fn preset(name: &str, set: &[&str]) -> Arc<Scenario> {
-    let mut document = Document::open(name).unwrap();
-    set.iter().for_each(|set| document.set(set).unwrap());
-    Arc::new(
-        document
-            .scenario()
-            .unwrap_or_else(|problems| panic!("{problems}")),
-    )
+    Arc::new(opened(name, set))
 }
 
 fn theory(scenario: &Arc<Scenario>, time_s: f64) -> Option<Theory> {

@@ -1,132 +1,17 @@
 //! The lab from its keys to its picture, without a terminal: pictures of every mode, journeys, and properties at
 //! random sizes and states.
 
+use crate::support::stage::{LARGE, SMALL, Stage, picture};
 use gyrolab::lab::view::markers::Marker;
-use gyrolab::lab::view::theme::{Background, Theme};
-use gyrolab::lab::view::{Pane, View};
-use gyrolab::lab::{Lab, Request};
-use gyrolab::scenario::Document;
+use gyrolab::lab::view::Pane;
+use gyrolab::lab::Request;
 use gyrolab::scenario::presets::PRESETS;
-use gyrolab::tui::app;
 use gyrolab::tui::keymap::{BINDINGS, Key, Mode};
 use gyrolab::tui::screen;
 use proptest::prelude::*;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use std::sync::Arc;
 use std::time::Duration;
-
-const SMALL: Rect = Rect {
-    x: 0,
-    y: 0,
-    width: 80,
-    height: 24,
-};
-const LARGE: Rect = Rect {
-    x: 0,
-    y: 0,
-    width: 200,
-    height: 50,
-};
-const FRAME: Duration = Duration::from_millis(100);
-
-/// A lab with a keyboard, and a clock that goes only when told.
-struct Stage {
-    lab: Lab,
-    now: Duration,
-    size: Rect,
-    /// Where it writes what it writes.
-    _folder: tempfile::TempDir,
-}
-
-impl Stage {
-    fn open(scenario: &str, set: &[&str], size: Rect) -> Self {
-        let mut document = Document::open(scenario).unwrap();
-        let file = document.scenario().unwrap();
-        set.iter().for_each(|set| document.set(set).unwrap());
-        let scenario_numbers = Arc::new(document.scenario().unwrap());
-        let theme = Theme {
-            colour: true,
-            background: Background::Dark,
-        };
-        let view = View::new(&scenario_numbers, Marker::Braille, theme);
-        let mut lab = Lab::new(scenario, scenario_numbers, view, true);
-        lab.set_file(Arc::new(file));
-        let folder = tempfile::tempdir().unwrap();
-        lab.work_in(folder.path());
-        screen::fit(&mut lab, size);
-        Self {
-            lab,
-            now: Duration::ZERO,
-            size,
-            _folder: folder,
-        }
-    }
-
-    fn key(&mut self, key: Key) -> Option<Request> {
-        app::press(key, &mut self.lab)
-    }
-
-    fn press(&mut self, keys: &str) -> &mut Self {
-        for key in keys.chars() {
-            let key = match key {
-                '\n' => Key::Enter,
-                '\t' => Key::Tab,
-                '\u{1b}' => Key::Esc,
-                '↑' => Key::Up,
-                '↓' => Key::Down,
-                '←' => Key::Left,
-                '→' => Key::Right,
-                c => Key::Char(c),
-            };
-            self.key(key);
-        }
-        self.wait(0.0)
-    }
-
-    /// Lets time pass, frame by frame; looking at the clock takes time too.
-    fn wait(&mut self, seconds: f64) -> &mut Self {
-        for _ in 0..=(seconds / FRAME.as_secs_f64()).round() as usize {
-            let mut looks = 0;
-            let now = self.now;
-            self.lab.advance(&mut || {
-                looks += 1;
-                now + Duration::from_micros(50) * (looks - 1)
-            });
-            self.now += FRAME;
-        }
-        self.now -= FRAME;
-        self
-    }
-
-    fn picture(&self) -> String {
-        screen::text(&self.lab, true, (self.size.width, self.size.height))
-    }
-
-    fn step(&self) -> u64 {
-        self.lab.run().simulation().step_number()
-    }
-
-    #[track_caller]
-    fn shows(&mut self, words: &str) -> &mut Self {
-        let picture = self.picture();
-        assert!(picture.contains(words), "no {words:?} in\n{picture}");
-        self
-    }
-
-    #[track_caller]
-    fn shows_no(&mut self, words: &str) -> &mut Self {
-        let picture = self.picture();
-        assert!(!picture.contains(words), "{words:?} in\n{picture}");
-        self
-    }
-}
-
-fn picture(scenario: &str, size: Rect, seconds: f64, keys: &str) -> String {
-    let mut stage = Stage::open(scenario, &[], size);
-    stage.wait(seconds).press(" ").press(keys).wait(6.0);
-    stage.picture()
-}
 
 #[test]
 fn pictures_of_the_lab() {

@@ -1,112 +1,15 @@
 //! The program itself, against what it promises: exit codes, what goes to stdout and what to stderr, files that
 //! appear whole or not at all, and CSVs that run again to the same bytes.
 
+use crate::support::ground::{Ground, code, done, failed, stderr, stdout};
 use std::fs;
 use std::io::{Read, Write};
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
-use tempfile::TempDir;
-
-const GYROLAB: &str = env!("CARGO_BIN_EXE_gyrolab");
+use std::process::{Command, Stdio};
 
 /// The first columns of every CSV, which programs elsewhere rely on.
 const COLUMNS: &str = "step,t_s,x_m,y_m,z_m,Lx_Js,Ly_Js,Lz_Js,wx_rad_per_s,wy_rad_per_s,wz_rad_per_s,tilt_deg,azimuth_deg,energy_J,segment";
-
-/// A folder of its own in which the program is run.
-struct Lab(TempDir);
-
-impl Lab {
-    fn new() -> Self {
-        Self(TempDir::new().unwrap())
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn command(&self, args: &[&str]) -> Command {
-        let mut command = Command::new(GYROLAB);
-        command
-            .current_dir(self.path())
-            .args(args)
-            .stdin(Stdio::null());
-        command
-    }
-
-    fn run(&self, args: &[&str]) -> Output {
-        self.command(args).output().unwrap()
-    }
-
-    /// Runs `script` in a shell that knows the program as `$G`; its own exit code is the program's.
-    fn shell(&self, script: &str) -> Output {
-        let mut command = Command::new("sh");
-        command
-            .args(["-c", script])
-            .env("G", GYROLAB)
-            .current_dir(self.path())
-            .stdin(Stdio::null());
-        command.output().unwrap()
-    }
-
-    fn write(&self, name: &str, text: &str) {
-        fs::write(self.path().join(name), text).unwrap();
-    }
-
-    fn read(&self, name: &str) -> String {
-        fs::read_to_string(self.path().join(name)).unwrap()
-    }
-
-    /// The names of all files, the hidden ones too.
-    fn files(&self) -> Vec<String> {
-        let entries = fs::read_dir(self.path()).unwrap();
-        let mut names: Vec<_> = entries
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort();
-        names
-    }
-
-    fn mode(&self, name: &str) -> u32 {
-        fs::metadata(self.path().join(name))
-            .unwrap()
-            .permissions()
-            .mode()
-            & 0o7777
-    }
-}
-
-fn code(output: &Output) -> i32 {
-    output
-        .status
-        .code()
-        .unwrap_or_else(|| panic!("ended by a signal: {output:?}"))
-}
-
-fn stdout(output: &Output) -> &str {
-    std::str::from_utf8(&output.stdout).unwrap()
-}
-
-fn stderr(output: &Output) -> &str {
-    std::str::from_utf8(&output.stderr).unwrap()
-}
-
-#[track_caller]
-fn done(output: Output) -> Output {
-    assert_eq!(code(&output), 0, "{output:?}");
-    output
-}
-
-/// Failed with exit code 1, without a panic, and with all of `words` in what it said.
-#[track_caller]
-fn failed(output: &Output, words: &[&str]) {
-    assert_eq!(code(output), 1, "{output:?}");
-    let said = stderr(output);
-    for word in words {
-        assert!(said.contains(word), "\"{word}\" is not in: {said}");
-    }
-    assert!(!said.contains("panicked"), "{said}");
-}
 
 /// A CSV: the run file of its header, the header line, and the rows.
 fn parts(csv: &str) -> (String, &str, Vec<Vec<f64>>) {
@@ -139,7 +42,7 @@ fn steps(csv: &str) -> Vec<f64> {
 
 #[test]
 fn exit_codes() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     for (args, expected) in [
         (&["run", "method-1", "--steps", "3"][..], 0),
         (&["schemes"], 0),
@@ -179,7 +82,7 @@ fn exit_codes() {
 
 #[test]
 fn the_summary_is_on_stdout_and_tells_how_the_run_ended() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let output = done(lab.run(&["run", "method-2"]));
     assert!(output.stderr.is_empty());
     let words = [
@@ -207,7 +110,7 @@ fn the_summary_is_on_stdout_and_tells_how_the_run_ended() {
 
 #[test]
 fn the_json_has_its_keys() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let output = done(lab.run(&[
         "run",
         "method-2",
@@ -245,7 +148,7 @@ fn the_json_has_its_keys() {
 
 #[test]
 fn an_energy_drift_without_a_scale_is_null_and_na() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let still = [
         "run",
         "torque-free",
@@ -262,7 +165,7 @@ fn an_energy_drift_without_a_scale_is_null_and_na() {
 
 #[test]
 fn with_a_file_the_summary_goes_to_stderr_and_the_json_to_stdout() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let output = done(lab.run(&["run", "method-1", "--steps", "3", "-o", "a.csv"]));
     assert!(output.stdout.is_empty());
     assert!(stderr(&output).contains("Method 1") && stderr(&output).contains("wall time"));
@@ -278,7 +181,7 @@ fn with_a_file_the_summary_goes_to_stderr_and_the_json_to_stdout() {
 
 #[test]
 fn the_csv_begins_with_its_run_file_and_the_columns() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     done(lab.run(&[
         "run",
         "wobble-push",
@@ -315,7 +218,7 @@ fn the_csv_begins_with_its_run_file_and_the_columns() {
 
 #[test]
 fn numbers_read_back_to_the_same_bits() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let csv = done(lab.run(&["run", "method-2", "--steps", "40", "-o", "-"]));
     let (_, _, rows) = parts(stdout(&csv));
     let json = done(lab.run(&["run", "method-2", "--steps", "40", "--json"]));
@@ -337,7 +240,7 @@ fn numbers_read_back_to_the_same_bits() {
 
 #[test]
 fn a_csv_runs_again_to_the_same_bytes() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let edited = done(lab.run(&["presets", "wobble-push"]));
     lab.write(
         "edited.toml",
@@ -389,7 +292,7 @@ fn a_csv_runs_again_to_the_same_bytes() {
 
 #[test]
 fn windows_line_ends_and_a_byte_order_mark_change_nothing() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     done(lab.run(&["run", "method-1", "--steps", "5", "-o", "a.csv"]));
     lab.write(
         "b.csv",
@@ -401,7 +304,7 @@ fn windows_line_ends_and_a_byte_order_mark_change_nothing() {
 
 #[test]
 fn every_nth_row_and_always_the_last() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let run = |steps: &str, every: &str| {
         done(lab.run(&[
             "run", "method-2", "--steps", steps, "--every", every, "-o", "-",
@@ -432,7 +335,7 @@ fn every_nth_row_and_always_the_last() {
 
 #[test]
 fn a_file_is_replaced_only_with_force_and_keeps_its_rights() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     lab.write("a.csv", "precious");
     fs::set_permissions(lab.path().join("a.csv"), fs::Permissions::from_mode(0o646)).unwrap();
     failed(
@@ -448,7 +351,7 @@ fn a_file_is_replaced_only_with_force_and_keeps_its_rights() {
 
 #[test]
 fn a_refused_scenario_leaves_the_old_file_alone_even_with_force() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     lab.write("a.csv", "precious");
     failed(
         &lab.run(&[
@@ -467,7 +370,7 @@ fn a_refused_scenario_leaves_the_old_file_alone_even_with_force() {
 
 #[test]
 fn a_new_file_has_the_rights_the_umask_leaves() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     for (umask, mode) in [("022", 0o644), ("002", 0o664), ("077", 0o600)] {
         let name = format!("{umask}.csv");
         done(lab.shell(&format!(
@@ -479,7 +382,7 @@ fn a_new_file_has_the_rights_the_umask_leaves() {
 
 #[test]
 fn a_link_stays_a_link() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     fs::create_dir(lab.path().join("data")).unwrap();
     lab.write("data/a.csv", "old");
     symlink("data/a.csv", lab.path().join("link.csv")).unwrap();
@@ -502,7 +405,7 @@ fn a_link_stays_a_link() {
 
 #[test]
 fn what_cannot_be_written_is_named_and_leaves_nothing() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     fs::create_dir(lab.path().join("folder")).unwrap();
     lab.write("file", "");
     for (target, words) in [
@@ -538,7 +441,7 @@ fn what_cannot_be_written_is_named_and_leaves_nothing() {
 
 #[test]
 fn a_limit_on_file_sizes_is_a_failed_write() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     failed(
         &lab.shell("ulimit -f 40; \"$G\" run method-2 --steps 20000 -o a.csv"),
         &["a.csv", "large"],
@@ -552,7 +455,7 @@ fn a_limit_on_file_sizes_is_a_failed_write() {
 
 #[test]
 fn a_closed_pipe_is_a_quiet_end() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     for command in [
         "run method-2 --steps 200000 -o -",
         "run method-2 --steps 200000 --every 3 -o -",
@@ -577,7 +480,7 @@ fn a_closed_pipe_is_a_quiet_end() {
 
 #[test]
 fn fifos_and_devices_are_written_directly() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     done(lab.run(&["run", "method-1", "--steps", "3", "-o", "a.csv"]));
     done(lab.run(&["run", "method-1", "--steps", "3", "-o", "/dev/null"]));
     assert_eq!(lab.files(), ["a.csv"]);
@@ -729,7 +632,7 @@ fn a_signal_ends_the_wait_of_a_comparison_for_the_reader_of_a_fifo() {
 
 #[test]
 fn ctrl_c_ends_a_run_with_130_and_leaves_nothing() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     lab.write("old.csv", "precious");
     // A header that takes its time: the signal comes in the midst of it.
     let points =
@@ -782,7 +685,7 @@ fn ctrl_c_ends_a_run_with_130_and_leaves_nothing() {
 
 #[test]
 fn a_signal_ends_the_wait_for_the_reader_of_a_fifo() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     assert!(
         Command::new("mkfifo")
             .arg(lab.path().join("fifo"))
@@ -809,7 +712,7 @@ fn a_signal_ends_the_wait_for_the_reader_of_a_fifo() {
 /// itself, and the limit (on address space, the larger figure) is 50 MB.
 #[test]
 fn memory_does_not_grow_with_the_run() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     done(
         lab.shell("ulimit -v 51200 2>/dev/null; \"$G\" run method-2 --steps 10000000 -o /dev/null"),
     );
@@ -817,7 +720,7 @@ fn memory_does_not_grow_with_the_run() {
 
 #[test]
 fn numbers_that_stop_being_finite_end_the_run_and_keep_its_rows() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let push = [
         "--set",
         "push.0={point=\"top\", force_N=[1e300,0,0], first_step=25, steps=1}",
@@ -854,7 +757,7 @@ fn numbers_that_stop_being_finite_end_the_run_and_keep_its_rows() {
 
 #[test]
 fn durations_are_counted_in_the_time_steps_in_force() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let last = |args: &[&str]| {
         let output = done(lab.run(&[&["run"], args, &["--json"]].concat()));
         let json: serde_json::Value = serde_json::from_str(stdout(&output)).unwrap();
@@ -896,7 +799,7 @@ fn durations_are_counted_in_the_time_steps_in_force() {
 
 #[test]
 fn presets_are_listed_and_printed() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let list = done(lab.run(&["presets"]));
     for name in [
         "method-1",
@@ -927,7 +830,7 @@ fn presets_are_listed_and_printed() {
 
 #[test]
 fn schemes_are_listed_with_their_orders() {
-    let output = done(Lab::new().run(&["schemes"]));
+    let output = done(Ground::new().run(&["schemes"]));
     for (name, order) in [("report", "order 1"), ("rk4", "order 4")] {
         let is_row = |line: &str| line.starts_with(&format!("{name} ")) && line.contains(order);
         assert!(stdout(&output).lines().any(is_row), "{}", stdout(&output));
@@ -936,7 +839,7 @@ fn schemes_are_listed_with_their_orders() {
 
 #[test]
 fn check_looks_at_every_file() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     lab.write(
         "good.toml",
         stdout(&done(lab.run(&["presets", "method-2"]))),
@@ -970,7 +873,7 @@ fn check_looks_at_every_file() {
 
 #[test]
 fn completions_and_the_manual_know_the_commands() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let script = done(lab.run(&["completions", shell]));
         for word in ["run", "presets", "duration"] {
@@ -997,7 +900,7 @@ fn completions_and_the_manual_know_the_commands() {
 
 #[test]
 fn the_talk_about_a_run_does_not_depend_on_stderr_being_open() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let mut child = lab
         .command(&["run", "method-1", "--steps", "3", "-o", "a.csv"])
         .stderr(Stdio::piped())
@@ -1010,7 +913,7 @@ fn the_talk_about_a_run_does_not_depend_on_stderr_being_open() {
 
 #[test]
 fn a_scenario_may_come_through_a_pipe() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let scenario = done(lab.run(&["presets", "method-2"])).stdout;
     let mut child = lab
         .command(&["run", "/dev/stdin", "--steps", "3", "-o", "-"])

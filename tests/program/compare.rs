@@ -1,11 +1,10 @@
 //! `gyrolab compare`: its table, its CSV, and how it ends.
 
+use crate::support::ground::{Ground, code, done};
 use std::fs;
 use std::io::Read;
-use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
-use tempfile::TempDir;
 
 const COLUMNS: [&str; 11] = [
     "scheme",
@@ -21,51 +20,18 @@ const COLUMNS: [&str; 11] = [
     "wall_s",
 ];
 
-struct Lab(TempDir);
-
-impl Lab {
-    fn new() -> Self {
-        Self(TempDir::new().unwrap())
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn command(&self, args: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_gyrolab"));
-        command
-            .current_dir(self.path())
-            .arg("compare")
-            .args(args)
-            .stdin(Stdio::null());
-        command
-    }
-
-    fn run(&self, args: &[&str]) -> Output {
-        self.command(args).output().unwrap()
-    }
-
-    fn files(&self) -> Vec<String> {
-        let entries = fs::read_dir(self.path()).unwrap();
-        entries
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect()
-    }
+fn comparing(ground: &Ground, args: &[&str]) -> Command {
+    ground.command(&[&["compare"], args].concat())
 }
 
-fn code(output: &Output) -> i32 {
-    output
-        .status
-        .code()
-        .unwrap_or_else(|| panic!("ended by a signal: {output:?}"))
+fn compare(ground: &Ground, args: &[&str]) -> Output {
+    comparing(ground, args).output().unwrap()
 }
 
 #[track_caller]
-fn done(output: Output) -> String {
-    assert_eq!(code(&output), 0, "{output:?}");
+fn told(output: Output) -> String {
     assert!(output.stderr.is_empty(), "{output:?}");
-    String::from_utf8(output.stdout).unwrap()
+    String::from_utf8(done(output).stdout).unwrap()
 }
 
 /// The rows of a CSV, as text, in the order of `COLUMNS`.
@@ -127,7 +93,7 @@ fn without_threads_it_takes_one_core() {
 
 #[test]
 fn the_orders_of_the_schemes_are_in_the_table() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     for (scheme, steps, order) in ORDERS {
         let args = [
             "cusps",
@@ -138,11 +104,11 @@ fn the_orders_of_the_schemes_are_in_the_table() {
             "--time-steps",
             steps,
         ];
-        let text = done(lab.run(&args));
+        let text = told(compare(&lab, &args));
         let last: Vec<_> = table(&text).pop().unwrap().split_whitespace().collect();
         let seen: f64 = last[5].parse().unwrap();
         assert!(last[0] == scheme && (seen - order).abs() < 0.1, "{text}");
-        let csv = done(lab.run(&[&args[..], &["-o", "-"]].concat()));
+        let csv = told(compare(&lab, &[&args[..], &["-o", "-"]].concat()));
         let rows = rows(&csv);
         assert_eq!(rows.len(), 3);
         assert_eq!(rows[0][5], "n/a", "there is none before the first");
@@ -158,8 +124,8 @@ fn the_orders_of_the_schemes_are_in_the_table() {
 
 #[test]
 fn the_table_names_scenario_kind_and_columns() {
-    let lab = Lab::new();
-    let text = done(lab.run(&["cusps", "--duration", "1"]));
+    let lab = Ground::new();
+    let text = told(compare(&lab, &["cusps", "--duration", "1"]));
     let mut lines = text.lines();
     assert_eq!(
         lines.next().unwrap(),
@@ -187,13 +153,16 @@ fn the_table_names_scenario_kind_and_columns() {
         });
     let seen = rows.iter().map(|row| row[..3].join(" "));
     assert!(seen.eq(expected), "{text}");
-    let lopsided = done(lab.run(&[
-        "cusps",
-        "--duration",
-        "1",
-        "--set",
-        "body.point.2={name='lump',at_m=[0.5,0,1],mass_kg=1}",
-    ]));
+    let lopsided = told(compare(
+        &lab,
+        &[
+            "cusps",
+            "--duration",
+            "1",
+            "--set",
+            "body.point.2={name='lump',at_m=[0.5,0,1],mass_kg=1}",
+        ],
+    ));
     assert!(
         lopsided.starts_with("Cusps, 1 s, against the exact motion (integration held to 1e-12)\n"),
         "{lopsided}"
@@ -202,7 +171,7 @@ fn the_table_names_scenario_kind_and_columns() {
 
 #[test]
 fn schemes_and_time_steps_are_those_asked_for() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let args = [
         "method-2",
         "--duration",
@@ -214,7 +183,7 @@ fn schemes_and_time_steps_are_those_asked_for() {
         "-o",
         "-",
     ];
-    let rows = rows(&done(lab.run(&args)));
+    let rows = rows(&told(compare(&lab, &args)));
     let seen: Vec<_> = rows.iter().map(|row| row[..3].join(" ")).collect();
     let expected = ["strang", "exact", "report"].iter().flat_map(|scheme| {
         ["0.05 40", "0.02 100", "0.01 200"].map(|step| format!("{scheme} {step}"))
@@ -234,15 +203,18 @@ fn schemes_and_time_steps_are_those_asked_for() {
         rows.iter()
             .all(|row| number(row, "Lz_drift") < 1e-15 && number(row, "ns_per_step") > 0.0)
     );
-    let one = done(lab.run(&[
-        "method-2",
-        "--duration",
-        "2",
-        "--scheme",
-        "rk4",
-        "--time-steps",
-        "0.001",
-    ]));
+    let one = told(compare(
+        &lab,
+        &[
+            "method-2",
+            "--duration",
+            "2",
+            "--scheme",
+            "rk4",
+            "--time-steps",
+            "0.001",
+        ],
+    ));
     assert!(
         table(&one).len() == 2 && table(&one)[1].starts_with("rk4 "),
         "{one}"
@@ -252,16 +224,19 @@ fn schemes_and_time_steps_are_those_asked_for() {
 #[test]
 fn the_numbers_of_the_table_are_those_of_the_wobble() {
     // A push that is counted in steps keeps its 20 s at every time step.
-    let lab = Lab::new();
-    let csv = done(lab.run(&[
-        "wobble-push",
-        "--schemes",
-        "report",
-        "--time-steps",
-        "0.1,0.02,0.01,0.001",
-        "-o",
-        "-",
-    ]));
+    let lab = Ground::new();
+    let csv = told(compare(
+        &lab,
+        &[
+            "wobble-push",
+            "--schemes",
+            "report",
+            "--time-steps",
+            "0.1,0.02,0.01,0.001",
+            "-o",
+            "-",
+        ],
+    ));
     let errors: Vec<_> = rows(&csv)
         .iter()
         .map(|row| number(row, "error_m"))
@@ -275,16 +250,16 @@ fn the_numbers_of_the_table_are_those_of_the_wobble() {
 
 #[test]
 fn a_file_is_written_whole_and_not_written_over() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let args = ["cusps", "--duration", "0.1", "-o", "table.csv"];
-    let text = done(lab.run(&args));
+    let text = told(compare(&lab, &args));
     let csv = fs::read_to_string(lab.path().join("table.csv")).unwrap();
     assert_eq!(rows(&csv).len(), 16);
     assert!(
         text.contains("ns/step"),
         "the table is for the reader all the same"
     );
-    let again = lab.run(&args);
+    let again = compare(&lab, &args);
     assert_eq!(code(&again), 1);
     assert!(
         String::from_utf8_lossy(&again.stderr).contains("--force"),
@@ -304,19 +279,19 @@ fn a_file_is_written_whole_and_not_written_over() {
         "table.csv",
         "--force",
     ];
-    done(lab.run(&shorter));
+    told(compare(&lab, &shorter));
     assert_eq!(
         rows(&fs::read_to_string(lab.path().join("table.csv")).unwrap()).len(),
         4
     );
     assert_eq!(lab.files(), ["table.csv"]);
-    let nowhere = lab.run(&["cusps", "--duration", "0.1", "-o", "no/where.csv"]);
+    let nowhere = compare(&lab, &["cusps", "--duration", "0.1", "-o", "no/where.csv"]);
     assert_eq!(code(&nowhere), 1);
 }
 
 #[test]
 fn wrong_usage_is_refused() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     for (args, expected) in [
         (&["cusps", "--schemes", "nonsense"][..], 2),
         (&["cusps", "--schemes", "rk4,nonsense"], 2),
@@ -329,7 +304,7 @@ fn wrong_usage_is_refused() {
         (&["no-such-preset"], 1),
         (&["cusps", "--set", "motion.time_step_s=0"], 1),
     ] {
-        let output = lab.run(args);
+        let output = compare(&lab, args);
         assert_eq!(code(&output), expected, "{args:?}: {output:?}");
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(
@@ -342,9 +317,9 @@ fn wrong_usage_is_refused() {
 
 #[test]
 fn a_lopsided_run_that_would_take_too_long_is_refused_with_a_remedy() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let lump = "body.point.2={name='lump',at_m=[0.5,0,1],mass_kg=1}";
-    let output = lab.run(&["cusps", "--duration", "1e7", "--set", lump]);
+    let output = compare(&lab, &["cusps", "--duration", "1e7", "--set", lump]);
     assert_eq!(code(&output), 1, "{output:?}");
     let said = String::from_utf8_lossy(&output.stderr);
     for word in ["cusps", "too long", "10000000 s", "--duration"] {
@@ -355,7 +330,7 @@ fn a_lopsided_run_that_would_take_too_long_is_refused_with_a_remedy() {
 
 #[test]
 fn a_scheme_whose_numbers_break_has_no_error_to_show() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let args = [
         "cusps",
         "--schemes",
@@ -367,7 +342,7 @@ fn a_scheme_whose_numbers_break_has_no_error_to_show() {
         "--set",
         "start.momentum_Js=[0,0,1e50]",
     ];
-    let text = done(lab.run(&args));
+    let text = told(compare(&lab, &args));
     assert_eq!(
         text.lines()
             .filter(|line| line.starts_with("rk4") && line.contains("n/a"))
@@ -375,7 +350,7 @@ fn a_scheme_whose_numbers_break_has_no_error_to_show() {
         2,
         "{text}"
     );
-    let csv = done(lab.run(&[&args[..], &["-o", "-"]].concat()));
+    let csv = told(compare(&lab, &[&args[..], &["-o", "-"]].concat()));
     for row in rows(&csv) {
         let broke = row[0] == "rk4";
         assert_eq!(broke, number(&row, "steps") < 10.0, "{csv}");
@@ -386,13 +361,16 @@ fn a_scheme_whose_numbers_break_has_no_error_to_show() {
         );
     }
     // Nor has one beside an exact motion that leaves the range of numbers.
-    let csv = done(lab.run(&[&args[..8], &["start.momentum_Js=[0,0,1e100]", "-o", "-"]].concat()));
+    let csv = told(compare(
+        &lab,
+        &[&args[..8], &["start.momentum_Js=[0,0,1e100]", "-o", "-"]].concat(),
+    ));
     assert!(rows(&csv).iter().all(|row| row[3] == "n/a"), "{csv}");
 }
 
 #[test]
 fn a_signal_ends_it_with_130_and_leaves_no_file() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     // One scheme whose looks are far apart, and many on all cores.
     for args in [
         &[
@@ -406,8 +384,7 @@ fn a_signal_ends_it_with_130_and_leaves_no_file() {
         ][..],
         &["cusps", "--duration", "1e5", "-o", "t.csv"],
     ] {
-        let mut child = lab
-            .command(args)
+        let mut child = comparing(&lab, args)
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
             .spawn()
@@ -440,11 +417,11 @@ fn a_signal_ends_it_with_130_and_leaves_no_file() {
 
 #[test]
 fn one_core_and_two_give_the_same_numbers() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let numbers = |threads: &str| {
-        let mut command = lab.command(&["wobble-push", "--duration", "30", "-o", "-"]);
+        let mut command = comparing(&lab, &["wobble-push", "--duration", "30", "-o", "-"]);
         let output = command.env("RAYON_NUM_THREADS", threads).output().unwrap();
-        rows(&done(output))
+        rows(&told(output))
             .into_iter()
             .map(|mut row| {
                 row.truncate(9); // all but what it cost

@@ -2,7 +2,8 @@
 //! itself in a pty.
 
 use crate::support::dice::Dice;
-use crate::support::pty::{Ground, Terminal};
+use crate::support::ground::Ground;
+use crate::support::pty::Terminal;
 use std::fs;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -83,7 +84,7 @@ fn saved(lab: &mut Terminal, name: &str) -> String {
     lab.ask("s", "save the run file");
     answer(lab, name);
     lab.wait_for("the run is in");
-    lab.ground().text(name)
+    lab.ground().read(name)
 }
 
 /// Exports every row as `name`, and reads it.
@@ -97,7 +98,7 @@ fn exported(lab: &mut Terminal, name: &str) -> Vec<u8> {
 
 /// What `gyrolab run` makes of the file `name`.
 fn run(ground: &Ground, name: &str) -> Vec<u8> {
-    let output = ground.gyrolab(&["run", name, "-o", "-"]);
+    let output = ground.run(&["run", name, "-o", "-"]);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{said}");
     output.stdout
@@ -287,7 +288,7 @@ fn an_export_is_the_run_that_was_saved() {
     }
     lab.press(ESC);
     lab.wait_for("q quit");
-    assert_eq!(ground.names(), ["state"], "what is left of a cancelled one");
+    assert_eq!(ground.files(), ["state"], "what is left of a cancelled one");
     let csv = exported(&mut lab, "run.csv");
     saved(&mut lab, "run.toml");
     assert!(csv == run(&ground, "run.toml"), "other bytes");
@@ -301,7 +302,7 @@ fn an_export_is_the_run_that_was_saved() {
     lab.ask("x", "export steps 0 to 285");
     answer(&mut lab, "mine.csv");
     lab.wait_for("exists: Enter again replaces it");
-    assert_eq!(ground.text("mine.csv"), "mine");
+    assert_eq!(ground.read("mine.csv"), "mine");
     lab.ask("\r", "· scp ");
     assert!(fs::read(ground.file("mine.csv")).unwrap() == csv);
     lab.quit();
@@ -320,7 +321,7 @@ fn the_present_state_is_saved_as_a_scenario_that_runs() {
     lab.wait_for("the scenario is in");
     let z = shown(&lab)[2].last().cloned();
     lab.quit();
-    let checked = ground.gyrolab(&["check", "here.toml"]);
+    let checked = ground.run(&["check", "here.toml"]);
     assert!(
         checked.status.success(),
         "{}",
@@ -404,11 +405,11 @@ fn an_export_is_stopped_by_esc_and_by_the_second_q_and_leaves_nothing() {
         !lab.words().contains("in the background")
     });
     lab.ask(ESC, "the export was stopped, and nothing was written");
-    assert_eq!(ground.names(), ["state"]);
+    assert_eq!(ground.files(), ["state"]);
     begin(&mut lab);
     lab.ask("q", "q again leaves it unfinished");
     lab.quit();
-    assert_eq!(ground.names(), ["state"]);
+    assert_eq!(ground.files(), ["state"]);
     resumed(&ground).wait_for_step(LONG);
 }
 
@@ -421,7 +422,7 @@ fn a_line_that_is_lost_in_an_export_leaves_no_part_and_is_told_of() {
         answer(&mut lab, "run.csv");
         lab.wait_for("in the background");
         ended(&mut lab, end);
-        assert_eq!(ground.names(), ["state"], "{end}");
+        assert_eq!(ground.files(), ["state"], "{end}");
         let lab = ground.open(&["--resume"]);
         lab.wait_for("run.csv was cut off, x begins another");
         lab.wait_for_step(LONG);
@@ -744,7 +745,7 @@ fn without_a_place_for_sessions_the_lab_opens_and_says_so() {
         lab.wait_for("sessions cannot be kept in");
         push(&mut lab);
         lab.quit();
-        assert_eq!(ground.text("state"), "in the way");
+        assert_eq!(ground.read("state"), "in the way");
     }
 }
 

@@ -1,6 +1,7 @@
 //! The program itself in a pty: what it does to a terminal, and how it gives it back at every end.
 
-use crate::support::pty::{Ground, LEAVES_ALTERNATE_SCREEN, SHOWS_CURSOR, Terminal};
+use crate::support::ground::Ground;
+use crate::support::pty::{LEAVES_ALTERNATE_SCREEN, SHOWS_CURSOR, Terminal};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -341,7 +342,7 @@ fn a_locale_without_utf8_gets_ascii() {
 }
 
 fn gyrolab(args: &[&str]) -> std::process::Output {
-    Ground::new().gyrolab(args)
+    Ground::new().run(args)
 }
 
 #[test]

@@ -1,11 +1,13 @@
 //! An export in the background: the bytes of `gyrolab run -o`, whole or not at all.
 
+use crate::support::ground::names;
+use crate::support::scenarios::preset;
 use gyrolab::export::CsvWriter;
 use gyrolab::export::destination::DestinationError;
 use gyrolab::export::stream;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::presets::PRESETS;
-use gyrolab::scenario::{Document, Scenario};
+use gyrolab::scenario::Scenario;
 use gyrolab::storage::at_exit::{self, Farewell};
 use gyrolab::storage::exporting::{Exporting, Written, estimate};
 use std::fs;
@@ -18,11 +20,7 @@ use std::thread;
 use std::time::Duration;
 
 fn scenario(name: &str, sets: &[&str]) -> Arc<Scenario> {
-    let mut document = Document::open(name).unwrap();
-    for set in sets {
-        document.set(set).unwrap();
-    }
-    Arc::new(document.scenario().unwrap())
+    Arc::new(preset(name, sets))
 }
 
 fn every(every: u64) -> NonZeroU64 {
@@ -51,13 +49,6 @@ fn wait(exporting: &mut Exporting) -> Result<Written, String> {
 fn export(scenario: &Arc<Scenario>, path: &Path, n: u64, replace: bool) -> Result<Written, String> {
     let begun = Exporting::begin(Arc::clone(scenario), path, every(n), replace);
     wait(&mut begun.map_err(|error| error.fact())?)
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let names = fs::read_dir(folder).unwrap();
-    names
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect()
 }
 
 /// A run that takes longer than any test.

@@ -2,10 +2,9 @@
 
 #![allow(dead_code, reason = "no test needs all of it")]
 
+use super::scenarios::{preset, view};
 use gyrolab::lab::Lab;
-use gyrolab::lab::view::View;
 use gyrolab::lab::view::markers::Marker;
-use gyrolab::lab::view::theme::{Background, Theme};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
 use gyrolab::tui::app;
@@ -23,16 +22,11 @@ pub struct Desk {
 impl Desk {
     /// The preset `name`, standing still.
     pub fn open(name: &str) -> Self {
-        let scenario = Document::open(name).unwrap().scenario().unwrap();
-        Self::with(name, scenario)
+        Self::with(name, preset(name, &[]))
     }
 
     pub fn with(name: &str, scenario: Scenario) -> Self {
-        let theme = Theme {
-            colour: false,
-            background: Background::Dark,
-        };
-        let view = View::new(&scenario, Marker::Braille, theme);
+        let view = view(&scenario, Marker::Braille, false);
         Self {
             lab: Lab::new(name, Arc::new(scenario), view, false),
             now: Duration::ZERO,

@@ -4,4 +4,7 @@
 
 pub mod desk;
 pub mod dice;
+pub mod ground;
 pub mod pty;
+pub mod scenarios;
+pub mod stage;

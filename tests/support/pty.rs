@@ -2,62 +2,27 @@
 
 #![allow(dead_code, reason = "no test needs all of it")]
 
+use super::ground::{GYROLAB, Ground, VARIABLES};
 use portable_pty::{Child, CommandBuilder, ExitStatus, MasterPty, PtySize, native_pty_system};
 use std::io::{Read, Write};
 use std::num::NonZero;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::Command;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
-use tempfile::TempDir;
 
 const PATIENCE: Duration = Duration::from_secs(20);
 pub const LEAVES_ALTERNATE_SCREEN: &str = "\u{1b}[?1049l";
 pub const SHOWS_CURSOR: &str = "\u{1b}[?25h";
-const VARIABLES: [(&str, &str); 2] = [("TERM", "xterm"), ("LANG", "C.UTF-8")];
-
-/// A folder in which the program works, with another one in it where it keeps its sessions.
-#[derive(Clone)]
-pub struct Ground(Arc<TempDir>);
 
 impl Ground {
-    pub fn new() -> Self {
-        Self(Arc::new(tempfile::tempdir().unwrap()))
-    }
-
-    pub fn file(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    /// Where the sessions' folder is.
-    pub fn state(&self) -> PathBuf {
-        self.file("state")
-    }
-
-    pub fn text(&self, name: &str) -> String {
-        std::fs::read_to_string(self.file(name)).unwrap()
-    }
-
-    /// The names of all files and folders in it, sorted.
-    pub fn names(&self) -> Vec<String> {
-        names(self.0.path())
-    }
-
-    /// The names of what has been kept of sessions and ends so.
-    pub fn kept(&self, end: &str) -> Vec<String> {
-        let mut names = names(&self.state().join("gyrolab"));
-        names.retain(|name| name.ends_with(end));
-        names
-    }
-
     pub fn open(&self, args: &[&str]) -> Terminal {
         self.open_with(args, &VARIABLES)
     }
 
     pub fn open_with(&self, args: &[&str], variables: &[(&str, &str)]) -> Terminal {
-        let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_gyrolab"));
+        let mut command = CommandBuilder::new(GYROLAB);
         command.args(args);
         self.spawn(command, variables)
     }
@@ -85,36 +50,13 @@ impl Ground {
             command.env_remove(name);
         }
         command.env("XDG_STATE_HOME", self.state());
-        command.env("HOME", self.0.path());
-        command.cwd(self.0.path());
+        command.env("HOME", self.path());
+        command.cwd(self.path());
         for (name, value) in variables {
             command.env(name, value);
         }
         Terminal::spawn(command, self.clone())
     }
-
-    /// The program without a terminal.
-    pub fn gyrolab(&self, args: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_gyrolab"));
-        command
-            .args(args)
-            .envs(VARIABLES)
-            .env_remove("LC_ALL")
-            .env("XDG_STATE_HOME", self.state())
-            .current_dir(self.0.path())
-            .stdin(Stdio::null());
-        command.output().unwrap()
-    }
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = std::fs::read_dir(folder).into_iter().flatten();
-    let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name();
-    let mut names: Vec<_> = entries
-        .map(|entry| name(entry).into_string().unwrap())
-        .collect();
-    names.sort_unstable();
-    names
 }
 
 /// What has come from the program, and the picture that it makes.

@@ -1,0 +1,131 @@
+//! A folder in which the program works, and what is in it.
+
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::Arc;
+use tempfile::TempDir;
+
+pub const GYROLAB: &str = env!("CARGO_BIN_EXE_gyrolab");
+pub(super) const VARIABLES: [(&str, &str); 2] = [("TERM", "xterm"), ("LANG", "C.UTF-8")];
+
+/// A folder in which the program works, with another one in it where it keeps its sessions. It goes with its last clone.
+#[derive(Clone)]
+pub struct Ground(Arc<TempDir>);
+
+impl Ground {
+    pub fn new() -> Self {
+        Self(Arc::new(tempfile::tempdir().unwrap()))
+    }
+
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.path().join(name)
+    }
+
+    /// Where the sessions' folder is.
+    pub fn state(&self) -> PathBuf {
+        self.file("state")
+    }
+
+    pub fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.file(name)).unwrap()
+    }
+
+    pub fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.file(name), text).unwrap();
+    }
+
+    /// The names of all files and folders in it, the hidden ones too, sorted.
+    pub fn files(&self) -> Vec<String> {
+        names(self.path())
+    }
+
+    /// The names of what has been kept of sessions and ends so.
+    pub fn kept(&self, end: &str) -> Vec<String> {
+        let mut names = names(&self.state().join("gyrolab"));
+        names.retain(|name| name.ends_with(end));
+        names
+    }
+
+    /// The rights of a file.
+    pub fn mode(&self, name: &str) -> u32 {
+        let there = std::fs::metadata(self.file(name)).unwrap();
+        there.permissions().mode() & 0o7777
+    }
+
+    /// The program without a terminal, to be started.
+    pub fn command(&self, args: &[&str]) -> Command {
+        let mut command = self.in_it(GYROLAB);
+        command.args(args);
+        command
+    }
+
+    /// The program without a terminal, and what came of it.
+    pub fn run(&self, args: &[&str]) -> Output {
+        self.command(args).output().unwrap()
+    }
+
+    /// Runs `script` in a shell that knows the program as `$G`; its own exit code is the program's.
+    pub fn shell(&self, script: &str) -> Output {
+        let mut shell = self.in_it("sh");
+        shell.args(["-c", script]).env("G", GYROLAB);
+        shell.output().unwrap()
+    }
+
+    fn in_it(&self, program: &str) -> Command {
+        let mut command = Command::new(program);
+        command
+            .envs(VARIABLES)
+            .env_remove("LC_ALL")
+            .env("XDG_STATE_HOME", self.state())
+            .current_dir(self.path())
+            .stdin(Stdio::null());
+        command
+    }
+}
+
+/// The names of all files and folders in `folder`, sorted; none where it is not there.
+pub fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten();
+    let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name();
+    let mut names: Vec<_> = entries
+        .map(|entry| name(entry).into_string().unwrap())
+        .collect();
+    names.sort_unstable();
+    names
+}
+
+#[track_caller]
+pub fn code(output: &Output) -> i32 {
+    let code = output.status.code();
+    code.unwrap_or_else(|| panic!("ended by a signal: {output:?}"))
+}
+
+pub fn stdout(output: &Output) -> &str {
+    std::str::from_utf8(&output.stdout).unwrap()
+}
+
+pub fn stderr(output: &Output) -> &str {
+    std::str::from_utf8(&output.stderr).unwrap()
+}
+
+#[track_caller]
+pub fn done(output: Output) -> Output {
+    assert_eq!(code(&output), 0, "{output:?}");
+    output
+}
+
+/// Failed with exit code 1, without a panic, and with all of `words` in what it said.
+#[track_caller]
+pub fn failed(output: &Output, words: &[&str]) {
+    assert_eq!(code(output), 1, "{output:?}");
+    let said = stderr(output);
+    for word in words {
+        assert!(said.contains(word), "\"{word}\" is not in: {said}");
+    }
+    assert!(!said.contains("panicked"), "{said}");
+}

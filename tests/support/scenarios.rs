@@ -1,0 +1,42 @@
+//! Scenarios, opened and read, and how they are looked at.
+
+use gyrolab::lab::view::View;
+use gyrolab::lab::view::markers::Marker;
+use gyrolab::lab::view::theme::{Background, Theme};
+use gyrolab::physics::SchemeInfo;
+use gyrolab::scenario::{Document, Problems, Scenario};
+
+/// The preset `name`, with each of `set` (`key=value`) set.
+#[track_caller]
+pub fn preset(name: &str, set: &[&str]) -> Scenario {
+    let mut document = Document::open(name).unwrap();
+    set.iter().for_each(|set| document.set(set).unwrap());
+    let scenario = document.scenario();
+    scenario.unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// The scenario that `text` is, or what is wrong with it.
+pub fn read(text: &str) -> Result<Scenario, Problems> {
+    Document::parse("x.toml", text)?.scenario()
+}
+
+/// The scenario that `text` is.
+#[track_caller]
+pub fn parse(text: &str) -> Scenario {
+    read(text).unwrap_or_else(|problems| panic!("{problems}\n{text}"))
+}
+
+/// The scheme called `name`.
+#[track_caller]
+pub fn find_scheme(name: &str) -> &'static SchemeInfo {
+    SchemeInfo::find(name).unwrap()
+}
+
+/// A dark screen on which `scenario` is looked at, with colours or without.
+pub fn view(scenario: &Scenario, marker: Marker, colour: bool) -> View {
+    let theme = Theme {
+        colour,
+        background: Background::Dark,
+    };
+    View::new(scenario, marker, theme)
+}

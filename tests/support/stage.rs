@@ -1,0 +1,116 @@
+//! The lab on a screen of a size, without a terminal: keys go in, pictures come out.
+
+use super::scenarios::{preset, view};
+use gyrolab::lab::view::markers::Marker;
+use gyrolab::lab::{Lab, Request};
+use gyrolab::tui::app;
+use gyrolab::tui::keymap::Key;
+use gyrolab::tui::screen;
+use ratatui::layout::Rect;
+use std::sync::Arc;
+use std::time::Duration;
+
+pub const SMALL: Rect = Rect {
+    x: 0,
+    y: 0,
+    width: 80,
+    height: 24,
+};
+pub const LARGE: Rect = Rect {
+    x: 0,
+    y: 0,
+    width: 200,
+    height: 50,
+};
+pub const FRAME: Duration = Duration::from_millis(100);
+
+/// A lab with a keyboard, and a clock that goes only when told.
+pub struct Stage {
+    pub lab: Lab,
+    pub now: Duration,
+    pub size: Rect,
+    /// Where it writes what it writes.
+    _folder: tempfile::TempDir,
+}
+
+impl Stage {
+    pub fn open(scenario: &str, set: &[&str], size: Rect) -> Self {
+        let numbers = Arc::new(preset(scenario, set));
+        let view = view(&numbers, Marker::Braille, true);
+        let mut lab = Lab::new(scenario, numbers, view, true);
+        lab.set_file(Arc::new(preset(scenario, &[])));
+        let folder = tempfile::tempdir().unwrap();
+        lab.work_in(folder.path());
+        screen::fit(&mut lab, size);
+        Self {
+            lab,
+            now: Duration::ZERO,
+            size,
+            _folder: folder,
+        }
+    }
+
+    pub fn key(&mut self, key: Key) -> Option<Request> {
+        app::press(key, &mut self.lab)
+    }
+
+    pub fn press(&mut self, keys: &str) -> &mut Self {
+        for key in keys.chars() {
+            let key = match key {
+                '\n' => Key::Enter,
+                '\t' => Key::Tab,
+                '\u{1b}' => Key::Esc,
+                '↑' => Key::Up,
+                '↓' => Key::Down,
+                '←' => Key::Left,
+                '→' => Key::Right,
+                c => Key::Char(c),
+            };
+            self.key(key);
+        }
+        self.wait(0.0)
+    }
+
+    /// Lets time pass, frame by frame; looking at the clock takes time too.
+    pub fn wait(&mut self, seconds: f64) -> &mut Self {
+        for _ in 0..=(seconds / FRAME.as_secs_f64()).round() as usize {
+            let mut looks = 0;
+            let now = self.now;
+            self.lab.advance(&mut || {
+                looks += 1;
+                now + Duration::from_micros(50) * (looks - 1)
+            });
+            self.now += FRAME;
+        }
+        self.now -= FRAME;
+        self
+    }
+
+    pub fn picture(&self) -> String {
+        screen::text(&self.lab, true, (self.size.width, self.size.height))
+    }
+
+    pub fn step(&self) -> u64 {
+        self.lab.run().simulation().step_number()
+    }
+
+    #[track_caller]
+    pub fn shows(&mut self, words: &str) -> &mut Self {
+        let picture = self.picture();
+        assert!(picture.contains(words), "no {words:?} in\n{picture}");
+        self
+    }
+
+    #[track_caller]
+    pub fn shows_no(&mut self, words: &str) -> &mut Self {
+        let picture = self.picture();
+        assert!(!picture.contains(words), "{words:?} in\n{picture}");
+        self
+    }
+}
+
+pub fn picture(scenario: &str, size: Rect, seconds: f64, keys: &str) -> String {
+    let mut stage = Stage::open(scenario, &[], size);
+    stage.wait(seconds).press(" ").press(keys).wait(6.0);
+    stage.picture()
+}
