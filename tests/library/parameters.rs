@@ -1,9 +1,9 @@
 //! The values of a scenario one at a time: listed, nudged, typed, changed.
 
 use crate::support::scenarios::{parse, preset};
+use gyrolab::scenario::Scenario;
 use gyrolab::scenario::file::ScenarioFile;
 use gyrolab::scenario::presets::PRESETS;
-use gyrolab::scenario::Scenario;
 use gyrolab::work::Parameter;
 use gyrolab::work::parameters::{changed, parameters, table_at, table_of};
 use toml::Value;

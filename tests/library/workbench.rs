@@ -2,9 +2,9 @@
 //! random sizes and states.
 
 use crate::support::stage::{LARGE, SMALL, Stage, picture};
-use gyrolab::lab::view::markers::Marker;
-use gyrolab::lab::view::Pane;
 use gyrolab::lab::Request;
+use gyrolab::lab::view::Pane;
+use gyrolab::lab::view::markers::Marker;
 use gyrolab::scenario::presets::PRESETS;
 use gyrolab::tui::keymap::{BINDINGS, Key, Mode};
 use gyrolab::tui::screen;
