@@ -1,0 +1,38 @@
+//! How a time step is taken: what every scheme must do.
+
+use super::{Loads, State, Workings};
+
+/// A way to take the body one time step further.
+///
+/// Orientation, L and t are all that passes from one scheme to another; whatever else a scheme keeps (the report's
+/// carries the points themselves) it makes anew in [`start`](Scheme::start).
+pub trait Scheme: Send {
+    /// Takes the run over at `state`: at its beginning, or from another scheme.
+    fn start(&mut self, state: &State);
+
+    /// From now on these are the forces.
+    fn load(&mut self, loads: &Loads);
+
+    /// Takes `state` `dt` seconds further, its time left as it is: time is the run's, which counts steps.
+    fn step(&mut self, dt: f64, state: &mut State);
+
+    /// What the scheme computed on the way of the step it took last, where it goes that way: for the others it follows
+    /// from the step's two ends ([`Workings::between`]).
+    fn workings(&self) -> Option<Workings> {
+        None
+    }
+
+    /// What there is to say of how the run was computed, beyond the scheme's name.
+    fn remark(&self) -> Option<String> {
+        None
+    }
+
+    /// A copy that goes its own way from here.
+    fn boxed(&self) -> Box<dyn Scheme>;
+}
+
+impl Clone for Box<dyn Scheme> {
+    fn clone(&self) -> Self {
+        self.as_ref().boxed()
+    }
+}
