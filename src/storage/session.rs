@@ -11,7 +11,7 @@
 
 mod slot;
 
-pub use slot::KeptAside;
+pub use slot::{Content, KeptAside};
 
 use super::at_exit::{self, Registered};
 use crate::text::printable::Shown;
@@ -27,15 +27,6 @@ use std::time::{Duration, Instant};
 const PERIOD: Duration = Duration::from_millis(500);
 /// How long a flush may hold up the end of the process.
 const PATIENCE: Duration = Duration::from_millis(400);
-
-/// What is kept of the lab.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Content {
-    /// The run and its journal, or whatever changes seldom: it is written only when it is another.
-    pub work: Arc<str>,
-    /// Where in it the lab stands: short.
-    pub place: String,
-}
 
 /// The session of this process: no other one takes it while this lives. Dropped, it is flushed and free.
 pub struct Session {

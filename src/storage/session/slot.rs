@@ -11,7 +11,6 @@
 //! A file is written under another name and then renamed, so that it is always whole. Nothing is synced to the disk:
 //! it is processes that die here, not machines, and the system keeps what a dead process has written.
 
-use super::Content;
 use crate::text::printable::Shown;
 use std::fs::{self, DirBuilder, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
@@ -29,6 +28,15 @@ const PATIENCE: Duration = Duration::from_millis(200);
 
 const WORK: &str = "gyrolab session 1";
 const PLACE: &str = "gyrolab place 1";
+
+/// What is kept of the lab.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Content {
+    /// The run and its journal, or whatever changes seldom: it is written only when it is another.
+    pub work: Arc<str>,
+    /// Where in it the lab stands: short.
+    pub place: String,
+}
 
 /// A session's files: ours as long as this lives.
 pub(super) struct Slot {

@@ -16,12 +16,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 use rows::{
-    Row, body_rows, derived_rows, heading, motion_rows, now_rows, start_rows, watched_rows,
+    Row, VALUE_END, body_rows, derived_rows, heading, motion_rows, now_rows, start_rows,
+    watched_rows,
 };
 use std::borrow::Cow;
 
-/// Column of the last character of values.
-const VALUE_END: u16 = 18;
 /// Column of units.
 const UNIT: u16 = 19;
 /// Width of a column of lines.

@@ -1,11 +1,13 @@
 //! What stands in the pane's lines, each number with as many decimals as there is room for.
 
-use super::VALUE_END;
 use crate::observe::readouts::Readouts;
 use crate::physics::Body;
 use crate::scenario::{Motion, Scenario, Window};
 use crate::tui::theme::Role;
 use std::borrow::Cow;
+
+/// Column of the last character of values.
+pub(super) const VALUE_END: u16 = 18;
 
 /// One line: a heading, or a value.
 #[derive(Clone)]
