@@ -22,6 +22,7 @@ Examples:
   gyrolab                                           open the lab: the report's Method 2, live
   gyrolab cusps --paused --at 500                   a screen prepared for the class
   gyrolab --resume                                  back to where the lab was left, or the line was lost
+  gyrolab --do demo.toml                            play the commands in a file
   gyrolab presets                                   what there is to run
   gyrolab run method-2                              the report's Method 2, how it ends
   gyrolab run method-2 -o method-2.csv              every step of it as CSV
@@ -43,7 +44,7 @@ pub(super) enum Command {
     },
     /// List the numerical schemes
     Schemes,
-    /// Validate scenario files, run files and the headers of CSVs
+    /// Validate scenario files, run files, the headers of CSVs, and files of commands
     Check {
         /// Files to look at
         #[arg(required = true, value_name = "FILE")]
@@ -107,6 +108,10 @@ pub(super) struct WorkbenchArgs {
     #[arg(long, value_name = "STEP", value_parser = steps)]
     pub(super) at: Option<u64>,
 
+    /// Carry out the commands in this file, [[do]] tables, or of stdin for -; gyrolab man lists them
+    #[arg(long = "do", value_name = "FILE")]
+    pub(super) commands: Option<PathBuf>,
+
     #[command(flatten)]
     pub(super) look: Look,
 
@@ -157,12 +162,20 @@ pub(super) enum Markers {
 
 #[derive(Debug, Args)]
 pub(super) struct ShowArgs {
+    /// A preset's name, or a file (.toml or .csv): a scenario, a run file, or a CSV that gyrolab wrote [with --do by default: method-2]
+    #[arg(required_unless_present = "commands")]
+    pub(super) scenario: Option<String>,
+
     #[command(flatten)]
-    pub(super) scenario: ScenarioArgs,
+    pub(super) changes: Changes,
 
     /// Show this step instead of the run's end
     #[arg(long, value_name = "STEP", value_parser = steps)]
     pub(super) at: Option<u64>,
+
+    /// Show what the commands in this file, [[do]] tables, or of stdin for -, lead to from step 0; gyrolab man lists them
+    #[arg(long = "do", value_name = "FILE")]
+    pub(super) commands: Option<PathBuf>,
 
     /// Columns and lines of the picture
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "80x24", value_parser = size)]

@@ -1,6 +1,7 @@
 //! The commands that tell: presets, schemes, check, completions, man.
 
 use super::args::Cli;
+use crate::lab::command::{self, COMMANDS};
 use crate::physics::scheme::SCHEMES;
 use crate::scenario::keys::{KEYS, Key};
 use crate::scenario::presets::{self, PRESETS, Preset};
@@ -88,9 +89,9 @@ pub(super) fn keys() -> anyhow::Result<ExitCode> {
 pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
     let mut code = ExitCode::SUCCESS;
     for file in files {
-        match Document::read(file).and_then(|document| document.scenario()) {
-            Ok(scenario) => {
-                print(&format!("{}: {}\n", Shown(file), described(&scenario)))?;
+        match Document::read(file).and_then(|document| checked(&document)) {
+            Ok(described) => {
+                print(&format!("{}: {described}\n", Shown(file)))?;
             }
             Err(problems) => {
                 refuse(&problems)?;
@@ -99,6 +100,16 @@ pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
         }
     }
     Ok(code)
+}
+
+/// What is in `document`, in words: commands, or else a scenario.
+fn checked(document: &Document) -> Result<String, Problems> {
+    if command::is_file_of_commands(document) {
+        let commands = command::read(document)?.list.len();
+        let plural = if commands == 1 { "" } else { "s" };
+        return Ok(format!("good: {commands} command{plural}"));
+    }
+    document.scenario().map(|scenario| described(&scenario))
 }
 
 fn described(scenario: &Scenario) -> String {
@@ -127,6 +138,22 @@ pub(super) fn completions(shell: clap_complete::Shell) -> anyhow::Result<ExitCod
     print(&String::from_utf8(script).context("the completion script is not text")?)
 }
 
+/// The manual's section about files of commands, one paragraph for each command.
+fn commands_page() -> String {
+    let plain = |text: &str| text.replace('\\', "\\e").replace('-', "\\-");
+    let mut page = ".SH \"FILES OF COMMANDS\"\n\
+        A file for \\-\\-do is a list of [[do]] tables with one command each, carried out in order:\n.PP\n.nf\n\
+        [[do]]\nset = { \"motion.time_step_s\" = 0.05 }\n\n[[do]]\ngo_to = \"60 s\"\n.fi\n\
+        .PP\nThe next begins when the one before is done. Conditions hold numbers, the names of the CSV's columns and \
+        of the scenario's keys, + \\- * / ( ), abs, comparisons, and, or.\n"
+        .to_owned();
+    for row in COMMANDS {
+        let (value, about) = (plain(row.value), plain(row.about));
+        page += &format!(".TP\n\\fB{} = {value}\\fR\n{about}\n", row.name);
+    }
+    page
+}
+
 /// The manual: the page of the program, then one section for each command.
 pub(super) fn man() -> anyhow::Result<ExitCode> {
     let mut command = Cli::command();
@@ -144,5 +171,6 @@ pub(super) fn man() -> anyhow::Result<ExitCode> {
         man.render_synopsis_section(&mut page)?;
         man.render_options_section(&mut page)?;
     }
+    page.extend(commands_page().as_bytes());
     print(&String::from_utf8(page).context("the manual is not text")?)
 }

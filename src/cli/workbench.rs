@@ -3,6 +3,7 @@
 use super::args::{Changes, Color, Look, Markers, Screen, ShowArgs, WorkbenchArgs};
 use super::scenario::change;
 use crate::lab::Lab;
+use crate::lab::command;
 use crate::lab::view::View;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::{Background, Theme};
@@ -32,8 +33,16 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             "gyrolab: no terminal, so this is the picture that gyrolab show {} prints",
             printable(name)
         )?;
-        return print(name, &args.changes, args.at, (80, 24), args.look.markers);
+        return print(&Picture {
+            name,
+            changes: &args.changes,
+            at: args.at,
+            commands: args.commands.as_deref(),
+            size: (80, 24),
+            markers: args.look.markers,
+        });
     }
+    let commands = args.commands.as_deref().map(command::open).transpose()?;
     let (mut lab, session) = match args.resume {
         true => come_back(args)?,
         false => (
@@ -45,6 +54,9 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     };
     let session = session.map_err(|trouble| lab.tell(trouble)).ok();
     lab.take_advice();
+    if let Some(commands) = commands {
+        lab.take_commands(commands);
+    }
     app::run(&mut lab, session.as_ref(), args.fps).context("the terminal cannot be used")?;
     tell_of_exports(&lab)?;
     if session.is_some() {
@@ -158,36 +170,52 @@ fn tell_of_exports(lab: &Lab) -> io::Result<()> {
     Ok(())
 }
 
-/// Prints the lab's picture at the end of a run.
+/// Prints the lab's picture at the end of a run, or after commands.
 pub(super) fn show(args: &ShowArgs) -> anyhow::Result<ExitCode> {
-    let ShowArgs {
-        scenario,
-        at,
-        size,
-        markers,
-    } = args;
-    print(&scenario.scenario, &scenario.changes, *at, *size, *markers)
+    print(&Picture {
+        name: args.scenario.as_deref().unwrap_or(DEFAULT),
+        changes: &args.changes,
+        at: args.at,
+        commands: args.commands.as_deref(),
+        size: args.size,
+        markers: args.markers,
+    })
 }
 
-fn print(
-    name: &str,
-    changes: &Changes,
+/// What a picture is to show.
+struct Picture<'a> {
+    name: &'a str,
+    changes: &'a Changes,
     at: Option<u64>,
-    (width, height): (u16, u16),
+    commands: Option<&'a Path>,
+    /// Columns and lines.
+    size: (u16, u16),
     markers: Option<Markers>,
-) -> anyhow::Result<ExitCode> {
+}
+
+fn print(wanted: &Picture<'_>) -> anyhow::Result<ExitCode> {
     let plain = Theme {
         colour: false,
         background: Background::Dark,
     };
-    let mut lab = lab(name, changes, markers, plain, false)?;
-    let end = at.unwrap_or(lab.run().scenario().steps);
-    let ended = lab.begin_at(end);
-    let picture = screen::text(&lab, false, (width, height));
+    let commands = wanted.commands.map(command::open).transpose()?;
+    let mut lab = lab(wanted.name, wanted.changes, wanted.markers, plain, false)?;
+    let end = match commands {
+        Some(_) => 0,
+        None => lab.run().scenario().steps,
+    };
+    let ended = lab.begin_at(wanted.at.unwrap_or(end));
+    let mut done = Ok(());
+    if let (Ok(()), Some(commands)) = (&ended, commands) {
+        lab.take_commands(commands);
+        done = lab.finish_script();
+    }
+    let picture = screen::text(&lab, false, wanted.size);
     let mut stdout = io::stdout().lock();
     stdout.write_all(picture.as_bytes())?;
     stdout.flush()?;
-    ended.with_context(|| name.to_owned())?; // the picture up to there is shown all the same
+    ended.with_context(|| wanted.name.to_owned())?; // the picture up to there is shown all the same
+    done.map_err(anyhow::Error::msg)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,14 +1,15 @@
 //! What the lab asks for in a dialog, and what it does with the answer.
 
-use super::Lab;
+use super::carry_out::{Answer, Done, Refusal, UnderWay};
+use super::command::Command;
 use super::form::{Field, Form};
+use super::{Lab, Mode};
 use crate::export::Destination;
 use crate::export::destination::DestinationError;
 use crate::lab::action::FieldEdit;
-use crate::scenario::{Document, Scenario, ScenarioFile};
+use crate::scenario::{Document, Scenario};
 use crate::storage::exporting::{self, Estimate, Exporting, Written};
 use crate::text::printable::{Shown, is_steering};
-use crate::tui::keymap::Mode;
 use crate::work::restart::scenario_from;
 use indicatif::{DecimalBytes, HumanCount};
 use std::io::Write;
@@ -38,16 +39,10 @@ pub(super) enum Asking {
     GoTo,
     /// Where the rows of a run go, and how many of them.
     Export(Arc<Scenario>),
-    /// Where a file with this text goes, and what it is called.
-    Save(&'static str, String),
-}
-
-/// Why a file was not written.
-enum Refusal {
-    /// There is one already.
-    Exists(PathBuf),
-    /// For this reason.
-    Because(String),
+    /// Where the run file goes, of the run up to this step.
+    SaveRun(u64),
+    /// Where the scenario of the present state goes, which is this text.
+    SavePresent(String),
 }
 
 impl Dialog {
@@ -148,15 +143,30 @@ impl Lab {
         self.mode = Mode::Lab;
         let (text, second) = (dialog.form.text(0), dialog.form.text(1));
         let path = self.path_of(text);
-        let may_replace = |path: &Path| dialog.told_of.as_deref() == Some(path);
-        let done = match &dialog.asking {
-            Asking::Value => self.take_value(text).map_err(Refusal::Because),
-            Asking::GoTo => self.go_where(text).map_err(Refusal::Because),
-            Asking::Export(scenario) => self.export(scenario, &path, second, may_replace),
-            Asking::Save(what, content) => self.save(what, content, &path, may_replace),
+        let force = dialog.told_of.as_deref() == Some(&*path);
+        let answer = match &dialog.asking {
+            Asking::Value => self.carry_out_typed(self.value_typed(text)),
+            Asking::GoTo => self.carry_out_typed(self.place_typed(text).map(Some)),
+            Asking::Export(scenario) => match every(second) {
+                Ok(every) => self.carry_out(&Command::Export {
+                    path: text.to_owned(),
+                    every,
+                    to_step: Some(scenario.steps),
+                    force,
+                }),
+                Err(reason) => Err(reason.into()),
+            },
+            Asking::SaveRun(to_step) => self.carry_out(&Command::Save {
+                path: text.to_owned(),
+                from_here: false,
+                to_step: Some(*to_step),
+                force,
+            }),
+            // The state as it was when it was asked for: the run may have gone on since.
+            Asking::SavePresent(content) => self.save("the scenario", content, &path, force),
         };
-        match done {
-            Ok(()) => {}
+        match answer {
+            Ok(_) => self.tell_answer(answer),
             Err(refusal) => {
                 self.dialog = Some(refused(dialog, refusal));
                 self.mode = Mode::Dialog;
@@ -164,12 +174,21 @@ impl Lab {
         }
     }
 
+    /// Carries out the command that was typed, if one was.
+    fn carry_out_typed(&mut self, typed: Result<Option<Command>, String>) -> Answer {
+        match typed? {
+            Some(command) => self.carry_out(&command),
+            None => Ok(Done::SILENT),
+        }
+    }
+
     pub(super) fn ask_for_export(&mut self) {
         if self.exporting.is_some() {
             return self.say("one export at a time: Esc stops the one under way");
         }
-        let Some(scenario) = self.run_until_here("export") else {
-            return;
+        let scenario = match self.run_until_step(None, "export") {
+            Ok(scenario) => scenario,
+            Err(reason) => return self.say(reason),
         };
         let path = self.free_name("", "csv");
         let fields = [("file", path), ("every", "1".to_owned())];
@@ -178,23 +197,24 @@ impl Lab {
         self.look_at_export();
     }
 
-    /// The run from step 0 to where it stands, if there is one to `act` on.
-    fn run_until_here(&mut self, act: &str) -> Option<Arc<Scenario>> {
-        let here = self.playback.step_number();
-        if here == 0 {
-            self.say(format!(
+    /// The run from step 0 to `to_step`, or to where it stands, if there is one to `act` on.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub(super) fn run_until_step(
+        &self,
+        to_step: Option<u64>,
+        act: &str,
+    ) -> Result<Arc<Scenario>, String> {
+        let step = to_step.unwrap_or(self.playback.step_number());
+        if step == 0 {
+            return Err(format!(
                 "there is nothing to {act} yet: the run stands at step 0"
             ));
-            return None;
         }
-        let file = self.history.present().journal.file_until(here);
-        match Document::from_file("the run", &file).and_then(|document| document.scenario()) {
-            Ok(scenario) => Some(Arc::new(scenario)),
-            Err(problems) => {
-                self.say(problems.in_one_line());
-                None
-            }
-        }
+        let file = self.history.present().journal.file_until(step);
+        let run = Document::from_file("the run", &file).and_then(|document| document.scenario());
+        run.map(Arc::new).map_err(|problems| problems.in_one_line())
     }
 
     /// Says what the export that is asked for would come to.
@@ -218,19 +238,20 @@ impl Lab {
         };
     }
 
-    fn export(
+    pub(super) fn export(
         &mut self,
         scenario: &Arc<Scenario>,
         path: &Path,
-        number: &str,
-        may_replace: impl Fn(&Path) -> bool,
-    ) -> Result<(), Refusal> {
-        let every = every(number).map_err(Refusal::Because)?;
+        every: NonZeroU64,
+        force: bool,
+    ) -> Answer {
+        if self.exporting.is_some() {
+            return Err("one export at a time: wait until the one under way is done".into());
+        }
         is_named(path)?;
-        let begun = Exporting::begin(Arc::clone(scenario), path, every, may_replace(path));
+        let begun = Exporting::begin(Arc::clone(scenario), path, every, force);
         self.exporting = Some(begun.map_err(refusal)?);
-        self.say("the export goes on in the background");
-        Ok(())
+        Ok(Done::saying("the export goes on in the background").going_on(UnderWay::Exporting))
     }
 
     pub(super) fn stop_export(&mut self) {
@@ -265,7 +286,7 @@ impl Lab {
     }
 
     /// The file that is called `name`.
-    fn path_of(&self, name: &str) -> PathBuf {
+    pub(super) fn path_of(&self, name: &str) -> PathBuf {
         match &self.folder {
             Some(folder) if !name.is_empty() => folder.join(name),
             _ => PathBuf::from(name),
@@ -283,8 +304,9 @@ impl Lab {
     }
 
     pub(super) fn ask_where_to_save_the_run(&mut self) {
-        let Some(scenario) = self.run_until_here("save") else {
-            return;
+        let scenario = match self.run_until_step(None, "save") {
+            Ok(scenario) => scenario,
+            Err(reason) => return self.say(reason),
         };
         let later = self.history.present().journal.later_than(scenario.steps);
         let left_out =
@@ -299,7 +321,7 @@ impl Lab {
         };
         let path = self.free_name("-run", "toml");
         self.ask(
-            Asking::Save("the run", scenario.to_toml()),
+            Asking::SaveRun(scenario.steps),
             "save the run file",
             &[("file", path)],
             &info,
@@ -307,14 +329,13 @@ impl Lab {
     }
 
     pub(super) fn ask_where_to_save_the_present(&mut self) {
-        match self.present_as_scenario() {
+        match self.present_as_text() {
             Err(reason) => self.say(reason),
-            Ok(file) => {
-                let content = toml::to_string(&file).unwrap_or_default(); // a checked file is one that can be written
+            Ok(content) => {
                 let path = self.free_name("-from-here", "toml");
                 let info = "a scenario that starts from the state on the screen";
                 self.ask(
-                    Asking::Save("the scenario", content),
+                    Asking::SavePresent(content),
                     "save the present state",
                     &[("file", path)],
                     &[info],
@@ -323,31 +344,28 @@ impl Lab {
         }
     }
 
-    fn present_as_scenario(&self) -> Result<ScenarioFile, String> {
+    /// The scenario that starts from the present state, as TOML.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub(super) fn present_as_text(&self) -> Result<String, String> {
         let run = self.run().simulation();
-        let scenario = scenario_from(run.scenario(), run.state(), run.step_number());
-        scenario
-            .map(|scenario| scenario.file)
-            .map_err(|problems| problems.in_one_line())
+        let scenario = scenario_from(run.scenario(), run.state(), run.step_number())
+            .map_err(|problems| problems.in_one_line())?;
+        toml::to_string(&scenario.file).map_err(|error| error.to_string())
     }
 
-    fn save(
-        &mut self,
-        what: &str,
-        content: &str,
-        path: &Path,
-        may_replace: impl Fn(&Path) -> bool,
-    ) -> Result<(), Refusal> {
+    pub(super) fn save(&mut self, what: &str, content: &str, path: &Path, force: bool) -> Answer {
         is_named(path)?;
-        let mut destination = Destination::open_file(path, may_replace(path)).map_err(refusal)?;
+        let mut destination = Destination::open_file(path, force).map_err(refusal)?;
         let written = destination.write_all(content.as_bytes());
-        written
-            .map_err(|error| Refusal::Because(format!("cannot write {}: {error}", Shown(path))))?;
+        written.map_err(|error| format!("cannot write {}: {error}", Shown(path)))?;
         destination.keep().map_err(refusal)?;
         let name = full(path);
-        self.notice
-            .keep_saying(format!("{what} is in {}", Shown(&name)));
-        Ok(())
+        Ok(Done {
+            stays: true,
+            ..Done::saying(format!("{what} is in {}", Shown(&name)))
+        })
     }
 
     /// A name for a file about the present run that no file here has yet.

@@ -1,21 +1,21 @@
 //! Changing the run: a value of its scenario, a push; and taking it back.
 
+use super::carry_out::{Answer, Done, UnderWay};
+use super::command::{Command, Force, PushChoice};
 use super::editor::Line;
-use super::{BELONGS, Lab, dialogs::Asking};
-use crate::lab::action::Direction;
+use super::{Lab, dialogs::Asking};
 use crate::lab::view::Pane;
 use crate::run::Clock;
 use crate::run::pushes::acts_s;
 use crate::scenario::Scenario;
 use crate::scenario::keys::Effect;
-use crate::work::history::Turn;
+use crate::work::history::{History, Turn};
 use crate::work::journal::{Act, number_of_push};
 use crate::work::next_push::{Field, NextPush};
 use crate::work::parameters::{self, Parameter, parameters};
 use crate::work::restart::in_force;
 use std::sync::Arc;
-use std::time::Duration;
-use toml::Value;
+use toml::Table;
 
 /// The editor's group of lines for the push to come.
 const NEXT_PUSH: &str = "next push (p)";
@@ -69,8 +69,17 @@ impl Lab {
             .in_force(self.playback.step_number())
     }
 
-    fn selected(&self) -> Option<&Target> {
+    /// What the selected line stands for.
+    pub(super) fn selected(&self) -> Option<&Target> {
         self.targets.get(self.editor.selected_index())
+    }
+
+    /// The value at the dotted `key`, where the scenario has one.
+    pub(super) fn parameter(&self, key: &str) -> Option<&Parameter> {
+        self.targets.iter().find_map(|target| match target {
+            Target::Parameter(parameter) if parameter.key == key => Some(&**parameter),
+            _ => None,
+        })
     }
 
     pub(super) fn turn_to_parameters(&mut self) {
@@ -86,43 +95,7 @@ impl Lab {
         self.say("the push to come: p gives it");
     }
 
-    pub(super) fn move_in_parameters(&mut self, direction: Direction, times: i32) {
-        match direction {
-            Direction::Up | Direction::PageUp => self.editor.shift(-(times as isize)),
-            Direction::Down | Direction::PageDown => self.editor.shift(times as isize),
-            Direction::Left => self.nudge(-times),
-            Direction::Right => self.nudge(times),
-        }
-    }
-
-    fn nudge(&mut self, times: i32) {
-        let scenario = Arc::clone(self.run().scenario());
-        match self.selected() {
-            None => {}
-            Some(Target::Parameter(parameter)) => {
-                let (key, label) = (parameter.key.clone(), parameter.label.clone());
-                let done = parameter
-                    .nudged(times)
-                    .map_err(|reason| format!("{label} {reason}"));
-                let belongs = |(last, at): &(String, Duration)| {
-                    *last == key && self.now.saturating_sub(*at) < BELONGS
-                };
-                let is_again = self.last_nudged.as_ref().is_some_and(belongs);
-                match done.and_then(|value| self.set(&key, value, is_again)) {
-                    Ok(()) => self.last_nudged = Some((key, self.now)),
-                    Err(reason) => self.say(reason),
-                }
-            }
-            Some(Target::NextPush(field)) => {
-                match self.next_push.nudged(*field, times, &scenario) {
-                    Ok(next) => self.choose_next_push(next),
-                    Err(reason) => self.say(reason),
-                }
-            }
-        }
-    }
-
-    fn choose_next_push(&mut self, next: NextPush) {
+    pub(super) fn choose_next_push(&mut self, next: NextPush) {
         self.next_push = next;
         self.list_parameters();
     }
@@ -155,68 +128,68 @@ impl Lab {
         self.ask(Asking::Value, &title, &[(&label, line.value)], &about);
     }
 
-    /// Takes `text` for the value of the line that is selected.
+    /// The command that gives the line that is selected the value `text`; none where it has it.
     ///
     /// # Errors
-    /// Why it is none; nothing has changed then.
-    pub(super) fn take_value(&mut self, text: &str) -> Result<(), String> {
-        let scenario = Arc::clone(self.run().scenario());
+    /// Why it is no value.
+    pub(super) fn value_typed(&self, text: &str) -> Result<Option<Command>, String> {
+        let scenario = self.run().scenario();
         match self.selected() {
-            None => Ok(()),
+            None => Ok(None),
             Some(Target::Parameter(parameter)) => {
-                let (key, label) = (parameter.key.clone(), parameter.label.clone());
                 let value = parameter
                     .typed(text)
-                    .map_err(|reason| format!("{label} {reason}"))?;
-                match value == parameter.value && !parameter.is_default {
-                    true => Ok(()),
-                    false => self.set(&key, value, false),
-                }
+                    .map_err(|reason| format!("{} {reason}", parameter.label))?;
+                let is_new = value != parameter.value || parameter.is_default;
+                let table = Table::from_iter([(parameter.key.clone(), value)]);
+                Ok(is_new.then_some(Command::Set(table)))
             }
             Some(Target::NextPush(field)) => {
-                let (motion, _) = in_force(&scenario, self.playback.step_number());
-                let next = self
-                    .next_push
-                    .typed(*field, text, &scenario, motion.time_step_s)?;
-                self.choose_next_push(next);
-                Ok(())
+                let time_step_s = in_force(scenario, self.playback.step_number())
+                    .0
+                    .time_step_s;
+                let next = self.next_push.typed(*field, text, scenario, time_step_s)?;
+                let choice = PushChoice::field(*field, &next);
+                Ok(Some(Command::NextPush(choice)))
             }
         }
     }
 
-    /// Sets `key` to `value`: for the steps to come, or in a new run. What `is_again` set is taken back together with
-    /// what was set before.
-    fn set(&mut self, key: &str, value: Value, is_again: bool) -> Result<(), String> {
-        match Effect::of(key) {
-            Effect::NewRun => self.begin_with(key, value, is_again),
-            Effect::FromHere | Effect::None => {
-                let said = self.act(Act::set(key, value), is_again)?;
-                self.say(said.unwrap_or_else(|| self.said_of(key)));
-                Ok(())
-            }
-        }
-    }
-
-    fn begin_with(&mut self, key: &str, value: Value, is_again: bool) -> Result<(), String> {
+    /// Begins a new run with the values of `set` in its scenario, and does `acts` at its beginning.
+    pub(super) fn begin_with(&mut self, set: &Table, acts: Vec<Act>, is_again: bool) -> Answer {
         let here = self.playback.step_number();
         let had_begun = here > 0;
         self.history.stands(here, &self.next_push); // wherever it was bound for: the new run moves as it does here
+        let before = (!acts.is_empty()).then(|| self.history.clone());
         let begun = match is_again {
-            true => self.history.begin_again_with(key, value),
-            false => self.history.begin_with(key, value),
+            true => self.history.begin_again_with(set),
+            false => self.history.begin_with(set),
         };
-        let scenario = begun.map_err(|problems| problems.in_one_line())?;
-        self.begin_run(Arc::new(scenario));
-        if had_begun {
-            self.say("a new run; the one before is dotted, and u goes back to it");
+        let mut scenario = begun.map_err(|problems| problems.in_one_line())?;
+        for act in acts {
+            match self.history.act(0, act) {
+                Ok(changed) => scenario = changed,
+                Err(problems) => {
+                    self.history = before.unwrap_or_else(|| self.history.clone());
+                    return Err(problems.in_one_line().into());
+                }
+            }
         }
-        Ok(())
+        self.history.set_end(Clock::end_s(&scenario));
+        self.begin_run(Arc::new(scenario));
+        Ok(match had_begun {
+            true => Done::saying("a new run; the one before is dotted, and u goes back to it"),
+            false => Done::SILENT,
+        })
     }
 
-    /// What is to be said of `key`, the value selected, now that it is set.
-    fn said_of(&self, key: &str) -> String {
-        let line = self.editor.selected().cloned().unwrap_or_default();
-        let value = format!("{} {} {}", line.label, line.value, line.unit);
+    /// What is to be said of `key`, now that it is set.
+    pub(super) fn said_of(&self, key: &str) -> String {
+        let line = self.editor.lines().iter().find(|line| line.key == key);
+        let value = match line {
+            Some(line) => format!("{} {} {}", line.label, line.value, line.unit),
+            None => key.to_owned(),
+        };
         let value = value.trim_end();
         match Effect::of(key) {
             Effect::None => format!("{value}; u takes it back"),
@@ -237,16 +210,34 @@ impl Lab {
         push.is_some_and(|push| acts_s(push, simulation.scenario()).1 <= time_s)
     }
 
-    /// Does `act` here; gives what is to be said of what has made way for it.
-    fn act(&mut self, act: Act, is_again: bool) -> Result<Option<String>, String> {
+    /// Does `acts` here, all or none, to be taken back at once; gives what is to be said of what has made way for them.
+    /// What `is_again` done is taken back together with what was done before.
+    pub(super) fn act_all(
+        &mut self,
+        acts: Vec<Act>,
+        is_again: bool,
+    ) -> Result<Option<String>, String> {
         let step = self.playback.step_number();
-        let is_described = matches!(act, Act::Describe(_));
+        let is_described = acts.iter().all(|act| matches!(act, Act::Describe(_)));
         let later = self.history.present().journal.later_than(step);
-        let done = match is_again {
-            true => self.history.act_again(step, act),
-            false => self.history.act(step, act),
+        let before = (acts.len() > 1).then(|| self.history.clone());
+        let mut done = None;
+        for (index, act) in acts.into_iter().enumerate() {
+            let result = match is_again || index > 0 {
+                true => self.history.act_again(step, act),
+                false => self.history.act(step, act),
+            };
+            match result {
+                Ok(scenario) => done = Some(scenario),
+                Err(problems) => {
+                    self.history = before.unwrap_or_else(|| self.history.clone());
+                    return Err(problems.in_one_line());
+                }
+            }
+        }
+        let Some(scenario) = done else {
+            return Ok(None);
         };
-        let scenario = done.map_err(|problems| problems.in_one_line())?;
         let is_as_long = scenario.steps == self.run().scenario().steps;
         self.take_over(scenario, is_described);
         if !is_as_long {
@@ -269,77 +260,57 @@ impl Lab {
         self.is_another();
     }
 
-    /// Gives the push to come, from here on.
-    pub(super) fn push(&mut self) {
-        let run = self.run();
-        let given = self
-            .next_push
-            .given(run.scenario(), run.simulation().state());
-        let said = format!(
-            "pushed: {}; u takes it back, P chooses another",
-            self.next_push.in_words()
-        );
-        let done = given.and_then(|push| self.act(Act::Push(push), false));
-        self.say(match done {
-            Ok(made_way) => made_way.unwrap_or(said),
-            Err(reason) => reason,
-        });
-    }
-
-    pub(super) fn undo(&mut self, times: i32) {
+    pub(super) fn undo(&mut self, times: u32) -> Answer {
+        let nothing = "nothing to undo";
         self.turn_back_or_on(
             times,
-            "undone",
-            "U brings it again",
-            "nothing to undo",
-            super::History::undo,
-        );
+            ("undone", "U brings it again"),
+            nothing,
+            History::undo,
+        )
     }
 
-    pub(super) fn redo(&mut self, times: i32) {
+    pub(super) fn redo(&mut self, times: u32) -> Answer {
+        let nothing = "nothing to do again";
         self.turn_back_or_on(
             times,
-            "done again",
-            "u takes it back",
-            "nothing to do again",
-            super::History::redo,
-        );
+            ("done again", "u takes it back"),
+            nothing,
+            History::redo,
+        )
     }
 
     fn turn_back_or_on(
         &mut self,
-        times: i32,
-        done: &str,
-        other_way: &str,
+        times: u32,
+        (done, other_way): (&str, &str),
         nothing: &str,
-        turn: impl Fn(&mut super::History) -> Option<Turn>,
-    ) {
+        turn: impl Fn(&mut History) -> Option<Turn>,
+    ) -> Answer {
+        let mut answer = Done::SILENT;
         for _ in 0..times {
             let name = self.name().to_owned();
             self.stands();
-            match turn(&mut self.history) {
-                None => return self.say(nothing),
+            answer = match turn(&mut self.history) {
+                None => return Err(nothing.into()),
                 Some(Turn::Here { step, act }) => {
-                    self.turn_here(step, &act);
-                    self.say(format!(
-                        "{done}: {}, at step {step}; {other_way}",
-                        act.in_words()
-                    ));
+                    self.turn_here(step, &act)?;
+                    let act = act.in_words();
+                    Done::saying(format!("{done}: {act}, at step {step}; {other_way}"))
                 }
                 Some(Turn::Elsewhere) => {
-                    self.turn_elsewhere(&name);
-                    self.say(format!("{done}: another run; {other_way}"));
+                    self.turn_elsewhere(&name)?;
+                    Done::saying(format!("{done}: another run; {other_way}"))
                 }
-            }
+            };
         }
+        Ok(answer.going_on(UnderWay::Going))
     }
 
     /// The same run with another journal, from `step` on.
-    fn turn_here(&mut self, step: u64, act: &Act) {
-        let scenario = match self.history.present().journal.scenario() {
-            Ok(scenario) => Arc::new(scenario),
-            Err(problems) => return self.say(problems.in_one_line()),
-        };
+    fn turn_here(&mut self, step: u64, act: &Act) -> Result<(), String> {
+        let scenario = self.history.present().journal.scenario();
+        let scenario = Arc::new(scenario.map_err(|problems| problems.in_one_line())?);
         if scenario.steps != self.run().scenario().steps {
             // Not by this scenario: edits of the time step since then have not moved the end.
             let told = self.history.present().journal.when_its_length_was_told();
@@ -352,17 +323,19 @@ impl Lab {
         }
         self.playback.set_end(self.history.present().end_s);
         self.is_another();
+        Ok(())
     }
 
     /// Another run, where it was left; the one opened as `before` was shown until now.
-    fn turn_elsewhere(&mut self, before: &str) {
+    fn turn_elsewhere(&mut self, before: &str) -> Result<(), String> {
         let chapter = self.history.present();
         let (name, left_at, end_s) = (chapter.name.clone(), chapter.left_at, chapter.end_s);
         let next_push = chapter.next_push.clone();
-        match chapter.journal.scenario().map(Arc::new) {
-            Err(problems) => self.say(problems.in_one_line()),
-            Ok(scenario) if name == before => self.go_over_to(scenario),
-            Ok(scenario) => self.show_another(scenario, false),
+        let scenario = chapter.journal.scenario();
+        let scenario = Arc::new(scenario.map_err(|problems| problems.in_one_line())?);
+        match name == before {
+            true => self.go_over_to(scenario),
+            false => self.show_another(scenario),
         }
         self.next_push = next_push.map_or(self.next_push.clone(), |push| {
             push.suited_to(self.run().scenario())
@@ -371,6 +344,21 @@ impl Lab {
         self.playback.go_to(left_at);
         self.returning_to = Some(left_at);
         self.list_parameters();
+        Ok(())
+    }
+}
+
+impl PushChoice {
+    /// The `field` of `push`.
+    pub(super) fn field(field: Field, push: &NextPush) -> Self {
+        let mut choice = Self::default();
+        match field {
+            Field::Point => choice.point = Some(push.point.clone()),
+            Field::Size => choice.force_N = Some(Force::Size(push.size_N)),
+            Field::Toward => choice.toward = Some(push.toward),
+            Field::Length => choice.for_s = Some(push.for_s),
+        }
+        choice
     }
 }
 

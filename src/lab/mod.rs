@@ -8,6 +8,8 @@
 
 pub mod action;
 pub mod browser;
+mod carry_out;
+pub mod command;
 mod dialogs;
 mod editing;
 pub mod editor;
@@ -15,17 +17,21 @@ pub mod form;
 mod keeping;
 mod looking;
 pub mod notice;
+mod numbers;
 mod opening;
 pub mod preview;
+mod script;
+mod steering;
 mod travel;
 pub mod view;
 
+pub use carry_out::{Answer, Done, Refusal, UnderWay};
 pub use dialogs::Dialog;
 pub use keeping::Unreadable;
+pub use script::Script;
 
 use crate::analysis::health::Advice;
-use crate::lab::action::Action;
-use crate::lab::view::{Pane, View};
+use crate::lab::view::{Pane, Part, View};
 use crate::observe::advisor::Advisor;
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
@@ -35,7 +41,6 @@ use crate::observe::readouts::{self, Readouts};
 use crate::run::NotFinite;
 use crate::scenario::{Motion, Scenario};
 use crate::storage::exporting::{Exporting, Written};
-use crate::tui::keymap::{Key, Mode};
 use crate::work::changed;
 use crate::work::history::History;
 use crate::work::next_push::NextPush;
@@ -51,14 +56,33 @@ use std::time::Duration;
 
 /// A value that was nudged longer ago is nudged anew: undo takes back what belongs together.
 const BELONGS: Duration = Duration::from_secs(3);
-/// What is moved far is moved so often.
-const FAR: i32 = 10;
 /// Part of the traces' time that may pass between two readings.
 const FAST: f64 = 0.1;
-/// The longest count that can be typed.
-const MOST_COUNTED: u64 = 999_999_999;
-/// Repeating something on the screen more often than this shows nothing new.
-const MOST_REPEATED: u64 = 1000;
+/// What lies on top of the screen and gets the keys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// The panes.
+    Lab,
+    /// The browser of presets and files.
+    Browser,
+    /// The line in which its filter is typed.
+    Filter,
+    /// The list of keys.
+    Help,
+    /// A dialog that is typed into.
+    Dialog,
+}
+
+impl Mode {
+    /// Every mode.
+    pub const ALL: [Self; 5] = [
+        Self::Lab,
+        Self::Browser,
+        Self::Filter,
+        Self::Help,
+        Self::Dialog,
+    ];
+}
 
 /// What the loop must do that the lab cannot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,6 +135,8 @@ pub struct Lab {
     browser: Browser,
     count: Option<u64>,
     notice: Notice,
+    /// Commands that are still to be carried out.
+    script: Script,
     now: Duration,
     /// The panes that stand side by side while none fills the screen, in the order in which the focus goes through them.
     side_by_side: Vec<Pane>,
@@ -122,6 +148,8 @@ impl Lab {
     pub fn new(name: &str, scenario: Arc<Scenario>, view: View, running: bool) -> Self {
         let history = History::new(name, &scenario);
         let mut playback = Playback::new(Arc::clone(&scenario), running);
+        let begins_with = scenario.file.view.as_ref();
+        playback.set_exact(begins_with.and_then(|view| view.exact).unwrap_or(false));
         let mut lab = Self {
             history,
             changed_from_file: None,
@@ -150,6 +178,7 @@ impl Lab {
             browser: Browser::default(),
             count: None,
             notice: Notice::default(),
+            script: Script::default(),
             now: Duration::ZERO,
             side_by_side: Pane::ALL.to_vec(),
             changed: true,
@@ -196,7 +225,8 @@ impl Lab {
         self.now = now;
         self.changed |= self.notice.expire(now);
         let before = self.playback.step_number();
-        if let Some(halt) = self.playback.advance(now, wall, clock) {
+        let halt = self.playback.advance(now, wall, clock);
+        if let Some(halt) = halt {
             self.halted(halt);
         }
         self.changed |= self.playback.step_number() != before;
@@ -207,6 +237,7 @@ impl Lab {
         self.changed |= self.advisor.as_mut().is_some_and(Advisor::has_news);
         self.changed |= self.browser.take_news();
         self.follow_export();
+        self.go_on_with_script(halt);
         let is_due = self.is_fast() || now >= self.read_at + readouts::EVERY;
         if self.changed && is_due {
             self.read_now();
@@ -223,7 +254,11 @@ impl Lab {
 
     fn halted(&mut self, halt: Halt) {
         match halt {
-            Halt::StepsTaken => {}
+            Halt::StepsTaken | Halt::Fulfilled => {}
+            Halt::NotFulfilled(steps) => self.notice.keep_saying(format!(
+                "what the run was played to did not come true in {} steps",
+                HumanCount(steps)
+            )),
             Halt::EndOfRun => self
                 .notice
                 .keep_saying("end of the scenario's run: space goes on, r begins again"),
@@ -238,117 +273,11 @@ impl Lab {
         self.read_now();
     }
 
-    /// Carries out `action`; what only the loop can do comes back.
-    pub fn update(&mut self, action: Action) -> Option<Request> {
-        let count = self.count.take();
-        let closed = self.notice.take_back() || count.is_some();
-        let was_warned = std::mem::take(&mut self.was_warned);
-        if !matches!(
-            action,
-            Action::Move(_) | Action::MoveFar(_) | Action::Digit(_)
-        ) {
-            self.last_nudged = None;
-        }
-        match action {
-            Action::TogglePause => self.toggle_pause(),
-            Action::Step => self.playback.take_steps(count.unwrap_or(1)),
-            Action::StepBack => self.step_back(count.unwrap_or(1)),
-            Action::Digit(digit) => self.count = Some(counted(count, digit)),
-            Action::Faster => self.shift_speed(repeated(count)),
-            Action::Slower => self.shift_speed(-repeated(count)),
-            Action::Restart => self.playback.restart(),
-            Action::GoTo => self.ask_where_to_go(count),
-            Action::Undo => self.undo(repeated(count)),
-            Action::Redo => self.redo(repeated(count)),
-            Action::Push => self.push(),
-            Action::ChoosePush => self.choose_push(),
-            Action::Parameters => self.turn_to_parameters(),
-            Action::Edit => self.ask_for_value(),
-            Action::Export => self.ask_for_export(),
-            Action::SaveRun => self.ask_where_to_save_the_run(),
-            Action::SavePresent => self.ask_where_to_save_the_present(),
-            Action::ToggleExact => self.toggle_exact(),
-            Action::NextPane => self.shift_focus(true),
-            Action::PreviousPane => self.shift_focus(false),
-            Action::FillScreen => self.view.toggle_filled(),
-            Action::ThreeD => self.view.toggle_three_d(),
-            Action::Move(direction) => self.shift(direction, repeated(count)),
-            Action::MoveFar(direction) => {
-                self.shift(direction, repeated(count).saturating_mul(FAR));
-            }
-            Action::WiderWindow => self.zoom(true),
-            Action::NarrowerWindow => self.zoom(false),
-            Action::NextMarker => self.next_marker(),
-            Action::ToggleColour => self.toggle_colour(),
-            Action::ToggleBackground => self.toggle_background(),
-            Action::Browse => self.browse(),
-            Action::Choose => self.choose(),
-            Action::Filter => self.mode = Mode::Filter,
-            Action::Type(typed) => self.type_char(typed),
-            Action::Erase => self.erase(),
-            Action::InField(edit) => self.edit_field(edit),
-            Action::Accept => self.accept(),
-            Action::Help => self.toggle_help(),
-            Action::Close => self.close(closed),
-            Action::Redraw => return Some(Request::Redraw),
-            Action::Suspend => return Some(Request::Suspend),
-            Action::Quit => {
-                if self.may_quit(was_warned) {
-                    return Some(Request::Quit);
-                }
-            }
-        }
-        self.keep_focus();
-        self.read_now();
-        None
-    }
-
-    /// Says that `key` means nothing here.
-    pub fn refuse(&mut self, key: Key) {
+    /// Says `text`: what was asked for means nothing here. A count that was typed is forgotten.
+    pub fn refuse(&mut self, text: impl Into<String>) {
         self.count = None;
-        let text = match (self.mode, key) {
-            (Mode::Lab, Key::Char('/')) => {
-                "/ filters the list of presets and files: o shows it".to_owned()
-            }
-            (Mode::Filter, _) => format!("no key {key} here; Enter opens, Esc clears the filter"),
-            (Mode::Dialog, _) => {
-                format!("no key {key} here; Enter takes what is typed, Esc leaves it")
-            }
-            _ => format!("no key {key} here; ? lists them"),
-        };
         self.say(text);
         self.changed = true;
-    }
-
-    fn toggle_help(&mut self) {
-        self.view.scroll = 0;
-        if self.mode == Mode::Help {
-            self.mode = self.under_help;
-        } else {
-            self.under_help = self.mode;
-            self.mode = Mode::Help;
-        }
-    }
-
-    /// Closes what lies on top, one thing at a time; with nothing to close, and nothing `closed` already, it says how
-    /// to leave.
-    fn close(&mut self, closed: bool) {
-        match self.mode {
-            Mode::Help => self.toggle_help(),
-            Mode::Filter => {
-                self.browser.clear_filter();
-                self.mode = Mode::Browser;
-            }
-            Mode::Browser => self.mode = Mode::Lab,
-            Mode::Dialog => self.close_dialog(),
-            Mode::Lab if self.playback.steps_to_go().is_some() => {
-                self.stop_steps();
-            }
-            Mode::Lab if self.view.filled => self.view.filled = false,
-            Mode::Lab if closed => {}
-            Mode::Lab if self.exporting.is_some() => self.stop_export(),
-            Mode::Lab => self.say("nothing to close; q leaves"),
-        }
     }
 
     fn say(&mut self, text: impl Into<String>) {
@@ -461,8 +390,12 @@ impl Lab {
 
     /// What there is to see in the run.
     pub fn note(&self) -> &str {
+        if self.view.hides(Part::LookAt) {
+            return "";
+        }
         let file = || changed::look_at(self.run().scenario());
-        let note = self.changed_from_file.as_deref().or_else(file);
+        let told = self.view.look_at.as_deref();
+        let note = told.or(self.changed_from_file.as_deref()).or_else(file);
         note.unwrap_or("r begins the run again, o opens another")
     }
 
@@ -475,13 +408,4 @@ impl Lab {
         let said = || self.notice.text().map(str::to_owned);
         stepping.or_else(said).or_else(|| self.export_in_words())
     }
-}
-
-fn counted(count: Option<u64>, digit: u8) -> u64 {
-    (count.unwrap_or(0) * 10 + u64::from(digit)).min(MOST_COUNTED)
-}
-
-/// How often to repeat what needs no more than `MOST_REPEATED` repetitions.
-fn repeated(count: Option<u64>) -> i32 {
-    count.unwrap_or(1).min(MOST_REPEATED) as i32
 }

@@ -5,7 +5,6 @@ use crate::export::Destination;
 use crate::observe::ghost::Ghost;
 use crate::observe::playback::Playback;
 use crate::scenario::{Document, Problem, Problems, Scenario, presets};
-use crate::tui::keymap::Mode;
 use crate::work::changed;
 use crate::work::next_push::NextPush;
 use std::path::Path;
@@ -15,28 +14,11 @@ use std::sync::Arc;
 const SHORT: f64 = 0.1;
 
 impl Lab {
-    pub(super) fn browse(&mut self) {
-        let folder = self.folder.as_deref().unwrap_or(Path::new("."));
-        let name = &self.history.present().name;
-        self.browser.begin(folder, name);
-        self.mode = Mode::Browser;
-    }
-
-    pub(super) fn choose(&mut self) {
-        let Some(name) = self.browser.choice().map(|entry| entry.name.clone()) else {
-            return self.say("nothing is selected: Esc clears the filter");
-        };
-        match again(&name).and_then(|document| document.scenario()) {
-            Ok(scenario) => self.open(&name, Arc::new(scenario)),
-            Err(problems) => self.say(format!("{}: {}", problems.origin, problems.in_one_line())),
-        }
-    }
-
-    fn open(&mut self, name: &str, scenario: Arc<Scenario>) {
-        self.mode = Mode::Lab;
+    /// Leaves the present run for that of `scenario`, opened as `name`, which stands still at step 0.
+    pub(super) fn open(&mut self, name: &str, scenario: Arc<Scenario>) {
         self.stands();
         self.history.begin(name, &scenario);
-        self.show_another(scenario, true);
+        self.show_another(scenario);
     }
 
     /// The history is to know where the run stands, or is on its way back to: it may be left.
@@ -45,13 +27,14 @@ impl Lab {
     }
 
     /// Shows the run of `scenario`, which is none of the present scenario's.
-    pub(super) fn show_another(&mut self, scenario: Arc<Scenario>, running: bool) {
-        let shows_exact = self.run().overlay().is_some();
+    pub(super) fn show_another(&mut self, scenario: Arc<Scenario>) {
+        let begins_with = scenario.file.view.as_ref().and_then(|view| view.exact);
+        let shows_exact = begins_with.unwrap_or(self.run().overlay().is_some());
         self.ghost = None;
         self.view.fit(&scenario);
         self.file = Arc::clone(&scenario);
         self.next_push = NextPush::of(&scenario);
-        self.playback = Playback::new(scenario, running);
+        self.playback = Playback::new(scenario, false);
         self.playback.set_exact(shows_exact);
         self.is_another();
     }

@@ -61,6 +61,8 @@ pub enum PlayEnd {
     CutShort,
     /// It stands at the step at which it was to stop.
     AtStop,
+    /// What it was to play to has come true.
+    Fulfilled,
     /// The numbers are no longer finite.
     NotFinite(NotFinite),
 }
@@ -228,9 +230,15 @@ impl LiveRun {
         self.adopt(scenario);
     }
 
-    /// Plays on for `time_s` simulated seconds (whole steps of them), no further than the step `stop`, until `enough`
-    /// says that there is no more time for it.
-    pub fn play(&mut self, time_s: f64, stop: u64, mut enough: impl FnMut() -> bool) -> Played {
+    /// Plays on for `time_s` simulated seconds (whole steps of them), no further than the step `stop` or one of which
+    /// `is_fulfilled` is true, until `enough` says that there is no more time for it.
+    pub fn play(
+        &mut self,
+        time_s: f64,
+        stop: u64,
+        mut enough: impl FnMut() -> bool,
+        is_fulfilled: impl Fn(&Self) -> bool,
+    ) -> Played {
         let begin_s = self.now.time_s;
         let look_every = (STEPS_PER_LOOK / self.scenario().body.mechanics.points().len()).max(1);
         let mut until_look = look_every;
@@ -244,6 +252,9 @@ impl LiveRun {
             }
             if let Err(error) = self.step() {
                 break PlayEnd::NotFinite(error);
+            }
+            if is_fulfilled(self) {
+                break PlayEnd::Fulfilled;
             }
             until_look -= 1;
             if until_look == 0 {

@@ -19,6 +19,14 @@ pub enum Speed {
     Top,
 }
 
+impl Speed {
+    /// The speed so many `notches` up the ladder, or down.
+    pub fn shifted(self, notches: i32) -> Self {
+        let next = if notches > 0 { faster } else { slower };
+        (0..notches.unsigned_abs()).fold(self, |speed, _| next(speed))
+    }
+}
+
 /// Whether the run goes on, how fast, and how much simulated time it is owed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pace {
@@ -44,8 +52,12 @@ impl Pace {
     /// Sets the speed, if it is one.
     pub fn set_speed(&mut self, speed: Speed) {
         match speed {
-            Speed::Times(times) if !(times > 0.0 && times.is_finite()) => {}
+            Speed::Times(times) if !(times > 0.0 && times.is_finite()) => return,
             speed => self.speed = speed,
+        }
+        self.owed_s = 0.0;
+        if let Speed::Times(speed) = self.speed {
+            self.achieved = speed;
         }
     }
 
@@ -72,21 +84,6 @@ impl Pace {
     /// Goes on, or stops.
     pub fn set_running(&mut self, running: bool) {
         self.running = running;
-        self.owed_s = 0.0;
-        if let Speed::Times(speed) = self.speed {
-            self.achieved = speed;
-        }
-    }
-
-    /// The next speed up (`notches` > 0) or down the ladder.
-    pub fn shift(&mut self, notches: i32) {
-        for _ in 0..notches.unsigned_abs() {
-            self.speed = if notches > 0 {
-                faster(self.speed)
-            } else {
-                slower(self.speed)
-            };
-        }
         self.owed_s = 0.0;
         if let Speed::Times(speed) = self.speed {
             self.achieved = speed;
@@ -195,14 +192,10 @@ mod tests {
 
     #[test]
     fn the_ladder_leads_to_the_top_and_back() {
-        let mut pace = Pace::new(20.0, true);
-        pace.shift(1);
-        assert_eq!(pace.speed(), Speed::Times(50.0));
-        pace.shift(100);
-        assert_eq!(pace.speed(), Speed::Top);
-        pace.shift(-1);
-        assert_eq!(pace.speed(), Speed::Times(5e5));
-        pace.shift(-100);
-        assert_eq!(pace.speed(), Speed::Times(1e-4));
+        let shifted = |speed: Speed, notches| speed.shifted(notches);
+        assert_eq!(shifted(Speed::Times(20.0), 1), Speed::Times(50.0));
+        assert_eq!(shifted(Speed::Times(50.0), 100), Speed::Top);
+        assert_eq!(shifted(Speed::Top, -1), Speed::Times(5e5));
+        assert_eq!(shifted(Speed::Times(5e5), -100), Speed::Times(1e-4));
     }
 }

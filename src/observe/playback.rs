@@ -21,9 +21,19 @@ const BESIDE_POINTS: u64 = 60;
 /// The same for steps that are asked for: before the next key, so that keys that come together count one by one. It
 /// takes a few milliseconds.
 const BEFORE_THE_NEXT_KEY: u64 = 1_000_000;
+/// How many steps are played until a condition holds, before that is given up.
+const MOST_UNTIL: u64 = 10_000_000;
+
+/// Whether a run stands where it was to be played to.
+pub type Condition = Box<dyn Fn(&LiveRun) -> bool>;
+
 /// Why a run has stopped by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Halt {
+    /// The condition that it was played to holds.
+    Fulfilled,
+    /// The condition that it was played to did not hold on any of so many steps.
+    NotFulfilled(u64),
     /// It stands at the scenario's last step; it can go on.
     EndOfRun,
     /// The steps that were asked for are taken.
@@ -42,6 +52,8 @@ pub struct Playback {
     hurries: bool,
     /// When the scenario's run is over, s.
     end_s: f64,
+    /// What it is played to, at its pace, if it is on its way there.
+    until: Option<Condition>,
 }
 
 impl Playback {
@@ -56,13 +68,14 @@ impl Playback {
             stop,
             hurries: false,
             end_s,
+            until: None,
         }
     }
 
     /// The run is over at `end_s` (s), however many steps that is.
     pub fn set_end(&mut self, end_s: f64) {
         self.end_s = end_s;
-        if !self.hurries {
+        if !self.hurries && self.until.is_none() {
             self.stop = self.next_stop();
         }
     }
@@ -98,6 +111,7 @@ impl Playback {
         self.run = LiveRun::new(scenario);
         self.run.set_overlay(shows_exact);
         self.hurries = false;
+        self.until = None;
         self.stop = self.next_stop();
     }
 
@@ -139,7 +153,7 @@ impl Playback {
     /// Shows `scenario`, which leads to the same numbers.
     pub fn describe_as(&mut self, scenario: &Arc<Scenario>) {
         self.run.describe_as(scenario);
-        if !self.hurries {
+        if !self.hurries && self.until.is_none() {
             self.stop = self.next_stop();
         }
     }
@@ -177,10 +191,28 @@ impl Playback {
             return None;
         }
         let deadline = now + STEPPING;
-        let Played { stepped_s, end } = self.run.play(owed_s, self.stop, || clock() >= deadline);
+        self.play(owed_s, wall, || clock() >= deadline)
+    }
+
+    /// Takes the run to where it is on its way to, however long that takes: to a step, or until a condition holds. Gives
+    /// why it stopped, if it was on its way at all.
+    pub fn finish(&mut self) -> Option<Halt> {
+        match self.hurries || self.until.is_some() {
+            true => self.play(f64::INFINITY, Duration::ZERO, || false),
+            false => None,
+        }
+    }
+
+    /// Plays what is `owed_s`, as far as there is time for it. Gives why it stopped, if it did.
+    fn play(&mut self, owed_s: f64, wall: Duration, enough: impl FnMut() -> bool) -> Option<Halt> {
+        let until = self.until.as_ref();
+        let is_fulfilled = |run: &LiveRun| until.is_some_and(|until| until(run));
+        let Played { stepped_s, end } = self.run.play(owed_s, self.stop, enough, is_fulfilled);
         self.pace.spend(stepped_s, wall, end == PlayEnd::CutShort);
         let halt = match end {
             PlayEnd::InTime | PlayEnd::CutShort => return None,
+            PlayEnd::Fulfilled => Halt::Fulfilled,
+            PlayEnd::AtStop if self.until.is_some() => Halt::NotFulfilled(MOST_UNTIL),
             PlayEnd::AtStop if self.hurries => Halt::StepsTaken,
             PlayEnd::AtStop => Halt::EndOfRun,
             PlayEnd::NotFinite(error) => Halt::NotFinite(error),
@@ -188,6 +220,24 @@ impl Playback {
         self.set_running(false);
         self.stop = self.next_stop();
         Some(halt)
+    }
+
+    /// Plays on at its pace until `condition` holds, past the end of the scenario's run too, and stops there; gives
+    /// whether it has to: where it stands it may hold already. It is given up after ten million steps.
+    pub fn run_until(&mut self, condition: Condition) -> bool {
+        self.set_running(false);
+        if condition(&self.run) {
+            return false;
+        }
+        self.set_running(true);
+        self.stop = self.step_number().saturating_add(MOST_UNTIL);
+        self.until = Some(condition);
+        true
+    }
+
+    /// Whether it is on its way to where a condition holds.
+    pub fn is_on_its_way(&self) -> bool {
+        self.until.is_some()
     }
 
     /// Lets the exact motion come after the run, where it is shown, for its share of the time.
@@ -213,9 +263,10 @@ impl Playback {
 
     /// Goes on, or stops where it is.
     pub fn set_running(&mut self, running: bool) {
-        if self.hurries {
+        if self.hurries || self.until.is_some() {
             self.run.stay();
             self.hurries = false;
+            self.until = None;
             self.stop = self.next_stop();
         }
         self.pace.set_running(running);
@@ -243,11 +294,6 @@ impl Playback {
     /// Sets the speed.
     pub fn set_speed(&mut self, speed: Speed) {
         self.pace.set_speed(speed);
-    }
-
-    /// Goes `notches` up the ladder of speeds, or down.
-    pub fn shift_speed(&mut self, notches: i32) {
-        self.pace.shift(notches);
     }
 
     /// The speed that is set.

@@ -61,6 +61,44 @@ impl Document {
         }
     }
 
+    /// Reads what `reader` gives to its end.
+    ///
+    /// # Errors
+    /// When it cannot be read, is longer than any file that is taken, or is not TOML.
+    pub fn read_from(origin: &str, reader: impl Read) -> Result<Self, Problems> {
+        let mut text = Vec::new();
+        let read = reader.take(LONGEST + 1).read_to_end(&mut text);
+        let read = read.map_err(|error| Problem::at("", format!("cannot be read: {error}")));
+        let fail = |problem| Problems {
+            origin: origin.to_owned(),
+            list: vec![problem],
+        };
+        read.and_then(|_| short_enough(text))
+            .map_err(fail)
+            .and_then(|text| Self::parse(origin, &text))
+    }
+
+    /// The file, as the user named it.
+    pub fn origin(&self) -> &str {
+        &self.origin
+    }
+
+    /// What is in it.
+    pub fn table(&self) -> &toml::Table {
+        &self.table
+    }
+
+    /// The lines, from 1, at which the dotted `keys` stand in the text.
+    pub fn lines_of(&self, keys: impl Iterator<Item = String>) -> Vec<Option<usize>> {
+        let spans = DeTable::parse(&self.text).ok();
+        let line_ends: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
+        let line = |key: String| {
+            let offset = offset_of(spans.as_ref()?.get_ref(), &key)?;
+            Some(line_ends.partition_point(|&end| end < offset) + 1)
+        };
+        keys.map(line).collect()
+    }
+
     /// Takes `text` as the scenario that `origin` holds.
     ///
     /// # Errors
@@ -202,7 +240,7 @@ impl Document {
     }
 
     /// Problems with the places at which the user wrote their keys, in the order of the file.
-    fn placed(&self, mut list: Vec<Problem>) -> Problems {
+    pub fn placed(&self, mut list: Vec<Problem>) -> Problems {
         let spans = DeTable::parse(&self.text).ok();
         let written = (!self.set.is_empty()).then(|| self.text.parse().unwrap_or_default());
         let line_ends: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
@@ -283,11 +321,13 @@ fn read_text(path: &Path) -> Result<String, Problem> {
         )));
     }
     reader.read_to_end(&mut text).map_err(cannot)?;
+    short_enough(text)
+}
+
+fn short_enough(text: Vec<u8>) -> Result<String, Problem> {
     if text.len() as u64 > LONGEST {
-        return Err(whole(format!(
-            "is longer than {} MiB: not a scenario",
-            LONGEST >> 20
-        )));
+        let rule = format!("is longer than {} MiB: not a scenario", LONGEST >> 20);
+        return Err(Problem::at("", rule));
     }
     utf8(text)
 }

@@ -140,6 +140,29 @@ pub struct ViewFile {
     pub speed: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub look_at: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub window_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exact: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub show: Option<Vec<String>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hide: Option<Vec<String>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fill: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub camera: Option<CameraFile>,
+}
+
+/// `[view.camera]`
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs, reason = "the table of keys says what each key means")]
+pub struct CameraFile {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub yaw_deg: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pitch_deg: Option<f64>,
 }
 
 /// `[[expected]]`

@@ -101,7 +101,25 @@ pub const GRAVITY: f64 = 9.8;
 pub const SPEED: f64 = 1.0;
 
 use Absent::Word;
-use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole};
+/// The panes of the lab, as files and commands name them.
+pub const PANES: [&str; 4] = ["traces", "above", "3d", "parameters"];
+
+/// What of the lab's screen can be hidden: the panes, the line about the numbers' health, the numbers that theory
+/// predicts, the line that says what there is to see.
+pub const HIDEABLE: [&str; 7] = [
+    "traces",
+    "above",
+    "3d",
+    "parameters",
+    "health",
+    "predicted",
+    "look_at",
+];
+
+/// What can fill the screen.
+pub const FILLING: [&str; 5] = ["traces", "above", "3d", "parameters", "none"];
+
+use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole, Words};
 use Nudge::{By, Hundredth, Ladder, Turn, Typed, WholeHundredth};
 use Range::{Any, NotNegative, Positive};
 
@@ -197,6 +215,13 @@ pub static KEYS: &[Key] = &[
     may("push.*.accumulates", Flag, "true: j times the force on its j-th step, then steps times it to the end (default: false)").lab("accumulates", "", Turn).or(Absent::Flag(false)),
     may("view.speed", Number(Positive), "what the workbench starts with: simulated seconds a second (default: 1)").lab("speed", "s/s", Ladder).or(Absent::Number(SPEED)),
     may("view.look_at", Line, "one line: what there is to see").lab("look at", "", Typed),
+    may("view.window_s", Number(Positive), "length of time that the traces show, s (default: the run, or what is played of it in two minutes)"),
+    may("view.exact", Flag, "whether the exact motion is drawn beside the run (default: false)"),
+    may("view.show", Words(&PANES), "the panes that share the screen, where it has room for them; empty: as many as there is room for (default)"),
+    may("view.hide", Words(&HIDEABLE), "what is not shown: panes, the line about the numbers' health, theory's predicted numbers, the line look_at (default: empty)"),
+    may("view.fill", OneOf(&FILLING), "the pane that fills the screen (default: none)"),
+    may("view.camera.yaw_deg", Number(Any), "from where the 3-D view is seen: angle of the eye about +z, from -y, degrees"),
+    may("view.camera.pitch_deg", Number(Any), "height of the eye above the horizontal, degrees, -90 to 90"),
     must("expected.*.readout", Line, "a column of the CSV that the preset's test checks"),
     must("expected.*.at_step", Whole(0, i64::MAX), "at which step"),
     must("expected.*.value", Number(Any), "its value there"),
@@ -334,6 +359,50 @@ pub fn join(under: &str, name: &str) -> String {
     } else {
         format!("{under}.{name}")
     }
+}
+
+/// The row of the dotted `key`, numbers for places in arrays, and what a value there may be: of a number in a vector any
+/// finite number.
+///
+/// # Errors
+/// Why there is no such key, with the nearest that there is.
+pub fn find(key: &str) -> Result<(&'static Key, Kind), String> {
+    let is_number = |name: &str| !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit());
+    let pattern = |key: &str| {
+        let names = key
+            .split('.')
+            .map(|name| if is_number(name) { "*" } else { name });
+        names.collect::<Vec<_>>().join(".")
+    };
+    let row = |pattern: &str| KEYS.iter().find(|known| known.path == pattern);
+    if let Some(row) = row(&pattern(key)) {
+        return Ok((row, row.kind));
+    }
+    if let Some((vector, place)) = key.rsplit_once('.')
+        && let Some(row) = row(&pattern(vector)).filter(|row| row.kind == Vector)
+    {
+        return match place {
+            "0" | "1" | "2" => Ok((row, Number(Any))),
+            _ => Err("unknown key: a vector's numbers are .0, .1 and .2".to_owned()),
+        };
+    }
+    let near = key
+        .rsplit('.')
+        .next()
+        .and_then(elsewhere)
+        .unwrap_or_else(|| nearest(&pattern(key), KEYS.iter().map(|key| key.path)));
+    Err(format!("unknown key: {near}"))
+}
+
+/// Whether the dotted `key` leads to a table of keys, or to an element of an array of such.
+pub fn is_table(key: &str) -> bool {
+    let is_number = |name: &str| !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit());
+    let names: Vec<_> = key
+        .split('.')
+        .map(|name| if is_number(name) { "*" } else { name })
+        .collect();
+    KEYS.iter()
+        .any(|known| is_under(known.path, &names.join(".")))
 }
 
 /// What setting a key does to a run.

@@ -2,7 +2,7 @@
 
 use super::problem::nearest;
 use crate::text::printable::is_steering;
-use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole};
+use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole, Words};
 use Range::{NotNegative, Positive};
 use toml::Value;
 
@@ -23,6 +23,8 @@ pub enum Kind {
     Flag,
     /// One of these words.
     OneOf(&'static [&'static str]),
+    /// A list of these words.
+    Words(&'static [&'static str]),
     /// A table of dotted keys and their new values (run files).
     Settings,
 }
@@ -55,6 +57,7 @@ impl Kind {
                 .map(|_| ())
                 .ok_or_else(|| not("true or false", value)),
             OneOf(words) => text(value).and_then(|text| check_word(text, words)),
+            Words(words) => check_words(value, words),
             Settings => value
                 .as_table()
                 .map(|_| ())
@@ -147,6 +150,16 @@ fn check_vector(value: &Value) -> Result<(), String> {
         number(item)
             .map(|_| ())
             .map_err(|rule| format!("each {rule}"))
+    })
+}
+
+fn check_words(value: &Value, words: &[&str]) -> Result<(), String> {
+    let items = value
+        .as_array()
+        .ok_or_else(|| not("a list in brackets", value))?;
+    items.iter().try_for_each(|item| {
+        let checked = text(item).and_then(|word| check_word(word, words));
+        checked.map_err(|rule| format!("each {rule}"))
     })
 }
 

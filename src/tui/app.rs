@@ -132,7 +132,7 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
     match keymap::action(lab.mode(), key) {
         Some(action) => lab.update(action),
         None => {
-            lab.refuse(key);
+            lab.refuse(keymap::refusal(lab.mode(), key));
             None
         }
     }

@@ -1,5 +1,6 @@
 //! The one table of keys: what is pressed, in which mode, what it means, and what the footer and the help say of it.
 
+pub use crate::lab::Mode;
 use crate::lab::action::{Action, Direction, FieldEdit};
 use Key::{
     BackTab, Backspace, Char, Ctrl, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp,
@@ -31,26 +32,6 @@ pub enum Key {
     ShiftRight,
     PageUp,
     PageDown,
-}
-
-/// What lies on top of the screen and gets the keys.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
-    /// The panes.
-    Lab,
-    /// The browser of presets and files.
-    Browser,
-    /// The line in which its filter is typed.
-    Filter,
-    /// The list of keys.
-    Help,
-    /// A dialog that is typed into.
-    Dialog,
-}
-
-impl Mode {
-    /// Every mode.
-    pub const ALL: [Self; 5] = [Lab, Browser, Filter, Help, Dialog];
 }
 
 /// One row of the table.
@@ -156,6 +137,16 @@ pub fn action(mode: Mode, key: Key) -> Option<Action> {
         (None, Lab, Char(digit)) => digit.to_digit(10).map(|digit| Action::Digit(digit as u8)),
         (None, Filter | Dialog, Char(typed)) => Some(Action::Type(typed)),
         _ => None,
+    }
+}
+
+/// What is to be said of `key`, which means nothing in `mode`.
+pub fn refusal(mode: Mode, key: Key) -> String {
+    match (mode, key) {
+        (Lab, Char('/')) => "/ filters the list of presets and files: o shows it".to_owned(),
+        (Filter, _) => format!("no key {key} here; Enter opens, Esc clears the filter"),
+        (Dialog, _) => format!("no key {key} here; Enter takes what is typed, Esc leaves it"),
+        _ => format!("no key {key} here; ? lists them"),
     }
 }
 

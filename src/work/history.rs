@@ -5,7 +5,7 @@ use super::next_push::NextPush;
 use crate::run::Clock;
 use crate::scenario::{Problems, Scenario};
 use serde::{Deserialize, Serialize};
-use toml::Value;
+use toml::Table;
 
 /// Runs that can be gone back to, and for large bodies as many as have so many points together.
 const MOST_RUNS: usize = 200;
@@ -136,26 +136,26 @@ impl History {
         Ok(scenario)
     }
 
-    /// Begins a new run with `value` at `key`, as [`Journal::begun_with`] has it.
+    /// Begins a new run with the values of `set`, as [`Journal::begun_with`] has it.
     ///
     /// # Errors
     /// Why it cannot begin so; nothing has changed then.
-    pub fn begin_with(&mut self, key: &str, value: Value) -> Result<Scenario, Problems> {
+    pub fn begin_with(&mut self, set: &Table) -> Result<Scenario, Problems> {
         let left = &self.present;
-        let (journal, scenario) = left.journal.begun_with(left.left_at, key, value)?;
+        let (journal, scenario) = left.journal.begun_with(left.left_at, set)?;
         self.begin_chapter(Chapter::new(&left.name, journal, &scenario));
         Ok(scenario)
     }
 
-    /// Begins the present run once more with another `value` at the `key` that it was begun with, in its place.
+    /// Begins the present run once more with other values of the keys that it was begun with, in its place.
     ///
     /// # Errors
     /// Why it cannot begin so; nothing has changed then.
-    pub fn begin_again_with(&mut self, key: &str, value: Value) -> Result<Scenario, Problems> {
+    pub fn begin_again_with(&mut self, set: &Table) -> Result<Scenario, Problems> {
         let Some(left) = self.past.last() else {
-            return self.begin_with(key, value);
+            return self.begin_with(set);
         };
-        let (journal, scenario) = left.journal.begun_with(left.left_at, key, value)?;
+        let (journal, scenario) = left.journal.begun_with(left.left_at, set)?;
         self.present = Chapter::new(&left.name, journal, &scenario);
         self.undone.clear();
         Ok(scenario)
@@ -210,6 +210,11 @@ impl Chapter {
 mod tests {
     use super::*;
     use crate::scenario::Document;
+    use toml::Value;
+
+    fn one(key: &str, value: f64) -> Table {
+        Table::from_iter([(key.to_owned(), Value::Float(value))])
+    }
 
     fn opened(name: &str) -> Scenario {
         Document::open(name).unwrap().scenario().unwrap()
@@ -222,7 +227,7 @@ mod tests {
     fn begin_with_tilt(history: &mut History, step: u64, tilt_deg: f64) {
         leave(history, step);
         history
-            .begin_with("start.tilt_deg", Value::Float(tilt_deg))
+            .begin_with(&one("start.tilt_deg", tilt_deg))
             .unwrap();
     }
 
@@ -294,7 +299,7 @@ mod tests {
         for tilt_deg in [31.0, 32.0] {
             leave(&mut history, 5);
             history
-                .begin_again_with("start.tilt_deg", Value::Float(tilt_deg))
+                .begin_again_with(&one("start.tilt_deg", tilt_deg))
                 .unwrap();
         }
         assert_eq!(tilt(&history), Some(32.0));
@@ -327,7 +332,7 @@ mod tests {
             .act(5, Act::set("motion.time_step_s", Value::Float(-1.0)))
             .unwrap_err();
         history
-            .begin_with("body.rim.radius_m", Value::Float(-1.0))
+            .begin_with(&one("body.rim.radius_m", -1.0))
             .unwrap_err();
         history
             .act(5, Act::set("motion.steps", Value::Integer(0)))

@@ -301,17 +301,12 @@ impl Journal {
         self.base.push.len() + given.count()
     }
 
-    /// A new run with `value` at `key`: nothing is done to it yet, and it moves from the start as this one does at `step`.
+    /// A new run with the values of `set`: nothing is done to it yet, and it moves from the start as this one does at `step`.
     ///
     /// # Errors
     /// Why it cannot begin so.
-    pub fn begun_with(
-        &self,
-        step: u64,
-        key: &str,
-        value: Value,
-    ) -> Result<(Self, Scenario), Problems> {
-        let scenario = parameters::changed(&self.as_it_moves_at(step)?, key, value)?;
+    pub fn begun_with(&self, step: u64, set: &Table) -> Result<(Self, Scenario), Problems> {
+        let scenario = parameters::changed_all(&self.as_it_moves_at(step)?, set)?;
         Ok((Self::of(scenario.file.clone()), scenario))
     }
 
@@ -450,7 +445,10 @@ mod tests {
         let title = Act::set("title", Value::String("Mine".to_owned()));
         journal.act(500, title).unwrap();
         assert_eq!(journal.file_until(100).title, "Mine");
-        let begun = journal.begun_with(100, "start.tilt_deg", Value::Float(3.0));
+        let begun = journal.begun_with(
+            100,
+            &Table::from_iter([("start.tilt_deg".to_owned(), Value::Float(3.0))]),
+        );
         assert_eq!(begun.unwrap().1.file.title, "Mine");
     }
 
@@ -563,7 +561,10 @@ mod tests {
             .unwrap();
         journal.act(60, gravity(1.6)).unwrap();
         let (begun, scenario) = journal
-            .begun_with(60, "start.tilt_deg", Value::Float(10.0))
+            .begun_with(
+                60,
+                &Table::from_iter([("start.tilt_deg".to_owned(), Value::Float(10.0))]),
+            )
             .unwrap();
         assert_eq!(
             (scenario.motion.time_step_s, scenario.motion.gravity),
@@ -577,7 +578,10 @@ mod tests {
             "its seconds are held"
         );
         let (_, earlier) = journal
-            .begun_with(39, "start.tilt_deg", Value::Float(10.0))
+            .begun_with(
+                39,
+                &Table::from_iter([("start.tilt_deg".to_owned(), Value::Float(10.0))]),
+            )
             .unwrap();
         assert_eq!(earlier.motion.time_step_s, 0.1);
     }

@@ -108,7 +108,8 @@ impl Toward {
             .map(|(name, _)| *name)
     }
 
-    fn shown(self) -> String {
+    /// As [`typed`](Self::typed) reads it.
+    pub fn shown(self) -> String {
         match (self.name(), self) {
             (Some(name), _) => name.to_owned(),
             (None, Self::Along(direction)) => direction.map(shortest).join(" "),
@@ -117,7 +118,10 @@ impl Toward {
     }
 
     /// A name, or three numbers.
-    fn typed(text: &str) -> Result<Self, String> {
+    ///
+    /// # Errors
+    /// What it may be, where it is neither.
+    pub fn typed(text: &str) -> Result<Self, String> {
         let text = text.trim().trim_matches(['[', ']']);
         if let Some((_, toward)) = Self::NAMED.iter().find(|(name, _)| *name == text) {
             return Ok(*toward);
@@ -298,7 +302,11 @@ impl NextPush {
         next.checked()
     }
 
-    fn checked(self) -> Result<Self, String> {
+    /// The same, where it is a push.
+    ///
+    /// # Errors
+    /// Why it is none.
+    pub fn checked(self) -> Result<Self, String> {
         let is_good = |number: f64| number > 0.0 && number.is_finite();
         match (is_good(self.size_N), is_good(self.for_s)) {
             (true, true) => Ok(self),

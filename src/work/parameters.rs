@@ -99,8 +99,18 @@ pub fn table_at(scenario: &Scenario, step: u64) -> Table {
 /// # Errors
 /// What is wrong with it then; [`Problems::in_one_line`] says it in short.
 pub fn changed(file: &ScenarioFile, key: &str, value: Value) -> Result<Scenario, Problems> {
+    changed_all(file, &Table::from_iter([(key.to_owned(), value)]))
+}
+
+/// As [`changed`], with all values of `set`.
+///
+/// # Errors
+/// As [`changed`].
+pub fn changed_all(file: &ScenarioFile, set: &Table) -> Result<Scenario, Problems> {
     let mut document = Document::from_file("scenario", file)?;
-    document.write(key, value)?;
+    for (key, value) in set {
+        document.write(key, value.clone())?;
+    }
     document.scenario()
 }
 
@@ -292,7 +302,9 @@ impl Parameter {
             Kind::Flag => Value::Boolean(typed_flag(text)?),
             Kind::OneOf(_) => Value::String(text.trim().to_owned()),
             Kind::Paragraph => Value::String(unescaped(text)),
-            Kind::Line | Kind::Vector | Kind::Settings => Value::String(text.to_owned()),
+            Kind::Line | Kind::Vector | Kind::Words(_) | Kind::Settings => {
+                Value::String(text.to_owned())
+            }
         };
         self.checked(value)
     }

@@ -59,7 +59,7 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
         push,
         view: speed.map(|speed| ViewFile {
             speed: Some(speed),
-            look_at: None,
+            ..ViewFile::default()
         }),
         expected: Vec::new(),
         edit: Vec::new(),

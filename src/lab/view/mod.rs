@@ -41,6 +41,55 @@ impl Pane {
     ];
 }
 
+/// What can be hidden of the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// A pane.
+    Pane(Pane),
+    /// The line about the numbers' health.
+    Health,
+    /// The numbers that theory predicts.
+    Predicted,
+    /// The line that says what there is to see.
+    LookAt,
+}
+
+impl Pane {
+    /// Its name in files and commands.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Traces => "traces",
+            Self::FromAbove => "above",
+            Self::ThreeD => "3d",
+            Self::Parameters => "parameters",
+        }
+    }
+
+    /// The pane of that name.
+    pub fn named(id: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|pane| pane.id() == id)
+    }
+}
+
+impl Part {
+    /// Its name in files and commands.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Pane(pane) => pane.id(),
+            Self::Health => "health",
+            Self::Predicted => "predicted",
+            Self::LookAt => "look_at",
+        }
+    }
+
+    /// The part of that name.
+    pub fn named(id: &str) -> Option<Self> {
+        let others = [Self::Health, Self::Predicted, Self::LookAt];
+        let other = others.into_iter().find(|part| part.id() == id);
+        other.or_else(|| Pane::named(id).map(Self::Pane))
+    }
+}
+
 /// Options of the view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
@@ -56,6 +105,12 @@ pub struct View {
     pub window_s: f64,
     /// Where the 3-D view is looked at from.
     pub camera: Camera,
+    /// The panes that share the screen; none: as many as there is room for.
+    pub shown: Vec<Pane>,
+    /// What is not shown.
+    pub hidden: Vec<Part>,
+    /// What there is to see, where it was told apart from the scenario.
+    pub look_at: Option<String>,
     /// First line shown of a pane or list that is longer than its place.
     pub scroll: usize,
 }
@@ -63,32 +118,69 @@ pub struct View {
 impl View {
     /// What a lab starts with: the traces show the run of `scenario`.
     pub fn new(scenario: &Scenario, marker: Marker, theme: Theme) -> Self {
-        Self {
+        let mut view = Self {
             focus: Pane::Traces,
             filled: false,
             marker,
             theme,
             window_s: first_window_s(scenario),
             camera: Camera::default(),
+            shown: Vec::new(),
+            hidden: Vec::new(),
+            look_at: None,
             scroll: 0,
+        };
+        view.fit(scenario);
+        view
+    }
+
+    /// For another scenario: the traces show its run, and the screen begins as its `[view]` says.
+    pub fn fit(&mut self, scenario: &Scenario) {
+        let file = scenario.file.view.clone().unwrap_or_default();
+        self.window_s = file.window_s.unwrap_or_else(|| first_window_s(scenario));
+        let panes = file.show.iter().flatten();
+        self.shown = panes.filter_map(|id| Pane::named(id)).collect();
+        let parts = file.hide.iter().flatten();
+        self.hidden = parts.filter_map(|id| Part::named(id)).collect();
+        self.look_at = None;
+        if let Some(fill) = &file.fill {
+            self.fill(Pane::named(fill));
+        }
+        if let Some(camera) = file.camera {
+            let usual = Camera::default();
+            self.camera = Camera {
+                yaw_deg: camera.yaw_deg.unwrap_or(usual.yaw_deg),
+                pitch_deg: camera.pitch_deg.unwrap_or(usual.pitch_deg),
+            };
         }
     }
 
-    /// For another scenario: the traces show its run.
-    pub fn fit(&mut self, scenario: &Scenario) {
-        self.window_s = first_window_s(scenario);
+    /// Whether `part` is hidden.
+    pub fn hides(&self, part: Part) -> bool {
+        self.hidden.contains(&part)
     }
 
-    /// Twice the time on the traces (`wider`), or half of it; at least two steps of `time_step_s` (s) remain.
-    pub fn zoom(&mut self, wider: bool, time_step_s: f64) {
+    /// Whether `pane` may be on the screen.
+    pub fn may_show(&self, pane: Pane) -> bool {
+        let is_shown = self.shown.is_empty() || self.shown.contains(&pane);
+        is_shown && !self.hides(Part::Pane(pane))
+    }
+
+    /// `pane` fills the screen, or none does.
+    pub fn fill(&mut self, pane: Option<Pane>) {
+        self.filled = pane.is_some();
+        self.focus = pane.unwrap_or(self.focus);
+    }
+
+    /// The time on the traces, s, when they show twice as much (`wider`), or half; `None` where less than two steps of
+    /// `time_step_s` (s) would remain.
+    pub fn zoomed(&self, wider: bool, time_step_s: f64) -> Option<f64> {
         let window_s = if wider {
             self.window_s * 2.0
         } else {
             self.window_s / 2.0
         };
-        if window_s >= 2.0 * time_step_s && window_s.is_finite() {
-            self.window_s = window_s;
-        }
+        (window_s >= 2.0 * time_step_s && window_s.is_finite()).then_some(window_s)
     }
 
     /// The focus on the next pane of `shown`, or on the one before.
@@ -119,11 +211,6 @@ impl View {
         if !shown.contains(&self.focus) {
             self.focus = Pane::Traces;
         }
-    }
-
-    /// The pane in focus fills the screen, or no longer.
-    pub fn toggle_filled(&mut self) {
-        self.filled = !self.filled;
     }
 
     /// The 3-D view fills the screen, or no longer.

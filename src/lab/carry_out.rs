@@ -1,0 +1,393 @@
+//! Carrying commands out: each answers with what it did, or why it did nothing.
+
+use super::command::{Command, Force, Place, PushChoice};
+use super::{Lab, numbers};
+use crate::lab::view::Pane;
+use crate::observe::live::LiveRun;
+use crate::observe::pace::Speed;
+use crate::run::Simulation;
+use crate::scenario::keys;
+use crate::scenario::problem::nearest;
+use crate::work::expression::Expression;
+use crate::work::journal::Act;
+use crate::work::next_push::{Field, NextPush, Toward};
+use indicatif::HumanCount;
+use nalgebra::Vector3;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A step that takes longer than this is announced, s.
+const LONG_STEP_S: f64 = 3.0;
+
+/// What a command has done.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Done {
+    /// In words, where there is something to say that is not to be seen.
+    pub said: Option<String>,
+    /// Whether that stands until the next key.
+    pub stays: bool,
+    /// What goes on after the command, where it does.
+    pub under_way: Option<UnderWay>,
+}
+
+/// What a command has begun, and time brings to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnderWay {
+    /// The run is on its way to a step.
+    Going,
+    /// The run plays until a condition holds.
+    Playing,
+    /// The clock goes on to this time.
+    Waiting(Duration),
+    /// A file is being written.
+    Exporting,
+}
+
+/// Why a command has done nothing.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Refusal {
+    /// The file exists.
+    #[error("{0} exists: force = true replaces it")]
+    Exists(PathBuf),
+    /// For this reason.
+    #[error("{0}")]
+    Because(String),
+}
+
+impl From<String> for Refusal {
+    fn from(reason: String) -> Self {
+        Self::Because(reason)
+    }
+}
+
+impl From<&str> for Refusal {
+    fn from(reason: &str) -> Self {
+        Self::Because(reason.to_owned())
+    }
+}
+
+impl Done {
+    /// Nothing is to be said of it.
+    pub(super) const SILENT: Self = Self {
+        said: None,
+        stays: false,
+        under_way: None,
+    };
+
+    /// Says `text` for a while.
+    pub(super) fn saying(text: impl Into<String>) -> Self {
+        Self {
+            said: Some(text.into()),
+            ..Self::SILENT
+        }
+    }
+
+    pub(super) fn going_on(self, under_way: UnderWay) -> Self {
+        Self {
+            under_way: Some(under_way),
+            ..self
+        }
+    }
+}
+
+/// What became of a command.
+pub type Answer = Result<Done, Refusal>;
+
+impl Lab {
+    /// Carries `command` out; says in words what it did, or why it did nothing. What it begins goes on as time passes.
+    ///
+    /// # Errors
+    /// Why nothing was done.
+    pub fn carry_out(&mut self, command: &Command) -> Answer {
+        if !matches!(command, Command::Nudge { .. }) {
+            self.last_nudged = None;
+        }
+        let answer = self.done(command);
+        self.keep_focus();
+        self.read_now();
+        answer
+    }
+
+    fn done(&mut self, command: &Command) -> Answer {
+        match command {
+            Command::Open(name) => self.open_named(name),
+            Command::Set(table) => self.set_all(table),
+            Command::Nudge { key, times } => self.nudge(key, *times),
+            Command::Push(choice) => self.push(choice),
+            Command::NextPush(choice) => {
+                self.choose_next_push(self.chosen(choice)?);
+                Ok(Done::SILENT)
+            }
+            Command::Step(steps) => self.step(*steps),
+            Command::GoTo(place) => self.go_to(*place),
+            Command::RunUntil(condition) => self.run_until(condition),
+            Command::Run => {
+                self.playback.set_running(true);
+                Ok(Done::SILENT)
+            }
+            Command::Pause => Ok(self.pause()),
+            Command::Wait(seconds) => {
+                let until = self.now + Duration::try_from_secs_f64(*seconds).unwrap_or_default();
+                Ok(Done::SILENT.going_on(UnderWay::Waiting(until)))
+            }
+            Command::Undo(times) => self.undo(*times),
+            Command::Redo(times) => self.redo(*times),
+            Command::Export {
+                path,
+                every,
+                to_step,
+                force,
+            } => {
+                let scenario = self.run_until_step(*to_step, "export")?;
+                let path = self.path_of(path);
+                self.export(&scenario, &path, *every, *force)
+            }
+            Command::Save {
+                path,
+                from_here,
+                to_step,
+                force,
+            } => {
+                let path = self.path_of(path);
+                match from_here {
+                    true => {
+                        let content = self.present_as_text()?;
+                        self.save("the scenario", &content, &path, *force)
+                    }
+                    false => {
+                        let run = self.run_until_step(*to_step, "save")?;
+                        self.save("the run", &run.to_toml(), &path, *force)
+                    }
+                }
+            }
+            Command::Speed(speed) => Ok(self.set_speed(*speed)),
+            Command::LookAt(text) => {
+                self.view.look_at = Some(text.clone());
+                Ok(Done::SILENT)
+            }
+            Command::Window(window_s) => self.set_window(*window_s),
+            Command::Exact(shown) => Ok(self.set_exact(*shown)),
+            Command::Show(panes) => {
+                self.view.shown.clone_from(panes);
+                Ok(Done::SILENT)
+            }
+            Command::Hide(parts) => {
+                self.view.hidden.clone_from(parts);
+                Ok(Done::SILENT)
+            }
+            Command::Fill(pane) => {
+                self.view.fill(*pane);
+                Ok(Done::SILENT)
+            }
+            Command::Camera(camera) => {
+                self.view.camera = *camera;
+                Ok(Done::SILENT)
+            }
+        }
+    }
+
+    fn open_named(&mut self, name: &str) -> Answer {
+        match super::opening::again(name).and_then(|document| document.scenario()) {
+            Ok(scenario) => {
+                self.open(name, Arc::new(scenario));
+                Ok(Done::SILENT)
+            }
+            Err(problems) => Err(format!("{}: {}", problems.origin, problems.in_one_line()).into()),
+        }
+    }
+
+    /// Sets every key of `table`: those of body and start in a new run, the others from here on.
+    fn set_all(&mut self, table: &toml::Table) -> Answer {
+        let is_of_a_new_run = |key: &str| keys::Effect::of(key) == keys::Effect::NewRun;
+        let (new, rest): (toml::Table, toml::Table) = table
+            .clone()
+            .into_iter()
+            .partition(|(key, _)| is_of_a_new_run(key));
+        let acts = acts(rest);
+        match new.is_empty() {
+            false => self.begin_with(&new, acts, false),
+            true => {
+                let made_way = self.act_all(acts, false)?;
+                Ok(Done::saying(made_way.unwrap_or_else(
+                    || match table.len() {
+                        1 => table.keys().map(|key| self.said_of(key)).collect(),
+                        more => format!("{more} values; u takes them back"),
+                    },
+                )))
+            }
+        }
+    }
+
+    fn nudge(&mut self, key: &str, times: i32) -> Answer {
+        let Some(parameter) = self.parameter(key).cloned() else {
+            let known = self.editor.lines().iter();
+            let known = known
+                .map(|line| line.key.as_str())
+                .filter(|key| !key.is_empty());
+            return Err(format!(
+                "{key} is no value of this scenario: {}",
+                nearest(key, known)
+            )
+            .into());
+        };
+        let value = parameter
+            .nudged(times)
+            .map_err(|reason| format!("{} {reason}", parameter.label))?;
+        let now = self.now;
+        let is_again = self
+            .last_nudged
+            .as_ref()
+            .is_some_and(|(last, at)| *last == key && now.saturating_sub(*at) < super::BELONGS);
+        let table = toml::Table::from_iter([(key.to_owned(), value)]);
+        let done = match keys::Effect::of(key) {
+            keys::Effect::NewRun => self.begin_with(&table, Vec::new(), is_again)?,
+            keys::Effect::FromHere | keys::Effect::None => {
+                let made_way = self.act_all(acts(table), is_again)?;
+                Done::saying(made_way.unwrap_or_else(|| self.said_of(key)))
+            }
+        };
+        self.last_nudged = Some((key.to_owned(), now));
+        Ok(done)
+    }
+
+    /// The push to come, with what `choice` has of its own.
+    fn chosen(&self, choice: &PushChoice) -> Result<NextPush, String> {
+        let scenario = self.run().scenario();
+        let mut push = self.next_push.clone();
+        if let Some(point) = &choice.point {
+            push = push.typed(Field::Point, point, scenario, self.motion().time_step_s)?;
+        }
+        match choice.force_N {
+            None => {}
+            Some(Force::Size(size)) => push.size_N = size,
+            Some(Force::Vector(vector)) => {
+                push.size_N = Vector3::from(vector).norm();
+                push.toward = Toward::Along(vector);
+            }
+        }
+        push.toward = choice.toward.unwrap_or(push.toward);
+        push.for_s = choice.for_s.unwrap_or(push.for_s);
+        push.checked()
+    }
+
+    /// Gives the push to come, with what `choice` has of its own, from here on.
+    fn push(&mut self, choice: &PushChoice) -> Answer {
+        let push = self.chosen(choice)?;
+        let run = self.run();
+        let mut given = push.given(run.scenario(), run.simulation().state())?;
+        if let Some(Force::Vector(vector)) = choice.force_N {
+            given.force_N = vector; // as it was written, to the last digit
+        }
+        let said = format!(
+            "pushed: {}; u takes it back, P chooses another",
+            push.in_words()
+        );
+        let made_way = self.act_all(vec![Act::Push(given)], false)?;
+        Ok(Done::saying(made_way.unwrap_or(said)))
+    }
+
+    fn step(&mut self, steps: i64) -> Answer {
+        let here = self.playback.step_number();
+        match steps {
+            0.. => self.playback.take_steps(steps.unsigned_abs()),
+            _ if here == 0 => return Err("the run begins here".into()),
+            _ => self
+                .playback
+                .go_to(here.saturating_sub(steps.unsigned_abs())),
+        }
+        Ok(Done::SILENT.going_on(UnderWay::Going))
+    }
+
+    fn go_to(&mut self, place: Place) -> Answer {
+        let step = match place {
+            Place::Step(step) => step,
+            Place::Time(time_s) => self.step_at(time_s)?,
+            Place::Start => 0,
+            Place::End => self.playback.end_step(),
+        };
+        self.playback.go_to(step);
+        Ok(Done::SILENT.going_on(UnderWay::Going))
+    }
+
+    /// The step at `time_s`.
+    ///
+    /// # Errors
+    /// Where no run has been yet.
+    pub(super) fn step_at(&self, time_s: f64) -> Result<u64, String> {
+        match time_s >= 0.0 && time_s.is_finite() {
+            true => Ok(Simulation::step_at(self.run().scenario(), time_s)),
+            false => Err("must be a time from 0 s on: the run begins there".to_owned()),
+        }
+    }
+
+    fn run_until(&mut self, condition: &Expression) -> Answer {
+        let run = self.run();
+        let bound = condition
+            .bind(|name| numbers::source(run, name), numbers::names())
+            .map_err(|fault| fault.to_string())?;
+        let condition = move |run: &LiveRun| bound.holds(|source| source.value(run));
+        Ok(match self.playback.run_until(Box::new(condition)) {
+            true => Done::SILENT.going_on(UnderWay::Playing),
+            false => Done::saying("it holds already, at this step"),
+        })
+    }
+
+    fn pause(&mut self) -> Done {
+        if let Some(left) = self.playback.steps_to_go() {
+            self.playback.set_running(false);
+            let left = HumanCount(left);
+            return Done::saying(format!("stopped with {left} steps to go"));
+        }
+        self.playback.set_running(false);
+        Done::SILENT
+    }
+
+    fn set_speed(&mut self, speed: Speed) -> Done {
+        self.playback.set_speed(speed);
+        let Speed::Times(speed) = speed else {
+            return Done::SILENT;
+        };
+        let wall_s = self.run().simulation().motion().time_step_s / speed;
+        match wall_s > LONG_STEP_S {
+            true => Done::saying(format!(
+                "a step takes {wall_s:.0} s at this speed; . takes one now"
+            )),
+            false => Done::SILENT,
+        }
+    }
+
+    fn set_window(&mut self, window_s: f64) -> Answer {
+        let least_s = 2.0 * self.run().simulation().motion().time_step_s;
+        if window_s < least_s {
+            return Err(format!("the traces show two time steps at least: {least_s} s").into());
+        }
+        self.view.window_s = window_s;
+        Ok(Done::saying(format!("the traces show {window_s} s")))
+    }
+
+    fn set_exact(&mut self, shown: bool) -> Done {
+        if shown != self.run().overlay().is_some() {
+            self.playback.set_exact(shown);
+        }
+        Done::saying(match shown {
+            true => "the exact motion of the same start is drawn in dashes; t takes it away",
+            false => "without the exact motion",
+        })
+    }
+
+    /// Whether `pane` fills the screen.
+    pub(super) fn is_filled_by(&self, pane: Pane) -> bool {
+        self.view.filled && self.view.focus == pane
+    }
+}
+
+/// What setting the keys of `table` comes to: an edit, a description, or both.
+fn acts(table: toml::Table) -> Vec<Act> {
+    let is_idle = |key: &str| keys::Effect::of(key) == keys::Effect::None;
+    let (idle, acting): (toml::Table, toml::Table) =
+        table.into_iter().partition(|(key, _)| is_idle(key));
+    let edit = (!acting.is_empty()).then_some(Act::Edit(acting));
+    let description = (!idle.is_empty()).then_some(Act::Describe(idle));
+    edit.into_iter().chain(description).collect()
+}

@@ -1,0 +1,316 @@
+//! What a user can do to the lab, as a value: what keys and dialogs lead to, what `--do` and lessons say.
+//!
+//! A file of commands is a list of `[[do]]` tables with one command each. The [table](COMMANDS) has every name, what
+//! stands behind it, and what it does; [`read`] and [`to_toml`] go by it, and so does the manual.
+
+mod table;
+
+pub use table::{COMMANDS, Row};
+
+use crate::lab::view::{Pane, Part};
+use crate::observe::camera::Camera;
+use crate::observe::pace::Speed;
+use crate::scenario::problem::nearest;
+use crate::scenario::{Document, Problem, Problems};
+use crate::work::expression::Expression;
+use crate::work::next_push::Toward;
+use std::num::NonZeroU64;
+use std::path::Path;
+use toml::{Table, Value};
+
+/// Something a user can do to the lab.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Opens a preset or a file: SCENARIO as on the command line.
+    Open(String),
+    /// Sets dotted keys of the scenario: one act, taken back at once.
+    Set(Table),
+    /// Nudges the value of a dotted key up so many times, or down where that is negative.
+    Nudge {
+        /// The key, of a single value.
+        key: String,
+        /// How often, and which way; not 0.
+        times: i32,
+    },
+    /// Gives a push from here on.
+    Push(PushChoice),
+    /// Chooses the push to come.
+    NextPush(PushChoice),
+    /// Takes so many time steps, or goes so many back; not 0.
+    Step(i64),
+    /// Goes to a step or a time, and stops there.
+    GoTo(Place),
+    /// Plays at the speed that is set until this condition holds, and stops there.
+    RunUntil(Expression),
+    /// Lets the run go on.
+    Run,
+    /// Stops the run.
+    Pause,
+    /// Lets so many seconds pass on the clock before the next command.
+    Wait(f64),
+    /// Takes back so many of the things done last.
+    Undo(u32),
+    /// Brings so many of them again.
+    Redo(u32),
+    /// Writes the run up to here as CSV.
+    Export {
+        /// The file.
+        path: String,
+        /// Writes every such row, counted from row 0, and the last.
+        every: NonZeroU64,
+        /// Up to this step instead of the present one.
+        to_step: Option<u64>,
+        /// Whether an existing file is replaced.
+        force: bool,
+    },
+    /// Writes the run up to here as a run file, or the present state as a scenario.
+    Save {
+        /// The file.
+        path: String,
+        /// Whether the file is a scenario that starts from the present state.
+        from_here: bool,
+        /// Of a run file: up to this step instead of the present one.
+        to_step: Option<u64>,
+        /// Whether an existing file is replaced.
+        force: bool,
+    },
+    /// How fast the run is played.
+    Speed(Speed),
+    /// What the line says of what there is to see.
+    LookAt(String),
+    /// Length of time that the traces show, s.
+    Window(f64),
+    /// Whether the exact motion is drawn beside the run.
+    Exact(bool),
+    /// The panes that share the screen; none: as many as there is room for.
+    Show(Vec<Pane>),
+    /// What is not shown.
+    Hide(Vec<Part>),
+    /// The pane that fills the screen, or none.
+    Fill(Option<Pane>),
+    /// From where the 3-D view is seen.
+    Camera(Camera),
+}
+
+/// A push as a command has it: what is not told is that of the push to come.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[allow(non_snake_case, reason = "keys carry their unit as it is written")]
+pub struct PushChoice {
+    /// Name of the pushed point.
+    pub point: Option<String>,
+    /// The force, N.
+    pub force_N: Option<Force>,
+    /// Where to, where the force is only a size.
+    pub toward: Option<Toward>,
+    /// For how long, s.
+    pub for_s: Option<f64>,
+}
+
+/// A force, N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Force {
+    /// Its size.
+    Size(f64),
+    /// The force itself, world frame.
+    Vector([f64; 3]),
+}
+
+/// A step of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// Its number.
+    Step(u64),
+    /// The one at this time, s.
+    Time(f64),
+    /// The first.
+    Start,
+    /// The last of the scenario.
+    End,
+}
+
+/// A command of a file, and where it stands there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placed {
+    /// What is to be done.
+    pub command: Command,
+    /// Its line, from 1; `None` where that is not known.
+    pub line: Option<usize>,
+}
+
+/// The commands of a file, in order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Commands {
+    /// The file, as the user named it.
+    pub origin: String,
+    /// What is to be done.
+    pub list: Vec<Placed>,
+}
+
+impl Command {
+    /// The command called `name` with `value`.
+    ///
+    /// # Errors
+    /// Every rule that is broken, with the nearest right name; keys are those below `name`.
+    pub fn new(name: &str, value: &Value) -> Result<Self, Vec<Problem>> {
+        match COMMANDS.iter().find(|row| row.name == name) {
+            Some(row) => row.read(value),
+            None => Err(vec![unknown(name)]),
+        }
+    }
+
+    /// Its name and the value behind it, as TOML.
+    pub fn to_table(&self) -> Table {
+        let (name, value) = table::written(self);
+        Table::from_iter([(name.to_owned(), value)])
+    }
+}
+
+/// `commands` as a file has them.
+pub fn to_toml(commands: &[Command]) -> String {
+    let tables = commands
+        .iter()
+        .map(|command| Value::Table(command.to_table()));
+    let file = Table::from_iter([("do".to_owned(), Value::Array(tables.collect()))]);
+    toml::to_string(&file).unwrap_or_default() // strings, numbers and lists of them: nothing that TOML cannot write
+}
+
+/// Whether `document` is a file of commands, by its `[[do]]`.
+pub fn is_file_of_commands(document: &Document) -> bool {
+    document.table().contains_key("do")
+}
+
+/// Reads the file of commands at `path`, or standard input where that is `-`.
+///
+/// # Errors
+/// What is wrong with it: file, line, key, value and rule, and the nearest right name.
+pub fn open(path: &Path) -> Result<Commands, Problems> {
+    read(&match path == Path::new("-") {
+        true => Document::read_from("standard input", std::io::stdin().lock())?,
+        false => Document::read(path)?,
+    })
+}
+
+/// The commands in `document`.
+///
+/// # Errors
+/// What is wrong with it, in the order of the file.
+pub fn read(document: &Document) -> Result<Commands, Problems> {
+    let mut problems = Vec::new();
+    let mut list = Vec::new();
+    for name in document.table().keys().filter(|name| *name != "do") {
+        let rule = "unknown key: a file of commands holds [[do]] and nothing else";
+        problems.push(Problem::at(name, rule));
+    }
+    match document.table().get("do") {
+        Some(Value::Array(tables)) => {
+            let keys = (0..tables.len()).map(|index| format!("do.{index}"));
+            let lines = document.lines_of(keys);
+            for ((index, value), line) in tables.iter().enumerate().zip(lines) {
+                match one(index, value) {
+                    Ok(command) => list.push(Placed { command, line }),
+                    Err(found) => problems.extend(found),
+                }
+            }
+        }
+        Some(other) => problems.push(Problem::with_value(
+            "do",
+            other,
+            "must be an array of tables: write [[do]]",
+        )),
+        None => problems.push(Problem::at(
+            "",
+            "holds no command: write a table [[do]] for each",
+        )),
+    }
+    match problems.is_empty() {
+        true => Ok(Commands {
+            origin: document.origin().to_owned(),
+            list,
+        }),
+        false => Err(document.placed(problems)),
+    }
+}
+
+/// The command in the table `do.index`.
+fn one(index: usize, value: &Value) -> Result<Command, Vec<Problem>> {
+    let here = format!("do.{index}");
+    let Value::Table(table) = value else {
+        return Err(vec![Problem::with_value(here, value, "must be a table")]);
+    };
+    let under = |problem: Problem| Problem {
+        key: format!("{here}.{}", problem.key),
+        ..problem
+    };
+    let names: Vec<&String> = table.keys().collect();
+    let wrong = names
+        .iter()
+        .filter(|name| !COMMANDS.iter().any(|row| row.name == name.as_str()));
+    let wrong: Vec<_> = wrong.map(|name| under(unknown(name))).collect();
+    if !wrong.is_empty() {
+        return Err(wrong);
+    }
+    match table.iter().collect::<Vec<_>>()[..] {
+        [(name, value)] => Command::new(name, value).map_err(|problems| {
+            let inside = |problem: Problem| Problem {
+                key: match problem.key.is_empty() {
+                    true => name.clone(),
+                    false => format!("{name}.{}", problem.key),
+                },
+                ..problem
+            };
+            problems
+                .into_iter()
+                .map(|problem| under(inside(problem)))
+                .collect()
+        }),
+        [] => {
+            let rule = "holds no command: there is gyrolab man for their names";
+            Err(vec![Problem::at(here, rule)])
+        }
+        _ => {
+            let names: Vec<_> = names.iter().map(|name| name.as_str()).collect();
+            let rule = format!(
+                "holds {}: one command each, the next in a [[do]] of its own",
+                names.join(", ")
+            );
+            Err(vec![Problem::at(here, rule)])
+        }
+    }
+}
+
+fn unknown(name: &str) -> Problem {
+    let near = nearest(name, COMMANDS.iter().map(|row| row.name));
+    let key = match name.contains('.') {
+        true => format!("\"{name}\""),
+        false => name.to_owned(),
+    };
+    Problem::at(key, format!("unknown command: {near}"))
+}
+
+impl Place {
+    /// A step (421, 1e7), a time (12.5 s), start or end.
+    pub fn parse(text: &str) -> Option<Self> {
+        let text = text.trim();
+        if let Some(time) = text.strip_suffix('s') {
+            let time_s: f64 = time.trim().parse().ok()?;
+            return Some(Self::Time(time_s)).filter(|_| time_s >= 0.0 && time_s.is_finite());
+        }
+        match text {
+            "start" => Some(Self::Start),
+            "end" => Some(Self::End),
+            _ => whole(text).map(Self::Step),
+        }
+    }
+}
+
+/// A whole number, also as 1e7.
+pub(super) fn whole(text: &str) -> Option<u64> {
+    /// Floats are exact whole numbers up to here.
+    const EXACT: f64 = 9e15;
+    let float = || {
+        text.parse()
+            .ok()
+            .filter(|number: &f64| number.fract() == 0.0 && (0.0..=EXACT).contains(number))
+    };
+    text.parse().ok().or_else(|| Some(float()? as u64))
+}

@@ -1,0 +1,582 @@
+//! The one table of commands: what each is called, what stands behind it, and what it does.
+
+use super::{Command, Force, Place, PushChoice};
+use crate::lab::numbers;
+use crate::lab::view::{Pane, Part};
+use crate::observe::camera::Camera;
+use crate::observe::pace::Speed;
+use crate::scenario::keys::{self, Kind, Range};
+use crate::scenario::problem::nearest;
+use crate::scenario::{Problem, presets};
+use crate::work::expression::Expression;
+use crate::work::next_push::Toward;
+use std::num::NonZeroU64;
+use toml::{Table, Value};
+
+/// The most that something is repeated by one command.
+const MOST_TIMES: i64 = 10_000;
+/// The longest wait, s.
+const LONGEST_WAIT: f64 = 86_400.0;
+
+/// One command.
+pub struct Row {
+    /// Its name in a `[[do]]` table.
+    pub name: &'static str,
+    /// What stands behind it.
+    pub value: &'static str,
+    /// What it does.
+    pub about: &'static str,
+    read: fn(&Value) -> Read,
+}
+
+type Read = Result<Command, Vec<Problem>>;
+
+impl Row {
+    /// The command with this value.
+    ///
+    /// # Errors
+    /// Every rule that is broken, with keys below the command's name.
+    pub fn read(&self, value: &Value) -> Result<Command, Vec<Problem>> {
+        (self.read)(value)
+    }
+}
+
+const fn row(
+    name: &'static str,
+    value: &'static str,
+    about: &'static str,
+    read: fn(&Value) -> Read,
+) -> Row {
+    Row {
+        name,
+        value,
+        about,
+        read,
+    }
+}
+
+/// Every command there is.
+#[rustfmt::skip]
+pub static COMMANDS: &[Row] = &[
+    row("open", "\"wobble-push\"", "open a preset or a file, SCENARIO as on the command line; it stands still at step 0", open),
+    row("set", "{ \"motion.time_step_s\" = 0.05 }", "set dotted keys of the scenario, from the next step on; of body or start in a new run", set),
+    row("nudge", "{ key = \"motion.time_step_s\", times = -1 }", "nudge a value up, or down where times is negative", nudge),
+    row("push", "true, or { point = \"top\", force_N = [0, 0, -50], for_s = 2 }", "give the push to come, or one of one's own; force_N can be a size beside toward = \"down\"", push),
+    row("next_push", "{ point = \"top\", force_N = 50, toward = \"down\", for_s = 2 }", "choose the push to come, or a part of it", next_push),
+    row("step", "10", "take so many time steps, or go so many back", step),
+    row("go_to", "400, \"60 s\", \"start\" or \"end\"", "go to a step or a time and stop there", go_to),
+    row("run_until", "\"t_s >= 60\"", "play at the speed that is set until this holds, and stop; given up after 10000000 steps", run_until),
+    row("run", "true", "let the run go on", |value| told(value, Command::Run)),
+    row("pause", "true", "stop the run", |value| told(value, Command::Pause)),
+    row("wait_s", "2.5", "let so many seconds pass on the clock before the next command", wait),
+    row("undo", "1", "take back so many of the things done last", |value| Ok(Command::Undo(count(value)?))),
+    row("redo", "1", "bring so many of them again", |value| Ok(Command::Redo(count(value)?))),
+    row("export", "\"run.csv\", or { path = \"run.csv\", every = 10, force = true }", "write the run up to here, or to_step, as CSV; force replaces a file", export),
+    row("save", "\"run.toml\", or { path = \"run.toml\", from_here = true, force = true }", "write the run up to here, or to_step, as a run file; from_here: the present state as a scenario", save),
+    row("speed", "20 or \"top\"", "how fast the run is played, simulated seconds a second", speed),
+    row("look_at", "\"one line\"", "what the lab says of what there is to see", look_at),
+    row("window_s", "60", "length of time that the traces show, s", window),
+    row("exact", "true or false", "whether the exact motion is drawn beside the run", exact),
+    row("show", "[\"traces\", \"3d\"]", "the panes that share the screen, of traces, above, 3d, parameters; none: as many as there is room for", show),
+    row("hide", "[\"health\"]", "what is not shown: panes, health, predicted, look_at", hide),
+    row("fill", "\"above\"", "the pane that fills the screen, or \"none\"", fill),
+    row("camera", "{ yaw_deg = 30, pitch_deg = 20 }", "from where the 3-D view is seen", camera),
+];
+
+/// Name and value of `command`.
+pub(super) fn written(command: &Command) -> (&'static str, Value) {
+    match command {
+        Command::Open(name) => ("open", name.clone().into()),
+        Command::Set(table) => ("set", table.clone().into()),
+        Command::Nudge { key, times } => (
+            "nudge",
+            map([("key", key.clone().into()), ("times", (*times).into())]),
+        ),
+        Command::Push(choice) if *choice == PushChoice::default() => ("push", true.into()),
+        Command::Push(choice) => ("push", push_written(choice)),
+        Command::NextPush(choice) => ("next_push", push_written(choice)),
+        Command::Step(steps) => ("step", (*steps).into()),
+        Command::GoTo(place) => ("go_to", place_written(*place)),
+        Command::RunUntil(condition) => ("run_until", condition.text().into()),
+        Command::Run => ("run", true.into()),
+        Command::Pause => ("pause", true.into()),
+        Command::Wait(seconds) => ("wait_s", (*seconds).into()),
+        Command::Undo(times) => ("undo", i64::from(*times).into()),
+        Command::Redo(times) => ("redo", i64::from(*times).into()),
+        Command::Export {
+            path,
+            every,
+            to_step,
+            force,
+        } => {
+            let mut table = file_written(path, *to_step, *force);
+            if every.get() > 1 {
+                table.insert("every".to_owned(), large(every.get()));
+            }
+            ("export", short(table))
+        }
+        Command::Save {
+            path,
+            from_here,
+            to_step,
+            force,
+        } => {
+            let mut table = file_written(path, *to_step, *force);
+            if *from_here {
+                table.insert("from_here".to_owned(), true.into());
+            }
+            ("save", short(table))
+        }
+        Command::Speed(Speed::Times(speed)) => ("speed", (*speed).into()),
+        Command::Speed(Speed::Top) => ("speed", "top".into()),
+        Command::LookAt(text) => ("look_at", text.clone().into()),
+        Command::Window(window_s) => ("window_s", (*window_s).into()),
+        Command::Exact(shown) => ("exact", (*shown).into()),
+        Command::Show(panes) => ("show", words(panes.iter().map(|pane| pane.id()))),
+        Command::Hide(parts) => ("hide", words(parts.iter().map(|part| part.id()))),
+        Command::Fill(pane) => ("fill", pane.map_or("none", Pane::id).into()),
+        Command::Camera(camera) => (
+            "camera",
+            map([
+                ("yaw_deg", camera.yaw_deg.into()),
+                ("pitch_deg", camera.pitch_deg.into()),
+            ]),
+        ),
+    }
+}
+
+fn map<const N: usize>(entries: [(&str, Value); N]) -> Value {
+    let entries = entries
+        .into_iter()
+        .map(|(name, value)| (name.to_owned(), value));
+    Value::Table(entries.collect())
+}
+
+fn words(list: impl Iterator<Item = &'static str>) -> Value {
+    Value::Array(list.map(Value::from).collect())
+}
+
+fn large(number: u64) -> Value {
+    Value::Integer(i64::try_from(number).unwrap_or(i64::MAX))
+}
+
+fn file_written(path: &str, to_step: Option<u64>, force: bool) -> Table {
+    let mut table = Table::from_iter([("path".to_owned(), path.into())]);
+    if let Some(step) = to_step {
+        table.insert("to_step".to_owned(), large(step));
+    }
+    if force {
+        table.insert("force".to_owned(), true.into());
+    }
+    table
+}
+
+/// The path alone where the table holds nothing else.
+fn short(mut table: Table) -> Value {
+    match table.len() {
+        1 => table.remove("path").unwrap_or(Value::Table(table)),
+        _ => Value::Table(table),
+    }
+}
+
+fn push_written(choice: &PushChoice) -> Value {
+    let mut table = Table::new();
+    let mut insert = |name: &str, value: Option<Value>| {
+        if let Some(value) = value {
+            table.insert(name.to_owned(), value);
+        }
+    };
+    insert("point", choice.point.clone().map(Value::from));
+    insert(
+        "force_N",
+        choice.force_N.map(|force| match force {
+            Force::Size(size) => size.into(),
+            Force::Vector(vector) => vector.to_vec().into(),
+        }),
+    );
+    insert("toward", choice.toward.map(|toward| toward.shown().into()));
+    insert("for_s", choice.for_s.map(Value::from));
+    Value::Table(table)
+}
+
+fn place_written(place: Place) -> Value {
+    match place {
+        Place::Step(step) => large(step),
+        Place::Time(time_s) => format!("{time_s} s").into(),
+        Place::Start => "start".into(),
+        Place::End => "end".into(),
+    }
+}
+
+fn wrong<T>(value: &Value, rule: impl Into<String>) -> Result<T, Vec<Problem>> {
+    Err(vec![Problem::with_value("", value, rule)])
+}
+
+fn wrong_at<T>(key: &str, value: &Value, rule: impl Into<String>) -> Result<T, Vec<Problem>> {
+    Err(vec![Problem::with_value(key, value, rule)])
+}
+
+fn checked<'a>(kind: Kind, value: &'a Value) -> Result<&'a Value, Vec<Problem>> {
+    match kind.check(value) {
+        Ok(()) => Ok(value),
+        Err(rule) => wrong(value, rule),
+    }
+}
+
+/// `value`, of which the scenario's key `view.name` says what it may be.
+fn of_view<'a>(name: &str, value: &'a Value) -> Result<&'a Value, Vec<Problem>> {
+    match keys::find(&format!("view.{name}")) {
+        Ok((_, kind)) => checked(kind, value),
+        Err(rule) => wrong(value, rule),
+    }
+}
+
+fn number_in(value: &Value) -> f64 {
+    let whole = || value.as_integer().map(|whole| whole as f64);
+    value.as_float().or_else(whole).unwrap_or_default()
+}
+
+fn text_in(value: &Value) -> &str {
+    value.as_str().unwrap_or_default()
+}
+
+/// A finite number of `range`.
+fn number(range: Range, value: &Value) -> Result<f64, Vec<Problem>> {
+    checked(Kind::Number(range), value).map(number_in)
+}
+
+fn line(value: &Value) -> Result<&str, Vec<Problem>> {
+    checked(Kind::Line, value).map(text_in)
+}
+
+fn told(value: &Value, command: Command) -> Read {
+    match value {
+        Value::Boolean(true) => Ok(command),
+        other => wrong(other, "must be true"),
+    }
+}
+
+fn count(value: &Value) -> Result<u32, Vec<Problem>> {
+    let whole = checked(Kind::Whole(1, MOST_TIMES), value)?.as_integer();
+    Ok(whole
+        .and_then(|whole| u32::try_from(whole).ok())
+        .unwrap_or(1))
+}
+
+/// The fields of a table, no other than `known`.
+fn fields<'a>(value: &'a Value, known: &[&str]) -> Result<&'a Table, Vec<Problem>> {
+    let Value::Table(table) = value else {
+        return wrong(value, format!("must be a table of {}", known.join(", ")));
+    };
+    let unknown = table.keys().filter(|name| !known.contains(&name.as_str()));
+    let problems: Vec<_> = unknown
+        .map(|name| {
+            let near = nearest(name, known.iter().copied());
+            Problem::at(name.clone(), format!("unknown key: {near}"))
+        })
+        .collect();
+    match problems.is_empty() {
+        true => Ok(table),
+        false => Err(problems),
+    }
+}
+
+/// What `read` makes of the field `name`, where there is one.
+fn field<T>(
+    table: &Table,
+    name: &str,
+    read: impl FnOnce(&Value) -> Result<T, Vec<Problem>>,
+) -> Result<Option<T>, Vec<Problem>> {
+    let below = |problem: Problem| Problem {
+        key: keys::join(name, &problem.key)
+            .trim_end_matches('.')
+            .to_owned(),
+        ..problem
+    };
+    let value = table.get(name).map(read).transpose();
+    value.map_err(|problems| problems.into_iter().map(below).collect())
+}
+
+fn missing<T>(name: &str, rule: &str) -> Result<T, Vec<Problem>> {
+    Err(vec![Problem::at(name, rule)])
+}
+
+fn open(value: &Value) -> Read {
+    let name = line(value)?;
+    let is_file = name.contains('/') || name.contains(".toml") || name.contains(".csv");
+    if !is_file && presets::find(name).is_none() {
+        let near = nearest(name, presets::PRESETS.iter().map(|preset| preset.name));
+        return wrong(value, format!("is no preset: {near}"));
+    }
+    Ok(Command::Open(name.to_owned()))
+}
+
+fn set(value: &Value) -> Read {
+    let Value::Table(table) = value else {
+        return wrong(value, "must be a table of dotted keys and their values");
+    };
+    if table.is_empty() {
+        return wrong(value, "must hold a key and its value");
+    }
+    let mut problems = Vec::new();
+    for (key, value) in table {
+        let is_table = value.is_table() && !key.ends_with('.');
+        match keys::find(key) {
+            // A whole push, or another table: what is in it is checked where it comes to stand.
+            Err(_) if is_table && keys::is_table(key) => {}
+            Err(rule) => problems.push(Problem::at(quoted(key), rule)),
+            Ok((_, kind)) => {
+                if let Err(rule) = kind.check(value) {
+                    problems.push(Problem::with_value(quoted(key), value, rule));
+                }
+            }
+        }
+    }
+    match problems.is_empty() {
+        true => Ok(Command::Set(table.clone())),
+        false => Err(problems),
+    }
+}
+
+/// A dotted name, which is one key of the table that it stands in.
+fn quoted(key: &str) -> String {
+    match key.contains('.') {
+        true => format!("\"{key}\""),
+        false => key.to_owned(),
+    }
+}
+
+fn nudge(value: &Value) -> Read {
+    if value.is_str() {
+        let key = nudged_key(value)?;
+        return Ok(Command::Nudge { key, times: 1 });
+    }
+    let table = fields(value, &["key", "times"])?;
+    let Some(key) = field(table, "key", nudged_key)? else {
+        return missing("key", "is missing: the dotted key that is nudged");
+    };
+    let times = field(table, "times", |value| {
+        let times = checked(Kind::Whole(-MOST_TIMES, MOST_TIMES), value)?.as_integer();
+        match times.and_then(|times| i32::try_from(times).ok()) {
+            Some(times) if times != 0 => Ok(times),
+            _ => wrong(value, "must not be 0"),
+        }
+    })?;
+    let times = times.unwrap_or(1);
+    Ok(Command::Nudge { key, times })
+}
+
+fn nudged_key(value: &Value) -> Result<String, Vec<Problem>> {
+    let key = line(value)?;
+    match keys::find(key) {
+        Ok((row, kind)) if row.lab.is_some() && kind != Kind::Vector => Ok(key.to_owned()),
+        Ok((_, Kind::Vector)) => wrong(value, format!("is a vector: nudge {key}.0, .1 or .2")),
+        Ok(_) => wrong(value, "cannot be nudged"),
+        Err(rule) => wrong(value, rule),
+    }
+}
+
+fn push(value: &Value) -> Read {
+    match value {
+        Value::Boolean(true) => Ok(Command::Push(PushChoice::default())),
+        Value::Table(_) => push_choice(value).map(Command::Push),
+        other => wrong(
+            other,
+            "must be true, or a table of point, force_N, toward, for_s",
+        ),
+    }
+}
+
+fn next_push(value: &Value) -> Read {
+    let choice = push_choice(value)?;
+    match choice == PushChoice::default() {
+        true => wrong(value, "must hold one of point, force_N, toward, for_s"),
+        false => Ok(Command::NextPush(choice)),
+    }
+}
+
+fn push_choice(value: &Value) -> Result<PushChoice, Vec<Problem>> {
+    let table = fields(value, &["point", "force_N", "toward", "for_s"])?;
+    let force = |value: &Value| match value {
+        Value::Array(_) => {
+            let items = checked(Kind::Vector, value)?.as_array();
+            let mut numbers = items.into_iter().flatten().map(number_in);
+            let vector = std::array::from_fn(|_| numbers.next().unwrap_or_default());
+            Ok(Force::Vector(vector))
+        }
+        _ => number(Range::Positive, value).map(Force::Size),
+    };
+    let toward = |value: &Value| Toward::typed(line(value)?).or_else(|rule| wrong(value, rule));
+    let choice = PushChoice {
+        point: field(table, "point", |value| line(value).map(str::to_owned))?,
+        force_N: field(table, "force_N", force)?,
+        toward: field(table, "toward", toward)?,
+        for_s: field(table, "for_s", |value| number(Range::Positive, value))?,
+    };
+    match (choice.force_N, table.get("toward")) {
+        (Some(Force::Vector(_)), Some(toward)) => wrong_at(
+            "toward",
+            toward,
+            "has no place beside a force of three numbers, which has a direction",
+        ),
+        _ => Ok(choice),
+    }
+}
+
+fn step(value: &Value) -> Read {
+    const MOST: i64 = 1_000_000_000;
+    match checked(Kind::Whole(-MOST, MOST), value)?.as_integer() {
+        Some(steps) if steps != 0 => Ok(Command::Step(steps)),
+        _ => wrong(value, "must not be 0"),
+    }
+}
+
+fn go_to(value: &Value) -> Read {
+    let place = match value {
+        Value::Integer(step) => u64::try_from(*step).ok().map(Place::Step),
+        Value::String(text) => Place::parse(text),
+        _ => None,
+    };
+    match place {
+        Some(place) => Ok(Command::GoTo(place)),
+        None => wrong(
+            value,
+            "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\" or \"end\"",
+        ),
+    }
+}
+
+fn run_until(value: &Value) -> Read {
+    let read = Expression::condition(line(value)?).and_then(|condition| {
+        condition.check_names(numbers::is_known, numbers::names())?;
+        Ok(condition)
+    });
+    match read {
+        Ok(condition) => Ok(Command::RunUntil(condition)),
+        Err(fault) => wrong(value, fault.to_string()),
+    }
+}
+
+fn wait(value: &Value) -> Read {
+    let seconds = number(Range::NotNegative, value)?;
+    match seconds <= LONGEST_WAIT {
+        true => Ok(Command::Wait(seconds)),
+        false => wrong(value, format!("must be at most {LONGEST_WAIT}")),
+    }
+}
+
+fn flag(table: &Table, name: &str) -> Result<bool, Vec<Problem>> {
+    let read = |value: &Value| Ok(checked(Kind::Flag, value)?.as_bool());
+    Ok(field(table, name, read)?.flatten().unwrap_or(false))
+}
+
+/// A whole number of `least` or more.
+fn whole(table: &Table, name: &str, least: i64) -> Result<Option<u64>, Vec<Problem>> {
+    let read = |value: &Value| Ok(checked(Kind::Whole(least, i64::MAX), value)?.as_integer());
+    let number = field(table, name, read)?.flatten();
+    Ok(number.and_then(|number| u64::try_from(number).ok()))
+}
+
+/// The table that stands for a path alone.
+fn with_path(value: &Value) -> Value {
+    match value {
+        Value::String(_) => map([("path", value.clone())]),
+        other => other.clone(),
+    }
+}
+
+fn path(table: &Table, value: &Value) -> Result<String, Vec<Problem>> {
+    match field(table, "path", |path| line(path).map(str::to_owned)) {
+        Ok(Some(path)) => Ok(path),
+        Ok(None) => missing("path", "is missing: the file"),
+        Err(_) if value.is_str() => line(value).map(str::to_owned),
+        Err(problems) => Err(problems),
+    }
+}
+
+fn export(value: &Value) -> Read {
+    let given = with_path(value);
+    let table = fields(&given, &["path", "every", "to_step", "force"])?;
+    let every = whole(table, "every", 1)?.and_then(NonZeroU64::new);
+    Ok(Command::Export {
+        path: path(table, value)?,
+        every: every.unwrap_or(NonZeroU64::MIN),
+        to_step: whole(table, "to_step", 1)?,
+        force: flag(table, "force")?,
+    })
+}
+
+fn save(value: &Value) -> Read {
+    let given = with_path(value);
+    let table = fields(&given, &["path", "from_here", "to_step", "force"])?;
+    let command = Command::Save {
+        path: path(table, value)?,
+        from_here: flag(table, "from_here")?,
+        to_step: whole(table, "to_step", 1)?,
+        force: flag(table, "force")?,
+    };
+    match (&command, table.get("to_step")) {
+        (
+            Command::Save {
+                from_here: true, ..
+            },
+            Some(to_step),
+        ) => wrong_at(
+            "to_step",
+            to_step,
+            "has no place beside from_here, which saves the present state",
+        ),
+        _ => Ok(command),
+    }
+}
+
+fn speed(value: &Value) -> Read {
+    match value {
+        Value::String(word) if word == "top" => Ok(Command::Speed(Speed::Top)),
+        Value::String(_) => wrong(value, "must be a number greater than zero, or \"top\""),
+        _ => Ok(Command::Speed(Speed::Times(number_in(of_view(
+            "speed", value,
+        )?)))),
+    }
+}
+
+fn look_at(value: &Value) -> Read {
+    let text = text_in(of_view("look_at", value)?);
+    Ok(Command::LookAt(text.to_owned()))
+}
+
+fn window(value: &Value) -> Read {
+    Ok(Command::Window(number_in(of_view("window_s", value)?)))
+}
+
+fn exact(value: &Value) -> Read {
+    let shown = of_view("exact", value)?.as_bool().unwrap_or_default();
+    Ok(Command::Exact(shown))
+}
+
+fn show(value: &Value) -> Read {
+    let list = of_view("show", value)?.as_array();
+    let ids = list.into_iter().flatten().map(text_in);
+    Ok(Command::Show(ids.filter_map(Pane::named).collect()))
+}
+
+fn hide(value: &Value) -> Read {
+    let list = of_view("hide", value)?.as_array();
+    let ids = list.into_iter().flatten().map(text_in);
+    Ok(Command::Hide(ids.filter_map(Part::named).collect()))
+}
+
+fn fill(value: &Value) -> Read {
+    let id = text_in(of_view("fill", value)?);
+    Ok(Command::Fill(Pane::named(id)))
+}
+
+fn camera(value: &Value) -> Read {
+    let table = fields(value, &["yaw_deg", "pitch_deg"])?;
+    let angle = |name: &str| field(table, name, |value| number(Range::Any, value));
+    let usual = Camera::default();
+    Ok(Command::Camera(Camera {
+        yaw_deg: angle("yaw_deg")?.unwrap_or(usual.yaw_deg),
+        pitch_deg: angle("pitch_deg")?.unwrap_or(usual.pitch_deg),
+    }))
+}

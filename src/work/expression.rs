@@ -1,0 +1,594 @@
+//! Expressions over a run's numbers: `t_s >= 60 and abs(tilt_deg - 45) < 0.5`.
+//!
+//! Numbers, names, `+ - * /`, parentheses, `abs(...)`, the comparisons `< <= > >= == !=`, `and`, `or`. A name stands for
+//! a readout or for a key of the scenario; what it is at a step is asked of the caller. A number that is not there makes
+//! of everything computed from it nothing; a comparison with it neither holds nor fails.
+
+use crate::scenario::problem::nearest;
+use std::fmt;
+
+/// The longest expression, bytes.
+const LONGEST: usize = 1000;
+/// How deep parentheses and signs may be nested.
+const DEEPEST: usize = 64;
+
+/// An expression that was read.
+#[derive(Clone, Debug)]
+pub struct Expression {
+    text: String,
+    root: Node,
+    is_condition: bool,
+    /// Every name in it once, and the column (from 1) where it stands first.
+    names: Vec<(String, usize)>,
+}
+
+/// An expression whose names have been looked up: each stands for a `T`.
+#[derive(Clone, Debug)]
+pub struct Bound<T> {
+    root: Node,
+    sources: Vec<T>,
+}
+
+/// What is wrong with an expression, and where.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("column {column}: {rule}")]
+pub struct Fault {
+    /// The character at which it shows, counted from 1.
+    pub column: usize,
+    /// What is wrong there, and the remedy.
+    pub rule: String,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Node {
+    Number(f64),
+    /// The number of the name.
+    Name(usize),
+    Negated(Box<Node>),
+    Absolute(Box<Node>),
+    Computed(Operator, Box<Node>, Box<Node>),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Operator {
+    Or,
+    And,
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+    Equal,
+    NotEqual,
+    Plus,
+    Minus,
+    Times,
+    Over,
+}
+
+use Operator::{
+    And, Equal, Greater, GreaterOrEqual, Less, LessOrEqual, Minus, NotEqual, Or, Over, Plus, Times,
+};
+
+/// How operators are written; the longer of two that begin alike stands first.
+const OPERATORS: [(&str, Operator); 12] = [
+    ("<=", LessOrEqual),
+    (">=", GreaterOrEqual),
+    ("==", Equal),
+    ("!=", NotEqual),
+    ("<", Less),
+    (">", Greater),
+    ("+", Plus),
+    ("-", Minus),
+    ("*", Times),
+    ("/", Over),
+    ("and", And),
+    ("or", Or),
+];
+
+impl Operator {
+    /// How tightly it binds: the larger, the tighter.
+    fn power(self) -> u8 {
+        match self {
+            Or => 1,
+            And => 2,
+            Less | LessOrEqual | Greater | GreaterOrEqual | Equal | NotEqual => 3,
+            Plus | Minus => 4,
+            Times | Over => 5,
+        }
+    }
+
+    fn joins_conditions(self) -> bool {
+        matches!(self, Or | And)
+    }
+
+    fn gives_condition(self) -> bool {
+        self.power() <= 3
+    }
+
+    fn name(self) -> &'static str {
+        let found = OPERATORS.iter().find(|(_, operator)| *operator == self);
+        found.map_or("", |(name, _)| name)
+    }
+}
+
+/// Conditions are 1 where they hold and 0 where they do not.
+fn truth(holds: bool) -> f64 {
+    f64::from(u8::from(holds))
+}
+
+impl Expression {
+    /// Reads `text`.
+    ///
+    /// # Errors
+    /// What is wrong with it, and at which character.
+    pub fn parse(text: &str) -> Result<Self, Fault> {
+        if text.len() > LONGEST {
+            let rule = format!("an expression has at most {LONGEST} characters");
+            return Err(Fault { column: 1, rule });
+        }
+        let mut parser = Parser {
+            tokens: tokens(text)?,
+            at: 0,
+            end: text.chars().count() + 1,
+            names: Vec::new(),
+            depth: 0,
+        };
+        let (root, is_condition) = parser.expression(0)?;
+        match parser.tokens.get(parser.at) {
+            None => Ok(Self {
+                text: text.to_owned(),
+                root,
+                is_condition,
+                names: parser.names,
+            }),
+            Some((column, token)) => Err(Fault {
+                column: *column,
+                rule: format!("{token} cannot follow here: an operator must come first"),
+            }),
+        }
+    }
+
+    /// Reads `text`, which must say whether something holds.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse), and where it is a number.
+    pub fn condition(text: &str) -> Result<Self, Fault> {
+        let expression = Self::parse(text)?;
+        if expression.is_condition {
+            return Ok(expression);
+        }
+        Err(Fault {
+            column: 1,
+            rule: "must compare, such as t_s >= 60".to_owned(),
+        })
+    }
+
+    /// As it was written.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether it holds or not, rather than being a number.
+    pub fn is_condition(&self) -> bool {
+        self.is_condition
+    }
+
+    /// Checks that every name is one of `known`.
+    ///
+    /// # Errors
+    /// The first that is not, with the nearest that is.
+    pub fn check_names<'a>(
+        &self,
+        is_known: impl Fn(&str) -> bool,
+        known: impl Iterator<Item = &'a str> + Clone,
+    ) -> Result<(), Fault> {
+        let bind = |name: &str| is_known(name).then_some(());
+        self.bind(bind, known).map(drop)
+    }
+
+    /// Looks every name up once, with `find`; `known` are the names to offer for one that is not found.
+    ///
+    /// # Errors
+    /// The first name that is not found.
+    pub fn bind<'a, T>(
+        &self,
+        find: impl Fn(&str) -> Option<T>,
+        known: impl Iterator<Item = &'a str> + Clone,
+    ) -> Result<Bound<T>, Fault> {
+        let look_up = |(name, column): &(String, usize)| {
+            find(name).ok_or_else(|| Fault {
+                column: *column,
+                rule: format!(
+                    "there is no number named {name}: {}",
+                    nearest(name, known.clone())
+                ),
+            })
+        };
+        let sources = self.names.iter().map(look_up).collect::<Result<_, _>>()?;
+        let root = self.root.clone();
+        Ok(Bound { root, sources })
+    }
+
+    /// Its value, every name being what `value_of` says; `None` where a number it needs is not there.
+    pub fn value(&self, value_of: impl Fn(&str) -> Option<f64>) -> Option<f64> {
+        self.root.value(&|index| value_of(&self.names[index].0))
+    }
+}
+
+impl PartialEq for Expression {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
+}
+
+impl<T> Bound<T> {
+    /// Its value, every name being what `value_of` says; a condition is 1 where it holds and 0 where it does not.
+    pub fn value(&self, value_of: impl Fn(&T) -> Option<f64>) -> Option<f64> {
+        self.root.value(&|index| value_of(&self.sources[index]))
+    }
+
+    /// Whether it is there and not 0.
+    pub fn holds(&self, value_of: impl Fn(&T) -> Option<f64>) -> bool {
+        self.value(value_of).is_some_and(|value| value != 0.0)
+    }
+}
+
+impl Node {
+    fn value(&self, name: &impl Fn(usize) -> Option<f64>) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::Name(index) => name(*index),
+            Self::Negated(inner) => Some(-inner.value(name)?),
+            Self::Absolute(inner) => Some(inner.value(name)?.abs()),
+            Self::Computed(operator, left, right) => {
+                operator.apply(left.value(name), || right.value(name))
+            }
+        }
+    }
+}
+
+impl Operator {
+    fn apply(self, left: Option<f64>, right: impl FnOnce() -> Option<f64>) -> Option<f64> {
+        // One side can decide, whatever the other is, and even where it is not known.
+        match (self, left) {
+            (Or, Some(left)) if left != 0.0 => return Some(1.0),
+            (And, Some(0.0)) => return Some(0.0),
+            _ => {}
+        }
+        let right = right();
+        match (self, right) {
+            (Or, Some(right)) if right != 0.0 => return Some(1.0),
+            (And, Some(0.0)) => return Some(0.0),
+            _ => {}
+        }
+        let (left, right) = (left?, right?);
+        Some(match self {
+            Or => 0.0,
+            And => 1.0,
+            Less => truth(left < right),
+            LessOrEqual => truth(left <= right),
+            Greater => truth(left > right),
+            GreaterOrEqual => truth(left >= right),
+            Equal => truth(left == right),
+            NotEqual => truth(left != right),
+            Plus => left + right,
+            Minus => left - right,
+            Times => left * right,
+            Over => left / right,
+        })
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Token {
+    Number(f64),
+    Name(String),
+    Operator(Operator),
+    Open,
+    Close,
+}
+
+impl fmt::Display for Token {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Name(name) => f.write_str(name),
+            Self::Operator(operator) => f.write_str(operator.name()),
+            Self::Open => f.write_str("("),
+            Self::Close => f.write_str(")"),
+        }
+    }
+}
+
+/// Every token with its column.
+fn tokens(text: &str) -> Result<Vec<(usize, Token)>, Fault> {
+    let characters: Vec<char> = text.chars().collect();
+    let mut tokens = Vec::new();
+    let mut at = 0;
+    while let Some(&c) = characters.get(at) {
+        if c.is_whitespace() {
+            at += 1;
+            continue;
+        }
+        let rest = &characters[at..];
+        let (token, length) = if c.is_ascii_digit() || c == '.' {
+            number(rest).map_err(|rule| Fault {
+                column: at + 1,
+                rule,
+            })?
+        } else if c.is_ascii_alphabetic() || c == '_' {
+            word(rest)
+        } else {
+            sign(rest).map_err(|rule| Fault {
+                column: at + 1,
+                rule,
+            })?
+        };
+        tokens.push((at + 1, token));
+        at += length;
+    }
+    Ok(tokens)
+}
+
+/// The number at the beginning of `text`: digits, a point, an exponent.
+fn number(text: &[char]) -> Result<(Token, usize), String> {
+    let is_part = |index: usize| {
+        let c = text[index];
+        let before = index.checked_sub(1).map(|before| text[before]);
+        c.is_ascii_alphanumeric()
+            || c == '.'
+            || (matches!(c, '+' | '-') && matches!(before, Some('e' | 'E')))
+    };
+    let length = (0..text.len())
+        .find(|&index| !is_part(index))
+        .unwrap_or(text.len());
+    let written: String = text[..length].iter().collect();
+    match written.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok((Token::Number(number), length)),
+        _ => Err(format!("{written} is no number")),
+    }
+}
+
+/// The name at the beginning of `text`, or the operator that is a word.
+fn word(text: &[char]) -> (Token, usize) {
+    let is_part = |c: &char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.');
+    let name: String = text.iter().take_while(|c| is_part(c)).collect();
+    let length = name.len();
+    let operator = OPERATORS.iter().find(|(known, _)| *known == name);
+    let token = operator.map_or(Token::Name(name), |(_, operator)| {
+        Token::Operator(*operator)
+    });
+    (token, length)
+}
+
+fn sign(text: &[char]) -> Result<(Token, usize), String> {
+    match text[0] {
+        '(' => return Ok((Token::Open, 1)),
+        ')' => return Ok((Token::Close, 1)),
+        _ => {}
+    }
+    let begins =
+        |name: &str| name.chars().zip(text).all(|(a, b)| a == *b) && name.len() <= text.len();
+    let operator = OPERATORS.iter().find(|(name, _)| begins(name));
+    match (operator, text[0]) {
+        (Some((name, operator)), _) => Ok((Token::Operator(*operator), name.len())),
+        (None, '=') => Err("a comparison is written ==".to_owned()),
+        (None, '&') => Err("write and".to_owned()),
+        (None, '|') => Err("write or, or abs(...)".to_owned()),
+        (None, c) => Err(format!("{} has no meaning here", c.escape_debug())),
+    }
+}
+
+struct Parser {
+    tokens: Vec<(usize, Token)>,
+    at: usize,
+    /// The column after the last character.
+    end: usize,
+    names: Vec<(String, usize)>,
+    depth: usize,
+}
+
+impl Parser {
+    fn column(&self) -> usize {
+        self.tokens
+            .get(self.at)
+            .map_or(self.end, |(column, _)| *column)
+    }
+
+    fn fault<T>(column: usize, rule: impl Into<String>) -> Result<T, Fault> {
+        let rule = rule.into();
+        Err(Fault { column, rule })
+    }
+
+    /// What is joined by operators that bind at least as tightly as `least`; and whether it is a condition.
+    fn expression(&mut self, least: u8) -> Result<(Node, bool), Fault> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Self::fault(self.column(), "it is nested too deep");
+        }
+        let begin = self.column();
+        let (mut left, mut is_condition) = self.operand()?;
+        while let Some((column, Token::Operator(operator))) = self.tokens.get(self.at) {
+            let (column, operator) = (*column, *operator);
+            if operator.power() < least {
+                break;
+            }
+            self.at += 1;
+            let right_begins = self.column();
+            let (right, right_is) = self.expression(operator.power() + 1)?;
+            for (is, at) in [(is_condition, begin), (right_is, right_begins)] {
+                Self::check_side(operator, is, at, column)?;
+            }
+            left = Node::Computed(operator, Box::new(left), Box::new(right));
+            is_condition = operator.gives_condition();
+        }
+        self.depth -= 1;
+        Ok((left, is_condition))
+    }
+
+    fn check_side(
+        operator: Operator,
+        is_condition: bool,
+        at: usize,
+        column: usize,
+    ) -> Result<(), Fault> {
+        let name = operator.name();
+        match (operator.joins_conditions(), is_condition) {
+            (true, false) => Self::fault(at, format!("{name} joins comparisons, not numbers")),
+            (false, true) => Self::fault(
+                column,
+                format!("{name} takes numbers, not comparisons: join those with and"),
+            ),
+            _ => Ok(()),
+        }
+    }
+
+    fn operand(&mut self) -> Result<(Node, bool), Fault> {
+        let Some((column, token)) = self.tokens.get(self.at).cloned() else {
+            return Self::fault(self.end, "a number or a name is missing at the end");
+        };
+        self.at += 1;
+        match token {
+            Token::Number(number) => Ok((Node::Number(number), false)),
+            Token::Operator(Minus) => {
+                let (inner, is_condition) = self.expression(Times.power() + 1)?;
+                Self::check_side(Minus, is_condition, column, column)?;
+                Ok((Node::Negated(Box::new(inner)), false))
+            }
+            Token::Open => {
+                let inner = self.expression(0)?;
+                self.close(column)?;
+                Ok(inner)
+            }
+            Token::Name(name) if name == "abs" => self.absolute(column),
+            Token::Name(name) => Ok((Node::Name(self.number_of(name, column)), false)),
+            other => Self::fault(
+                column,
+                format!("{other} needs a number or a name before it"),
+            ),
+        }
+    }
+
+    fn absolute(&mut self, column: usize) -> Result<(Node, bool), Fault> {
+        let open = self.column();
+        if self.tokens.get(self.at).map(|(_, token)| token) != Some(&Token::Open) {
+            return Self::fault(open, "abs needs parentheses: abs(...)");
+        }
+        self.at += 1;
+        let (inner, is_condition) = self.expression(0)?;
+        self.close(open)?;
+        if is_condition {
+            return Self::fault(column, "abs takes a number, not a comparison");
+        }
+        Ok((Node::Absolute(Box::new(inner)), false))
+    }
+
+    fn close(&mut self, opened: usize) -> Result<(), Fault> {
+        match self.tokens.get(self.at) {
+            Some((_, Token::Close)) => {
+                self.at += 1;
+                Ok(())
+            }
+            _ => Self::fault(
+                self.column(),
+                format!("the parenthesis of column {opened} is not closed"),
+            ),
+        }
+    }
+
+    fn number_of(&mut self, name: String, column: usize) -> usize {
+        let known = self.names.iter().position(|(known, _)| *known == name);
+        known.unwrap_or_else(|| {
+            self.names.push((name, column));
+            self.names.len() - 1
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(text: &str) -> Option<f64> {
+        let numbers = |name: &str| match name {
+            "t_s" => Some(60.0),
+            "tilt_deg" => Some(-3.0),
+            "push.0.force_N.2" => Some(-50.0),
+            _ => None,
+        };
+        Expression::parse(text).unwrap().value(numbers)
+    }
+
+    fn fault(text: &str) -> (usize, String) {
+        let fault = Expression::condition(text).unwrap_err();
+        (fault.column, fault.rule)
+    }
+
+    #[test]
+    fn operators_bind_as_in_arithmetic() {
+        for (text, known) in [
+            ("1 + 2 * 3", 7.0),
+            ("(1 + 2) * 3", 9.0),
+            ("7 - 2 - 3", 2.0),
+            ("8 / 2 / 2", 2.0),
+            ("-2 * -3", 6.0),
+            ("--2", 2.0),
+            ("1 - -2", 3.0),
+            ("2e3 + 1.5e-1", 2000.15),
+            ("abs(tilt_deg) + push.0.force_N.2", -47.0),
+            ("1 + 1 == 2 and 2 > 1", 1.0),
+            ("1 > 2 or 2 > 1 and 1 > 2", 0.0),
+            ("(1 > 2 or 2 > 1) and 1 != 2", 1.0),
+            ("t_s >= 60 and t_s <= 60", 1.0),
+        ] {
+            assert_eq!(value(text), Some(known), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_known_decides_nothing() {
+        assert_eq!(value("nothing + 1"), None);
+        assert_eq!(value("nothing > 1"), None);
+        assert_eq!(value("nothing > 1 or t_s > 1"), Some(1.0));
+        assert_eq!(value("t_s < 1 and nothing > 1"), Some(0.0));
+        assert_eq!(value("nothing > 1 and t_s > 1"), None);
+    }
+
+    #[test]
+    fn every_fault_has_its_column() {
+        for (text, column, words) in [
+            ("", 1, "missing"),
+            ("t_s >=", 7, "missing"),
+            ("t_s >= 60 x", 11, "cannot follow"),
+            ("t_s = 60", 5, "=="),
+            ("(t_s > 1", 9, "column 1 is not closed"),
+            ("t_s > 1)", 8, "cannot follow"),
+            ("t_s + 1", 1, "must compare"),
+            ("1 < t_s < 3", 9, "and"),
+            ("t_s and t_s > 1", 1, "joins comparisons"),
+            ("t_s > 1 and 3", 13, "joins comparisons"),
+            ("abs t_s > 1", 5, "abs(...)"),
+            ("* 3 > 1", 1, "before it"),
+            ("t_s > 1.2.3", 7, "no number"),
+            ("t_s > 1e999", 7, "no number"),
+            ("t_s > ü", 7, "no meaning"),
+        ] {
+            let (at, rule) = fault(text);
+            assert_eq!(at, column, "{text}: {rule}");
+            assert!(rule.contains(words), "{text}: {rule}");
+        }
+        assert!(fault(&"(".repeat(500)).1.contains("deep"));
+        assert!(fault(&"-".repeat(500)).1.contains("deep"));
+        assert!(fault(&"1".repeat(2000)).1.contains("1000"));
+    }
+
+    #[test]
+    fn a_wrong_name_is_told_with_the_nearest() {
+        let expression = Expression::condition("z_m > 1 and tilt_dg > 3").unwrap();
+        let known = ["t_s", "z_m", "tilt_deg"];
+        let find = |name: &str| known.iter().position(|known| *known == name);
+        let fault = expression.bind(find, known.into_iter()).unwrap_err();
+        assert_eq!(fault.column, 13);
+        assert!(fault.rule.contains("did you mean tilt_deg?"), "{fault}");
+    }
+}
