@@ -307,6 +307,11 @@ impl Lab {
         self.changed = true;
     }
 
+    /// The panes that stand side by side while none fills the screen.
+    pub fn side_by_side(&self) -> &[Pane] {
+        &self.side_by_side
+    }
+
     /// Whether the picture has changed and is to be taken.
     pub fn has_changed(&self) -> bool {
         self.changed

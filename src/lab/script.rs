@@ -29,14 +29,6 @@ impl Script {
         self.left.is_empty() && self.under_way.is_none()
     }
 
-    /// Whether time must pass for it to go on, rather than the run.
-    pub fn waits_until(&self) -> Option<Duration> {
-        match &self.under_way {
-            Some((_, UnderWay::Waiting(until))) => Some(*until),
-            _ => None,
-        }
-    }
-
     /// `text` with the place of `placed` before it.
     fn at(&self, placed: &Placed, text: &str) -> String {
         let line = placed.line.map_or(String::new(), |line| format!(":{line}"));

@@ -36,6 +36,9 @@ pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<
         #[cfg(debug_assertions)]
         panic_if_asked(begin.elapsed());
         lab.advance(&mut || begin.elapsed());
+        if lab.has_changed() {
+            screen::refit(lab, screen.size()?);
+        }
         keep(lab, session);
         let now = begin.elapsed();
         // An action is answered at once, whenever the next frame would be.
@@ -83,7 +86,8 @@ fn wait(lab: &Lab, to_frame: Duration) -> Duration {
         // At least a little: a run too slow to change anything by the next frame must not spin.
         to_frame.max(Duration::from_millis(1))
     } else {
-        let is_attentive = lab.is_exporting() || lab.browser().is_loading();
+        let is_attentive =
+            lab.is_exporting() || lab.browser().is_loading() || !lab.script().is_done();
         let rest = if is_attentive { ATTENTIVE } else { IDLE };
         lab.notice_ends_in().unwrap_or(rest).min(rest)
     }

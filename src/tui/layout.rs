@@ -92,6 +92,9 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     if view.filled || area.width < TWO_FROM {
         return vec![(view.focus, area)];
     }
+    if !Pane::ALL.into_iter().all(|pane| view.may_show(pane)) {
+        return chosen(area, view);
+    }
     if area.width < ALL_FROM {
         let widths = [area.width - area.width / 2, area.width / 2];
         let second = if view.focus == Pane::Traces {
@@ -120,6 +123,36 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
         );
     }
     stacked(area, (rest / 2).min(area.height))
+}
+
+/// The panes that were chosen, side by side: all of them, or two where there is room for no more.
+fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
+    let is_named = |pane: &Pane| view.shown.contains(pane);
+    let has_room = |pane: &Pane| *pane != Pane::ThreeD || area.width >= THREE_D_FROM;
+    let is_chosen = |pane: &Pane| view.may_show(*pane) && (is_named(pane) || has_room(pane));
+    let mut panes: Vec<_> = Pane::ALL.into_iter().filter(is_chosen).collect();
+    if area.width < ALL_FROM {
+        let rest = panes.iter().skip(1).copied();
+        let second = rest
+            .clone()
+            .find(|pane| *pane == view.focus)
+            .or_else(|| rest.clone().next());
+        panes.truncate(1);
+        panes.extend(second);
+    }
+    let Some((_, others)) = panes.split_first() else {
+        return Vec::new();
+    };
+    let share = area.width / panes.len() as u16;
+    let round = share.min(2 * area.height);
+    let width = |pane: &Pane| match pane {
+        Pane::Parameters => share.min(PARAMETERS),
+        Pane::Traces => share,
+        Pane::FromAbove | Pane::ThreeD => round,
+    };
+    let mut widths: Vec<_> = others.iter().map(width).collect();
+    widths.insert(0, area.width - widths.iter().sum::<u16>()); // the first has what the others leave
+    beside(area, &panes, &widths)
 }
 
 fn beside(area: Rect, panes: &[Pane], widths: &[u16]) -> Vec<(Pane, Rect)> {

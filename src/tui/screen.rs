@@ -9,8 +9,8 @@ use super::panes::parameters::Parameters;
 use super::panes::three_d::ThreeD;
 use super::panes::traces::Traces;
 use crate::lab::Lab;
-use crate::lab::view::Pane;
 use crate::lab::view::markers::Marker;
+use crate::lab::view::{Pane, Part};
 use crate::tui::keymap::Mode;
 use crate::tui::layout::Layout;
 use crate::tui::markers;
@@ -18,10 +18,17 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 
-/// Fits `lab` to a screen of this size.
+/// Fits `lab` to a screen of this size; all of it is to be drawn again.
 pub fn fit(lab: &mut Lab, size: Rect) {
     let panes = Layout::side_by_side(size, lab.view());
     lab.set_side_by_side(panes);
+}
+
+/// Fits `lab` to a screen of this size again where other panes are shown than before.
+pub fn refit(lab: &mut Lab, size: Rect) {
+    if Layout::side_by_side(size, lab.view()) != lab.side_by_side() {
+        fit(lab, size);
+    }
 }
 
 /// Draws `lab` on `area`; `keys` says whether with the line of keys.
@@ -31,7 +38,9 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
         draw_pane(lab, pane, place, buf);
     }
     chrome::title(lab, layout.title, buf);
-    chrome::health(lab, layout.health, buf);
+    if !lab.view().hides(Part::Health) {
+        chrome::health(lab, layout.health, buf);
+    }
     chrome::hint(lab, keys && layout.is_cramped, layout.hint, buf);
     chrome::keys(lab, layout.keys, buf);
     draw_on_top(lab, body(&layout), buf);

@@ -7,6 +7,7 @@
 mod support;
 
 mod cli;
+mod commands;
 mod compare;
 mod journeys;
 mod terminal;

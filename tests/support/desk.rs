@@ -3,8 +3,9 @@
 #![allow(dead_code, reason = "no test needs all of it")]
 
 use super::scenarios::{preset, view};
-use gyrolab::lab::Lab;
+use gyrolab::lab::command::{self, Command};
 use gyrolab::lab::view::markers::Marker;
+use gyrolab::lab::{Answer, Lab};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
 use gyrolab::tui::app;
@@ -63,7 +64,25 @@ impl Desk {
         self.lab.advance(&mut || now);
     }
 
-    /// Goes where `text` says.
+    /// Carries `command` out, and lets the lab get to where it leads.
+    pub fn carry_out(&mut self, command: &Command) -> Answer {
+        let answer = self.lab.carry_out(command);
+        self.wait(2);
+        answer
+    }
+
+    /// Carries out the commands in `text`, the lines of a `[[do]]` each, which are not to be refused; gives what the last
+    /// of them said.
+    #[track_caller]
+    pub fn commands(&mut self, text: &str) -> Option<String> {
+        let mut said = None;
+        for command in commands(text) {
+            said = self.carry_out(&command).unwrap().said;
+        }
+        said
+    }
+
+    /// Goes where `text` says, by the dialog.
     #[track_caller]
     pub fn go(&mut self, text: &str) {
         self.type_text("g");
@@ -127,4 +146,18 @@ impl Desk {
         let file = folder.join("saved.toml");
         Some(Document::read(&file).unwrap().scenario().unwrap())
     }
+}
+
+/// The commands in `text`, one on each line.
+#[track_caller]
+pub fn commands(text: &str) -> Vec<Command> {
+    let lines = text.lines().filter(|line| !line.trim().is_empty());
+    let file: String = lines.map(|line| format!("[[do]]\n{line}\n")).collect();
+    let document = Document::parse("commands.toml", &file).unwrap();
+    let commands = command::read(&document).unwrap_or_else(|problems| panic!("{problems}"));
+    commands
+        .list
+        .into_iter()
+        .map(|placed| placed.command)
+        .collect()
 }

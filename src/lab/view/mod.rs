@@ -209,7 +209,7 @@ impl View {
     /// The focus on one of `shown`.
     pub fn keep_focus(&mut self, shown: &[Pane]) {
         if !shown.contains(&self.focus) {
-            self.focus = Pane::Traces;
+            self.focus = shown.first().copied().unwrap_or(Pane::Traces);
         }
     }
 

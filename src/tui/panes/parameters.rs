@@ -6,7 +6,7 @@ mod rows;
 
 use super::{frame, shortened, write};
 use crate::lab::editor::{Editor, Line};
-use crate::lab::view::{Pane, View};
+use crate::lab::view::{Pane, Part, View};
 use crate::observe::readouts::Readouts;
 use crate::scenario::{Motion, Scenario};
 use crate::text::printable::printable;
@@ -16,7 +16,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 use rows::{
-    Row, VALUE_END, body_rows, derived_rows, heading, motion_rows, now_rows, start_rows,
+    PREDICTED, Row, VALUE_END, body_rows, derived_rows, heading, motion_rows, now_rows, start_rows,
     watched_rows,
 };
 use std::borrow::Cow;
@@ -97,7 +97,7 @@ impl Parameters<'_> {
             WATCHED_FROM.. => spare.max(height * 2 / 5),
             _ => 0,
         };
-        let read = read_rows(self.readouts, room);
+        let read = read_rows(self.view, self.readouts, room);
         let lower = read.len() as u16;
         let upper = Rect {
             height: area.height - lower,
@@ -119,7 +119,7 @@ impl Parameters<'_> {
             return self.edited_above_read(editor, area, buf);
         }
         let mut read = derived_rows(self.scenario);
-        read.extend(now_rows(self.readouts));
+        read.extend(shown(self.view, now_rows(self.readouts)));
         let edited = edited_rows(editor);
         let height = area.height.saturating_sub(1) as usize;
         let grouped = by_group(&edited, height).map_or(usize::MAX, |columns| columns.len());
@@ -214,7 +214,7 @@ impl Parameters<'_> {
         rows.extend(body_rows(self.scenario));
         rows.extend(start_rows(self.scenario));
         rows.extend(motion_rows(self.scenario, self.motion));
-        rows.extend(now_rows(self.readouts));
+        rows.extend(shown(self.view, now_rows(self.readouts)));
         rows
     }
 }
@@ -314,15 +314,23 @@ fn near(told: f64, number: f64) -> bool {
 }
 
 /// The readouts for `room` lines: all of them, or those to watch.
-fn read_rows(readouts: &Readouts, room: usize) -> Vec<Row> {
-    let all = now_rows(readouts);
+fn read_rows(view: &View, readouts: &Readouts, room: usize) -> Vec<Row> {
+    let all = shown(view, now_rows(readouts));
     if all.len() <= room {
         return all;
     }
     let mut watched = vec![heading("now")];
-    watched.extend(watched_rows(readouts));
+    watched.extend(shown(view, watched_rows(readouts).into()));
     let mut rows = fitting(watched, room);
     rows.truncate(room);
+    rows
+}
+
+/// `rows` without those that are hidden.
+fn shown(view: &View, mut rows: Vec<Row>) -> Vec<Row> {
+    if view.hides(Part::Predicted) {
+        rows.retain(|row| row.label != PREDICTED);
+    }
     rows
 }
 

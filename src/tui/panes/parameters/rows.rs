@@ -9,6 +9,9 @@ use std::borrow::Cow;
 /// Column of the last character of values.
 pub(super) const VALUE_END: u16 = 18;
 
+/// The label of what theory predicts for the number above it.
+pub(super) const PREDICTED: &str = "predicted";
+
 /// One line: a heading, or a value.
 #[derive(Clone)]
 pub(super) struct Row {
@@ -139,7 +142,7 @@ pub(super) fn now_rows(readouts: &Readouts) -> Vec<Row> {
     rows.extend(watched_rows(readouts));
     let after_nutation = rows.len() - 1;
     let predicted = readouts.predicted_nutation_s;
-    rows.insert(after_nutation, measured(1, "predicted", predicted, 5, "s"));
+    rows.insert(after_nutation, measured(1, PREDICTED, predicted, 5, "s"));
     rows.extend([
         number(3, "|L|", sample.momentum.norm(), 3, "J s"),
         number(4, "Lz", sample.momentum.z, 3, "J s"),
@@ -161,7 +164,7 @@ pub(super) fn watched_rows(readouts: &Readouts) -> [Row; 5] {
     [
         number(0, "tilt", readouts.sample.tilt_deg, 3, "deg"),
         measured(0, "precession", precession, 3, "deg/s"),
-        measured(1, "predicted", predicted, 3, "deg/s"),
+        measured(1, PREDICTED, predicted, 3, "deg/s"),
         measured(1, nutation, readouts.nutation_s, 5, "s"),
         value(2, "E drift", drift, "mgl"),
     ]

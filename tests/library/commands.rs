@@ -1,0 +1,629 @@
+//! Commands as values: read and written as TOML, refused with line, key and the nearest right name, and carried out.
+
+use crate::support::desk::{Desk, commands};
+use gyrolab::lab::Refusal;
+use gyrolab::lab::command::{self, COMMANDS, Command, Force, Place, PushChoice};
+use gyrolab::lab::view::{Pane, Part};
+use gyrolab::observe::camera::Camera;
+use gyrolab::observe::pace::Speed;
+use gyrolab::scenario::Document;
+use gyrolab::tui::keymap::Key;
+use gyrolab::tui::{layout::Layout, screen};
+use gyrolab::work::expression::Expression;
+use gyrolab::work::next_push::Toward;
+use proptest::prelude::*;
+use std::time::Duration;
+use toml::{Table, Value};
+
+fn read(text: &str) -> Result<Vec<Command>, String> {
+    let document = Document::parse("demo.toml", text).map_err(|problems| problems.to_string())?;
+    let read = command::read(&document).map_err(|problems| problems.to_string())?;
+    Ok(read.list.into_iter().map(|placed| placed.command).collect())
+}
+
+fn a_name() -> impl Strategy<Value = String> {
+    prop::sample::select(vec![
+        "run.csv",
+        "a b.toml",
+        "ü.csv",
+        "-",
+        "x\"y'.toml",
+        "dir/x.toml",
+    ])
+    .prop_map(str::to_owned)
+}
+
+fn a_number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        1e-6..1e6f64,
+        Just(0.1),
+        Just(1e300),
+        Just(5e-324),
+        Just(3.0)
+    ]
+}
+
+fn a_push() -> impl Strategy<Value = PushChoice> {
+    let toward = prop::sample::select(vec![
+        Toward::Down,
+        Toward::Back,
+        Toward::Along([1.0, 0.0, 0.0]),
+        Toward::Along([1.0, -2.0, 0.5]),
+    ]);
+    let force = prop_oneof![
+        a_number().prop_map(Force::Size),
+        [a_number(), a_number(), a_number()].prop_map(Force::Vector),
+    ];
+    let parts = (
+        prop::option::of(Just("top".to_owned())),
+        prop::option::of(force),
+        prop::option::of(toward),
+        prop::option::of(a_number()),
+    );
+    parts.prop_map(|(point, force_N, toward, for_s)| PushChoice {
+        toward: toward.filter(|_| !matches!(force_N, Some(Force::Vector(_)))),
+        point,
+        force_N,
+        for_s,
+    })
+}
+
+fn a_set() -> impl Strategy<Value = Table> {
+    let entry = prop_oneof![
+        a_number().prop_map(|number| ("motion.time_step_s", Value::Float(number))),
+        Just(("motion.scheme", Value::from("rk4"))),
+        a_number().prop_map(|number| ("push.3.force_N.2", Value::Float(-number))),
+        a_number().prop_map(|number| ("start.momentum_Js", vec![number, 0.0, 1.0].into())),
+        Just(("start.steady", Value::Boolean(true))),
+        Just(("motion.steps", Value::Integer(7))),
+        Just(("view.hide", vec!["health"].into())),
+    ];
+    let table = |entries: Vec<(&str, Value)>| {
+        Table::from_iter(
+            entries
+                .into_iter()
+                .map(|(key, value)| (key.to_owned(), value)),
+        )
+    };
+    prop::collection::vec(entry, 1..4).prop_map(table)
+}
+
+/// A command of every kind.
+fn a_command() -> impl Strategy<Value = Command> {
+    let place = prop_oneof![
+        (0..u64::MAX / 2).prop_map(Place::Step),
+        a_number().prop_map(Place::Time),
+        Just(Place::Start),
+        Just(Place::End),
+    ];
+    let every = (1..1000u64).prop_map(|every| every.try_into().unwrap());
+    let to_step = || prop::option::of(1..1_000_000u64);
+    let file = || (a_name(), to_step(), any::<bool>());
+    let export = (file(), every).prop_map(|((path, to_step, force), every)| Command::Export {
+        path,
+        every,
+        to_step,
+        force,
+    });
+    let save =
+        (file(), any::<bool>()).prop_map(|((path, to_step, force), from_here)| Command::Save {
+            path,
+            from_here,
+            to_step: to_step.filter(|_| !from_here),
+            force,
+        });
+    let condition = prop::sample::select(vec![
+        "t_s >= 60",
+        "abs(tilt_deg - 3) < 1e-3 or step > motion.steps",
+    ]);
+    let pane = || prop::sample::select(Pane::ALL.to_vec());
+    let parts = Pane::ALL.into_iter().map(Part::Pane);
+    let part = prop::sample::select(
+        parts
+            .chain([Part::Health, Part::Predicted, Part::LookAt])
+            .collect::<Vec<_>>(),
+    );
+    let looks = prop_oneof![
+        a_number().prop_map(|speed| Command::Speed(Speed::Times(speed))),
+        Just(Command::Speed(Speed::Top)),
+        a_number().prop_map(Command::Window),
+        any::<bool>().prop_map(Command::Exact),
+        "[a-zA-Z\"'=#]{1,20}".prop_map(Command::LookAt),
+        prop::collection::vec(pane(), 0..4).prop_map(Command::Show),
+        prop::collection::vec(part, 0..4).prop_map(Command::Hide),
+        prop::option::of(pane()).prop_map(Command::Fill),
+        (a_number(), -90.0..90.0)
+            .prop_map(|(yaw_deg, pitch_deg)| Command::Camera(Camera { yaw_deg, pitch_deg })),
+    ];
+    let times = || prop_oneof![1..10_000i32, -10_000..0i32];
+    prop_oneof![
+        prop::sample::select(vec!["method-2", "./my run.toml", "x.csv"])
+            .prop_map(|name| Command::Open(name.to_owned())),
+        a_set().prop_map(Command::Set),
+        times().prop_map(|times| Command::Nudge {
+            key: "push.1.force_N.0".to_owned(),
+            times
+        }),
+        a_push().prop_map(Command::Push),
+        a_push()
+            .prop_filter("chooses something", |push| *push != PushChoice::default())
+            .prop_map(Command::NextPush),
+        times().prop_map(|steps| Command::Step(steps.into())),
+        place.prop_map(Command::GoTo),
+        condition.prop_map(|text| Command::RunUntil(Expression::condition(text).unwrap())),
+        Just(Command::Run),
+        Just(Command::Pause),
+        (0.0..1e4).prop_map(Command::Wait),
+        (1..10_000u32).prop_map(Command::Undo),
+        (1..10_000u32).prop_map(Command::Redo),
+        export,
+        save,
+        looks,
+    ]
+}
+
+proptest! {
+    #[test]
+    fn any_commands_are_read_as_they_were_written(list in prop::collection::vec(a_command(), 1..8)) {
+        let text = command::to_toml(&list);
+        prop_assert_eq!(read(&text), Ok(list), "{}", text);
+    }
+}
+
+#[test]
+fn every_row_of_the_table_is_written_under_its_name() {
+    let examples = "
+        open = 'cusps'
+        set = { 'motion.time_step_s' = 0.05 }
+        nudge = 'motion.time_step_s'
+        push = true
+        next_push = { for_s = 1 }
+        step = -2
+        go_to = '60 s'
+        run_until = 't_s >= 60'
+        run = true
+        pause = true
+        wait_s = 2.5
+        undo = 1
+        redo = 1
+        export = 'run.csv'
+        save = 'run.toml'
+        speed = 'top'
+        look_at = 'the dip'
+        window_s = 60
+        exact = true
+        show = ['traces', '3d']
+        hide = ['health']
+        fill = 'above'
+        camera = { yaw_deg = 30 }";
+    let named: Vec<_> = commands(examples)
+        .iter()
+        .map(|command| command.to_table().keys().next().unwrap().clone())
+        .collect();
+    let rows: Vec<_> = COMMANDS.iter().map(|row| row.name.to_owned()).collect();
+    assert_eq!(named, rows);
+}
+
+#[test]
+fn what_is_wrong_is_told_with_its_line_and_the_nearest_right_name() {
+    for (text, told) in [
+        (
+            "[[do]]\nstep = 1\n[[do]]\ngoto = 3",
+            "demo.toml:4: do.1.goto: unknown command: did you mean go_to?",
+        ),
+        (
+            "[[do]]\nrun = true\nstep = 1",
+            "demo.toml:1: do.0: holds run, step: one command each",
+        ),
+        ("[[do]]", "demo.toml:1: do.0: holds no command"),
+        (
+            "do = 3",
+            "demo.toml:1: do (3) must be an array of tables: write [[do]]",
+        ),
+        (
+            "[[do]]\nstep = 1\n[motion]\nsteps = 3",
+            "demo.toml:3: motion: unknown key",
+        ),
+        ("x = 1", "unknown key: a file of commands"),
+        (
+            "[[do]]\nset = { \"motion.time_step\" = 1 }",
+            "demo.toml:2: do.0.set.\"motion.time_step\": unknown key: did you mean motion.time_step_s?",
+        ),
+        (
+            "[[do]]\nset = { \"motion.time_step_s\" = -1 }",
+            "(-1) must be greater than zero",
+        ),
+        (
+            "[[do]]\nset = { \"start.momentum_Js.3\" = 1 }",
+            ".0, .1 and .2",
+        ),
+        ("[[do]]\nset = {}", "must hold a key"),
+        ("[[do]]\nopen = \"wobble-pus\"", "did you mean wobble-push?"),
+        ("[[do]]\nstep = 0", "do.0.step (0) must not be 0"),
+        ("[[do]]\nrun = false", "must be true"),
+        (
+            "[[do]]\ngo_to = \"soon\"",
+            "do.0.go_to (\"soon\") must be a step",
+        ),
+        ("[[do]]\ngo_to = -3", "must be a step"),
+        ("[[do]]\nrun_until = \"t_s >\"", "column 6"),
+        (
+            "[[do]]\nrun_until = \"tilt_dg > 3\"",
+            "column 1: there is no number named tilt_dg: did you mean tilt_deg?",
+        ),
+        (
+            "[[do]]\nrun_until = \"motion.scheme > 3\"",
+            "no number named",
+        ),
+        ("[[do]]\nwait_s = -1", "must not be negative"),
+        ("[[do]]\nundo = 0", "must be 1 or more"),
+        (
+            "[[do]]\nexport = { path = \"x.csv\", evry = 3 }",
+            "do.0.export.evry: unknown key: did you mean every?",
+        ),
+        (
+            "[[do]]\nexport = { every = 3 }",
+            "do.0.export.path: is missing",
+        ),
+        (
+            "[[do]]\nexport = { path = \"x.csv\", every = 0 }",
+            "do.0.export.every (0) must be 1 or more",
+        ),
+        (
+            "[[do]]\nsave = { path = \"x\", from_here = true, to_step = 3 }",
+            "do.0.save.to_step (3) has no place",
+        ),
+        ("[[do]]\nspeed = \"fast\"", "or \"top\""),
+        ("[[do]]\nshow = [\"trace\"]", "did you mean traces?"),
+        ("[[do]]\nhide = [\"helth\"]", "did you mean health?"),
+        ("[[do]]\nfill = \"abve\"", "did you mean above?"),
+        ("[[do]]\ncamera = { yaw = 3 }", "did you mean yaw_deg?"),
+        (
+            "[[do]]\npush = { force_N = [0, 0, 1], toward = \"down\" }",
+            "do.0.push.toward (\"down\") has no place",
+        ),
+        (
+            "[[do]]\npush = { force_N = -1 }",
+            "do.0.push.force_N (-1) must be greater than zero",
+        ),
+        (
+            "[[do]]\npush = { toward = \"left\" }",
+            "toward must be one of down",
+        ),
+        (
+            "[[do]]\nnudge = { key = \"start.momentum_Js\" }",
+            "start.momentum_Js.0",
+        ),
+        (
+            "[[do]]\nnudge = { times = 3 }",
+            "do.0.nudge.key: is missing",
+        ),
+        ("[[do]]\nstep = ", "demo.toml:2"),
+    ] {
+        let wrong = read(text).unwrap_err();
+        assert!(wrong.contains(told), "{text}\n  {wrong}\n  {told}");
+    }
+}
+
+#[test]
+fn a_set_of_several_keys_is_one_act_or_none() {
+    let mut desk = Desk::open("method-2");
+    desk.commands("step = 100");
+    let untouched = desk.scenario().file;
+    desk.commands(
+        "set = { 'motion.time_step_s' = 0.05, 'motion.gravity_m_per_s2' = 5, 'title' = 'mine' }",
+    );
+    let motion = desk.lab.motion();
+    assert_eq!((motion.time_step_s, motion.gravity), (0.05, 5.0));
+    assert_eq!(desk.scenario().file.title, "mine");
+    desk.commands("undo = 1");
+    assert_eq!(desk.scenario().file, untouched);
+    // The second cannot be: nothing is done.
+    let wrong = commands("set = { 'motion.time_step_s' = 0.05, 'trace' = 'nobody' }").remove(0);
+    assert!(desk.carry_out(&wrong).is_err());
+    let wrong = commands("set = { 'title' = 'mine', 'push.7.force_N.0' = 5 }").remove(0);
+    assert!(desk.carry_out(&wrong).is_err());
+    assert_eq!((desk.scenario().file, desk.step()), (untouched, 100));
+}
+
+#[test]
+fn body_and_start_begin_one_new_run() {
+    let mut desk = Desk::open("method-2");
+    desk.commands("step = 100");
+    desk.commands(
+        "set = { 'start.tilt_deg' = 30, 'body.rim.radius_m' = 0.5, 'motion.time_step_s' = 0.05 }",
+    );
+    let file = desk.scenario().file;
+    assert_eq!(desk.step(), 0);
+    assert_eq!(file.start.tilt_deg, Some(30.0));
+    assert_eq!(file.body.rim.unwrap().radius_m, 0.5);
+    assert_eq!(desk.lab.motion().time_step_s, 0.05);
+    desk.commands("undo = 2");
+    assert_eq!(desk.step(), 100);
+    // What is refused at its beginning leaves the run that was there.
+    let wrong = commands("set = { 'start.tilt_deg' = 30, 'push.7.force_N.0' = 5 }").remove(0);
+    assert!(desk.carry_out(&wrong).is_err());
+    assert_eq!(
+        (desk.step(), desk.scenario().file.start.tilt_deg),
+        (100, Some(45.0))
+    );
+}
+
+#[test]
+fn a_push_has_the_force_that_was_written() {
+    let mut desk = Desk::open("method-2");
+    let said = desk
+        .commands("go_to = '10 s'\npush = { force_N = [1, -2, 0.3], for_s = 2 }")
+        .unwrap();
+    assert!(
+        said.contains("on top") && said.contains("for 2 s"),
+        "{said}"
+    );
+    let push = desk.scenario().file.push[0].clone();
+    assert_eq!(
+        (push.force_N, push.from_s, push.for_s),
+        ([1.0, -2.0, 0.3], Some(10.0), Some(2.0))
+    );
+    let before = desk.lab.editor().lines().to_vec();
+    desk.commands("next_push = { force_N = 70, toward = 'around' }\npush = true");
+    assert_ne!(desk.lab.editor().lines(), before);
+    assert_eq!(
+        desk.scenario().file.push[1]
+            .force_N
+            .map(f64::abs)
+            .iter()
+            .cloned()
+            .fold(0.0, f64::max)
+            > 0.0,
+        true
+    );
+    let nobody = commands("push = { point = 'nobody' }").remove(0);
+    assert!(
+        desk.carry_out(&nobody)
+            .unwrap_err()
+            .to_string()
+            .contains("must be one of")
+    );
+}
+
+#[test]
+fn places_conditions_and_refusals() {
+    let mut desk = Desk::open("method-2");
+    desk.commands("go_to = '12.5 s'");
+    assert_eq!(desk.step(), 125);
+    desk.commands("go_to = 'end'");
+    assert_eq!(desk.step(), 2300);
+    desk.commands("go_to = 'start'");
+    let back = desk.carry_out(&Command::Step(-1));
+    assert_eq!(
+        back,
+        Err(Refusal::Because("the run begins here".to_owned()))
+    );
+    assert!(desk.carry_out(&Command::Undo(1)).is_err());
+    assert!(
+        desk.carry_out(&Command::Window(0.1))
+            .unwrap_err()
+            .to_string()
+            .contains("two time steps")
+    );
+    let nobody = Command::Nudge {
+        key: "push.4.force_N.0".to_owned(),
+        times: 1,
+    };
+    assert!(
+        desk.carry_out(&nobody)
+            .unwrap_err()
+            .to_string()
+            .contains("no value of this scenario")
+    );
+}
+
+/// A lab that carries out the commands in `text` without a clock.
+fn finished(preset: &str, text: &str) -> (Desk, Result<(), String>) {
+    let mut desk = Desk::open(preset);
+    let document = Document::parse("demo.toml", text).unwrap();
+    desk.lab.take_commands(command::read(&document).unwrap());
+    let end = desk.lab.finish_script();
+    (desk, end)
+}
+
+#[test]
+fn a_run_is_played_until_a_condition_holds() {
+    let (desk, end) = finished(
+        "method-2",
+        "[[do]]\nrun_until = \"t_s >= 60\"\n[[do]]\nstep = 3",
+    );
+    assert_eq!((end, desk.step()), (Ok(()), 603));
+    // Past the end of the scenario's run, and where it holds already not at all.
+    let text = "[[do]]\nrun_until = \"step >= 2 * motion.steps and abs(z_m) > 0\"\n[[do]]\nrun_until = \"t_s > 0\"";
+    let (desk, end) = finished("method-2", text);
+    assert_eq!((end, desk.step()), (Ok(()), 4600));
+    let (desk, end) = finished(
+        "cusps",
+        "[[do]]\nrun_until = \"z_m > 1000\"\n[[do]]\nstep = 1",
+    );
+    let told = end.unwrap_err();
+    assert!(
+        told.contains(
+            "demo.toml:1: run_until: did not hold on any of 10,000,000 steps; the command after it"
+        ),
+        "{told}"
+    );
+    assert_eq!(desk.step(), 10_000_000);
+}
+
+#[test]
+fn commands_wait_for_those_before_them() {
+    let mut desk = Desk::open("method-2");
+    let text = "[[do]]\nspeed = 20\n[[do]]\nrun_until = \"t_s >= 20\"\n[[do]]\nwait_s = 5\n[[do]]\nstep = 7";
+    let document = Document::parse("demo.toml", text).unwrap();
+    desk.lab.take_commands(command::read(&document).unwrap());
+    let second = |desk: &mut Desk| (0..10).for_each(|_| desk.pass(Duration::from_millis(100)));
+    (0..=5).for_each(|_| desk.pass(Duration::from_millis(100)));
+    assert!(
+        (80..130).contains(&desk.step()),
+        "it plays at its pace: {}",
+        desk.step()
+    );
+    second(&mut desk);
+    assert_eq!(desk.step(), 200);
+    assert!(!desk.lab.script().is_done());
+    (0..3).for_each(|_| second(&mut desk));
+    assert_eq!(desk.step(), 200);
+    (0..3).for_each(|_| second(&mut desk));
+    assert_eq!((desk.step(), desk.lab.script().is_done()), (207, true));
+}
+
+#[test]
+fn esc_stops_the_commands_and_a_refusal_says_where() {
+    let mut desk = Desk::open("method-2");
+    let read = |text: &str| command::read(&Document::parse("demo.toml", text).unwrap()).unwrap();
+    desk.lab
+        .take_commands(read("[[do]]\nrun_until = \"t_s >= 200\"\n[[do]]\nstep = 7"));
+    desk.pass(Duration::from_millis(100));
+    desk.press(&[Key::Esc]);
+    let stopped = desk.step();
+    assert_eq!(
+        desk.lab.notice().unwrap(),
+        "stopped: 2 commands are left out"
+    );
+    desk.pass(Duration::from_secs(1));
+    assert_eq!((desk.step(), desk.lab.script().is_done()), (stopped, true));
+    desk.lab.take_commands(read(
+        "[[do]]\nundo = 3\n\n[[do]]\nstep = 7\n[[do]]\nstep = 7",
+    ));
+    let told = desk.lab.notice().unwrap();
+    assert_eq!(
+        told,
+        "demo.toml:1: undo: nothing to undo; the 2 commands after it are not carried out"
+    );
+    assert_eq!(desk.step(), stopped);
+}
+
+#[test]
+fn files_are_written_and_not_overwritten_unasked() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut desk = Desk::open("method-2");
+    desk.lab.work_in(folder.path());
+    let text = "[[do]]\nstep = 40\n[[do]]\nexport = { path = \"a.csv\", every = 10 }\n[[do]]\nsave = \"a.toml\"\n\
+        [[do]]\nsave = { path = \"b.toml\", from_here = true }\n[[do]]\nexport = { path = \"a.csv\", force = true, to_step = 3 }\n[[do]]\nsave = \"a.toml\"";
+    let read = command::read(&Document::parse("demo.toml", text).unwrap()).unwrap();
+    desk.lab.take_commands(read);
+    let told = desk.lab.finish_script().unwrap_err();
+    assert!(
+        told.contains("demo.toml:11: save: ") && told.contains("exists: force = true replaces it"),
+        "{told}"
+    );
+    let csv = std::fs::read_to_string(folder.path().join("a.csv")).unwrap();
+    assert_eq!(csv.lines().filter(|line| !line.starts_with('#')).count(), 5);
+    let run = Document::read(&folder.path().join("a.toml"))
+        .unwrap()
+        .scenario()
+        .unwrap();
+    assert_eq!(run.steps, 40);
+    let here = Document::read(&folder.path().join("b.toml"))
+        .unwrap()
+        .scenario()
+        .unwrap();
+    assert!(here.file.start.tilt_deg.is_some());
+}
+
+fn picture(desk: &Desk, size: (u16, u16)) -> String {
+    screen::text(&desk.lab, true, size)
+}
+
+fn opened_with(set: &[&str]) -> Desk {
+    let mut document = Document::open("wobble-push").unwrap();
+    set.iter().for_each(|set| document.set(set).unwrap());
+    Desk::with("wobble-push", document.scenario().unwrap())
+}
+
+/// Every way to say how a screen begins leads to the same screen.
+#[test]
+fn what_view_holds_is_what_the_commands_do() {
+    for (key, value, size) in [
+        ("show", "['traces', '3d']", (80, 24)),
+        ("hide", "['health', 'predicted', 'look_at']", (120, 40)),
+        ("hide", "['parameters']", (200, 50)),
+        ("fill", "'above'", (80, 24)),
+        ("window_s", "7.0", (80, 24)),
+        ("exact", "true", (80, 24)),
+        ("camera", "{ yaw_deg = 90.0 }", (200, 50)),
+        ("look_at", "'the dip'", (80, 24)),
+        ("speed", "0.5", (80, 24)),
+    ] {
+        let mut begun = opened_with(&[&format!("view.{key}={value}")]);
+        begun.commands("step = 30");
+        let mut told = opened_with(&[]);
+        told.commands(&format!("{key} = {value}\nstep = 30"));
+        assert_eq!(picture(&begun, size), picture(&told, size), "{key}");
+        let mut plain = opened_with(&[]);
+        plain.commands("step = 30");
+        assert_ne!(picture(&plain, size), picture(&told, size), "{key}");
+    }
+}
+
+#[test]
+fn hidden_is_hidden() {
+    let mut desk = opened_with(&[]);
+    desk.commands("step = 300");
+    let size = (200, 50);
+    let seen = picture(&desk, size);
+    let look_at = desk.scenario().file.view.unwrap().look_at.unwrap();
+    let first = look_at.split(' ').take(3).collect::<Vec<_>>().join(" ");
+    for words in ["predicted", "E drift", "parameters", " 3-D ", &first] {
+        assert!(seen.contains(words), "no {words} in\n{seen}");
+    }
+    desk.commands("hide = ['health', 'predicted', 'look_at', 'parameters']");
+    desk.wait(100);
+    let seen = picture(&desk, size);
+    for words in ["predicted", "parameters", &first] {
+        assert!(!seen.contains(words), "{words} in\n{seen}");
+    }
+    desk.commands("hide = []");
+    assert!(picture(&desk, size).contains(&first));
+    // In the list of values, where the readouts stand below, as well.
+    desk.commands("hide = ['predicted']");
+    desk.press(&[Key::Char('e')]);
+    assert!(!picture(&desk, size).contains("predicted"));
+    desk.commands("fill = 'parameters'");
+    assert!(!picture(&desk, size).contains("predicted"));
+}
+
+#[test]
+fn shown_panes_share_the_screen_at_every_width() {
+    let mut desk = opened_with(&[]);
+    desk.commands("show = ['above', '3d']");
+    for (width, height) in [(80, 24), (120, 30), (200, 50), (60, 20)] {
+        let area = ratatui::layout::Rect::new(0, 0, width, height);
+        let layout = Layout::new(area, desk.lab.view(), true);
+        let panes: Vec<_> = layout.panes.iter().map(|(pane, _)| *pane).collect();
+        assert_eq!(panes, [Pane::FromAbove, Pane::ThreeD], "{width}");
+        let widths: u16 = layout.panes.iter().map(|(_, place)| place.width).sum();
+        assert_eq!(widths, width);
+    }
+    desk.commands("hide = ['above', '3d']");
+    picture(&desk, (80, 24));
+    desk.commands("show = []\nhide = []");
+    assert_eq!(
+        picture(&desk, (80, 24)),
+        picture(&opened_with(&[]), (80, 24))
+    );
+}
+
+#[test]
+fn a_pane_has_the_name_that_files_give_it() {
+    use gyrolab::scenario::keys::{FILLING, HIDEABLE, PANES};
+    assert_eq!(Pane::ALL.map(Pane::id), PANES);
+    assert!(
+        HIDEABLE
+            .iter()
+            .all(|id| Part::named(id).is_some_and(|part| part.id() == *id))
+    );
+    assert!(
+        FILLING
+            .iter()
+            .all(|id| *id == "none" || Pane::named(id).is_some())
+    );
+    assert_eq!(FILLING.len(), Pane::ALL.len() + 1);
+}
