@@ -1,24 +1,16 @@
 //! Carrying commands out: each answers with what it did, or why it did nothing.
 
-use super::command::{Command, Force, Place, PushChoice};
-use super::{Lab, numbers};
+use super::Lab;
+use super::command::{Command, Force, PushChoice};
 use crate::lab::view::Pane;
-use crate::observe::live::LiveRun;
-use crate::observe::pace::Speed;
-use crate::run::Simulation;
 use crate::scenario::keys;
 use crate::scenario::problem::nearest;
-use crate::work::expression::Expression;
 use crate::work::journal::Act;
 use crate::work::next_push::{Field, NextPush, Toward};
-use indicatif::HumanCount;
 use nalgebra::Vector3;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
-
-/// A step that takes longer than this is announced, s.
-const LONG_STEP_S: f64 = 3.0;
 
 /// What a command has done.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -119,14 +111,14 @@ impl Lab {
                 self.choose_next_push(self.chosen(choice)?);
                 Ok(Done::SILENT)
             }
-            Command::Step(steps) => self.step(*steps),
-            Command::GoTo(place) => self.go_to(*place),
-            Command::RunUntil(condition) => self.run_until(condition),
+            Command::Step(steps) => self.player.step(*steps),
+            Command::GoTo(place) => self.player.go_to(*place),
+            Command::RunUntil(condition) => self.player.run_until(condition),
             Command::Run => {
-                self.playback.set_running(true);
+                self.player.playback.set_running(true);
                 Ok(Done::SILENT)
             }
-            Command::Pause => Ok(self.pause()),
+            Command::Pause => Ok(self.player.pause()),
             Command::Wait(seconds) => {
                 let until = self.now + Duration::try_from_secs_f64(*seconds).unwrap_or_default();
                 Ok(Done::SILENT.going_on(UnderWay::Waiting(until)))
@@ -161,13 +153,13 @@ impl Lab {
                     }
                 }
             }
-            Command::Speed(speed) => Ok(self.set_speed(*speed)),
+            Command::Speed(speed) => Ok(self.player.set_speed(*speed)),
             Command::LookAt(text) => {
                 self.view.look_at = Some(text.clone());
                 Ok(Done::SILENT)
             }
             Command::Window(window_s) => self.set_window(*window_s),
-            Command::Exact(shown) => Ok(self.set_exact(*shown)),
+            Command::Exact(shown) => Ok(self.player.set_exact(*shown)),
             Command::Show(panes) => {
                 self.view.shown.clone_from(panes);
                 Ok(Done::SILENT)
@@ -287,76 +279,6 @@ impl Lab {
         Ok(Done::saying(made_way.unwrap_or(said)))
     }
 
-    fn step(&mut self, steps: i64) -> Answer {
-        let here = self.playback.step_number();
-        match steps {
-            0.. => self.playback.take_steps(steps.unsigned_abs()),
-            _ if here == 0 => return Err("the run begins here".into()),
-            _ => self
-                .playback
-                .go_to(here.saturating_sub(steps.unsigned_abs())),
-        }
-        Ok(Done::SILENT.going_on(UnderWay::Going))
-    }
-
-    fn go_to(&mut self, place: Place) -> Answer {
-        let step = match place {
-            Place::Step(step) => step,
-            Place::Time(time_s) => self.step_at(time_s)?,
-            Place::Start => 0,
-            Place::End => self.playback.end_step(),
-        };
-        self.playback.go_to(step);
-        Ok(Done::SILENT.going_on(UnderWay::Going))
-    }
-
-    /// The step at `time_s`.
-    ///
-    /// # Errors
-    /// Where no run has been yet.
-    pub(super) fn step_at(&self, time_s: f64) -> Result<u64, String> {
-        match time_s >= 0.0 && time_s.is_finite() {
-            true => Ok(Simulation::step_at(self.run().scenario(), time_s)),
-            false => Err("must be a time from 0 s on: the run begins there".to_owned()),
-        }
-    }
-
-    fn run_until(&mut self, condition: &Expression) -> Answer {
-        let run = self.run();
-        let bound = condition
-            .bind(|name| numbers::source(run, name), numbers::names())
-            .map_err(|fault| fault.to_string())?;
-        let condition = move |run: &LiveRun| bound.holds(|source| source.value(run));
-        Ok(match self.playback.run_until(Box::new(condition)) {
-            true => Done::SILENT.going_on(UnderWay::Playing),
-            false => Done::saying("it holds already, at this step"),
-        })
-    }
-
-    fn pause(&mut self) -> Done {
-        if let Some(left) = self.playback.steps_to_go() {
-            self.playback.set_running(false);
-            let left = HumanCount(left);
-            return Done::saying(format!("stopped with {left} steps to go"));
-        }
-        self.playback.set_running(false);
-        Done::SILENT
-    }
-
-    fn set_speed(&mut self, speed: Speed) -> Done {
-        self.playback.set_speed(speed);
-        let Speed::Times(speed) = speed else {
-            return Done::SILENT;
-        };
-        let wall_s = self.run().simulation().motion().time_step_s / speed;
-        match wall_s > LONG_STEP_S {
-            true => Done::saying(format!(
-                "a step takes {wall_s:.0} s at this speed; . takes one now"
-            )),
-            false => Done::SILENT,
-        }
-    }
-
     fn set_window(&mut self, window_s: f64) -> Answer {
         let least_s = 2.0 * self.run().simulation().motion().time_step_s;
         if window_s < least_s {
@@ -364,16 +286,6 @@ impl Lab {
         }
         self.view.window_s = window_s;
         Ok(Done::saying(format!("the traces show {window_s} s")))
-    }
-
-    fn set_exact(&mut self, shown: bool) -> Done {
-        if shown != self.run().overlay().is_some() {
-            self.playback.set_exact(shown);
-        }
-        Done::saying(match shown {
-            true => "the exact motion of the same start is drawn in dashes; t takes it away",
-            false => "without the exact motion",
-        })
     }
 
     /// Whether `pane` fills the screen.

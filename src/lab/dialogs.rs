@@ -206,7 +206,7 @@ impl Lab {
         to_step: Option<u64>,
         act: &str,
     ) -> Result<Arc<Scenario>, String> {
-        let step = to_step.unwrap_or(self.playback.step_number());
+        let step = to_step.unwrap_or(self.player.playback.step_number());
         if step == 0 {
             return Err(format!(
                 "there is nothing to {act} yet: the run stands at step 0"

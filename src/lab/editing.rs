@@ -37,13 +37,13 @@ impl Lab {
     pub(super) fn list_parameters(&mut self) {
         self.entries_listed = self.entries_in_force();
         let scenario = self.run().scenario();
-        let table = parameters::table_at(scenario, self.playback.step_number());
+        let table = parameters::table_at(scenario, self.player.playback.step_number());
         // Of a push that is given later, nothing can be set here: what is done here takes its place.
         let pushes = self
             .history
             .present()
             .journal
-            .pushes_by(self.playback.step_number());
+            .pushes_by(self.player.playback.step_number());
         let first_added = scenario.file.push.len(); // by an edit, which stands in the table once it is made
         let is_given = |parameter: &Parameter| {
             number_of_push(&parameter.key)
@@ -66,7 +66,7 @@ impl Lab {
         self.history
             .present()
             .journal
-            .in_force(self.playback.step_number())
+            .in_force(self.player.playback.step_number())
     }
 
     /// What the selected line stands for.
@@ -145,7 +145,7 @@ impl Lab {
                 Ok(is_new.then_some(Command::Set(table)))
             }
             Some(Target::NextPush(field)) => {
-                let time_step_s = in_force(scenario, self.playback.step_number())
+                let time_step_s = in_force(scenario, self.player.playback.step_number())
                     .0
                     .time_step_s;
                 let next = self.next_push.typed(*field, text, scenario, time_step_s)?;
@@ -157,7 +157,7 @@ impl Lab {
 
     /// Begins a new run with the values of `set` in its scenario, and does `acts` at its beginning.
     pub(super) fn begin_with(&mut self, set: &Table, acts: Vec<Act>, is_again: bool) -> Answer {
-        let here = self.playback.step_number();
+        let here = self.player.playback.step_number();
         let had_begun = here > 0;
         self.history.stands(here, &self.next_push); // wherever it was bound for: the new run moves as it does here
         let before = (!acts.is_empty()).then(|| self.history.clone());
@@ -217,7 +217,7 @@ impl Lab {
         acts: Vec<Act>,
         is_again: bool,
     ) -> Result<Option<String>, String> {
-        let step = self.playback.step_number();
+        let step = self.player.playback.step_number();
         let is_described = acts.iter().all(|act| matches!(act, Act::Describe(_)));
         let later = self.history.present().journal.later_than(step);
         let before = (acts.len() > 1).then(|| self.history.clone());
@@ -242,7 +242,7 @@ impl Lab {
         self.take_over(scenario, is_described);
         if !is_as_long {
             self.history.set_end(Clock::end_s(self.run().scenario()));
-            self.playback.set_end(self.history.present().end_s);
+            self.player.playback.set_end(self.history.present().end_s);
         }
         let made_way = later > 0 && !is_described;
         Ok(made_way.then(|| match later {
@@ -254,8 +254,8 @@ impl Lab {
     fn take_over(&mut self, scenario: Scenario, is_described: bool) {
         let scenario = Arc::new(scenario);
         match is_described {
-            true => self.playback.describe_as(&scenario),
-            false => self.playback.go_on_in(&scenario),
+            true => self.player.playback.describe_as(&scenario),
+            false => self.player.playback.go_on_in(&scenario),
         }
         self.is_another();
     }
@@ -318,10 +318,10 @@ impl Lab {
                 .set_end(Clock::end_s(told.as_ref().unwrap_or(&scenario)));
         }
         match act {
-            Act::Describe(_) => self.playback.describe_as(&scenario),
-            Act::Edit(_) | Act::Push(_) => self.playback.turn_at(step, &scenario),
+            Act::Describe(_) => self.player.playback.describe_as(&scenario),
+            Act::Edit(_) | Act::Push(_) => self.player.playback.turn_at(step, &scenario),
         }
-        self.playback.set_end(self.history.present().end_s);
+        self.player.playback.set_end(self.history.present().end_s);
         self.is_another();
         Ok(())
     }
@@ -340,9 +340,8 @@ impl Lab {
         self.next_push = next_push.map_or(self.next_push.clone(), |push| {
             push.suited_to(self.run().scenario())
         });
-        self.playback.set_end(end_s);
-        self.playback.go_to(left_at);
-        self.returning_to = Some(left_at);
+        self.player.playback.set_end(end_s);
+        self.player.return_to(left_at);
         self.list_parameters();
         Ok(())
     }

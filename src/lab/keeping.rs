@@ -68,12 +68,12 @@ impl Lab {
     }
 
     fn place(&self) -> Place {
-        let speed = match self.playback.speed() {
+        let speed = match self.player.playback.speed() {
             Speed::Times(speed) => Some(speed),
             Speed::Top => None,
         };
         Place {
-            step: self.step_to_keep(),
+            step: self.player.step_to_keep(),
             speed,
             shows_exact: self.run().overlay().is_some(),
             window_s: self.view.window_s,
@@ -116,12 +116,12 @@ impl Lab {
         lab.history = work.history;
         lab.set_file(lab.file_as_opened());
         lab.next_push = place.next_push.suited_to(lab.run().scenario());
-        lab.playback.set_end(lab.history.present().end_s);
-        lab.playback
+        lab.player.playback.set_end(lab.history.present().end_s);
+        lab.player
+            .playback
             .set_speed(place.speed.map_or(Speed::Top, Speed::Times));
-        lab.playback.set_exact(place.shows_exact);
-        lab.playback.go_to(place.step);
-        lab.returning_to = Some(place.step);
+        lab.player.playback.set_exact(place.shows_exact);
+        lab.player.return_to(place.step);
         lab.is_another();
         lab.notice.keep_saying(match place.exporting {
             Some(path) => {
@@ -131,15 +131,6 @@ impl Lab {
         });
         lab.read_now();
         Ok(lab)
-    }
-
-    /// Where it stands, or is on its way back to.
-    pub(super) fn step_to_keep(&self) -> u64 {
-        let to_go = self.playback.steps_to_go();
-        let bound_for = to_go.map(|to_go| self.playback.step_number().saturating_add(to_go));
-        let returning_to = self.returning_to.filter(|step| bound_for == Some(*step));
-        let destination = self.run().destination().or(returning_to);
-        destination.unwrap_or(self.playback.step_number())
     }
 
     /// What the run was opened from, where that is still there; else the run itself.

@@ -19,6 +19,7 @@ mod looking;
 pub mod notice;
 mod numbers;
 mod opening;
+mod player;
 pub mod preview;
 mod script;
 mod steering;
@@ -32,32 +33,27 @@ pub use script::Script;
 
 use crate::analysis::health::Advice;
 use crate::lab::view::{Pane, Part, View};
-use crate::observe::advisor::Advisor;
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
-use crate::observe::pace::Speed;
 use crate::observe::playback::{Halt, Playback};
-use crate::observe::readouts::{self, Readouts};
+use crate::observe::readouts::Readouts;
 use crate::run::NotFinite;
 use crate::scenario::{Motion, Scenario};
 use crate::storage::exporting::{Exporting, Written};
 use crate::work::changed;
 use crate::work::history::History;
 use crate::work::next_push::NextPush;
-use crate::work::restart::in_force;
 use browser::Browser;
 use editing::Target;
 use editor::Editor;
-use indicatif::HumanCount;
 use notice::Notice;
+use player::{Player, halt_in_words};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
 /// A value that was nudged longer ago is nudged anew: undo takes back what belongs together.
 const BELONGS: Duration = Duration::from_secs(3);
-/// Part of the traces' time that may pass between two readings.
-const FAST: f64 = 0.1;
 /// What lies on top of the screen and gets the keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
@@ -102,8 +98,7 @@ pub struct Lab {
     /// The scenario as it was opened, and how the run differs from it, where it does.
     file: Arc<Scenario>,
     changed_from_file: Option<String>,
-    playback: Playback,
-    ghost: Option<Ghost>,
+    player: Player,
     /// What can be edited: every value of the scenario as it is now, and below them the push to come.
     targets: Vec<Target>,
     editor: Editor,
@@ -117,17 +112,10 @@ pub struct Lab {
     dialog: Option<Dialog>,
     exporting: Option<Exporting>,
     written: Vec<Written>,
-    /// The step to which a run or a session that was come back to is on its way.
-    returning_to: Option<u64>,
     /// Whether the end was asked for while something was under way.
     was_warned: bool,
     /// The text of run and journal for the session, as long as it holds.
     work: Option<Arc<str>>,
-    /// Whether to look for what would mend a run.
-    is_advised: bool,
-    advisor: Option<Advisor>,
-    readouts: Readouts,
-    read_at: Duration,
     view: View,
     mode: Mode,
     /// The mode under the help.
@@ -147,13 +135,11 @@ impl Lab {
     /// A lab with the run of `scenario`, opened as `name`, at step 0.
     pub fn new(name: &str, scenario: Arc<Scenario>, view: View, running: bool) -> Self {
         let history = History::new(name, &scenario);
-        let mut playback = Playback::new(Arc::clone(&scenario), running);
-        let begins_with = scenario.file.view.as_ref();
-        playback.set_exact(begins_with.and_then(|view| view.exact).unwrap_or(false));
+        let player = Player::new(Arc::clone(&scenario), running);
         let mut lab = Self {
             history,
             changed_from_file: None,
-            ghost: None,
+            player,
             targets: Vec::new(),
             editor: Editor::default(),
             next_push: NextPush::of(&scenario),
@@ -164,14 +150,8 @@ impl Lab {
             dialog: None,
             exporting: None,
             written: Vec::new(),
-            returning_to: None,
             was_warned: false,
             work: None,
-            is_advised: false,
-            advisor: None,
-            readouts: playback.read(),
-            playback,
-            read_at: Duration::ZERO,
             view,
             mode: Mode::Lab,
             under_help: Mode::Lab,
@@ -200,12 +180,12 @@ impl Lab {
 
     /// From now on looks in the background for what would mend a run that is not to be believed.
     pub fn take_advice(&mut self) {
-        self.is_advised = true;
+        self.player.is_advised = true;
     }
 
     /// What would mend the run, where that is known.
     pub fn advice(&self) -> Option<&Advice> {
-        self.advisor.as_ref()?.advice()
+        self.player.advice()
     }
 
     /// Takes the run to `step` at once, before anything is shown.
@@ -213,7 +193,7 @@ impl Lab {
     /// # Errors
     /// When the numbers stop being finite on the way.
     pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
-        let arrived = self.playback.begin_at(step);
+        let arrived = self.player.playback.begin_at(step);
         self.read_now();
         arrived
     }
@@ -224,51 +204,22 @@ impl Lab {
         let wall = now.saturating_sub(self.now);
         self.now = now;
         self.changed |= self.notice.expire(now);
-        let before = self.playback.step_number();
-        let halt = self.playback.advance(now, wall, clock);
+        let (halt, is_new) = self.player.advance(now, wall, clock);
+        self.changed |= is_new;
         if let Some(halt) = halt {
             self.halted(halt);
         }
-        self.changed |= self.playback.step_number() != before;
-        if self.run().overlay_is_behind() {
-            self.playback.follow_exact(clock);
-            self.changed = true;
-        }
-        self.changed |= self.advisor.as_mut().is_some_and(Advisor::has_news);
         self.changed |= self.browser.take_news();
         self.follow_export();
         self.go_on_with_script(halt);
-        let is_due = self.is_fast() || now >= self.read_at + readouts::EVERY;
-        if self.changed && is_due {
+        if self.changed && self.player.is_due(now, self.view.window_s) {
             self.read_now();
         }
     }
 
-    /// Whether the pictures run away from numbers that are read off a few times a second.
-    fn is_fast(&self) -> bool {
-        let window_s = self.view.window_s;
-        let passes_s = readouts::EVERY.as_secs_f64();
-        self.playback.is_flat_out()
-            || matches!(self.playback.speed(), Speed::Times(speed) if speed * passes_s > FAST * window_s)
-    }
-
     fn halted(&mut self, halt: Halt) {
-        match halt {
-            Halt::StepsTaken | Halt::Fulfilled => {}
-            Halt::NotFulfilled(steps) => self.notice.keep_saying(format!(
-                "what the run was played to did not come true in {} steps",
-                HumanCount(steps)
-            )),
-            Halt::EndOfRun => self
-                .notice
-                .keep_saying("end of the scenario's run: space goes on, r begins again"),
-            Halt::NotFinite(error) => {
-                let text = format!(
-                    "the numbers are no longer finite at step {}: u takes the last edit back, r begins again",
-                    error.step
-                );
-                self.notice.keep_saying(text);
-            }
+        if let Some(text) = halt_in_words(halt) {
+            self.notice.keep_saying(text);
         }
         self.read_now();
     }
@@ -285,17 +236,10 @@ impl Lab {
     }
 
     fn read_now(&mut self) {
-        self.readouts = self.playback.read();
-        self.read_at = self.now;
+        self.player.read(self.now);
         self.changed = true;
         if self.entries_in_force() != self.entries_listed {
             self.list_parameters();
-        }
-        if self.is_advised
-            && self.advisor.is_none()
-            && self.readouts.health.is_believed() == Some(false)
-        {
-            self.advisor = Some(Advisor::ask(Arc::clone(self.run().scenario())));
         }
     }
 
@@ -329,17 +273,17 @@ impl Lab {
 
     /// The run on its pace.
     pub fn playback(&self) -> &Playback {
-        &self.playback
+        &self.player.playback
     }
 
     /// The run.
     pub fn run(&self) -> &LiveRun {
-        self.playback.run()
+        self.player.run()
     }
 
     /// The run before, where an edit has begun this one anew.
     pub fn ghost(&self) -> Option<&Ghost> {
-        self.ghost.as_ref()
+        self.player.ghost()
     }
 
     /// What can be edited, and which of it is selected.
@@ -364,8 +308,7 @@ impl Lab {
 
     /// Gravity, scheme and time step of the step to come.
     pub fn motion(&self) -> Motion {
-        let simulation = self.run().simulation();
-        in_force(simulation.scenario(), simulation.step_number()).0
+        self.player.motion()
     }
 
     /// How it is looked at.
@@ -375,7 +318,7 @@ impl Lab {
 
     /// The latest reading.
     pub fn readouts(&self) -> &Readouts {
-        &self.readouts
+        self.player.readouts()
     }
 
     /// What gets the keys.
@@ -406,10 +349,7 @@ impl Lab {
 
     /// What is to be said now, if anything: what keeps the lab busy, or else what has happened.
     pub fn notice(&self) -> Option<String> {
-        let stepping = self
-            .playback
-            .steps_to_go()
-            .map(|left| format!("stepping: {} to go, Esc stops", HumanCount(left)));
+        let stepping = self.player.in_words();
         let said = || self.notice.text().map(str::to_owned);
         stepping.or_else(said).or_else(|| self.export_in_words())
     }

@@ -2,16 +2,11 @@
 
 use super::Lab;
 use crate::export::Destination;
-use crate::observe::ghost::Ghost;
-use crate::observe::playback::Playback;
 use crate::scenario::{Document, Problem, Problems, Scenario, presets};
 use crate::work::changed;
 use crate::work::next_push::NextPush;
 use std::path::Path;
 use std::sync::Arc;
-
-/// A run that has come less than this part as far as its ghost is no ghost itself: a value was nudged once more.
-const SHORT: f64 = 0.1;
 
 impl Lab {
     /// Leaves the present run for that of `scenario`, opened as `name`, which stands still at step 0.
@@ -23,44 +18,37 @@ impl Lab {
 
     /// The history is to know where the run stands, or is on its way back to: it may be left.
     pub(super) fn stands(&mut self) {
-        self.history.stands(self.step_to_keep(), &self.next_push);
+        self.history
+            .stands(self.player.step_to_keep(), &self.next_push);
     }
 
     /// Shows the run of `scenario`, which is none of the present scenario's.
     pub(super) fn show_another(&mut self, scenario: Arc<Scenario>) {
-        let begins_with = scenario.file.view.as_ref().and_then(|view| view.exact);
-        let shows_exact = begins_with.unwrap_or(self.run().overlay().is_some());
-        self.ghost = None;
         self.view.fit(&scenario);
         self.file = Arc::clone(&scenario);
         self.next_push = NextPush::of(&scenario);
-        self.playback = Playback::new(scenario, false);
-        self.playback.set_exact(shows_exact);
+        self.player.open(scenario);
         self.is_another();
     }
 
     /// Begins the run of `scenario`, which differs from the present one by an edit: that one stays as a ghost.
     pub(super) fn begin_run(&mut self, scenario: Arc<Scenario>) {
-        let left = Ghost::of(self.run());
-        let is_short = |before: &Ghost| left.end_s() < SHORT * before.end_s();
-        if left.end_s() > 0.0 && !self.ghost.as_ref().is_some_and(is_short) {
-            self.ghost = Some(left);
-        }
         self.next_push = self.next_push.clone().suited_to(&scenario);
-        self.playback.begin(scenario);
+        self.player.begin(scenario);
         self.is_another();
     }
 
     /// Shows the run of `scenario` again, from which the present one differs by an edit that is taken back or brought
-    /// again: the present one stays as a ghost, if it was played.
+    /// again.
     pub(super) fn go_over_to(&mut self, scenario: Arc<Scenario>) {
-        self.ghost = None;
-        self.begin_run(scenario);
+        self.next_push = self.next_push.clone().suited_to(&scenario);
+        self.player.go_over_to(scenario);
+        self.is_another();
     }
 
     /// What was known of the scenario before no longer holds.
     pub(super) fn is_another(&mut self) {
-        self.advisor = None;
+        self.player.forget_advice();
         self.work = None;
         self.changed_from_file = changed::changed(&self.file, self.run().scenario());
         self.list_parameters();

@@ -65,7 +65,7 @@ impl Lab {
     /// Which command was refused, and why; those after it are not carried out.
     pub fn finish_script(&mut self) -> Result<(), String> {
         while !self.script.is_done() {
-            let halt = self.playback.finish();
+            let halt = self.player.playback.finish();
             if let Some(halt) = halt {
                 self.halted(halt);
             }
@@ -110,8 +110,8 @@ impl Lab {
     /// Whether what was begun is at its end.
     fn came_to(&self, under_way: UnderWay, halt: Option<Halt>) -> Result<bool, String> {
         let is_on = match under_way {
-            UnderWay::Going => self.playback.steps_to_go().is_some(),
-            UnderWay::Playing => self.playback.is_on_its_way(),
+            UnderWay::Going => self.player.playback.steps_to_go().is_some(),
+            UnderWay::Playing => self.player.playback.is_on_its_way(),
             UnderWay::Waiting(until) => return Ok(self.now >= until),
             UnderWay::Exporting => return Ok(!self.is_exporting()),
         };

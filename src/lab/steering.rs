@@ -100,7 +100,7 @@ impl Lab {
             Action::Faster => self.other_speed(times).map(Some),
             Action::Slower => self.other_speed(-times).map(Some),
             Action::Restart => {
-                let run = self.playback.is_running().then_some(Command::Run);
+                let run = self.player.playback.is_running().then_some(Command::Run);
                 let begin = Command::GoTo(Place::Start);
                 Ok(Some([Some(begin), run].into_iter().flatten().collect()))
             }
@@ -124,11 +124,11 @@ impl Lab {
     }
 
     fn is_moving(&self) -> bool {
-        self.playback.is_running() || self.playback.steps_to_go().is_some()
+        self.player.playback.is_running() || self.player.playback.steps_to_go().is_some()
     }
 
     fn other_speed(&self, notches: i32) -> Result<Vec<Command>, String> {
-        let now = self.playback.speed();
+        let now = self.player.playback.speed();
         match now.shifted(notches) {
             next if next != now => Ok(vec![Command::Speed(next)]),
             Speed::Top => Err("this is the top speed".to_owned()),
@@ -297,7 +297,7 @@ impl Lab {
             Mode::Browser => self.mode = Mode::Lab,
             Mode::Dialog => self.close_dialog(),
             Mode::Lab if !self.script.is_done() => self.stop_script(),
-            Mode::Lab if self.playback.steps_to_go().is_some() => {
+            Mode::Lab if self.player.playback.steps_to_go().is_some() => {
                 self.carry_out_all(&[Command::Pause]);
             }
             Mode::Lab if self.view.filled => self.carry_out_all(&[Command::Fill(None)]),

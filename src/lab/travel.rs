@@ -22,7 +22,7 @@ impl Lab {
     }
 
     fn step_meant(&self, text: &str) -> Result<u64, String> {
-        let here = self.playback.step_number();
+        let here = self.player.playback.step_number();
         let wrong = || format!("must be {WHERE}");
         let digits = text.trim_start_matches(['+', '-']);
         if let Some(time) = text.strip_suffix('s') {
@@ -33,11 +33,11 @@ impl Lab {
             } else {
                 self.run().now().time_s
             };
-            return self.step_at(from_s + time_s);
+            return self.player.step_at(from_s + time_s);
         }
         match text {
             "start" => Ok(0),
-            "end" => Ok(self.playback.end_step()),
+            "end" => Ok(self.player.playback.end_step()),
             _ if text.starts_with('+') => whole(digits)
                 .map(|steps| here.saturating_add(steps))
                 .ok_or_else(wrong),

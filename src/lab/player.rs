@@ -1,0 +1,279 @@
+//! The run on the screen: played at its pace, read off a few times a second, with its ghost and what would mend it.
+
+use super::carry_out::{Answer, Done, UnderWay};
+use super::command::Place;
+use super::numbers;
+use crate::analysis::health::Advice;
+use crate::observe::advisor::Advisor;
+use crate::observe::ghost::Ghost;
+use crate::observe::live::LiveRun;
+use crate::observe::pace::Speed;
+use crate::observe::playback::{Halt, Playback};
+use crate::observe::readouts::{self, Readouts};
+use crate::run::Simulation;
+use crate::scenario::{Motion, Scenario};
+use crate::work::expression::Expression;
+use crate::work::restart::in_force;
+use indicatif::HumanCount;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Part of the traces' time that may pass between two readings.
+const FAST: f64 = 0.1;
+/// A step that takes longer than this is announced, s.
+const LONG_STEP_S: f64 = 3.0;
+/// A run that has come less than this part as far as its ghost is no ghost itself: a value was nudged once more.
+const SHORT: f64 = 0.1;
+
+/// A run that is played, and what is known of it.
+pub struct Player {
+    pub(super) playback: Playback,
+    /// The run before, where an edit has begun this one anew.
+    ghost: Option<Ghost>,
+    /// Whether to look for what would mend a run.
+    pub(super) is_advised: bool,
+    advisor: Option<Advisor>,
+    readouts: Readouts,
+    read_at: Duration,
+    /// The step to which a run or a session that was come back to is on its way.
+    returning_to: Option<u64>,
+}
+
+impl Player {
+    /// The run of `scenario` at step 0, with the exact motion where its `[view]` says so.
+    pub(super) fn new(scenario: Arc<Scenario>, running: bool) -> Self {
+        let exact = begins_with_exact(&scenario).unwrap_or(false);
+        let mut playback = Playback::new(scenario, running);
+        playback.set_exact(exact);
+        Self {
+            readouts: playback.read(),
+            playback,
+            ghost: None,
+            is_advised: false,
+            advisor: None,
+            read_at: Duration::ZERO,
+            returning_to: None,
+        }
+    }
+
+    /// Plays the run of `scenario` instead, which is none of the present scenario's; it stands still at step 0.
+    pub(super) fn open(&mut self, scenario: Arc<Scenario>) {
+        let shows_exact = self.run().overlay().is_some();
+        let exact = begins_with_exact(&scenario).unwrap_or(shows_exact);
+        self.ghost = None;
+        self.playback = Playback::new(scenario, false);
+        self.playback.set_exact(exact);
+    }
+
+    /// Begins the run of `scenario`, which differs from the present one by an edit: that one stays as a ghost.
+    pub(super) fn begin(&mut self, scenario: Arc<Scenario>) {
+        let left = Ghost::of(self.run());
+        let is_short = |before: &Ghost| left.end_s() < SHORT * before.end_s();
+        if left.end_s() > 0.0 && !self.ghost.as_ref().is_some_and(is_short) {
+            self.ghost = Some(left);
+        }
+        self.playback.begin(scenario);
+    }
+
+    /// As [`begin`](Self::begin), where an edit is taken back or brought again: the present run stays as a ghost, if it
+    /// was played, and no other.
+    pub(super) fn go_over_to(&mut self, scenario: Arc<Scenario>) {
+        self.ghost = None;
+        self.begin(scenario);
+    }
+
+    /// Comes back to `step`, where the run was left.
+    pub(super) fn return_to(&mut self, step: u64) {
+        self.playback.go_to(step);
+        self.returning_to = Some(step);
+    }
+
+    /// Where it stands, or is on its way back to.
+    pub(super) fn step_to_keep(&self) -> u64 {
+        let to_go = self.playback.steps_to_go();
+        let bound_for = to_go.map(|to_go| self.playback.step_number().saturating_add(to_go));
+        let returning_to = self.returning_to.filter(|step| bound_for == Some(*step));
+        let destination = self.run().destination().or(returning_to);
+        destination.unwrap_or(self.playback.step_number())
+    }
+
+    /// What was known of the scenario before no longer holds.
+    pub(super) fn forget_advice(&mut self) {
+        self.advisor = None;
+    }
+
+    /// Lets `wall` pass up to `now`, as `clock` tells it: steps, follows the exact motion. Gives why the run stopped by
+    /// itself, if it did, and whether there is something new to be seen.
+    pub(super) fn advance(
+        &mut self,
+        now: Duration,
+        wall: Duration,
+        clock: &mut dyn FnMut() -> Duration,
+    ) -> (Option<Halt>, bool) {
+        let before = self.playback.step_number();
+        let halt = self.playback.advance(now, wall, clock);
+        let mut is_new = halt.is_some() || self.playback.step_number() != before;
+        if self.run().overlay_is_behind() {
+            self.playback.follow_exact(clock);
+            is_new = true;
+        }
+        is_new |= self.advisor.as_mut().is_some_and(Advisor::has_news);
+        (halt, is_new)
+    }
+
+    /// Whether the numbers are to be read at `now`, where the traces show `window_s`.
+    pub(super) fn is_due(&self, now: Duration, window_s: f64) -> bool {
+        self.is_fast(window_s) || now >= self.read_at + readouts::EVERY
+    }
+
+    /// Whether the pictures run away from numbers that are read off a few times a second.
+    fn is_fast(&self, window_s: f64) -> bool {
+        let passes_s = readouts::EVERY.as_secs_f64();
+        self.playback.is_flat_out()
+            || matches!(self.playback.speed(), Speed::Times(speed) if speed * passes_s > FAST * window_s)
+    }
+
+    /// Reads the numbers, and asks what would mend a run that is not to be believed.
+    pub(super) fn read(&mut self, now: Duration) {
+        self.readouts = self.playback.read();
+        self.read_at = now;
+        if self.is_advised
+            && self.advisor.is_none()
+            && self.readouts.health.is_believed() == Some(false)
+        {
+            self.advisor = Some(Advisor::ask(Arc::clone(self.run().scenario())));
+        }
+    }
+
+    pub(super) fn step(&mut self, steps: i64) -> Answer {
+        let here = self.playback.step_number();
+        match steps {
+            0.. => self.playback.take_steps(steps.unsigned_abs()),
+            _ if here == 0 => return Err("the run begins here".into()),
+            _ => self
+                .playback
+                .go_to(here.saturating_sub(steps.unsigned_abs())),
+        }
+        Ok(Done::SILENT.going_on(UnderWay::Going))
+    }
+
+    pub(super) fn go_to(&mut self, place: Place) -> Answer {
+        let step = match place {
+            Place::Step(step) => step,
+            Place::Time(time_s) => self.step_at(time_s)?,
+            Place::Start => 0,
+            Place::End => self.playback.end_step(),
+        };
+        self.playback.go_to(step);
+        Ok(Done::SILENT.going_on(UnderWay::Going))
+    }
+
+    /// The step at `time_s`.
+    ///
+    /// # Errors
+    /// Where no run has been yet.
+    pub(super) fn step_at(&self, time_s: f64) -> Result<u64, String> {
+        match time_s >= 0.0 && time_s.is_finite() {
+            true => Ok(Simulation::step_at(self.run().scenario(), time_s)),
+            false => Err("must be a time from 0 s on: the run begins there".to_owned()),
+        }
+    }
+
+    pub(super) fn run_until(&mut self, condition: &Expression) -> Answer {
+        let run = self.run();
+        let bound = condition
+            .bind(|name| numbers::source(run, name), numbers::names())
+            .map_err(|fault| fault.to_string())?;
+        let condition = move |run: &LiveRun| bound.holds(|source| source.value(run));
+        Ok(match self.playback.run_until(Box::new(condition)) {
+            true => Done::SILENT.going_on(UnderWay::Playing),
+            false => Done::saying("it holds already, at this step"),
+        })
+    }
+
+    pub(super) fn pause(&mut self) -> Done {
+        let to_go = self.playback.steps_to_go();
+        self.playback.set_running(false);
+        to_go.map_or(Done::SILENT, |left| {
+            Done::saying(format!("stopped with {} steps to go", HumanCount(left)))
+        })
+    }
+
+    pub(super) fn set_speed(&mut self, speed: Speed) -> Done {
+        self.playback.set_speed(speed);
+        let Speed::Times(speed) = speed else {
+            return Done::SILENT;
+        };
+        let wall_s = self.run().simulation().motion().time_step_s / speed;
+        match wall_s > LONG_STEP_S {
+            true => Done::saying(format!(
+                "a step takes {wall_s:.0} s at this speed; . takes one now"
+            )),
+            false => Done::SILENT,
+        }
+    }
+
+    pub(super) fn set_exact(&mut self, shown: bool) -> Done {
+        if shown != self.run().overlay().is_some() {
+            self.playback.set_exact(shown);
+        }
+        Done::saying(match shown {
+            true => "the exact motion of the same start is drawn in dashes; t takes it away",
+            false => "without the exact motion",
+        })
+    }
+
+    /// The run.
+    pub fn run(&self) -> &LiveRun {
+        self.playback.run()
+    }
+
+    /// The run before, where an edit has begun this one anew.
+    pub fn ghost(&self) -> Option<&Ghost> {
+        self.ghost.as_ref()
+    }
+
+    /// The latest reading.
+    pub fn readouts(&self) -> &Readouts {
+        &self.readouts
+    }
+
+    /// What would mend the run, where that is known.
+    pub fn advice(&self) -> Option<&Advice> {
+        self.advisor.as_ref()?.advice()
+    }
+
+    /// Gravity, scheme and time step of the step to come.
+    pub fn motion(&self) -> Motion {
+        let simulation = self.run().simulation();
+        in_force(simulation.scenario(), simulation.step_number()).0
+    }
+
+    /// What is under way, in words.
+    pub(super) fn in_words(&self) -> Option<String> {
+        let left = self.playback.steps_to_go()?;
+        Some(format!("stepping: {} to go, Esc stops", HumanCount(left)))
+    }
+}
+
+/// What is to be said of a run that has stopped by itself, if anything.
+pub(super) fn halt_in_words(halt: Halt) -> Option<String> {
+    match halt {
+        Halt::StepsTaken | Halt::Fulfilled => None,
+        Halt::NotFulfilled(steps) => Some(format!(
+            "what the run was played to did not come true in {} steps",
+            HumanCount(steps)
+        )),
+        Halt::EndOfRun => {
+            Some("end of the scenario's run: space goes on, r begins again".to_owned())
+        }
+        Halt::NotFinite(error) => Some(format!(
+            "the numbers are no longer finite at step {}: u takes the last edit back, r begins again",
+            error.step
+        )),
+    }
+}
+
+fn begins_with_exact(scenario: &Scenario) -> Option<bool> {
+    scenario.file.view.as_ref()?.exact
+}
