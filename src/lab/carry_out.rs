@@ -6,8 +6,7 @@ use crate::lab::view::Pane;
 use crate::scenario::keys;
 use crate::scenario::problem::nearest;
 use crate::work::journal::Act;
-use crate::work::next_push::{Field, NextPush, Toward};
-use nalgebra::Vector3;
+use crate::work::next_push::NextPush;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -93,7 +92,7 @@ impl Lab {
     /// Why nothing was done.
     pub fn carry_out(&mut self, command: &Command) -> Answer {
         if !matches!(command, Command::Nudge { .. }) {
-            self.last_nudged = None;
+            self.values.forget_nudge();
         }
         let answer = self.done(command);
         self.keep_focus();
@@ -212,8 +211,8 @@ impl Lab {
     }
 
     fn nudge(&mut self, key: &str, times: i32) -> Answer {
-        let Some(parameter) = self.parameter(key).cloned() else {
-            let known = self.editor.lines().iter();
+        let Some(parameter) = self.values.parameter(key).cloned() else {
+            let known = self.values.editor().lines().iter();
             let known = known
                 .map(|line| line.key.as_str())
                 .filter(|key| !key.is_empty());
@@ -227,10 +226,7 @@ impl Lab {
             .nudged(times)
             .map_err(|reason| format!("{} {reason}", parameter.label))?;
         let now = self.now;
-        let is_again = self
-            .last_nudged
-            .as_ref()
-            .is_some_and(|(last, at)| *last == key && now.saturating_sub(*at) < super::BELONGS);
+        let is_again = self.values.is_nudged_again(key, now);
         let table = toml::Table::from_iter([(key.to_owned(), value)]);
         let done = match keys::Effect::of(key) {
             keys::Effect::NewRun => self.begin_with(&table, Vec::new(), is_again)?,
@@ -239,28 +235,14 @@ impl Lab {
                 Done::saying(made_way.unwrap_or_else(|| self.said_of(key)))
             }
         };
-        self.last_nudged = Some((key.to_owned(), now));
+        self.values.note_nudge(key, now);
         Ok(done)
     }
 
-    /// The push to come, with what `choice` has of its own.
     fn chosen(&self, choice: &PushChoice) -> Result<NextPush, String> {
-        let scenario = self.run().scenario();
-        let mut push = self.next_push.clone();
-        if let Some(point) = &choice.point {
-            push = push.typed(Field::Point, point, scenario, self.motion().time_step_s)?;
-        }
-        match choice.force_N {
-            None => {}
-            Some(Force::Size(size)) => push.size_N = size,
-            Some(Force::Vector(vector)) => {
-                push.size_N = Vector3::from(vector).norm();
-                push.toward = Toward::Along(vector);
-            }
-        }
-        push.toward = choice.toward.unwrap_or(push.toward);
-        push.for_s = choice.for_s.unwrap_or(push.for_s);
-        push.checked()
+        let time_step_s = self.motion().time_step_s;
+        self.values
+            .chosen(choice, self.run().scenario(), time_step_s)
     }
 
     /// Gives the push to come, with what `choice` has of its own, from here on.

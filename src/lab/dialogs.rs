@@ -145,7 +145,11 @@ impl Lab {
         let path = self.path_of(text);
         let force = dialog.told_of.as_deref() == Some(&*path);
         let answer = match &dialog.asking {
-            Asking::Value => self.carry_out_typed(self.value_typed(text)),
+            Asking::Value => self.carry_out_typed(self.values.value_typed(
+                text,
+                self.run().scenario(),
+                self.motion().time_step_s,
+            )),
             Asking::GoTo => self.carry_out_typed(self.place_typed(text).map(Some)),
             Asking::Export(scenario) => match every(second) {
                 Ok(every) => self.carry_out(&Command::Export {

@@ -1,8 +1,7 @@
 //! Changing the run: a value of its scenario, a push; and taking it back.
 
 use super::carry_out::{Answer, Done, UnderWay};
-use super::command::{Command, Force, PushChoice};
-use super::editor::Line;
+use super::values::Target;
 use super::{Lab, dialogs::Asking};
 use crate::lab::view::Pane;
 use crate::run::Clock;
@@ -11,75 +10,17 @@ use crate::scenario::Scenario;
 use crate::scenario::keys::Effect;
 use crate::work::history::{History, Turn};
 use crate::work::journal::{Act, number_of_push};
-use crate::work::next_push::{Field, NextPush};
-use crate::work::parameters::{self, Parameter, parameters};
+use crate::work::next_push::NextPush;
+use crate::work::parameters::Parameter;
 use crate::work::restart::in_force;
 use std::sync::Arc;
 use toml::Table;
 
-/// The editor's group of lines for the push to come.
-const NEXT_PUSH: &str = "next push (p)";
-
-/// The groups in the order in which the editor lists them; pushes stand after the start, points after the body.
-const ORDER: [&str; 6] = ["motion", "start", NEXT_PUSH, "body", "view", "scenario"];
-
-/// What a line of the editor stands for.
-#[derive(Clone)]
-pub(super) enum Target {
-    /// A value of the scenario.
-    Parameter(Box<Parameter>),
-    /// A value of the push to come.
-    NextPush(Field),
-}
-
 impl Lab {
     /// Lists what can be edited, as it is now.
     pub(super) fn list_parameters(&mut self) {
-        self.entries_listed = self.entries_in_force();
-        let scenario = self.run().scenario();
-        let table = parameters::table_at(scenario, self.player.playback.step_number());
-        // Of a push that is given later, nothing can be set here: what is done here takes its place.
-        let pushes = self
-            .history
-            .present()
-            .journal
-            .pushes_by(self.player.playback.step_number());
-        let first_added = scenario.file.push.len(); // by an edit, which stands in the table once it is made
-        let is_given = |parameter: &Parameter| {
-            number_of_push(&parameter.key)
-                .is_none_or(|number| number < pushes || number >= first_added)
-        };
-        let values = parameters(&table, scenario).into_iter().filter(is_given);
-        let values = values.map(|parameter| Target::Parameter(Box::new(parameter)));
-        let mut targets: Vec<_> = values.chain(Field::ALL.map(Target::NextPush)).collect();
-        targets.sort_by_key(|target| rank(target.group())); // stable: within a group nothing moves
-        let lines = targets
-            .iter()
-            .map(|target| target.line(&self.next_push))
-            .collect();
-        self.editor.set_lines(lines);
-        self.targets = targets;
-    }
-
-    /// How many entries of the journal act by now.
-    pub(super) fn entries_in_force(&self) -> usize {
-        self.history
-            .present()
-            .journal
-            .in_force(self.player.playback.step_number())
-    }
-
-    /// What the selected line stands for.
-    pub(super) fn selected(&self) -> Option<&Target> {
-        self.targets.get(self.editor.selected_index())
-    }
-
-    /// The value at the dotted `key`, where the scenario has one.
-    pub(super) fn parameter(&self, key: &str) -> Option<&Parameter> {
-        self.targets.iter().find_map(|target| match target {
-            Target::Parameter(parameter) if parameter.key == key => Some(&**parameter),
-            _ => None,
-        })
+        self.values
+            .list(self.player.run(), &self.history.present().journal);
     }
 
     pub(super) fn turn_to_parameters(&mut self) {
@@ -91,12 +32,12 @@ impl Lab {
 
     pub(super) fn choose_push(&mut self) {
         self.turn_to(Pane::Parameters);
-        self.editor.select(NEXT_PUSH, Field::Size.label().0);
+        self.values.select_next_push();
         self.say("the push to come: p gives it");
     }
 
     pub(super) fn choose_next_push(&mut self, next: NextPush) {
-        self.next_push = next;
+        self.values.set_next_push(next);
         self.list_parameters();
     }
 
@@ -105,7 +46,7 @@ impl Lab {
         if self.view.focus != Pane::Parameters {
             return self.turn_to_parameters();
         }
-        let Some(line) = self.editor.selected().cloned() else {
+        let Some(line) = self.values.editor().selected().cloned() else {
             return;
         };
         let title = match line.key.is_empty() {
@@ -116,7 +57,7 @@ impl Lab {
             true => line.label.clone(),
             false => format!("{}, {}", line.label, line.unit),
         };
-        let about = match self.selected() {
+        let about = match self.values.selected() {
             Some(Target::Parameter(parameter)) => about(parameter),
             Some(Target::NextPush(field)) => vec![
                 field.about().to_owned(),
@@ -128,38 +69,11 @@ impl Lab {
         self.ask(Asking::Value, &title, &[(&label, line.value)], &about);
     }
 
-    /// The command that gives the line that is selected the value `text`; none where it has it.
-    ///
-    /// # Errors
-    /// Why it is no value.
-    pub(super) fn value_typed(&self, text: &str) -> Result<Option<Command>, String> {
-        let scenario = self.run().scenario();
-        match self.selected() {
-            None => Ok(None),
-            Some(Target::Parameter(parameter)) => {
-                let value = parameter
-                    .typed(text)
-                    .map_err(|reason| format!("{} {reason}", parameter.label))?;
-                let is_new = value != parameter.value || parameter.is_default;
-                let table = Table::from_iter([(parameter.key.clone(), value)]);
-                Ok(is_new.then_some(Command::Set(table)))
-            }
-            Some(Target::NextPush(field)) => {
-                let time_step_s = in_force(scenario, self.player.playback.step_number())
-                    .0
-                    .time_step_s;
-                let next = self.next_push.typed(*field, text, scenario, time_step_s)?;
-                let choice = PushChoice::field(*field, &next);
-                Ok(Some(Command::NextPush(choice)))
-            }
-        }
-    }
-
     /// Begins a new run with the values of `set` in its scenario, and does `acts` at its beginning.
     pub(super) fn begin_with(&mut self, set: &Table, acts: Vec<Act>, is_again: bool) -> Answer {
         let here = self.player.playback.step_number();
         let had_begun = here > 0;
-        self.history.stands(here, &self.next_push); // wherever it was bound for: the new run moves as it does here
+        self.history.stands(here, self.values.next_push()); // wherever it was bound for: the new run moves as it does here
         let before = (!acts.is_empty()).then(|| self.history.clone());
         let begun = match is_again {
             true => self.history.begin_again_with(set),
@@ -185,12 +99,7 @@ impl Lab {
 
     /// What is to be said of `key`, now that it is set.
     pub(super) fn said_of(&self, key: &str) -> String {
-        let line = self.editor.lines().iter().find(|line| line.key == key);
-        let value = match line {
-            Some(line) => format!("{} {} {}", line.label, line.value, line.unit),
-            None => key.to_owned(),
-        };
-        let value = value.trim_end();
+        let value = self.values.in_words(key);
         match Effect::of(key) {
             Effect::None => format!("{value}; u takes it back"),
             _ if self.is_of_a_push_that_is_over(key) => {
@@ -337,69 +246,14 @@ impl Lab {
             true => self.go_over_to(scenario),
             false => self.show_another(scenario),
         }
-        self.next_push = next_push.map_or(self.next_push.clone(), |push| {
-            push.suited_to(self.run().scenario())
-        });
+        if let Some(push) = next_push {
+            self.values.set_next_push(push);
+            self.values.suit(self.player.run().scenario());
+        }
         self.player.playback.set_end(end_s);
         self.player.return_to(left_at);
         self.list_parameters();
         Ok(())
-    }
-}
-
-impl PushChoice {
-    /// The `field` of `push`.
-    pub(super) fn field(field: Field, push: &NextPush) -> Self {
-        let mut choice = Self::default();
-        match field {
-            Field::Point => choice.point = Some(push.point.clone()),
-            Field::Size => choice.force_N = Some(Force::Size(push.size_N)),
-            Field::Toward => choice.toward = Some(push.toward),
-            Field::Length => choice.for_s = Some(push.for_s),
-        }
-        choice
-    }
-}
-
-impl Target {
-    fn group(&self) -> &str {
-        match self {
-            Self::Parameter(parameter) => &parameter.group,
-            Self::NextPush(_) => NEXT_PUSH,
-        }
-    }
-
-    fn line(&self, push: &NextPush) -> Line {
-        let group = self.group().to_owned();
-        match self {
-            Self::Parameter(parameter) => Line {
-                key: parameter.key.clone(),
-                group,
-                label: parameter.label.clone(),
-                value: parameter.shown(),
-                unit: parameter.unit().to_owned(),
-                is_default: parameter.is_default,
-            },
-            Self::NextPush(field) => Line {
-                key: String::new(),
-                group,
-                label: field.label().0.to_owned(),
-                value: push.shown(*field),
-                unit: field.label().1.to_owned(),
-                is_default: false,
-            },
-        }
-    }
-}
-
-/// The place of a group in the list: pushes stand above the push to come, points below the body.
-fn rank(group: &str) -> usize {
-    let listed = ORDER.iter().position(|known| *known == group);
-    let place = |of: &str| ORDER.iter().position(|known| *known == of).unwrap_or(0);
-    match listed {
-        Some(rank) => 2 * rank,
-        None if group.starts_with("push") => 2 * place("start") + 1,
-        None => 2 * place("body") + 1,
     }
 }
 

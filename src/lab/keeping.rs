@@ -83,7 +83,7 @@ impl Lab {
                 .exporting
                 .as_ref()
                 .map(|exporting| Shown(exporting.path()).to_string()),
-            next_push: self.next_push.clone(),
+            next_push: self.values.next_push().clone(),
         }
     }
 
@@ -115,7 +115,8 @@ impl Lab {
         let mut lab = Self::new(&present.name.clone(), scenario, view, false);
         lab.history = work.history;
         lab.set_file(lab.file_as_opened());
-        lab.next_push = place.next_push.suited_to(lab.run().scenario());
+        lab.values.set_next_push(place.next_push);
+        lab.values.suit(lab.player.run().scenario());
         lab.player.playback.set_end(lab.history.present().end_s);
         lab.player
             .playback

@@ -24,6 +24,7 @@ pub mod preview;
 mod script;
 mod steering;
 mod travel;
+mod values;
 pub mod view;
 
 pub use carry_out::{Answer, Done, Refusal, UnderWay};
@@ -42,18 +43,15 @@ use crate::scenario::{Motion, Scenario};
 use crate::storage::exporting::{Exporting, Written};
 use crate::work::changed;
 use crate::work::history::History;
-use crate::work::next_push::NextPush;
 use browser::Browser;
-use editing::Target;
 use editor::Editor;
 use notice::Notice;
 use player::{Player, halt_in_words};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
+use values::Values;
 
-/// A value that was nudged longer ago is nudged anew: undo takes back what belongs together.
-const BELONGS: Duration = Duration::from_secs(3);
 /// What lies on top of the screen and gets the keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
@@ -99,16 +97,9 @@ pub struct Lab {
     file: Arc<Scenario>,
     changed_from_file: Option<String>,
     player: Player,
-    /// What can be edited: every value of the scenario as it is now, and below them the push to come.
-    targets: Vec<Target>,
-    editor: Editor,
-    next_push: NextPush,
-    /// How many entries of the journal act on what the editor lists.
-    entries_listed: usize,
+    values: Values,
     /// Where files are looked for and written to, if not in the present folder.
     folder: Option<PathBuf>,
-    /// The key that was nudged last, if nothing else has been done since.
-    last_nudged: Option<(String, Duration)>,
     dialog: Option<Dialog>,
     exporting: Option<Exporting>,
     written: Vec<Written>,
@@ -140,13 +131,9 @@ impl Lab {
             history,
             changed_from_file: None,
             player,
-            targets: Vec::new(),
-            editor: Editor::default(),
-            next_push: NextPush::of(&scenario),
-            entries_listed: 0,
+            values: Values::new(&scenario),
             file: scenario,
             folder: None,
-            last_nudged: None,
             dialog: None,
             exporting: None,
             written: Vec::new(),
@@ -238,7 +225,11 @@ impl Lab {
     fn read_now(&mut self) {
         self.player.read(self.now);
         self.changed = true;
-        if self.entries_in_force() != self.entries_listed {
+        let (step, journal) = (
+            self.player.playback.step_number(),
+            &self.history.present().journal,
+        );
+        if self.values.is_outdated(step, journal) {
             self.list_parameters();
         }
     }
@@ -288,7 +279,7 @@ impl Lab {
 
     /// What can be edited, and which of it is selected.
     pub fn editor(&self) -> &Editor {
-        &self.editor
+        self.values.editor()
     }
 
     /// The dialog on top, if there is one.

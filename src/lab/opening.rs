@@ -19,21 +19,21 @@ impl Lab {
     /// The history is to know where the run stands, or is on its way back to: it may be left.
     pub(super) fn stands(&mut self) {
         self.history
-            .stands(self.player.step_to_keep(), &self.next_push);
+            .stands(self.player.step_to_keep(), self.values.next_push());
     }
 
     /// Shows the run of `scenario`, which is none of the present scenario's.
     pub(super) fn show_another(&mut self, scenario: Arc<Scenario>) {
         self.view.fit(&scenario);
         self.file = Arc::clone(&scenario);
-        self.next_push = NextPush::of(&scenario);
+        self.values.set_next_push(NextPush::of(&scenario));
         self.player.open(scenario);
         self.is_another();
     }
 
     /// Begins the run of `scenario`, which differs from the present one by an edit: that one stays as a ghost.
     pub(super) fn begin_run(&mut self, scenario: Arc<Scenario>) {
-        self.next_push = self.next_push.clone().suited_to(&scenario);
+        self.values.suit(&scenario);
         self.player.begin(scenario);
         self.is_another();
     }
@@ -41,7 +41,7 @@ impl Lab {
     /// Shows the run of `scenario` again, from which the present one differs by an edit that is taken back or brought
     /// again.
     pub(super) fn go_over_to(&mut self, scenario: Arc<Scenario>) {
-        self.next_push = self.next_push.clone().suited_to(&scenario);
+        self.values.suit(&scenario);
         self.player.go_over_to(scenario);
         self.is_another();
     }

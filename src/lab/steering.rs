@@ -4,7 +4,7 @@
 use super::action::{Action, Direction};
 use super::carry_out::{Answer, Done};
 use super::command::{Command, Place, PushChoice};
-use super::editing::Target;
+use super::values::Target;
 use super::view::Pane;
 use super::{Lab, Mode, Request};
 use crate::observe::pace::Speed;
@@ -31,7 +31,7 @@ impl Lab {
             action,
             Action::Move(_) | Action::MoveFar(_) | Action::Digit(_)
         ) {
-            self.last_nudged = None;
+            self.values.forget_nudge();
         }
         match self.commands_of(action, count) {
             Ok(Some(commands)) => self.carry_out_all(&commands),
@@ -174,7 +174,7 @@ impl Lab {
 
     /// The line that is selected, nudged.
     fn nudged(&self, times: i32) -> Result<Option<Vec<Command>>, String> {
-        Ok(match self.selected() {
+        Ok(match self.values.selected() {
             None => None,
             Some(_) if times == 0 => None,
             Some(Target::Parameter(parameter)) => Some(vec![Command::Nudge {
@@ -183,7 +183,7 @@ impl Lab {
             }]),
             Some(Target::NextPush(field)) => {
                 let scenario = self.run().scenario();
-                let next = self.next_push.nudged(*field, times, scenario)?;
+                let next = self.values.next_push().nudged(*field, times, scenario)?;
                 Some(vec![Command::NextPush(PushChoice::field(*field, &next))])
             }
         })
@@ -251,7 +251,7 @@ impl Lab {
         let rows = rows(direction) * times as isize;
         match (self.mode, self.view.focus) {
             (Mode::Browser | Mode::Filter, _) => self.browser.shift(rows),
-            (Mode::Lab, Pane::Parameters) => self.editor.shift(rows.signum() * times as isize),
+            (Mode::Lab, Pane::Parameters) => self.values.shift(rows.signum() * times as isize),
             _ => self.view.scroll = self.view.scroll.saturating_add_signed(rows),
         }
     }

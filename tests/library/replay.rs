@@ -1,45 +1,44 @@
 //! A run is its scenario and its journal: whatever the user does, and in whatever order, the saved run file replays it
 //! to the same last bit, and going back and forward again leads through the same numbers.
 
-use crate::support::desk::Desk;
+use crate::support::desk::{Desk, commands};
 use gyrolab::observe::playback::Playback;
 use gyrolab::observe::recording::Curve;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
-use gyrolab::tui::keymap::Key;
 use proptest::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// What a user may do, as keys; typed values stand in dialogs.
-const DEEDS: &[&[Key]] = &[
-    &[Key::Char(' ')],
-    &[Key::Char('.')],
-    &[Key::Char('7'), Key::Char('.')],
-    &[
-        Key::Char('3'),
-        Key::Char('0'),
-        Key::Char('0'),
-        Key::Char('.'),
-    ],
-    &[Key::Char(',')],
-    &[Key::Char('9'), Key::Char(',')],
-    &[Key::Char('4'), Key::Char('0'), Key::Char(',')],
-    &[Key::Char('5'), Key::Char('5'), Key::Char('g')],
-    &[Key::Char('r')],
-    &[Key::Char('p')],
-    &[Key::Char('u')],
-    &[Key::Char('u')],
-    &[Key::Char('U')],
-    &[Key::Char('t')],
-    &[Key::Char('e'), Key::Right],
-    &[Key::Char('e'), Key::Left],
-    &[Key::Char('e'), Key::ShiftRight],
-    &[Key::Char('e'), Key::Up],
-    &[Key::Char('e'), Key::Down],
-    &[Key::Char('e'), Key::ShiftDown],
-    &[Key::Char('P'), Key::Down, Key::Right],
-    &[Key::Char('P'), Key::Down, Key::Down, Key::Left],
+/// What a user may do.
+const DEEDS: &[&str] = &[
+    "run = true",
+    "pause = true",
+    "step = 1",
+    "step = 7",
+    "step = 300",
+    "step = -1",
+    "step = -9",
+    "step = -40",
+    "go_to = 55",
+    "go_to = 'start'",
+    "push = true",
+    "push = { force_N = [3, -50, 0.1], for_s = 0.7 }",
+    "undo = 1",
+    "undo = 2",
+    "redo = 1",
+    "exact = true",
+    "exact = false",
+    "nudge = { key = 'motion.time_step_s', times = 1 }",
+    "nudge = { key = 'motion.time_step_s', times = -1 }",
+    "nudge = { key = 'motion.gravity_m_per_s2', times = 10 }",
+    "nudge = { key = 'motion.scheme', times = 1 }",
+    "nudge = { key = 'start.tilt_deg', times = -1 }",
+    "nudge = { key = 'push.0.force_N.2', times = 3 }",
+    "set = { 'motion.time_step_s' = 0.05, 'motion.gravity_m_per_s2' = 7 }",
+    "set = { 'start.tilt_deg' = 20, 'motion.scheme' = 'strang' }",
+    "next_push = { force_N = 20, toward = 'out' }",
+    "next_push = { for_s = 0.3 }",
 ];
 
 /// Every number of a step, to the bit.
@@ -79,15 +78,11 @@ proptest! {
         let folder = tempfile::tempdir().unwrap();
         let mut desk = Desk::open(preset);
         desk.lab.work_in(folder.path());
-        desk.press(&[Key::Char('e')]);
-        while desk.lab.editor().selected().unwrap().key != "motion.scheme" {
-            desk.press(&[Key::Down]);
-        }
-        desk.press(&[Key::Enter, Key::Ctrl('u')]);
-        desk.type_text(scheme);
-        desk.press(&[Key::Enter]);
+        desk.commands(&format!("set = {{ 'motion.scheme' = '{scheme}' }}"));
         for deed in deeds {
-            desk.press(DEEDS[deed]);
+            for command in commands(DEEDS[deed]) {
+                let _ = desk.carry_out(&command); // what cannot be done here is not done
+            }
         }
         let here = bits(desk.simulation());
         let step = desk.simulation().step_number();
@@ -112,21 +107,18 @@ proptest! {
         let mut edits = edits;
         edits.sort_unstable();
         for (step, edit) in edits {
-            desk.press(&[]);
-            desk.type_text(&format!("{step}g"));
-            desk.wait(1);
-            let deeds: &[Key] = [&[Key::Char('p')][..], &[Key::Char('e'), Key::Right][..], &[Key::Char('e'), Key::Down, Key::Down, Key::Left, Key::Up, Key::Up][..]][edit];
-            desk.press(deeds);
+            desk.commands(&format!("go_to = {step}"));
+            desk.commands(match edit {
+                0 => "push = true",
+                1 => "nudge = { key = 'motion.gravity_m_per_s2', times = 1 }",
+                _ => "nudge = { key = 'motion.time_step_s', times = -1 }",
+            });
         }
-        desk.press(&[Key::Char('r'), Key::Char('e'), Key::Down]);
-        prop_assert_eq!(desk.lab.editor().selected().unwrap().key.as_str(), "motion.scheme");
-        desk.press(&[Key::Enter, Key::Ctrl('u')]);
-        desk.type_text(scheme);
-        desk.press(&[Key::Enter, Key::Up]);
+        desk.commands("go_to = 'start'");
+        desk.commands(&format!("set = {{ 'motion.scheme' = '{scheme}' }}"));
         let mut seen: HashMap<u64, Vec<u64>> = HashMap::new();
         for step in way {
-            desk.type_text(&format!("{step}g"));
-            desk.wait(1);
+            desk.commands(&format!("go_to = {step}"));
             let simulation = desk.simulation();
             let reached = simulation.step_number();
             let here = bits(simulation);
@@ -156,31 +148,19 @@ fn a_run_whose_numbers_have_ended_goes_on_once_it_is_mended() {
     let folder = tempfile::tempdir().unwrap();
     let mut desk = Desk::open("method-2");
     desk.lab.work_in(folder.path());
-    desk.type_text("40g");
-    desk.press(&[Key::Char('e'), Key::Down, Key::Enter, Key::Ctrl('u')]);
-    desk.type_text("rk4");
-    desk.press(&[Key::Enter]);
-    desk.type_text("2000g");
-    desk.wait(1);
+    desk.commands("go_to = 40\nset = { 'motion.scheme' = 'rk4' }\ngo_to = 2000");
     let ended_at = desk.simulation().step_number();
     assert!(
         (41..2000).contains(&ended_at) && desk.simulation().has_ended(),
         "{ended_at}"
     );
-    desk.type_text("40g");
-    desk.press(&[Key::Down, Key::Enter, Key::Ctrl('u')]);
-    desk.type_text("0.001 s");
-    desk.press(&[Key::Enter]);
-    desk.type_text("50.");
-    desk.wait(1);
+    desk.commands("go_to = 40\nset = { 'motion.time_step_s' = 0.001 }\nstep = 50");
     assert_eq!(
         desk.simulation().step_number(),
         90,
         "an edit before the end mends it"
     );
-    desk.press(&[Key::Char('u')]);
-    desk.type_text(&format!("{}g", ended_at + 9));
-    desk.wait(1);
+    desk.commands(&format!("undo = 1\ngo_to = {}", ended_at + 9));
     assert_eq!(
         desk.simulation().step_number(),
         ended_at,
@@ -193,25 +173,10 @@ fn an_edit_after_which_no_step_is_finite_is_taken_back_without_a_trace() {
     let folder = tempfile::tempdir().unwrap();
     let mut desk = Desk::open("wobble-push");
     desk.lab.work_in(folder.path());
-    desk.type_text("60g");
-    desk.press(&[
-        Key::Char('e'),
-        Key::Down,
-        Key::Down,
-        Key::Enter,
-        Key::Ctrl('u'),
-    ]);
-    assert_eq!(
-        desk.lab.dialog().unwrap().form().title,
-        "motion.time_step_s"
-    );
-    desk.type_text("1e300");
-    desk.press(&[Key::Enter, Key::Char('.')]);
+    desk.commands("go_to = 60\nset = { 'motion.time_step_s' = 1e300 }\nstep = 1");
     assert!(desk.simulation().has_ended());
     assert_eq!(desk.simulation().step_number(), 60);
-    desk.press(&[Key::Char('u')]);
-    desk.type_text("300.");
-    desk.wait(1);
+    desk.commands("undo = 1\nstep = 300");
     assert_eq!(desk.simulation().step_number(), 360);
     let untouched = Document::open("wobble-push").unwrap().scenario().unwrap();
     assert_eq!(replayed(untouched, 360), bits(desk.simulation()));

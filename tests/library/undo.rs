@@ -1,9 +1,8 @@
-//! Taking back and bringing again, by keys, where several edits meet.
+//! Taking back and bringing again, where several edits meet.
 
 use crate::support::desk::Desk;
 use gyrolab::scenario::Document;
 use gyrolab::scenario::file::PushFile;
-use gyrolab::tui::keymap::Key;
 use gyrolab::work::journal::{Act, Journal};
 use proptest::prelude::*;
 use std::time::Duration;
@@ -12,28 +11,24 @@ use std::time::Duration;
 fn a_length_taken_back_is_in_seconds_what_it_was() {
     let mut desk = Desk::open("method-2");
     let end = |desk: &Desk| desk.lab.playback().end_step();
-    desk.go("1000");
-    desk.set("motion", "dt", "0.05");
+    desk.commands("go_to = 1000\nset = { 'motion.time_step_s' = 0.05 }");
     let before = end(&desk);
-    desk.set("motion", "steps", "4000");
+    desk.commands("set = { 'motion.steps' = 4000 }");
     assert_eq!(end(&desk), 4000);
-    desk.press(&[Key::Char('u')]);
+    desk.commands("undo = 1");
     assert_eq!(end(&desk), before);
 }
 
 #[test]
 fn a_run_passed_on_the_way_back_is_left_where_it_stood() {
     let mut desk = Desk::open("method-2");
-    desk.go("100");
-    desk.set("start", "tilt", "40");
-    desk.go("200000");
-    desk.set("start", "tilt", "30");
-    desk.go("7");
-    desk.press(&[Key::Char('2'), Key::Char('u')]);
+    desk.commands("go_to = 100\nset = { 'start.tilt_deg' = 40 }");
+    desk.commands("go_to = 200000\nset = { 'start.tilt_deg' = 30 }\ngo_to = 7");
+    desk.commands("undo = 2");
     assert_eq!(desk.step(), 100);
-    desk.press(&[Key::Char('U')]);
+    desk.commands("redo = 1");
     assert_eq!(desk.step(), 200_000);
-    desk.press(&[Key::Char('2'), Key::Char('U')]);
+    desk.commands("redo = 2");
     assert_eq!(desk.step(), 7);
 }
 
@@ -78,22 +73,12 @@ fn steps_of_a_push_to_come_are_those_of_now() {
 #[test]
 fn a_push_is_over_by_its_seconds() {
     let mut desk = Desk::open("wobble-push");
-    desk.go("40");
-    desk.set("motion", "dt", "0.05");
-    desk.go("250");
-    desk.set("push 1", "Fx", "1");
-    assert!(
-        desk.lab.notice().unwrap().contains("from the next step on"),
-        "{:?}",
-        desk.lab.notice()
-    );
-    desk.go("400");
-    desk.set("push 1", "Fx", "2");
-    assert!(
-        desk.lab.notice().unwrap().contains("is over"),
-        "{:?}",
-        desk.lab.notice()
-    );
+    desk.commands("go_to = 40\nset = { 'motion.time_step_s' = 0.05 }\ngo_to = 250");
+    let said = desk.commands("set = { 'push.0.force_N.0' = 1 }").unwrap();
+    assert!(said.contains("from the next step on"), "{said}");
+    desk.commands("go_to = 400");
+    let said = desk.commands("set = { 'push.0.force_N.0' = 2 }").unwrap();
+    assert!(said.contains("is over"), "{said}");
 }
 
 /// One of the things that can be done, with the number `value` in it.
@@ -170,16 +155,16 @@ fn a_time_with_a_sign_counts_from_here() {
 #[test]
 fn nudges_that_belong_together_are_one_undo_and_later_ones_another() {
     let mut desk = Desk::open("method-2");
-    desk.go("100");
-    desk.select("motion", "gravity");
-    let gravity = |desk: &Desk| desk.lab.editor().selected().unwrap().value.clone();
-    desk.press(&[Key::Right, Key::Right, Key::Right]);
-    assert_eq!(gravity(&desk), "10.1");
+    desk.commands("go_to = 100");
+    let gravity = |desk: &Desk| desk.lab.motion().gravity;
+    let nudge = "nudge = 'motion.gravity_m_per_s2'\n";
+    desk.commands(&nudge.repeat(3));
+    assert_eq!(gravity(&desk), 10.1);
     desk.pass(Duration::from_secs(60));
-    desk.press(&[Key::Right]);
-    assert_eq!(gravity(&desk), "10.2");
-    desk.press(&[Key::Char('u')]);
-    assert_eq!(gravity(&desk), "10.1");
-    desk.press(&[Key::Char('u')]);
-    assert_eq!(gravity(&desk), "9.8");
+    desk.commands(nudge);
+    assert_eq!(gravity(&desk), 10.2);
+    desk.commands("undo = 1");
+    assert_eq!(gravity(&desk), 10.1);
+    desk.commands("undo = 1");
+    assert_eq!(gravity(&desk), 9.8);
 }

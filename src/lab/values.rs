@@ -1,0 +1,267 @@
+//! What can be edited: the values of the scenario as they are now, and the push to come; and which is selected.
+
+use super::command::{Command, Force, PushChoice};
+use super::editor::{Editor, Line};
+use crate::observe::live::LiveRun;
+use crate::scenario::Scenario;
+use crate::work::journal::{Journal, number_of_push};
+use crate::work::next_push::{Field, NextPush, Toward};
+use crate::work::parameters::{self, Parameter, parameters};
+use nalgebra::Vector3;
+use std::time::Duration;
+use toml::Table;
+
+/// A value that was nudged longer ago is nudged anew: undo takes back what belongs together.
+const BELONGS: Duration = Duration::from_secs(3);
+
+/// The editor's group of lines for the push to come.
+const NEXT_PUSH: &str = "next push (p)";
+
+/// The groups in the order in which the editor lists them; pushes stand after the start, points after the body.
+const ORDER: [&str; 6] = ["motion", "start", NEXT_PUSH, "body", "view", "scenario"];
+
+/// What a line of the editor stands for.
+#[derive(Clone)]
+pub(super) enum Target {
+    /// A value of the scenario.
+    Parameter(Box<Parameter>),
+    /// A value of the push to come.
+    NextPush(Field),
+}
+
+/// The list of what can be edited, the push to come, and what was nudged last.
+#[derive(Clone)]
+pub struct Values {
+    /// What each line of the list stands for.
+    targets: Vec<Target>,
+    editor: Editor,
+    next_push: NextPush,
+    /// How many entries of the journal act on what is listed.
+    entries_listed: usize,
+    /// The key that was nudged last, if nothing else has been done since.
+    last_nudged: Option<(String, Duration)>,
+}
+
+impl Values {
+    /// Nothing listed yet, and a push that suits `scenario`.
+    pub(super) fn new(scenario: &Scenario) -> Self {
+        Self {
+            targets: Vec::new(),
+            editor: Editor::default(),
+            next_push: NextPush::of(scenario),
+            entries_listed: 0,
+            last_nudged: None,
+        }
+    }
+
+    /// Lists what can be edited in `run`, of which `journal` tells, as it is now.
+    pub(super) fn list(&mut self, run: &LiveRun, journal: &Journal) {
+        let step = run.simulation().step_number();
+        self.entries_listed = journal.in_force(step);
+        let scenario = run.scenario();
+        let table = parameters::table_at(scenario, step);
+        // Of a push that is given later, nothing can be set here: what is done here takes its place.
+        let pushes = journal.pushes_by(step);
+        let first_added = scenario.file.push.len(); // by an edit, which stands in the table once it is made
+        let is_given = |parameter: &Parameter| {
+            number_of_push(&parameter.key)
+                .is_none_or(|number| number < pushes || number >= first_added)
+        };
+        let values = parameters(&table, scenario).into_iter().filter(is_given);
+        let values = values.map(|parameter| Target::Parameter(Box::new(parameter)));
+        let mut targets: Vec<_> = values.chain(Field::ALL.map(Target::NextPush)).collect();
+        targets.sort_by_key(|target| rank(target.group())); // stable: within a group nothing moves
+        let lines = targets
+            .iter()
+            .map(|target| target.line(&self.next_push))
+            .collect();
+        self.editor.set_lines(lines);
+        self.targets = targets;
+    }
+
+    /// Whether other entries of `journal` act at `step` than on what is listed.
+    pub(super) fn is_outdated(&self, step: u64, journal: &Journal) -> bool {
+        journal.in_force(step) != self.entries_listed
+    }
+
+    /// The lines, and which of them is selected.
+    pub fn editor(&self) -> &Editor {
+        &self.editor
+    }
+
+    /// The selection `rows` lines on, or back.
+    pub(super) fn shift(&mut self, rows: isize) {
+        self.editor.shift(rows);
+    }
+
+    /// Selects the size of the push to come.
+    pub(super) fn select_next_push(&mut self) {
+        self.editor.select(NEXT_PUSH, Field::Size.label().0);
+    }
+
+    /// What the selected line stands for.
+    pub(super) fn selected(&self) -> Option<&Target> {
+        self.targets.get(self.editor.selected_index())
+    }
+
+    /// The value at the dotted `key`, where the scenario has one.
+    pub(super) fn parameter(&self, key: &str) -> Option<&Parameter> {
+        self.targets.iter().find_map(|target| match target {
+            Target::Parameter(parameter) if parameter.key == key => Some(&**parameter),
+            _ => None,
+        })
+    }
+
+    /// The value at `key` with its label and unit; the key where it is not listed.
+    pub(super) fn in_words(&self, key: &str) -> String {
+        let line = self.editor.lines().iter().find(|line| line.key == key);
+        let value = match line {
+            Some(line) => format!("{} {} {}", line.label, line.value, line.unit),
+            None => key.to_owned(),
+        };
+        value.trim_end().to_owned()
+    }
+
+    /// Whether a nudge of `key` at `now` belongs together with the one before.
+    pub(super) fn is_nudged_again(&self, key: &str, now: Duration) -> bool {
+        let belongs =
+            |(last, at): &(String, Duration)| *last == key && now.saturating_sub(*at) < BELONGS;
+        self.last_nudged.as_ref().is_some_and(belongs)
+    }
+
+    /// Notes that `key` was nudged at `now`.
+    pub(super) fn note_nudge(&mut self, key: &str, now: Duration) {
+        self.last_nudged = Some((key.to_owned(), now));
+    }
+
+    /// Notes that something else was done.
+    pub(super) fn forget_nudge(&mut self) {
+        self.last_nudged = None;
+    }
+
+    /// The push to come.
+    pub(super) fn next_push(&self) -> &NextPush {
+        &self.next_push
+    }
+
+    /// Chooses the push to come; the list has its values once it is made again.
+    pub(super) fn set_next_push(&mut self, push: NextPush) {
+        self.next_push = push;
+    }
+
+    /// Has the push to come act on a point of `scenario`.
+    pub(super) fn suit(&mut self, scenario: &Scenario) {
+        self.next_push = self.next_push.clone().suited_to(scenario);
+    }
+
+    /// The push to come, with what `choice` has of its own; `time_step_s` is that in force.
+    ///
+    /// # Errors
+    /// Why it is no push.
+    pub(super) fn chosen(
+        &self,
+        choice: &PushChoice,
+        scenario: &Scenario,
+        time_step_s: f64,
+    ) -> Result<NextPush, String> {
+        let mut push = self.next_push.clone();
+        if let Some(point) = &choice.point {
+            push = push.typed(Field::Point, point, scenario, time_step_s)?;
+        }
+        match choice.force_N {
+            None => {}
+            Some(Force::Size(size)) => push.size_N = size,
+            Some(Force::Vector(vector)) => {
+                push.size_N = Vector3::from(vector).norm();
+                push.toward = Toward::Along(vector);
+            }
+        }
+        push.toward = choice.toward.unwrap_or(push.toward);
+        push.for_s = choice.for_s.unwrap_or(push.for_s);
+        push.checked()
+    }
+
+    /// The command that gives the line that is selected the value `text`; none where it has it.
+    ///
+    /// # Errors
+    /// Why it is no value.
+    pub(super) fn value_typed(
+        &self,
+        text: &str,
+        scenario: &Scenario,
+        time_step_s: f64,
+    ) -> Result<Option<Command>, String> {
+        match self.selected() {
+            None => Ok(None),
+            Some(Target::Parameter(parameter)) => {
+                let value = parameter
+                    .typed(text)
+                    .map_err(|reason| format!("{} {reason}", parameter.label))?;
+                let is_new = value != parameter.value || parameter.is_default;
+                let table = Table::from_iter([(parameter.key.clone(), value)]);
+                Ok(is_new.then_some(Command::Set(table)))
+            }
+            Some(Target::NextPush(field)) => {
+                let next = self.next_push.typed(*field, text, scenario, time_step_s)?;
+                let choice = PushChoice::field(*field, &next);
+                Ok(Some(Command::NextPush(choice)))
+            }
+        }
+    }
+}
+
+impl PushChoice {
+    /// The `field` of `push`.
+    pub(super) fn field(field: Field, push: &NextPush) -> Self {
+        let mut choice = Self::default();
+        match field {
+            Field::Point => choice.point = Some(push.point.clone()),
+            Field::Size => choice.force_N = Some(Force::Size(push.size_N)),
+            Field::Toward => choice.toward = Some(push.toward),
+            Field::Length => choice.for_s = Some(push.for_s),
+        }
+        choice
+    }
+}
+
+impl Target {
+    fn group(&self) -> &str {
+        match self {
+            Self::Parameter(parameter) => &parameter.group,
+            Self::NextPush(_) => NEXT_PUSH,
+        }
+    }
+
+    fn line(&self, push: &NextPush) -> Line {
+        let group = self.group().to_owned();
+        match self {
+            Self::Parameter(parameter) => Line {
+                key: parameter.key.clone(),
+                group,
+                label: parameter.label.clone(),
+                value: parameter.shown(),
+                unit: parameter.unit().to_owned(),
+                is_default: parameter.is_default,
+            },
+            Self::NextPush(field) => Line {
+                key: String::new(),
+                group,
+                label: field.label().0.to_owned(),
+                value: push.shown(*field),
+                unit: field.label().1.to_owned(),
+                is_default: false,
+            },
+        }
+    }
+}
+
+/// The place of a group in the list: pushes stand above the push to come, points below the body.
+fn rank(group: &str) -> usize {
+    let listed = ORDER.iter().position(|known| *known == group);
+    let place = |of: &str| ORDER.iter().position(|known| *known == of).unwrap_or(0);
+    match listed {
+        Some(rank) => 2 * rank,
+        None if group.starts_with("push") => 2 * place("start") + 1,
+        None => 2 * place("body") + 1,
+    }
+}
