@@ -182,7 +182,7 @@ impl Player {
     pub(super) fn run_until(&mut self, condition: &Expression) -> Answer {
         let run = self.run();
         let bound = condition
-            .bind(|name| numbers::source(run, name), numbers::names())
+            .bind(|name| numbers::source(run, name), &numbers::names())
             .map_err(|fault| fault.to_string())?;
         let condition = move |run: &LiveRun| bound.holds(|source| source.value(run));
         Ok(match self.playback.run_until(Box::new(condition)) {

@@ -180,7 +180,7 @@ impl Expression {
     pub fn check_names<'a>(
         &self,
         is_known: impl Fn(&str) -> bool,
-        known: impl Iterator<Item = &'a str> + Clone,
+        known: &(impl Iterator<Item = &'a str> + Clone),
     ) -> Result<(), Fault> {
         let bind = |name: &str| is_known(name).then_some(());
         self.bind(bind, known).map(drop)
@@ -193,7 +193,7 @@ impl Expression {
     pub fn bind<'a, T>(
         &self,
         find: impl Fn(&str) -> Option<T>,
-        known: impl Iterator<Item = &'a str> + Clone,
+        known: &(impl Iterator<Item = &'a str> + Clone),
     ) -> Result<Bound<T>, Fault> {
         let look_up = |(name, column): &(String, usize)| {
             find(name).ok_or_else(|| Fault {
@@ -587,7 +587,7 @@ mod tests {
         let expression = Expression::condition("z_m > 1 and tilt_dg > 3").unwrap();
         let known = ["t_s", "z_m", "tilt_deg"];
         let find = |name: &str| known.iter().position(|known| *known == name);
-        let fault = expression.bind(find, known.into_iter()).unwrap_err();
+        let fault = expression.bind(find, &known.into_iter()).unwrap_err();
         assert_eq!(fault.column, 13);
         assert!(fault.rule.contains("did you mean tilt_deg?"), "{fault}");
     }

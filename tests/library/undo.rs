@@ -1,6 +1,7 @@
 //! Taking back and bringing again, where several edits meet.
 
 use crate::support::desk::Desk;
+use gyrolab::lab::command::Command;
 use gyrolab::scenario::Document;
 use gyrolab::scenario::file::PushFile;
 use gyrolab::work::journal::{Act, Journal};
@@ -28,8 +29,9 @@ fn a_run_passed_on_the_way_back_is_left_where_it_stood() {
     assert_eq!(desk.step(), 100);
     desk.commands("redo = 1");
     assert_eq!(desk.step(), 200_000);
-    desk.commands("redo = 2");
+    desk.commands("redo = 1");
     assert_eq!(desk.step(), 7);
+    assert!(desk.carry_out(&Command::Redo(1)).is_err());
 }
 
 #[test]

@@ -216,7 +216,7 @@ fn wrong_at<T>(key: &str, value: &Value, rule: impl Into<String>) -> Result<T, V
     Err(vec![Problem::with_value(key, value, rule)])
 }
 
-fn checked<'a>(kind: Kind, value: &'a Value) -> Result<&'a Value, Vec<Problem>> {
+fn checked(kind: Kind, value: &Value) -> Result<&Value, Vec<Problem>> {
     match kind.check(value) {
         Ok(()) => Ok(value),
         Err(rule) => wrong(value, rule),
@@ -448,7 +448,7 @@ fn go_to(value: &Value) -> Read {
 
 fn run_until(value: &Value) -> Read {
     let read = Expression::condition(line(value)?).and_then(|condition| {
-        condition.check_names(numbers::is_known, numbers::names())?;
+        condition.check_names(numbers::is_known, &numbers::names())?;
         Ok(condition)
     });
     match read {
