@@ -1,6 +1,7 @@
 //! What follows a run step by step and can say at any moment how it stands: instruments, theory, health.
 
 use super::cost::is_affordable;
+use super::extremes::Extremes;
 use super::health::Health;
 use super::measure::Instruments;
 use super::theory::Theory;
@@ -14,6 +15,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Monitor {
     instruments: Instruments,
+    extremes: Extremes,
     truth: Option<Truth>,
     most_distance_m: f64,
     /// The change of forces since which the instruments measure.
@@ -30,6 +32,7 @@ impl Monitor {
         let truth = is_affordable(scenario).then(|| Truth::new(Arc::clone(scenario)));
         Self {
             instruments: Instruments::new(simulation),
+            extremes: Extremes::new(simulation),
             truth,
             most_distance_m: 0.0,
             changes: simulation.changes(),
@@ -50,6 +53,7 @@ impl Monitor {
     /// Takes in the step that `simulation` stands at; to be shown every step.
     #[inline]
     pub fn follow(&mut self, simulation: &Simulation) {
+        self.extremes.follow(simulation);
         if simulation.changes() == self.changes {
             self.instruments.follow(simulation);
         } else {
@@ -65,10 +69,12 @@ impl Monitor {
     /// Holds the run against the exact motion where it stands, and says how it is.
     pub fn health(&mut self, simulation: &Simulation) -> Health {
         let deviation = self.deviation(simulation);
+        let theory = self.theory(simulation.state().time_s);
         Health::new(
             simulation,
             deviation,
             deviation.map(|_| self.most_distance_m),
+            theory.map(|theory| theory.tilt_range_deg.1 - theory.tilt_range_deg.0),
         )
     }
 
@@ -92,6 +98,11 @@ impl Monitor {
         let load = truth.loads().on_axle(body, &top)?;
         let motion = truth.motion().closed_form()?;
         Some(Theory::new(&top, &load, motion, &state))
+    }
+
+    /// The least and the greatest over every step of the run.
+    pub fn extremes(&self) -> &Extremes {
+        &self.extremes
     }
 
     /// What has been measured since the forces last changed.

@@ -51,6 +51,8 @@ pub(super) enum Command {
     },
     /// List every key that a scenario or run file may hold
     Keys,
+    /// List every number that is read off a run: name, unit, meaning, where it comes from
+    Readouts,
     /// Print a completion script for a shell
     Completions {
         /// The shell

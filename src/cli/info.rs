@@ -1,6 +1,7 @@
-//! The commands that tell: presets, schemes, check, completions, man.
+//! The commands that tell: presets, schemes, keys, readouts, check, completions, man.
 
 use super::args::Cli;
+use crate::analysis::readouts::READOUTS;
 use crate::physics::scheme::SCHEMES;
 use crate::scenario::keys::{KEYS, Key};
 use crate::scenario::presets::{self, PRESETS, Preset};
@@ -82,6 +83,22 @@ pub(super) fn keys() -> anyhow::Result<ExitCode> {
     }
     text.push_str("\nA * stands for a number from 0: [[body.point]], [[push]], [[expected]] and [[edit]] may be repeated.\n");
     text.push_str("A table may be left out whole where none of its keys is wanted, but [start] and [motion].\n");
+    print(&text)
+}
+
+pub(super) fn readouts() -> anyhow::Result<ExitCode> {
+    let mut text = String::new();
+    for readout in READOUTS {
+        let unit = match readout.unit {
+            "" => String::new(),
+            unit => format!(" ({unit})"),
+        };
+        let source = readout.source.words();
+        writeln!(text, "{}{unit}", readout.name)?;
+        writeln!(text, "    {}; from: {source}", readout.meaning)?;
+    }
+    text.push_str("\nA name alone is the value at the run's last step; predicted_... is theory's, measured_... the run's own.\n");
+    text.push_str("gyrolab run SCENARIO --json gives all of them; null is a number that there is not, or that cannot be stated.\n");
     print(&text)
 }
 

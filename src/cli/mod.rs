@@ -46,6 +46,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Presets { name } => info::presets(name.as_deref()),
         Command::Schemes => info::schemes(),
         Command::Keys => info::keys(),
+        Command::Readouts => info::readouts(),
         Command::Check { files } => info::check(&files),
         Command::Completions { shell } => info::completions(shell),
         Command::Man => info::man(),

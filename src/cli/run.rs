@@ -5,9 +5,9 @@ use super::progress::{self, Interruption, Meter};
 use super::scenario::scenario_of;
 use super::{INTERRUPTED, complain};
 use crate::analysis::health::{Advice, advise};
-use crate::analysis::{Health, Monitor};
+use crate::analysis::{Health, Monitor, Readouts};
 use crate::export::stream::{self, Ended};
-use crate::export::{CsvWriter, Destination, Readouts, Summary};
+use crate::export::{CsvWriter, Destination, Summary};
 use crate::run::Simulation;
 use crate::text::printable::Shown;
 use anyhow::Context;
@@ -64,7 +64,7 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let health = monitor.health(&simulation);
     let advice = advice(&health, &simulation);
     let readouts = Readouts::new(&simulation, &mut monitor, &health, advice.as_ref());
-    report(args, &Summary::new(&simulation, readouts, wall))?;
+    report(args, &Summary::new(readouts, wall))?;
     match ended {
         Ended::NotFinite(error) => {
             complain(&anyhow::Error::new(error).context(args.scenario.scenario.clone()));

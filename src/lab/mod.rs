@@ -31,7 +31,7 @@ use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::pace::Speed;
 use crate::observe::playback::{Halt, Playback};
-use crate::observe::readouts::{self, Readouts};
+use crate::observe::reading::{self, Reading};
 use crate::run::NotFinite;
 use crate::scenario::{Motion, Scenario};
 use crate::storage::exporting::{Exporting, Written};
@@ -102,7 +102,7 @@ pub struct Lab {
     /// Whether to look for what would mend a run.
     is_advised: bool,
     advisor: Option<Advisor>,
-    readouts: Readouts,
+    reading: Reading,
     read_at: Duration,
     view: View,
     mode: Mode,
@@ -141,7 +141,7 @@ impl Lab {
             work: None,
             is_advised: false,
             advisor: None,
-            readouts: playback.read(),
+            reading: playback.read(),
             playback,
             read_at: Duration::ZERO,
             view,
@@ -207,7 +207,7 @@ impl Lab {
         self.changed |= self.advisor.as_mut().is_some_and(Advisor::has_news);
         self.changed |= self.browser.take_news();
         self.follow_export();
-        let is_due = self.is_fast() || now >= self.read_at + readouts::EVERY;
+        let is_due = self.is_fast() || now >= self.read_at + reading::EVERY;
         if self.changed && is_due {
             self.read_now();
         }
@@ -216,7 +216,7 @@ impl Lab {
     /// Whether the pictures run away from numbers that are read off a few times a second.
     fn is_fast(&self) -> bool {
         let window_s = self.view.window_s;
-        let passes_s = readouts::EVERY.as_secs_f64();
+        let passes_s = reading::EVERY.as_secs_f64();
         self.playback.is_flat_out()
             || matches!(self.playback.speed(), Speed::Times(speed) if speed * passes_s > FAST * window_s)
     }
@@ -356,7 +356,7 @@ impl Lab {
     }
 
     fn read_now(&mut self) {
-        self.readouts = self.playback.read();
+        self.reading = self.playback.read();
         self.read_at = self.now;
         self.changed = true;
         if self.entries_in_force() != self.entries_listed {
@@ -364,7 +364,7 @@ impl Lab {
         }
         if self.is_advised
             && self.advisor.is_none()
-            && self.readouts.health.is_believed() == Some(false)
+            && self.reading.readouts.health.is_believed() == Some(false)
         {
             self.advisor = Some(Advisor::ask(Arc::clone(self.run().scenario())));
         }
@@ -440,8 +440,8 @@ impl Lab {
     }
 
     /// The latest reading.
-    pub fn readouts(&self) -> &Readouts {
-        &self.readouts
+    pub fn reading(&self) -> &Reading {
+        &self.reading
     }
 
     /// What gets the keys.

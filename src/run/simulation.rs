@@ -1,7 +1,7 @@
 //! The one road forward in time.
 
 use super::pushes::{self, Counting, Stretch};
-use super::{Clock, Sample};
+use super::{Clock, EnergyScale, EnergyUnit, Sample};
 use crate::physics::observables::{self, Azimuth};
 use crate::physics::{Loads, PointForce, Scheme, State, StepRecord, Workings};
 use crate::scenario::{Edit, Motion, Push, Scenario};
@@ -43,8 +43,8 @@ struct EnergyAccount {
     start: f64,
     /// Work of pushes and of edits of gravity since then, J.
     work: f64,
-    /// M g |c|, or the kinetic energy at the start where that is 0, J.
-    scale: f64,
+    /// What its error is measured in; `None` where there is nothing to measure it by.
+    scale: Option<EnergyScale>,
 }
 
 /// The numbers of a run are no longer finite.
@@ -71,11 +71,10 @@ impl Simulation {
         scheme.load(&loads);
         scheme.start(&state);
         let kinetic = observables::kinetic_energy(body, &state);
-        let weight = motion.gravity.abs() * body.first_moment().norm();
         let energy = EnergyAccount {
             start: kinetic + motion.gravity * observables::weight_height(body, &state),
             work: 0.0,
-            scale: if weight > 0.0 { weight } else { kinetic },
+            scale: EnergyScale::of(&scenario),
         };
         Self {
             scheme,
@@ -326,10 +325,16 @@ impl Simulation {
     }
 
     /// (E − E₀ − W)/S: the energy that only the scheme's error can have made, W the work of pushes and of edits of
-    /// gravity, S = M g |c| or else the kinetic energy at the start; `None` where both are 0.
+    /// gravity, S as [`EnergyScale`] has it; `None` where there is no S, or the drift is beyond the range of numbers.
     pub fn energy_drift(&self) -> Option<f64> {
         let gained = self.sample().energy - self.energy.start - self.energy.work;
-        (self.energy.scale > 0.0).then(|| gained / self.energy.scale)
+        let drift = gained / self.energy.scale?.size;
+        drift.is_finite().then_some(drift)
+    }
+
+    /// What the energy drift is measured in; `None` where there is nothing to measure it by.
+    pub fn energy_unit(&self) -> Option<EnergyUnit> {
+        self.energy.scale.map(|scale| scale.unit)
     }
 
     /// The first step at or after `time_s` (s), edits of the time step counted in.

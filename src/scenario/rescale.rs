@@ -1,5 +1,6 @@
 //! The same scenario at another time step, as a file: what was counted in steps is given in seconds.
 
+use super::Scenario;
 use super::file::{PushFile, ScenarioFile};
 use super::problem::Problem;
 
@@ -34,6 +35,16 @@ pub fn at_time_step(file: &ScenarioFile, time_step_s: f64) -> Result<ScenarioFil
 /// Whether steps mean nothing in `file` that seconds cannot hold.
 pub fn can_be_rescaled(file: &ScenarioFile) -> bool {
     file.edit.is_empty() && !file.push.iter().any(|push| push.accumulates == Some(true))
+}
+
+/// Whether a push of `scenario` accumulates step by step: at another time step it is another force.
+pub fn accumulates(scenario: &Scenario) -> bool {
+    let edited = scenario.edits.iter().flat_map(|edit| &edit.pushes);
+    scenario
+        .pushes
+        .iter()
+        .chain(edited)
+        .any(|push| push.accumulates)
 }
 
 /// The most steps a run may be given by a length in seconds: whole numbers are exact up to here.

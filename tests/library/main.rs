@@ -14,6 +14,7 @@ mod parameters;
 mod pictures;
 mod present;
 mod presets;
+mod readouts;
 mod reference;
 mod refusals;
 mod replay;

@@ -495,7 +495,7 @@ fn fifos_and_devices_are_written_directly() {
 
 #[test]
 fn an_open_file_that_is_named_as_output_is_written_as_it_is() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let run = "\"$G\" run method-1 --steps 3";
     done(lab.shell(&format!("{run} -o a.csv")));
     let rows = lab.read("a.csv");
@@ -527,7 +527,7 @@ fn an_open_file_that_is_named_as_output_is_written_as_it_is() {
 
 #[test]
 fn a_scenario_comes_from_a_fifo_too() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let preset = done(lab.run(&["presets", "cusps"]));
     lab.write("cusps.toml", stdout(&preset));
     for command in [
@@ -556,7 +556,7 @@ fn a_scenario_comes_from_a_fifo_too() {
 
 #[test]
 fn a_replaced_file_keeps_its_rights_but_not_those_of_a_set_user_id() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let run = || done(lab.run(&["run", "method-1", "--steps", "3", "-o", "a.csv", "--force"]));
     for (before, after) in [(0o640, 0o640), (0o6755, 0o755), (0o1604, 0o604)] {
         lab.write("a.csv", "old");
@@ -577,7 +577,7 @@ fn a_replaced_file_keeps_its_rights_but_not_those_of_a_set_user_id() {
 
 #[test]
 fn ctrl_c_acts_at_once_when_the_steps_are_done() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     // A summary that nobody reads holds the program up after its last step, as a long search for advice does.
     done(lab.shell("mkfifo fifo"));
     let mut child = lab
@@ -616,7 +616,7 @@ fn full(mut fifo: fs::File) -> fs::File {
 
 #[test]
 fn a_signal_ends_the_wait_of_a_comparison_for_the_reader_of_a_fifo() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     done(lab.shell("mkfifo fifo"));
     let mut child = lab
         .command(&["compare", "cusps", "-o", "fifo"])
