@@ -70,6 +70,8 @@ pub enum Picture {
     TooSlow,
     /// It is more: backwards.
     Backwards,
+    /// It turns further in a step than numbers reach.
+    Unknown,
 }
 
 /// What the report's scheme does to a symmetric body at one time step.
@@ -183,6 +185,7 @@ impl Picture {
     /// Of a wheel of `points` equal points that turns by `psi` radians a step.
     fn of(psi: f64, points: usize) -> Self {
         match psi {
+            psi if !psi.is_finite() => Self::Unknown,
             psi if psi > PI && psi % TAU < PI => Self::TooSlow,
             psi if psi > PI => Self::Backwards,
             psi if psi > PI / points as f64 => Self::Strobed,

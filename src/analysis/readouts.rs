@@ -250,7 +250,15 @@ pub fn names() -> impl Iterator<Item = &'static str> + Clone {
 
 /// For a refusal of `wrong`, which is no readout: "did you mean tilt_deg?", or the names there are.
 pub fn nearest(wrong: &str) -> String {
-    problem::nearest(wrong, names())
+    // Of "lowest_tilt_deg" it is not said whose it is: theory's, or the run's.
+    let fuller = names().filter(|name| {
+        name.strip_suffix(wrong)
+            .is_some_and(|kind| kind.ends_with('_'))
+    });
+    match fuller.collect::<Vec<_>>()[..] {
+        [] => problem::nearest(wrong, names()),
+        ref fuller => format!("did you mean {}?", fuller.join(" or ")),
+    }
 }
 
 impl Serialize for Readouts {

@@ -22,6 +22,7 @@ impl fmt::Display for Picture {
             Self::Strobed => "its points are taken for one another, a strobe's picture",
             Self::TooSlow => "it seems to turn too slowly",
             Self::Backwards => "it seems to turn backwards",
+            Self::Unknown => "further than numbers reach",
         })
     }
 }
@@ -48,6 +49,9 @@ fn sentence(health: &Health, advice: Option<&Advice>) -> String {
     if health.is_believed() == Some(true) {
         let picture = match health.picture {
             Picture::Right => String::new(),
+            Picture::Unknown => {
+                format!(" (in a step the wheel turns {})", health.picture)
+            }
             _ => format!(
                 " (the wheel turns {} times a step: {})",
                 short(health.turns_per_step),
@@ -74,21 +78,21 @@ fn lost_nutation(health: &Health) -> Option<String> {
         left if left < 1e-3 => "is gone".to_owned(),
         left => format!("has {} times its size", short(left)),
     };
+    let (verb, percent) = change(&nutation);
     Some(format!(
-        "not its nutation, a swing of {swing} degrees, which should last: the scheme {} a step, so that it {now}",
-        changes_by(&nutation)
+        "not its nutation, a swing of {swing} degrees, which should last: the scheme {verb} it by {percent} % a step, so that it {now}"
     ))
 }
 
-/// "damps it by 2.7 %".
-fn changes_by(nutation: &Nutation) -> String {
+/// Whether the scheme damps a nutation or feeds it, and by how many per cent a step.
+fn change(nutation: &Nutation) -> (&'static str, String) {
     let verb = if nutation.multiplier < 1.0 {
         "damps"
     } else {
         "feeds"
     };
     let percent = 100.0 * (nutation.multiplier - 1.0).abs();
-    format!("{verb} it by {} %", short(percent))
+    (verb, short(percent))
 }
 
 fn cause(health: &Health) -> String {
@@ -101,9 +105,9 @@ fn cause(health: &Health) -> String {
             )
         }
         Some(nutation) if health.nutation_is_the_cause() => {
+            let (verb, percent) = change(&nutation);
             format!(
-                "the nutation should last as it is, but the scheme {} a step",
-                changes_by(&nutation)
+                "the scheme {verb} the nutation by {percent} % a step, which should last as it is"
             )
         }
         _ if !psi.is_finite() => {
@@ -250,6 +254,10 @@ fn swing(health: &Health, nutation: &Nutation) -> Vec<Remark> {
 }
 
 fn turns(health: &Health) -> Remark {
+    if health.picture == Picture::Unknown {
+        let text = "the wheel turns further in a step than numbers reach".to_owned();
+        return Remark::new(text, true);
+    }
     let turns = steady(health.turns_per_step);
     let (long, short, warns) = match (health.picture, health.nutation) {
         (Picture::Right, _) => (String::new(), String::new(), false),

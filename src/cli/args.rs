@@ -25,7 +25,7 @@ Examples:
   gyrolab presets                                   what there is to run
   gyrolab run method-2                              the report's Method 2, how it ends
   gyrolab run method-2 -o method-2.csv              every step of it as CSV
-  gyrolab run wobble-push --time-step 0.005 -o -
+  gyrolab run wobble-push --time-step 0.01 -o -
   gyrolab run method-2.csv -o again.csv             a CSV runs again: its header is the run file";
 
 #[derive(Debug, Subcommand)]

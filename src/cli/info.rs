@@ -7,6 +7,7 @@ use crate::scenario::keys::{KEYS, Key};
 use crate::scenario::presets::{self, PRESETS, Preset};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problems, Scenario};
+use crate::text::number::shortest;
 use crate::text::printable::{Shown, printable, printable_lines};
 use anyhow::{Context, bail};
 use clap::CommandFactory;
@@ -130,7 +131,7 @@ fn described(scenario: &Scenario) -> String {
         scenario.body.mechanics.points().len(),
         scenario.motion.scheme.name,
         scenario.steps,
-        scenario.motion.time_step_s,
+        shortest(scenario.motion.time_step_s),
     )
 }
 

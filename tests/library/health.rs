@@ -564,3 +564,56 @@ fn edits_that_spoil_a_run_are_advised_away() {
     assert_eq!(health(spoilt.clone()).is_believed(), Some(false));
     assert_eq!(advise(&spoilt), Advice::TimeStep(0.001));
 }
+
+#[test]
+fn the_sentence_names_the_right_cause() {
+    let told = |name: &str, set: &[&str]| {
+        let scenario = preset(name, set);
+        (
+            health(scenario.clone()).sentence(Some(&advise(&scenario))),
+            scenario,
+        )
+    };
+    let report = "motion.scheme=report";
+    // A steady precession has no nutation that could be damped.
+    let coarse = ["motion.time_step_s=0.01", "motion.steps=1000", report];
+    let (sentence, _) = told("steady-slow", &coarse);
+    assert!(
+        sentence.contains("the error that the scheme report makes at this time step has added up"),
+        "{sentence}"
+    );
+    assert!(!sentence.contains("nutation"), "{sentence}");
+    let (sentence, _) = told("cusps", &coarse);
+    assert!(
+        sentence.contains("the scheme damps the nutation by"),
+        "{sentence}"
+    );
+    // The traced point holds, the nutation does not.
+    let fine = ["motion.time_step_s=0.001", "motion.steps=20000", report];
+    let (sentence, _) = told("fast-top", &fine);
+    assert!(
+        sentence.starts_with("The numbers hold: the traced point has kept within")
+            && sentence.contains("but not its nutation, a swing of 0.0744 degrees")
+            && sentence.ends_with("so that it is gone."),
+        "{sentence}"
+    );
+    let gone = |name: &str, set: &[&str]| {
+        gyrolab::analysis::remarks::remarks(&health(preset(name, set)), None)
+            .iter()
+            .any(|remark| remark.long.ends_with(": gone") && remark.warns)
+    };
+    assert!(gone("fast-top", &fine) && !gone("method-2-slow", &[]));
+}
+
+#[test]
+fn a_time_step_that_would_be_refused_is_not_advised() {
+    let scenario = preset("wobble-push-accumulating", &[]);
+    assert!(rescale::at_time_step(&scenario.file, 0.01).is_err());
+    let advice = advise(&scenario);
+    assert_eq!(advice, Advice::BoundToItsTimeStep);
+    let health = health(scenario);
+    assert!(!health.sentence(Some(&advice)).contains("--time-step"));
+    for remark in gyrolab::analysis::remarks::remarks(&health, Some(&advice)) {
+        assert!(!remark.long.contains("--time-step"), "{remark:?}");
+    }
+}

@@ -68,8 +68,11 @@ fn the_table_is_whole_and_its_names_say_their_units() {
         assert!(readout.name.ends_with(ending), "{}", readout.name);
         assert!(readout.meaning.len() > 3, "{}", readout.name);
     }
-    assert!(nearest("tilt").contains("tilt_deg"));
-    assert!(nearest("lowest_tilt_deg").contains("lowest_tilt_deg"));
+    assert_eq!(nearest("tilt"), "did you mean tilt_deg?");
+    assert_eq!(
+        nearest("lowest_tilt_deg"),
+        "did you mean measured_lowest_tilt_deg or predicted_lowest_tilt_deg?"
+    );
     assert!(find("lowest_tilt_deg").is_none());
 }
 
@@ -273,7 +276,7 @@ fn the_drift_of_a_balanced_body_is_measured_by_its_kinetic_energy() {
         assert_eq!(scale.unit, EnergyUnit::KineticAtStart, "{height}");
         let off = drift(&scenario).abs();
         println!("rim at {height} m: {off:e}");
-        assert!(off < 1e-3, "{height}: {off:e}");
+        assert!(off < 1e-2, "{height}: {off:e}");
         let text = summary(readouts(&scenario)).to_string();
         assert!(
             text.contains("of the kinetic energy at the start"),
@@ -281,7 +284,7 @@ fn the_drift_of_a_balanced_body_is_measured_by_its_kinetic_energy() {
         );
         let rk4 = gyrolab::physics::SchemeInfo::find("rk4").unwrap();
         let rows = compare(&scenario, &[rk4], &[0.01], |_, _| ControlFlow::Continue(())).unwrap();
-        assert!(rows[0].energy_drift.unwrap() < 1e-3);
+        assert!(rows[0].energy_drift.unwrap() < 1e-2);
         let table = Table {
             rows: &rows,
             energy_unit: Some(scale.unit),
@@ -315,7 +318,7 @@ fn blemish(text: &str) -> Option<String> {
             .split(|c: char| !c.is_ascii_digit())
             .map(str::len)
             .max();
-        ["nan", "inf", "-inf", "null"].contains(&bare.as_str()) || digits > Some(20)
+        ["nan", "inf", "-inf", "null"].contains(&bare.as_str()) || digits > Some(30)
     };
     let mut words = words;
     words.find(bad).map(str::to_owned)

@@ -933,3 +933,42 @@ fn a_scenario_may_come_through_a_pipe() {
     assert!(child.wait().unwrap().success());
     assert_eq!(steps(&csv), [0.0, 1.0, 2.0, 3.0]);
 }
+
+#[test]
+fn the_measured_extremes_are_those_of_the_csv_and_theory_has_its_own_names() {
+    let lab = Ground::new();
+    let output = done(lab.run(&["run", "wobble-push", "-o", "a.csv", "--json"]));
+    let json: serde_json::Value = serde_json::from_str(stdout(&output)).unwrap();
+    let csv = lab.read("a.csv");
+    let (_, columns, rows) = parts(&csv);
+    let column = |name: &str| {
+        let index = columns
+            .split(',')
+            .position(|column| column == name)
+            .unwrap();
+        rows.iter().map(|row| row[index]).collect::<Vec<f64>>()
+    };
+    for (name, column) in [("tilt_deg", column("tilt_deg")), ("z_m", column("z_m"))] {
+        let least = column.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        assert_eq!(json[format!("measured_lowest_{name}")], least, "{name}");
+        assert_eq!(json[format!("measured_highest_{name}")], most, "{name}");
+    }
+    assert!(json["measured_highest_tilt_deg"].as_f64() > Some(56.0));
+    assert!(json["predicted_highest_tilt_deg"].as_f64() < Some(45.1));
+    assert!(json.get("lowest_tilt_deg").is_none() && json.get("highest_tilt_deg").is_none());
+    let summary = stderr(&output);
+    assert!(
+        summary.contains("degrees; 36.099381 to 56.945407 in the run"),
+        "{summary}"
+    );
+    assert!(
+        summary.contains("z             0.617092542 to 0.914143407 m in the run"),
+        "{summary}"
+    );
+    let listed = done(lab.run(&["readouts"]));
+    for name in json.as_object().unwrap().keys() {
+        let begins = |line: &str| line.split(' ').next() == Some(name);
+        assert!(stdout(&listed).lines().any(begins), "{name}");
+    }
+}
