@@ -13,7 +13,6 @@ use gyrolab::scenario::presets::PRESETS;
 use gyrolab::scenario::{Document, Scenario};
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::screen;
-use ratatui::layout::Rect;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -410,10 +409,8 @@ fn no_text_shows_what_is_no_number() {
 /// The lab on a large screen, at the end of the run.
 fn picture(scenario: &Scenario) -> String {
     let mut desk = Desk::with("x.toml", scenario.clone());
-    let area = Rect::new(0, 0, 200, 50);
-    desk.lab.resize(area);
     let _ = desk.lab.begin_at(scenario.steps); // where its numbers end it stays there
-    screen::text(&desk.lab, true, area)
+    screen::text(&desk.lab, true, (200, 50))
 }
 
 #[test]
