@@ -79,7 +79,7 @@ impl Simulation {
         Self {
             scheme,
             motion,
-            pushes: scenario.pushes.as_slice().into(),
+            pushes: scenario.pushes.iter().copied().collect(),
             acting: Vec::with_capacity(scenario.pushes.len()),
             loads,
             clock: Clock::new(motion.time_step_s),
@@ -152,7 +152,7 @@ impl Simulation {
             .checked_sub(1)
             .map(|last| &scenario.edits[last]);
         let pushes = made.map_or(&scenario.pushes, |edit| &edit.pushes);
-        self.pushes = pushes.as_slice().into();
+        self.pushes = pushes.iter().copied().collect();
         self.scenario = scenario;
     }
 
@@ -188,7 +188,7 @@ impl Simulation {
         let mut work = 0.0;
         let end = stretch.end;
         if self.motion.scheme.continuous {
-            while let Some(change) = pushes::next_change(&self.pushes, self.counting, &stretch) {
+            while let Some(change) = pushes::next_change(&*self.pushes, self.counting, &stretch) {
                 stretch.end = change;
                 work += self.advance_under_push(&stretch, change - stretch.begin);
                 (stretch.begin, stretch.end) = (change, end);
@@ -204,7 +204,7 @@ impl Simulation {
     }
 
     fn advance_under_push(&mut self, stretch: &Stretch, length: f64) -> f64 {
-        pushes::acting(&self.pushes, self.counting, stretch, &mut self.acting);
+        pushes::acting(&*self.pushes, self.counting, stretch, &mut self.acting);
         if self.acting != self.loads.pushes {
             self.loads.pushes.clone_from(&self.acting);
             self.changes += 1;
@@ -222,6 +222,7 @@ impl Simulation {
     /// Carries out the edits made at this step.
     fn make_due_edits(&mut self) {
         let scenario = Arc::clone(&self.scenario);
+        let first = self.edits_made;
         while let Some(edit) = scenario
             .edits
             .get(self.edits_made)
@@ -230,6 +231,12 @@ impl Simulation {
             self.make_edit(edit);
             self.segment += u64::from(edit.touches.segment);
             self.edits_made += 1;
+        }
+        let made = &scenario.edits[first..self.edits_made];
+        if let Some(last) = made.last()
+            && made.iter().any(|edit| !edit.set_pushes.is_empty())
+        {
+            self.pushes = last.pushes.iter().copied().collect();
         }
         self.next_edit = step_of_edit(&scenario, self.edits_made);
     }
@@ -247,7 +254,6 @@ impl Simulation {
             self.scheme.start(&self.state);
         }
         self.motion = edit.motion;
-        self.pushes = edit.pushes.as_slice().into();
         self.loads.gravity = self.motion.gravity;
         self.safe_below = safe_below(&self.scenario, self.motion.gravity);
         self.loads.pushes.clear();

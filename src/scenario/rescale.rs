@@ -1,8 +1,8 @@
 //! The same scenario at another time step, as a file: what was counted in steps is given in seconds.
 
-use super::Scenario;
 use super::file::{PushFile, ScenarioFile};
 use super::problem::Problem;
+use super::{Edit, Scenario};
 
 /// `file` at the time step `time_step_s` (s): as long in seconds, and its pushes at the same times.
 ///
@@ -39,7 +39,7 @@ pub fn can_be_rescaled(file: &ScenarioFile) -> bool {
 
 /// Whether a push of `scenario` accumulates step by step: at another time step it is another force.
 pub fn accumulates(scenario: &Scenario) -> bool {
-    let edited = scenario.edits.iter().flat_map(|edit| &edit.pushes);
+    let edited = scenario.edits.iter().flat_map(Edit::pushes_set);
     scenario
         .pushes
         .iter()

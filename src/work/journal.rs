@@ -5,6 +5,7 @@
 //! back, and brought again.
 
 use super::parameters;
+pub use crate::scenario::dotted::number_of_push;
 use crate::scenario::file::{EditFile, PushFile, ScenarioFile};
 use crate::scenario::keys::Effect;
 use crate::scenario::{Document, Problems, Scenario, rescale};
@@ -118,7 +119,7 @@ impl Journal {
     /// # Errors
     /// What is wrong with it; nothing, where [`act`](Self::act) made it.
     pub fn scenario(&self) -> Result<Scenario, Problems> {
-        checked(&self.file())
+        checked(self.file())
     }
 
     /// The run as it was when its length was told last: by its file, or by what was done since.
@@ -131,7 +132,7 @@ impl Journal {
             Act::Edit(_) | Act::Push(_) => entry.from_file,
         };
         let told = self.done.iter().rposition(tells).map_or(0, |last| last + 1);
-        checked(&self.made_of(&self.done[..told]))
+        checked(self.made_of(&self.done[..told]))
     }
 
     /// The run file of the run up to `step`: as long, and without what was done later.
@@ -342,11 +343,6 @@ impl Journal {
     }
 }
 
-/// The number, from 0, of the push that the dotted `key` belongs to.
-pub fn number_of_push(key: &str) -> Option<usize> {
-    key.strip_prefix("push.")?.split('.').next()?.parse().ok()
-}
-
 impl Entry {
     /// Whether it acts on steps after the one that follows `step`.
     fn is_later_than(&self, step: u64) -> bool {
@@ -372,8 +368,8 @@ fn number(value: &Value) -> Option<f64> {
         .or_else(|| Some(value.as_integer()? as f64))
 }
 
-fn checked(file: &ScenarioFile) -> Result<Scenario, Problems> {
-    Document::from_file("the run", file)?.scenario()
+fn checked(file: ScenarioFile) -> Result<Scenario, Problems> {
+    Document::check_file("the run", file)
 }
 
 /// `file` with every key of `set` written; not yet checked.

@@ -9,6 +9,7 @@ mod exact;
 mod health;
 mod journal;
 mod laws;
+mod limits;
 mod mangled;
 mod parameters;
 mod pictures;

@@ -8,5 +8,6 @@ mod support;
 
 mod cli;
 mod compare;
+mod escapes;
 mod journeys;
 mod terminal;

@@ -113,7 +113,7 @@ pub(super) fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
             "",
         ),
     ];
-    if let [push] = scenario.pushes[..] {
+    if let (1, Some(push)) = (scenario.pushes.len(), scenario.pushes.first()) {
         let (when, unit) = match push.window {
             Window::Steps { first, count } => (
                 format!("{first} to {}", (first - 1).saturating_add(count)),
