@@ -13,7 +13,6 @@ use crate::run::{Clock, EnergyUnit, Simulation};
 use crate::scenario::{Edit, Scenario, rescale};
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// A run is believed while its traced point keeps within this part of its arm (its distance from the pivot) of the
@@ -231,9 +230,7 @@ pub fn advise(scenario: &Scenario) -> Advice {
     let (own, scheme) = (scenario.motion.time_step_s, scenario.motion.scheme);
     let trial = |step: f64, scheme| {
         let other = Arc::new(resampled(scenario, step, scheme));
-        Trial::run(&other, |_| ControlFlow::Continue(()))
-            .filter(|trial| trial.broke.is_none())
-            .filter(|trial| trial.most_distance_m <= BELIEVED_WITHIN * scenario.arm_m())
+        Trial::within(&other, BELIEVED_WITHIN * scenario.arm_m())
     };
     let holds = |step: f64, scheme| trial(step, scheme).is_some_and(|trial| trial.most_turns < 0.5);
     if !is_affordable(scenario) || duration_s(scenario) / own > most_steps(scenario) {

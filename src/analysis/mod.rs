@@ -4,6 +4,7 @@
 //!
 //! These rooms follow a run and read it; none of them changes a number of it.
 
+mod between;
 pub mod compare;
 pub mod cost;
 pub mod extremes;
@@ -12,8 +13,11 @@ pub mod measure;
 pub mod monitor;
 pub mod readouts;
 pub mod remarks;
+mod rows;
+mod swing;
 pub mod theory;
 pub mod trial;
+mod turns;
 
 pub use extremes::Extremes;
 pub use health::Health;

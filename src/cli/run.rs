@@ -13,6 +13,7 @@ use crate::text::printable::Shown;
 use anyhow::Context;
 use clap::CommandFactory;
 use clap::error::ErrorKind;
+use std::cell::RefCell;
 use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -91,8 +92,11 @@ fn play(
 ) -> io::Result<(Ended, Duration)> {
     let steps = simulation.scenario().steps;
     let mut meter = Meter::new();
-    let each = |simulation: &Simulation| monitor.follow(simulation);
+    // Each step is followed at once and held against the exact motion after its block: that is no stepping.
+    let monitor = RefCell::new(monitor);
+    let each = |simulation: &Simulation| monitor.borrow_mut().follow_ahead(simulation);
     let ended = stream::play(simulation, steps, every, output, each, |progress| {
+        monitor.borrow_mut().catch_up();
         meter.show(progress.step, progress.steps);
         match interruption.has_come() {
             true => ControlFlow::Break(()),

@@ -108,6 +108,31 @@ fn strays(scenario: Scenario) -> f64 {
     most / scenario.arm_m()
 }
 
+#[test]
+fn the_largest_distance_is_that_of_every_step() {
+    // Runs whose swing falls between any thousand looks at them.
+    for (name, set) in [
+        (
+            "cusps",
+            &[
+                "motion.scheme=report",
+                "motion.time_step_s=0.01",
+                "motion.steps=20000",
+            ][..],
+        ),
+        ("wobble-push", &["motion.steps=20000"]),
+    ] {
+        let scenario = preset(name, set);
+        let most = strays(scenario.clone()) * scenario.arm_m();
+        let trial = Trial::run(&Arc::new(scenario.clone()), |_| ControlFlow::Continue(()));
+        let health = health(scenario);
+        let close = |seen: f64| (seen / most - 1.0).abs() < 1e-12;
+        let seen = health.most_distance_m.unwrap();
+        assert!(close(seen), "{name}: {seen}, and {most} at some step");
+        assert!(close(trial.unwrap().most_distance_m), "{name}: the trial");
+    }
+}
+
 /// Asks for advice and takes it.
 fn advice_is_right(name: &str, scenario: &Scenario) -> Advice {
     let advice = advise(scenario);
