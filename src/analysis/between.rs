@@ -1,7 +1,7 @@
 //! A symmetric top whose time steps are short enough to follow it: its turning points, found between the rows.
 
 use super::measure::{Measured, ROUNDING};
-use super::swing::Swing;
+use super::swing::{Interpolation, Swing};
 use super::turns::{Line, Turn, Turns};
 use crate::physics::observables::{self, Azimuth};
 use crate::physics::{LagrangeTop, SymmetricTop};
@@ -392,55 +392,6 @@ impl Between {
             uncertainty: of_rates.hypot(of_ends).hypot(of_swing),
             nutations: 0,
         })
-    }
-}
-
-/// The axle between two rows by its directions and their rates at both: a polynomial of the third degree.
-struct Interpolation {
-    ends: [Vector3<f64>; 2],
-    /// Rates times the time between the rows.
-    ways: [Vector3<f64>; 2],
-    step_s: f64,
-}
-
-impl Interpolation {
-    fn between(from: &Swing, to: &Swing, step_s: f64) -> Self {
-        Self {
-            ends: [from.axle, to.axle],
-            ways: [from, to].map(|swing| swing.momentum.cross(&swing.axle) * step_s),
-            step_s,
-        }
-    }
-
-    /// When its height has an extreme, s after the first row: at a root of a polynomial of the second degree.
-    fn time_of_turn(&self, is_top: bool) -> f64 {
-        let [begin, end] = self.ways.map(|way| way.z);
-        let rise = self.ends[1].z - self.ends[0].z;
-        let (square, linear) = (
-            3.0 * (begin + end) - 6.0 * rise,
-            6.0 * rise - 4.0 * begin - 2.0 * end,
-        );
-        // Of both roots the one at which it turns the right way: linear + 2 square t is negative at a top.
-        let root = (linear * linear - 4.0 * square * begin).max(0.0).sqrt();
-        let signed = if is_top { -root } else { root };
-        let share = match linear * signed > 0.0 {
-            true => -2.0 * begin / (linear + signed),
-            false => (signed - linear) / (2.0 * square),
-        };
-        share.clamp(0.0, 1.0) * self.step_s
-    }
-
-    fn at(&self, time_s: f64) -> Swing {
-        let t = time_s / self.step_s;
-        let [from, to] = self.ends;
-        let [begin, end] = self.ways;
-        let rise = to - from;
-        let axle = from
-            + t * (begin + t * ((3.0 * rise - 2.0 * begin - end) + t * (begin + end - 2.0 * rise)));
-        Swing {
-            axle,
-            momentum: Vector3::zeros(),
-        }
     }
 }
 

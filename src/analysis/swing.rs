@@ -91,3 +91,52 @@ impl Swing {
         (axle, momentum, radius)
     }
 }
+
+/// The axle between two rows by its directions and their rates at both: a polynomial of the third degree.
+pub(super) struct Interpolation {
+    ends: [Vector3<f64>; 2],
+    /// Rates times the time between the rows.
+    ways: [Vector3<f64>; 2],
+    step_s: f64,
+}
+
+impl Interpolation {
+    pub fn between(from: &Swing, to: &Swing, step_s: f64) -> Self {
+        Self {
+            ends: [from.axle, to.axle],
+            ways: [from, to].map(|swing| swing.momentum.cross(&swing.axle) * step_s),
+            step_s,
+        }
+    }
+
+    /// When its height has an extreme, s after the first row: at a root of a polynomial of the second degree.
+    pub fn time_of_turn(&self, is_top: bool) -> f64 {
+        let [begin, end] = self.ways.map(|way| way.z);
+        let rise = self.ends[1].z - self.ends[0].z;
+        let (square, linear) = (
+            3.0 * (begin + end) - 6.0 * rise,
+            6.0 * rise - 4.0 * begin - 2.0 * end,
+        );
+        // Of both roots the one at which it turns the right way: linear + 2 square t is negative at a top.
+        let root = (linear * linear - 4.0 * square * begin).max(0.0).sqrt();
+        let signed = if is_top { -root } else { root };
+        let share = match linear * signed > 0.0 {
+            true => -2.0 * begin / (linear + signed),
+            false => (signed - linear) / (2.0 * square),
+        };
+        share.clamp(0.0, 1.0) * self.step_s
+    }
+
+    pub fn at(&self, time_s: f64) -> Swing {
+        let t = time_s / self.step_s;
+        let [from, to] = self.ends;
+        let [begin, end] = self.ways;
+        let rise = to - from;
+        let axle = from
+            + t * (begin + t * ((3.0 * rise - 2.0 * begin - end) + t * (begin + end - 2.0 * rise)));
+        Swing {
+            axle,
+            momentum: Vector3::zeros(),
+        }
+    }
+}
