@@ -1,8 +1,7 @@
 //! A symmetric top whose time steps are short enough to follow it: its turning points, found between the rows.
 
-use super::measure::{Measured, ROUNDING};
 use super::swing::{Interpolation, Swing};
-use super::turns::{Line, Turn, Turns};
+use super::turns::{Line, Measured, ROUNDING, Turn, Turns};
 use crate::physics::observables::{self, Azimuth};
 use crate::physics::{LagrangeTop, SymmetricTop};
 use crate::run::Simulation;

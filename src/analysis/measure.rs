@@ -17,21 +17,8 @@
 
 use super::between::Between;
 use super::rows::Rows;
+pub use super::turns::Measured;
 use crate::run::Simulation;
-
-/// A measured number with its uncertainty, in its own unit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measured {
-    /// The best value.
-    pub value: f64,
-    /// One standard error.
-    pub uncertainty: f64,
-    /// How many nutations it was taken from, a half one counted as one; 0 where there was none.
-    pub nutations: u64,
-}
-
-/// A swing of the axle's height smaller than this is rounding, not nutation.
-pub(super) const ROUNDING: f64 = 1e-9;
 
 /// The instruments that follow a run; to be shown every step of it.
 #[derive(Clone, Debug)]

@@ -1,8 +1,7 @@
 //! A run as its rows show it, for a lopsided body, a load aside, or time steps too long for the motion: the highest points
 //! of the axle by parabolas through three rows.
 
-use super::measure::{Measured, ROUNDING};
-use super::turns::{Line, Turn, Turns};
+use super::turns::{Line, Measured, ROUNDING, Turn, Turns};
 use crate::physics::observables::Azimuth;
 use crate::run::Simulation;
 use std::f64::consts::TAU;

@@ -3,6 +3,20 @@
 /// So many turning points are kept at most; when there are more every second one goes.
 const MOST: usize = 32;
 
+/// A measured number with its uncertainty, in its own unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// The best value.
+    pub value: f64,
+    /// One standard error.
+    pub uncertainty: f64,
+    /// How many nutations it was taken from, a half one counted as one; 0 where there was none.
+    pub nutations: u64,
+}
+
+/// A swing of the axle's height smaller than this is rounding, not nutation.
+pub(super) const ROUNDING: f64 = 1e-9;
+
 /// One turning point of the axle's height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turn {
