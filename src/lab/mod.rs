@@ -21,7 +21,7 @@ mod travel;
 pub mod view;
 
 pub use dialogs::Dialog;
-pub use keeping::Unreadable;
+pub use keeping::{Summary, Unreadable};
 
 use crate::analysis::health::Advice;
 use crate::lab::action::Action;
@@ -34,6 +34,7 @@ use crate::observe::playback::{Halt, Playback};
 use crate::observe::reading::{self, Reading};
 use crate::run::NotFinite;
 use crate::scenario::{Motion, Scenario};
+use crate::storage::confined::Confined;
 use crate::storage::exporting::{Exporting, Written};
 use crate::tui::keymap::{Key, Mode};
 use crate::work::changed;
@@ -88,6 +89,10 @@ pub struct Lab {
     entries_listed: usize,
     /// Where files are looked for and written to, if not in the present folder.
     folder: Option<PathBuf>,
+    /// The folder that is not left, if there is one.
+    confined: Option<Confined>,
+    /// Why the session is not kept, if it is not.
+    trouble: Option<String>,
     /// The key that was nudged last, if nothing else has been done since.
     last_nudged: Option<(String, Duration)>,
     dialog: Option<Dialog>,
@@ -132,6 +137,8 @@ impl Lab {
             entries_listed: 0,
             file: scenario,
             folder: None,
+            confined: None,
+            trouble: None,
             last_nudged: None,
             dialog: None,
             exporting: None,
@@ -167,6 +174,17 @@ impl Lab {
     /// Looks for files in `folder`, and writes them there, instead of the present folder.
     pub fn work_in(&mut self, folder: &Path) {
         self.folder = Some(folder.to_owned());
+    }
+
+    /// From now on reads and writes nothing outside of the folder.
+    pub fn confine(&mut self, folder: Confined) {
+        self.confined = Some(folder);
+    }
+
+    /// Whether the file `path` may be read and written.
+    fn admit(&self, path: &Path) -> Result<(), String> {
+        let confined = self.confined.as_ref();
+        confined.map_or(Ok(()), |folder| folder.check(path))
     }
 
     /// From now on looks in the background for what would mend a run that is not to be believed.
@@ -291,6 +309,9 @@ impl Lab {
             Action::Help => self.toggle_help(),
             Action::Close => self.close(closed),
             Action::Redraw => return Some(Request::Redraw),
+            Action::Suspend if self.confined.is_some() => {
+                self.say("there is no shell to go back to: q leaves");
+            }
             Action::Suspend => return Some(Request::Suspend),
             Action::Quit => {
                 if self.may_quit(was_warned) {

@@ -9,6 +9,7 @@ mod coverage;
 mod exact;
 mod health;
 mod journal;
+mod kept;
 mod laws;
 mod limits;
 mod mangled;

@@ -116,7 +116,21 @@ pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
     }
 }
 
+/// Before whatever is said while the session is not kept.
+const NOT_KEPT: &str = "session not kept";
+
+/// What stands in the line of hints. That the session is not kept stands there as long as it is so.
 fn said(lab: &Lab) -> (String, Role) {
+    let is_quiet = lab.count().is_none() && lab.notice().is_none();
+    let (text, role) = said_of_run(lab);
+    match lab.trouble() {
+        None => (text, role),
+        Some(trouble) if is_quiet => (trouble.to_owned(), Role::Warning),
+        Some(_) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), role),
+    }
+}
+
+fn said_of_run(lab: &Lab) -> (String, Role) {
     match (lab.count(), lab.notice()) {
         (Some(count), _) => (
             format!("{count}: now the key, such as . for that many steps; Esc forgets it"),
