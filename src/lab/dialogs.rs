@@ -227,6 +227,7 @@ impl Lab {
     ) -> Result<(), Refusal> {
         let every = every(number).map_err(Refusal::Because)?;
         is_named(path)?;
+        self.admit(path).map_err(Refusal::Because)?;
         let begun = Exporting::begin(Arc::clone(scenario), path, every, may_replace(path));
         self.exporting = Some(begun.map_err(refusal)?);
         self.say("the export goes on in the background");
@@ -339,6 +340,7 @@ impl Lab {
         may_replace: impl Fn(&Path) -> bool,
     ) -> Result<(), Refusal> {
         is_named(path)?;
+        self.admit(path).map_err(Refusal::Because)?;
         let mut destination = Destination::open_file(path, may_replace(path)).map_err(refusal)?;
         let written = destination.write_all(content.as_bytes());
         written

@@ -18,7 +18,10 @@ impl Lab {
     pub(super) fn browse(&mut self) {
         let folder = self.folder.as_deref().unwrap_or(Path::new("."));
         let name = &self.history.present().name;
-        self.browser.begin(folder, name);
+        let confined = self.confined.as_ref();
+        self.browser.begin(folder, name, |path| {
+            confined.is_none_or(|folder| folder.check(path).is_ok())
+        });
         self.mode = Mode::Browser;
     }
 
@@ -26,6 +29,9 @@ impl Lab {
         let Some(name) = self.browser.choice().map(|entry| entry.name.clone()) else {
             return self.say("nothing is selected: Esc clears the filter");
         };
+        if let Err(reason) = self.admit(Path::new(&name)) {
+            return self.say(reason);
+        }
         match again(&name).and_then(|document| document.scenario()) {
             Ok(scenario) => self.open(&name, Arc::new(scenario)),
             Err(problems) => self.say(format!("{}: {}", problems.origin, problems.in_one_line())),

@@ -10,4 +10,5 @@ mod cli;
 mod compare;
 mod escapes;
 mod journeys;
+mod sessions;
 mod terminal;
