@@ -90,15 +90,15 @@ fn file_of(folder: &Path, text: &str) -> PathBuf {
         .unwrap()
 }
 
-/// Puts the writing of `path` so many seconds into the past.
+/// Puts the writing of a session with the work at `path` so many seconds into the past. A session that was written
+/// before it was flushed has its place in a file of its own too.
 fn age(path: &Path, seconds: u64) {
     let time = SystemTime::now() - Duration::from_secs(seconds);
-    fs::File::options()
-        .append(true)
-        .open(path)
-        .unwrap()
-        .set_modified(time)
-        .unwrap();
+    for path in [path, &path.with_extension("place")] {
+        if let Ok(file) = fs::File::options().append(true).open(path) {
+            file.set_modified(time).unwrap();
+        }
+    }
 }
 
 #[track_caller]
