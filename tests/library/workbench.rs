@@ -144,7 +144,7 @@ fn steps_asked_for_by_the_million_do_not_hold_up_the_keys() {
         stage
             .press("r9000000.")
             .wait(0.1)
-            .shows("stepping: 8 ")
+            .shows("stepping: 8,")
             .shows("to go, Esc stops");
         let underway = stage.step();
         assert!((1000..9_000_000).contains(&underway), "{underway}");
