@@ -2,8 +2,10 @@
 
 use super::Trial;
 use crate::physics::SchemeInfo;
+use crate::run::EnergyUnit;
 use crate::run::resample::resampled;
 use crate::scenario::Scenario;
+use crate::text::number::{NONE, exponent, fixed, shortest};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
@@ -35,12 +37,12 @@ pub struct Row {
     /// Largest |(E − E0 − W)/S|.
     #[serde(serialize_with = "or_na")]
     pub energy_drift: Option<f64>,
-    /// Largest deviation of L·axle from the exact motion's, over |L| at the start.
-    #[serde(rename = "L_axle_drift")]
-    pub spin_drift: f64,
-    /// Largest deviation of L_z from the exact motion's, over |L| at the start.
-    #[serde(rename = "Lz_drift")]
-    pub lz_drift: f64,
+    /// Largest deviation of L·axle from the exact motion's, over |L| at the start; `None` where that is not finite.
+    #[serde(rename = "L_axle_drift", serialize_with = "or_na")]
+    pub spin_drift: Option<f64>,
+    /// Largest deviation of L_z from the exact motion's, over |L| at the start; `None` where that is not finite.
+    #[serde(rename = "Lz_drift", serialize_with = "or_na")]
+    pub lz_drift: Option<f64>,
     /// Cost of a step, ns.
     pub ns_per_step: f64,
     /// Time spent on stepping alone, s.
@@ -50,7 +52,7 @@ pub struct Row {
 fn or_na<S: Serializer>(number: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
     match number {
         Some(number) => serializer.serialize_f64(*number),
-        None => serializer.serialize_str("n/a"),
+        None => serializer.serialize_str(NONE),
     }
 }
 
@@ -106,8 +108,8 @@ impl Row {
             error_at_end_m: known(trial.end_distance_m),
             order: None,
             energy_drift: trial.energy_drift,
-            spin_drift: trial.spin_drift,
-            lz_drift: trial.lz_drift,
+            spin_drift: Some(trial.spin_drift).filter(|drift| drift.is_finite()),
+            lz_drift: Some(trial.lz_drift).filter(|drift| drift.is_finite()),
             ns_per_step: wall_s * 1e9 / trial.steps.max(1) as f64,
             wall_s,
         }
@@ -135,7 +137,12 @@ fn order(coarse: &Row, fine: &Row, least_m: f64) -> Option<f64> {
 
 /// The rows as a table for reading.
 #[derive(Clone, Copy, Debug)]
-pub struct Table<'a>(pub &'a [Row]);
+pub struct Table<'a> {
+    /// The rows.
+    pub rows: &'a [Row],
+    /// What the energy drifts are measured in; `None` where there is nothing to measure them by.
+    pub energy_unit: Option<EnergyUnit>,
+}
 
 impl fmt::Display for Table<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -146,28 +153,22 @@ impl fmt::Display for Table<'_> {
             " {:>9} {:>9} {:>9} {:>8}",
             "energy", "L.axle", "L_z", "ns/step"
         )?;
-        for row in self.0 {
-            let order = row
-                .order
-                .map_or("-".to_owned(), |order| format!("{order:.2}"));
-            let number = |number: Option<f64>| {
-                number.map_or("n/a".to_owned(), |number| format!("{number:.1e}"))
-            };
+        for row in self.rows {
+            let order = row.order.map_or("-".to_owned(), |order| fixed(order, 2));
+            let number =
+                |number: Option<f64>| number.map_or(NONE.to_owned(), |number| exponent(number, 1));
             let (error, at_end) = (number(row.error_m), number(row.error_at_end_m));
-            let energy = number(row.energy_drift);
-            write!(
-                f,
-                "{:<8} {:>10} {:>10}",
-                row.scheme, row.time_step_s, row.steps
-            )?;
+            let (spin, lz) = (number(row.spin_drift), number(row.lz_drift));
+            let (energy, step) = (number(row.energy_drift), shortest(row.time_step_s));
+            write!(f, "{:<8} {step:>10} {:>10}", row.scheme, row.steps)?;
             write!(f, " {error:>9} {at_end:>9} {order:>6}")?;
-            write!(
-                f,
-                " {energy:>9} {:>9.1e} {:>9.1e}",
-                row.spin_drift, row.lz_drift
-            )?;
-            writeln!(f, " {:>8.0}", row.ns_per_step)?;
+            write!(f, " {energy:>9} {spin:>9} {lz:>9}")?;
+            writeln!(f, " {:>8}", fixed(row.ns_per_step, 0))?;
         }
+        let energy = match self.energy_unit {
+            Some(unit) => format!("in units of {unit}"),
+            None => format!("{NONE}: neither weight nor kinetic energy to measure it by"),
+        };
         writeln!(f)?;
         writeln!(
             f,
@@ -175,7 +176,7 @@ impl fmt::Display for Table<'_> {
         )?;
         writeln!(
             f,
-            "energy  in units of M g |c|; L.axle and L_z in units of |L|: how far off each was at most."
+            "energy  {energy}; L.axle and L_z in units of |L|: how far off each was at most."
         )?;
         writeln!(
             f,

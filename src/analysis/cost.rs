@@ -2,7 +2,7 @@
 
 use crate::physics::{SymmetricTop, observables};
 use crate::run::Clock;
-use crate::scenario::Scenario;
+use crate::scenario::{Edit, Scenario};
 
 /// Radians of rotation through which the exact motion may be integrated on the side: less than a second's work.
 pub const AFFORDABLE_RAD: f64 = 5e5;
@@ -28,7 +28,7 @@ pub fn integration_rad(scenario: &Scenario) -> f64 {
 /// Whether the body is symmetric and every push, those of edits too, acts on its axle.
 fn has_closed_form(scenario: &Scenario) -> bool {
     let body = &scenario.body.mechanics;
-    let edited = scenario.edits.iter().flat_map(|edit| &edit.pushes);
+    let edited = scenario.edits.iter().flat_map(Edit::pushes_set);
     let mut pushed = scenario.pushes.iter().chain(edited).map(|push| push.point);
     SymmetricTop::of(body)
         .is_some_and(|top| pushed.all(|point| top.has_on_axle(body, &body.points()[point].at)))

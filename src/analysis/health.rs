@@ -9,11 +9,10 @@ use super::trial::{Deviation, Trial};
 use crate::physics::loads::torque;
 use crate::physics::{SchemeInfo, SymmetricTop, observables};
 use crate::run::resample::resampled;
-use crate::run::{Clock, Simulation};
+use crate::run::{Clock, EnergyUnit, Simulation};
 use crate::scenario::{Edit, Scenario, rescale};
+use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
-use std::fmt;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// A run is believed while its traced point keeps within this part of its arm (its distance from the pivot) of the
@@ -23,8 +22,10 @@ pub const BELIEVED_WITHIN: f64 = 0.01;
 const SEARCH_STEPS: u64 = 2_000_000;
 /// Where a time step is not to be mended, this scheme is tried.
 pub const BETTER_SCHEME: &str = "srkn11b";
-/// Radians a step beyond which no scheme that follows the rotation by polynomials keeps up.
-const TOO_FAR_RAD: f64 = 1.0;
+/// A nutation that swings by less than this (degrees) is none.
+const LEAST_SWING_DEG: f64 = 1e-6;
+/// A nutation that has changed by less than this part is as it was.
+const LEAST_CHANGE: f64 = 0.05;
 
 /// How a run stands at one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,10 +38,14 @@ pub struct Health {
     pub picture: Picture,
     /// The report's scheme alone: what it does to nutation and lag.
     pub nutation: Option<Nutation>,
+    /// By how much the tilt swings in the exact motion's nutation, degrees; `None` where theory does not say.
+    pub swing_deg: Option<f64>,
     /// Angle between axle and L now, degrees.
     pub lag_deg: f64,
     /// (E − E0 − W)/S, see [`Simulation::energy_drift`].
     pub energy_drift: Option<f64>,
+    /// What S is; `None` where there is none.
+    pub energy_unit: Option<EnergyUnit>,
     /// How far off the exact motion it is now; `None` where the exact motion would take too long.
     pub deviation: Option<Deviation>,
     /// The largest distance of the traced point from the exact motion so far, m.
@@ -64,6 +69,8 @@ pub enum Picture {
     TooSlow,
     /// It is more: backwards.
     Backwards,
+    /// It turns further in a step than numbers reach.
+    Unknown,
 }
 
 /// What the report's scheme does to a symmetric body at one time step.
@@ -91,26 +98,29 @@ pub enum Advice {
         /// The finest time step tried with the run's own, s.
         tried_s: f64,
     },
+    /// Its pushes accumulate step by step, and are others at another time step; no other scheme mends it at this one.
+    BoundToItsTimeStep,
     /// Nothing that could be tried in reasonable time.
     Nothing,
 }
 
 impl Health {
-    /// Of `simulation` as it stands; `deviation` and `most_distance_m` from the exact motion.
+    /// Of `simulation` as it stands; `deviation` and `most_distance_m` from the exact motion, whose nutation swings by
+    /// `swing_deg`.
     pub fn new(
         simulation: &Simulation,
         deviation: Option<Deviation>,
         most_distance_m: Option<f64>,
+        swing_deg: Option<f64>,
     ) -> Self {
         let scenario = simulation.scenario();
         let (state, motion) = (simulation.state(), simulation.motion());
-        let omega = observables::angular_velocity(&scenario.body.mechanics, state).norm();
-        let psi = omega * motion.time_step_s;
+        let omega = observables::angular_velocity(&scenario.body.mechanics, state);
+        let psi = length(&omega) * motion.time_step_s;
         let axle = state.axle();
-        let lag = axle
-            .cross(&state.momentum)
-            .norm()
-            .atan2(axle.dot(&state.momentum));
+        // As a direction: the squares of a very large L leave the range of numbers.
+        let towards = state.momentum / state.momentum.amax();
+        let lag = libm::atan2(axle.cross(&towards).norm(), axle.dot(&towards));
         Self {
             scheme: motion.scheme,
             turns_per_step: psi / TAU,
@@ -119,12 +129,14 @@ impl Health {
                 scenario.file.body.rim.as_ref().map_or(1, |rim| rim.points),
             ),
             nutation: Nutation::of(simulation, psi),
-            lag_deg: if state.momentum.norm() > 0.0 {
+            swing_deg,
+            lag_deg: if lag.is_finite() {
                 lag.to_degrees()
             } else {
                 0.0
             },
             energy_drift: simulation.energy_drift(),
+            energy_unit: simulation.energy_unit(),
             deviation,
             most_distance_m,
             arm_m: scenario.arm_m(),
@@ -141,95 +153,30 @@ impl Health {
             .map(|most| most <= BELIEVED_WITHIN * self.arm_m)
     }
 
-    /// In one sentence: whether the numbers hold, what is wrong with them, and what would mend it.
-    pub fn sentence(&self, advice: Option<&Advice>) -> String {
-        let Some(most) = self.most_distance_m else {
-            return "Not held against the exact motion, which would take too long or leaves the range of numbers.".to_owned();
+    /// How many times its size the scheme has made of a nutation since the start; the truth is 1.
+    pub fn nutation_left(&self) -> Option<f64> {
+        let nutation = self.nutation?;
+        Some(libm::pow(nutation.multiplier, self.steps as f64))
+    }
+
+    /// What the scheme has made of the nutation, where it has changed one that there is in truth by more than a
+    /// twentieth: how many times its size is left. `None` too where it is not known whether there is one.
+    pub fn changed_nutation(&self) -> Option<f64> {
+        let is_there = self.swing_deg? > LEAST_SWING_DEG;
+        self.nutation_left()
+            .filter(|left| is_there && (left - 1.0).abs() > LEAST_CHANGE)
+    }
+
+    /// Whether what the scheme has made of the nutation is large enough to be what puts the traced point off.
+    pub(super) fn nutation_is_the_cause(&self) -> bool {
+        let (Some(left), Some(swing), Some(most)) = (
+            self.changed_nutation(),
+            self.swing_deg,
+            self.most_distance_m,
+        ) else {
+            return false;
         };
-        if self.arm_m == 0.0 {
-            return "Nothing can be said: the traced point is the pivot, which stands still in every run.".to_owned();
-        }
-        let far = format!(
-            "{} m ({} % of its arm)",
-            short(most),
-            short(100.0 * most / self.arm_m)
-        );
-        if self.is_believed() == Some(true) {
-            let picture = match self.picture {
-                Picture::Right => String::new(),
-                _ => format!(
-                    " (the wheel turns {} times a step: {})",
-                    short(self.turns_per_step),
-                    self.picture
-                ),
-            };
-            return format!(
-                "The numbers hold: the traced point has kept within {far} of the exact motion{picture}."
-            );
-        }
-        let mend = advice.map_or(String::new(), |advice| self.mend(advice));
-        format!(
-            "Do not believe this run: {}, and the traced point is up to {far} off the exact motion{mend}.",
-            self.cause()
-        )
-    }
-
-    fn cause(&self) -> String {
-        let psi = TAU * self.turns_per_step;
-        let turns = short(self.turns_per_step);
-        let (name, faded) = (self.scheme.name, self.faded());
-        match self.nutation {
-            Some(_) if psi >= PI => {
-                format!(
-                    "the wheel turns {turns} times in a time step, so that the swing of the axle is the time step's"
-                )
-            }
-            Some(nutation) if faded.abs() > 0.05 => {
-                let verb = if faded < 0.0 { "damps" } else { "feeds" };
-                let percent = 100.0 * (nutation.multiplier - 1.0).abs();
-                format!(
-                    "the scheme {verb} the nutation by {} % a step, which should last as it is",
-                    short(percent)
-                )
-            }
-            _ if psi >= TOO_FAR_RAD => {
-                format!(
-                    "the body turns {turns} times in a time step, more than the scheme {name} can follow"
-                )
-            }
-            _ if self.scheme.order.is_none() => {
-                "what another scheme did before the edit is carried on exactly".to_owned()
-            }
-            _ => format!("the error that the scheme {name} makes at this time step has added up"),
-        }
-    }
-
-    /// Natural logarithm of what the scheme has made of a nutation since the start.
-    fn faded(&self) -> f64 {
-        self.nutation
-            .map_or(0.0, |nutation| nutation.multiplier.ln() * self.steps as f64)
-    }
-
-    fn mend(&self, advice: &Advice) -> String {
-        match advice {
-            Advice::Holds => String::new(),
-            Advice::Nothing => {
-                "; nothing that could be tried in reasonable time mends it".to_owned()
-            }
-            Advice::TimeStep(step) => {
-                let option = match self.can_be_rescaled {
-                    true => format!(" (--time-step {step})"),
-                    false => String::new(),
-                };
-                format!("; a time step of {step} s{option} keeps it within 1 %")
-            }
-            Advice::Scheme {
-                time_step_s,
-                tried_s,
-            } => format!(
-                "; no time step down to {tried_s} s mends it, but the scheme {BETTER_SCHEME} at {time_step_s} s does"
-            ),
-        }
+        swing.to_radians() * self.arm_m * (left - 1.0).abs() > most / 2.0
     }
 }
 
@@ -237,22 +184,12 @@ impl Picture {
     /// Of a wheel of `points` equal points that turns by `psi` radians a step.
     fn of(psi: f64, points: usize) -> Self {
         match psi {
+            psi if !psi.is_finite() => Self::Unknown,
             psi if psi > PI && psi % TAU < PI => Self::TooSlow,
             psi if psi > PI => Self::Backwards,
             psi if psi > PI / points as f64 => Self::Strobed,
             _ => Self::Right,
         }
-    }
-}
-
-impl fmt::Display for Picture {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Right => "it shows as it is",
-            Self::Strobed => "its points are taken for one another, a strobe's picture",
-            Self::TooSlow => "it seems to turn too slowly",
-            Self::Backwards => "it seems to turn backwards",
-        })
     }
 }
 
@@ -278,9 +215,10 @@ impl Nutation {
         .filter(|nutation| nutation.scheme_lag_deg.is_finite() && nutation.true_lag_deg.is_finite())
     }
 
-    /// How many times the true lag the scheme's is.
-    pub fn lag_ratio(&self) -> f64 {
-        self.scheme_lag_deg / self.true_lag_deg
+    /// How many times the true lag the scheme's is; `None` where there is no true one.
+    pub fn lag_ratio(&self) -> Option<f64> {
+        let ratio = self.scheme_lag_deg / self.true_lag_deg;
+        ratio.is_finite().then_some(ratio)
     }
 }
 
@@ -292,9 +230,7 @@ pub fn advise(scenario: &Scenario) -> Advice {
     let (own, scheme) = (scenario.motion.time_step_s, scenario.motion.scheme);
     let trial = |step: f64, scheme| {
         let other = Arc::new(resampled(scenario, step, scheme));
-        Trial::run(&other, |_| ControlFlow::Continue(()))
-            .filter(|trial| trial.broke.is_none())
-            .filter(|trial| trial.most_distance_m <= BELIEVED_WITHIN * scenario.arm_m())
+        Trial::within(&other, BELIEVED_WITHIN * scenario.arm_m())
     };
     let holds = |step: f64, scheme| trial(step, scheme).is_some_and(|trial| trial.most_turns < 0.5);
     if !is_affordable(scenario) || duration_s(scenario) / own > most_steps(scenario) {
@@ -307,6 +243,17 @@ pub fn advise(scenario: &Scenario) -> Advice {
             false => Advice::Holds,
         };
     }
+    let better = SchemeInfo::find(BETTER_SCHEME).unwrap_or(scheme);
+    if rescale::accumulates(scenario) {
+        // At another time step it would be another run.
+        return match better != scheme && holds(own, better) {
+            true => Advice::Scheme {
+                time_step_s: own,
+                tried_s: own,
+            },
+            false => Advice::BoundToItsTimeStep,
+        };
+    }
     let mut tried_s = own;
     for step in finer_time_steps(scenario) {
         if holds(step, scheme) {
@@ -314,7 +261,6 @@ pub fn advise(scenario: &Scenario) -> Advice {
         }
         tried_s = step;
     }
-    let better = SchemeInfo::find(BETTER_SCHEME).unwrap_or(scheme);
     let mut steps = std::iter::once(own).chain(finer_time_steps(scenario));
     match steps.find(|&step| better != scheme && holds(step, better)) {
         Some(time_step_s) => Advice::Scheme {
@@ -322,6 +268,14 @@ pub fn advise(scenario: &Scenario) -> Advice {
             tried_s,
         },
         None => Advice::Nothing,
+    }
+}
+
+/// The length of `vector`, also where its squares leave the range of numbers.
+fn length(vector: &Vector3<f64>) -> f64 {
+    match vector.amax() {
+        0.0 => 0.0,
+        size => size * (vector / size).norm(),
     }
 }
 
@@ -358,16 +312,4 @@ fn finer_time_steps(scenario: &Scenario) -> impl Iterator<Item = f64> + use<> {
 /// digit · 10^power as it is written: the nearest number to that decimal.
 fn rounded(digit: i32, power: i32) -> f64 {
     format!("{digit}e{power}").parse().unwrap_or(f64::NAN)
-}
-
-/// Three digits, without a train of zeros.
-fn short(number: f64) -> String {
-    match number.abs() {
-        0.0 => "0".to_owned(),
-        size if (1e-3..1e5).contains(&size) => {
-            let digits = (2.0 - libm::floor(libm::log10(size))).max(0.0) as usize;
-            format!("{number:.digits$}")
-        }
-        _ => format!("{number:.1e}"),
-    }
 }

@@ -1,18 +1,28 @@
-//! What a run's numbers are worth: [`theory`] says what the top should do, [`measure`] what the run did, [`health`] what
-//! the time step made of it, in one sentence, and [`compare`] holds schemes and time steps against the exact motion.
+//! What a run's numbers are worth: [`theory`] says what the top should do, [`measure`] and [`extremes`] what the run did,
+//! [`health`] what the time step made of it, [`remarks`] the same in words. [`readouts`] is the one table of all these
+//! numbers under their names, and [`compare`] holds schemes and time steps against the exact motion.
 //!
 //! These rooms follow a run and read it; none of them changes a number of it.
 
+mod between;
 pub mod compare;
 pub mod cost;
+pub mod extremes;
 pub mod health;
 pub mod measure;
 pub mod monitor;
+pub mod readouts;
+pub mod remarks;
+mod rows;
+mod swing;
 pub mod theory;
 pub mod trial;
+mod turns;
 
+pub use extremes::Extremes;
 pub use health::Health;
 pub use measure::{Instruments, Measured};
 pub use monitor::Monitor;
+pub use readouts::Readouts;
 pub use theory::Theory;
 pub use trial::Trial;

@@ -1,11 +1,12 @@
 //! What follows a run step by step and can say at any moment how it stands: instruments, theory, health.
 
 use super::cost::is_affordable;
+use super::extremes::Extremes;
 use super::health::Health;
 use super::measure::Instruments;
 use super::theory::Theory;
-use super::trial::{Deviation, stride};
-use crate::physics::SymmetricTop;
+use super::trial::Deviation;
+use crate::physics::{State, SymmetricTop};
 use crate::run::{Simulation, Truth};
 use crate::scenario::Scenario;
 use std::sync::Arc;
@@ -14,13 +15,13 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Monitor {
     instruments: Instruments,
+    extremes: Extremes,
     truth: Option<Truth>,
     most_distance_m: f64,
+    /// Steps still to be held against the exact motion.
+    unheld: Vec<State>,
     /// The change of forces since which the instruments measure.
     changes: u64,
-    /// The next step at which to hold the run against the exact motion, and how many there are between two.
-    next_look: u64,
-    stride: u64,
 }
 
 impl Monitor {
@@ -30,11 +31,11 @@ impl Monitor {
         let truth = is_affordable(scenario).then(|| Truth::new(Arc::clone(scenario)));
         Self {
             instruments: Instruments::new(simulation),
+            extremes: Extremes::new(simulation),
             truth,
             most_distance_m: 0.0,
+            unheld: Vec::new(),
             changes: simulation.changes(),
-            next_look: simulation.step_number() + stride(scenario.steps),
-            stride: stride(scenario.steps),
         }
     }
 
@@ -47,33 +48,63 @@ impl Monitor {
         self.truth.take_if(|_| !is_affordable(scenario));
     }
 
-    /// Takes in the step that `simulation` stands at; to be shown every step.
+    /// Takes in the step that `simulation` stands at; to be shown every step. Every one of them is held against the exact
+    /// motion: what leaves it and comes back between two looks has left it too.
     #[inline]
     pub fn follow(&mut self, simulation: &Simulation) {
+        self.measure(simulation);
+        self.deviation(simulation);
+    }
+
+    /// The same, but for the exact motion: [`catch_up`](Self::catch_up) comes to that later, at the latest when health or
+    /// theory is asked for. So the time that stepping takes can be told from it.
+    #[inline]
+    pub fn follow_ahead(&mut self, simulation: &Simulation) {
+        self.measure(simulation);
+        if self.truth.is_some() {
+            self.unheld.push(*simulation.state());
+        }
+    }
+
+    /// Holds against the exact motion the steps that have not been.
+    pub fn catch_up(&mut self) {
+        let states = std::mem::take(&mut self.unheld);
+        for state in &states {
+            self.hold(state);
+        }
+        self.unheld = states;
+        self.unheld.clear();
+    }
+
+    fn measure(&mut self, simulation: &Simulation) {
+        self.extremes.follow(simulation);
         if simulation.changes() == self.changes {
             self.instruments.follow(simulation);
         } else {
             self.changes = simulation.changes();
             self.instruments = Instruments::new(simulation);
         }
-        if simulation.step_number() >= self.next_look {
-            self.next_look = simulation.step_number() + self.stride;
-            self.deviation(simulation);
-        }
     }
 
     /// Holds the run against the exact motion where it stands, and says how it is.
     pub fn health(&mut self, simulation: &Simulation) -> Health {
+        self.catch_up();
         let deviation = self.deviation(simulation);
+        let theory = self.theory(simulation.state().time_s);
         Health::new(
             simulation,
             deviation,
             deviation.map(|_| self.most_distance_m),
+            theory.map(|theory| theory.tilt_range_deg.1 - theory.tilt_range_deg.0),
         )
     }
 
     fn deviation(&mut self, simulation: &Simulation) -> Option<Deviation> {
-        let deviation = Deviation::of(simulation, self.truth.as_mut()?);
+        self.hold(simulation.state())
+    }
+
+    fn hold(&mut self, state: &State) -> Option<Deviation> {
+        let deviation = Deviation::of(state, self.truth.as_mut()?);
         if !deviation.distance_m.is_finite() {
             self.truth = None; // it has left the range of numbers, and does not come back
             return None;
@@ -92,6 +123,11 @@ impl Monitor {
         let load = truth.loads().on_axle(body, &top)?;
         let motion = truth.motion().closed_form()?;
         Some(Theory::new(&top, &load, motion, &state))
+    }
+
+    /// The least and the greatest over every step of the run.
+    pub fn extremes(&self) -> &Extremes {
+        &self.extremes
     }
 
     /// What has been measured since the forces last changed.

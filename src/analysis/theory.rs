@@ -4,6 +4,7 @@
 
 use crate::physics::symmetry::steady_precession;
 use crate::physics::{LagrangeTop, State, SymmetricTop};
+use nalgebra::Vector3;
 use std::f64::consts::PI;
 use std::fmt;
 
@@ -11,6 +12,8 @@ use std::fmt;
 /// tilted load (a sideways push on the axle) "vertical" is the direction opposite to it, and without a load that of L.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Theory {
+    /// The axis about which precession, tilts and path are meant.
+    pub axis: Axis,
     /// κ = I3/I1.
     pub kappa: f64,
     /// Moment of the load, N m: M g h for gravity alone.
@@ -37,6 +40,41 @@ pub struct Theory {
     pub cusp_tilt_deg: Option<f64>,
     /// The path of the axle.
     pub path: Path,
+}
+
+/// The axis that a theory speaks of: its tilts are angles from it, its precession turns about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Axis {
+    /// +z, from which the measured tilts and azimuths count too.
+    Z,
+    /// The direction opposite to a load that does not pull along -z; a unit vector, world frame.
+    AgainstLoad(Vector3<f64>),
+    /// The direction of L: there is no load.
+    Momentum,
+}
+
+impl Axis {
+    /// The axis that points along `up` (unit vector, world frame), opposite to a load or, without one, along L.
+    fn new(up: Vector3<f64>, is_loaded: bool) -> Self {
+        match is_loaded {
+            _ if (up - Vector3::z()).norm() <= SAME_DIRECTION => Self::Z,
+            true => Self::AgainstLoad(up),
+            false => Self::Momentum,
+        }
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Z => f.write_str("+z"),
+            Self::Momentum => f.write_str("L"),
+            Self::AgainstLoad(up) => {
+                let [x, y, z] = [up.x, up.y, up.z].map(|part| part + 0.0); // no -0
+                write!(f, "the forces' vertical ({x:.3}, {y:.3}, {z:.3})")
+            }
+        }
+    }
 }
 
 /// The path of the axle on the sphere.
@@ -69,6 +107,9 @@ impl fmt::Display for Path {
 /// A swing of the tilt below this (degrees) is rounding, and so is a difference between two tilts.
 const SAME_DEG: f64 = 1e-6;
 
+/// Two directions nearer to each other than this (rad) are one but for rounding.
+const SAME_DIRECTION: f64 = 1e-9;
+
 /// A spin below this part of the momenta that the motion is made of is rounding.
 const SAME_PART: f64 = 1e-12;
 
@@ -80,7 +121,7 @@ impl Theory {
     /// world frame, as [`Loads::on_axle`](crate::physics::Loads::on_axle) gives it.
     pub fn new(
         top: &SymmetricTop,
-        load: &nalgebra::Vector3<f64>,
+        load: &Vector3<f64>,
         motion: &LagrangeTop,
         state: &State,
     ) -> Self {
@@ -102,6 +143,7 @@ impl Theory {
         let cusp_tilt_deg = (size > 0.0 && spins && cusp_cosine.abs() <= 1.0)
             .then(|| cusp_cosine.acos().to_degrees());
         Self {
+            axis: Axis::new(up, size > 0.0),
             kappa: top.kappa(),
             load: size,
             spin,

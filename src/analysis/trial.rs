@@ -1,6 +1,6 @@
 //! A run played through beside the exact motion: how far it strays, and what of the constants of the motion it loses.
 
-use crate::physics::observables;
+use crate::physics::{State, observables};
 use crate::run::{NotFinite, Simulation, Truth};
 use crate::scenario::Scenario;
 use nalgebra::Vector3;
@@ -9,10 +9,10 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// About how many steps of a trial are held against the exact motion, evenly spread.
+/// At about so many steps of a trial, evenly spread, energy and turning are read off. The distance is, at every step.
 const LOOKS: u64 = 1000;
-/// After so many steps at most the watcher is asked whether to go on.
-const WATCH_STEPS: u64 = 1 << 15;
+/// Steps that are taken at once, without a look at the clock, the exact motion or the watcher.
+const BLOCK: u64 = 4096;
 
 /// How a run went beside the exact motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,13 +49,10 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// Of `simulation` as it stands, from `truth`.
-    pub fn of(simulation: &Simulation, truth: &mut Truth) -> Self {
-        let (seen, exact) = (
-            *simulation.state(),
-            truth.state_at(simulation.state().time_s),
-        );
-        let scenario = simulation.scenario();
+    /// Of a run that is `seen` so, from its `truth`.
+    pub fn of(seen: &State, truth: &mut Truth) -> Self {
+        let exact = truth.state_at(seen.time_s);
+        let scenario = truth.scenario();
         let at: Vector3<f64> = scenario.body.mechanics.points()[scenario.trace].at;
         Self {
             distance_m: ((seen.orientation - exact.orientation) * at).norm(),
@@ -70,6 +67,21 @@ impl Trial {
     /// said no.
     pub fn run(
         scenario: &Arc<Scenario>,
+        watch: impl FnMut(u64) -> ControlFlow<()>,
+    ) -> Option<Self> {
+        Self::play(scenario, f64::INFINITY, watch)
+    }
+
+    /// Plays `scenario` to its end; `None` where the traced point leaves the exact motion by more than `limit_m`, or the
+    /// numbers stop being finite.
+    pub fn within(scenario: &Arc<Scenario>, limit_m: f64) -> Option<Self> {
+        Self::play(scenario, limit_m, |_| ControlFlow::Continue(()))
+            .filter(|trial| trial.broke.is_none() && trial.most_distance_m <= limit_m)
+    }
+
+    fn play(
+        scenario: &Arc<Scenario>,
+        limit_m: f64,
         mut watch: impl FnMut(u64) -> ControlFlow<()>,
     ) -> Option<Self> {
         let mut simulation = Simulation::new(Arc::clone(scenario));
@@ -80,18 +92,28 @@ impl Trial {
             .filter(|&size| size > 0.0)
             .unwrap_or(1.0);
         let mut next_look = 0;
+        let mut states = Vec::new();
         while simulation.step_number() < scenario.steps && trial.broke.is_none() {
             if simulation.step_number() == next_look {
                 next_look = scenario.steps.min(next_look.saturating_add(stride));
             }
-            let next = next_look.min(simulation.step_number() + WATCH_STEPS);
+            let next = next_look.min(simulation.step_number() + BLOCK);
+            states.clear();
             let begin = Instant::now();
-            trial.broke = simulation.step_to(next).err();
-            trial.stepping += begin.elapsed();
-            if next == next_look || trial.broke.is_some() {
-                trial.look(&simulation, &mut truth, scale);
+            while simulation.step_number() < next && trial.broke.is_none() {
+                match simulation.step() {
+                    Ok(()) => states.push(*simulation.state()),
+                    Err(error) => trial.broke = Some(error),
+                }
             }
-            if watch(simulation.step_number()).is_break() {
+            trial.stepping += begin.elapsed();
+            for state in &states {
+                trial.hold(state, &mut truth, scale);
+            }
+            if next == next_look || trial.broke.is_some() {
+                trial.read_off(&simulation);
+            }
+            if trial.most_distance_m > limit_m || watch(simulation.step_number()).is_break() {
                 return None;
             }
         }
@@ -113,12 +135,16 @@ impl Trial {
         }
     }
 
-    fn look(&mut self, simulation: &Simulation, truth: &mut Truth, scale: f64) {
-        let off = Deviation::of(simulation, truth);
+    /// Holds one step of the run against the exact motion.
+    fn hold(&mut self, state: &State, truth: &mut Truth, scale: f64) {
+        let off = Deviation::of(state, truth);
         self.end_distance_m = off.distance_m;
         self.most_distance_m = greater(self.most_distance_m, off.distance_m);
         self.spin_drift = greater(self.spin_drift, (off.spin / scale).abs());
         self.lz_drift = greater(self.lz_drift, (off.lz / scale).abs());
+    }
+
+    fn read_off(&mut self, simulation: &Simulation) {
         let body = &simulation.scenario().body.mechanics;
         let omega = observables::angular_velocity(body, simulation.state()).norm();
         self.most_turns = self
@@ -139,7 +165,7 @@ fn greater(most: f64, now: f64) -> f64 {
 }
 
 /// Every how many steps to look; odd, so that an even rhythm of the run is not met always at the same beat.
-pub fn stride(steps: u64) -> u64 {
+fn stride(steps: u64) -> u64 {
     match steps / LOOKS {
         0 => 1,
         stride => stride | 1,

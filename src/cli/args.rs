@@ -23,10 +23,11 @@ Examples:
   gyrolab cusps --paused --at 500                   a screen prepared for the class
   gyrolab --resume                                  back to where the lab was left, or the line was lost
   gyrolab --do demo.toml                            play the commands in a file
+  gyrolab sessions                                  which labs were left; gyrolab --resume 3 takes the one named 3
   gyrolab presets                                   what there is to run
   gyrolab run method-2                              the report's Method 2, how it ends
   gyrolab run method-2 -o method-2.csv              every step of it as CSV
-  gyrolab run wobble-push --time-step 0.005 -o -
+  gyrolab run wobble-push --time-step 0.01 -o -
   gyrolab run method-2.csv -o again.csv             a CSV runs again: its header is the run file";
 
 #[derive(Debug, Subcommand)]
@@ -42,6 +43,12 @@ pub(super) enum Command {
         /// The preset to print
         name: Option<String>,
     },
+    /// List the sessions that --resume can come back to: name, time, step, whether it is in use, run
+    Sessions {
+        /// Those of gyrolab --folder DIR
+        #[arg(long, value_name = "DIR")]
+        folder: Option<PathBuf>,
+    },
     /// List the numerical schemes
     Schemes,
     /// Validate scenario files, run files, the headers of CSVs, and files of commands
@@ -52,6 +59,8 @@ pub(super) enum Command {
     },
     /// List every key that a scenario or run file may hold
     Keys,
+    /// List every number that is read off a run: name, unit, meaning, where it comes from
+    Readouts,
     /// Print a completion script for a shell
     Completions {
         /// The shell
@@ -96,9 +105,16 @@ pub(super) struct WorkbenchArgs {
     #[command(flatten)]
     pub(super) changes: Changes,
 
-    /// Come back to the newest session that is not in use, to the step where it was left
-    #[arg(long, conflicts_with_all = ["scenario", "set", "time_step", "scheme", "at"])]
-    pub(super) resume: bool,
+    /// Come back to a session, to the step where it was left: the newest that is not in use, or the one that
+    /// gyrolab sessions calls NAME
+    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "",
+          conflicts_with_all = ["scenario", "set", "time_step", "scheme", "at"])]
+    pub(super) resume: Option<String>,
+
+    /// Read and write in this folder and nowhere else, whatever is typed: SCENARIO is a preset or a file in it, and
+    /// sessions are kept in its folder .gyrolab
+    #[arg(long, value_name = "DIR")]
+    pub(super) folder: Option<PathBuf>,
 
     /// Open with the run standing still
     #[arg(long)]

@@ -10,8 +10,10 @@ use crate::export::Destination;
 use crate::export::csv::commented;
 use crate::physics::SchemeInfo;
 use crate::physics::scheme::SCHEMES;
-use crate::run::{Clock, Truth};
+use crate::run::{Clock, EnergyScale, Truth};
 use crate::scenario::Scenario;
+use crate::scenario::rescale::MOST_STEPS;
+use crate::text::number::{short, shortest};
 use anyhow::{Context, bail};
 use std::io::{self, Write};
 use std::ops::ControlFlow;
@@ -24,26 +26,22 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         bail!(
             "{}: its exact motion must be integrated, which would take too long for {} s: give a shorter --duration",
             args.scenario.scenario,
-            duration_s(&scenario)
+            shortest(duration_s(&scenario))
         );
     }
+    let time_steps = time_steps(args, &scenario)?;
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let meter = Mutex::new(Meter::new());
-    let rows = table_of(
-        &scenario,
-        &schemes(args),
-        &time_steps(args, &scenario),
-        |taken, total| {
-            meter
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .show(taken, total);
-            match interruption.has_come() {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
-            }
-        },
-    );
+    let rows = table_of(&scenario, &schemes(args), &time_steps, |taken, total| {
+        meter
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .show(taken, total);
+        match interruption.has_come() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    });
     meter.lock().unwrap_or_else(PoisonError::into_inner).clear();
     let Some(rows) = rows else {
         return Ok(ExitCode::from(INTERRUPTED));
@@ -62,7 +60,11 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::from(INTERRUPTED));
     }
     let mut stdout = io::stdout().lock();
-    write!(stdout, "{}\n\n{}", heading(&scenario), Table(&rows))?;
+    let table = Table {
+        rows: &rows,
+        energy_unit: EnergyScale::of(&scenario).map(|scale| scale.unit),
+    };
+    write!(stdout, "{}\n\n{table}", heading(&scenario))?;
     stdout.flush()?;
     Ok(ExitCode::SUCCESS)
 }
@@ -79,7 +81,9 @@ fn schemes(args: &CompareArgs) -> Vec<&'static SchemeInfo> {
     }
 }
 
-fn time_steps(args: &CompareArgs, scenario: &Scenario) -> Vec<f64> {
+/// # Errors
+/// When a time step is so short that the run would have more steps than can be counted.
+fn time_steps(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<Vec<f64>> {
     let mut steps = args.time_steps.clone();
     if steps.is_empty() {
         steps = [1.0, 2.0, 4.0, 8.0]
@@ -89,7 +93,17 @@ fn time_steps(args: &CompareArgs, scenario: &Scenario) -> Vec<f64> {
     // From coarse to fine, as the order is measured.
     steps.sort_by(|a, b| b.total_cmp(a));
     steps.dedup();
-    steps
+    let duration = duration_s(scenario);
+    if let Some(&step) = steps.iter().find(|&&step| duration / step > MOST_STEPS) {
+        bail!(
+            "{}: --time-steps {} would be {} steps for {} s, of which {MOST_STEPS:e} can be counted: give longer time steps, or a shorter --duration",
+            args.scenario.scenario,
+            shortest(step),
+            short(duration / step),
+            shortest(duration)
+        );
+    }
+    Ok(steps)
 }
 
 fn duration_s(scenario: &Scenario) -> f64 {
@@ -100,6 +114,7 @@ fn heading(scenario: &Scenario) -> String {
     let (title, duration) = (scenario.file.title.clone(), duration_s(scenario));
     let mut truth = Truth::new(Arc::new(scenario.clone()));
     truth.state_at(duration);
+    let duration = shortest(duration);
     format!(
         "{title}, {duration} s, against the exact motion ({})",
         truth.kind()

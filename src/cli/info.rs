@@ -1,12 +1,14 @@
-//! The commands that tell: presets, schemes, check, completions, man.
+//! The commands that tell: presets, schemes, keys, readouts, check, completions, man.
 
 use super::args::Cli;
+use crate::analysis::readouts::READOUTS;
 use crate::lab::command::{self, COMMANDS};
 use crate::physics::scheme::SCHEMES;
 use crate::scenario::keys::{KEYS, Key};
 use crate::scenario::presets::{self, PRESETS, Preset};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problems, Scenario};
+use crate::text::number::shortest;
 use crate::text::printable::{Shown, printable, printable_lines};
 use anyhow::{Context, bail};
 use clap::CommandFactory;
@@ -86,6 +88,22 @@ pub(super) fn keys() -> anyhow::Result<ExitCode> {
     print(&text)
 }
 
+pub(super) fn readouts() -> anyhow::Result<ExitCode> {
+    let mut text = String::new();
+    for readout in READOUTS {
+        let unit = match readout.unit {
+            "" => String::new(),
+            unit => format!(" ({unit})"),
+        };
+        let source = readout.source.words();
+        writeln!(text, "{}{unit}", readout.name)?;
+        writeln!(text, "    {}; from: {source}", readout.meaning)?;
+    }
+    text.push_str("\nA name alone is the value at the run's last step; predicted_... is theory's, measured_... the run's own.\n");
+    text.push_str("gyrolab run SCENARIO --json gives all of them; null is a number that there is not, or that cannot be stated.\n");
+    print(&text)
+}
+
 pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
     let mut code = ExitCode::SUCCESS;
     for file in files {
@@ -124,7 +142,7 @@ fn described(scenario: &Scenario) -> String {
         scenario.body.mechanics.points().len(),
         scenario.motion.scheme.name,
         scenario.steps,
-        scenario.motion.time_step_s,
+        shortest(scenario.motion.time_step_s),
     )
 }
 

@@ -8,6 +8,7 @@ mod info;
 mod progress;
 mod run;
 mod scenario;
+mod sessions;
 mod workbench;
 
 use crate::text::printable::printable_lines;
@@ -44,8 +45,10 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Show(args) => workbench::show(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Presets { name } => info::presets(name.as_deref()),
+        Command::Sessions { folder } => sessions::list(folder.as_deref()),
         Command::Schemes => info::schemes(),
         Command::Keys => info::keys(),
+        Command::Readouts => info::readouts(),
         Command::Check { files } => info::check(&files),
         Command::Completions { shell } => info::completions(shell),
         Command::Man => info::man(),

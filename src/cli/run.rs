@@ -5,14 +5,15 @@ use super::progress::{self, Interruption, Meter};
 use super::scenario::scenario_of;
 use super::{INTERRUPTED, complain};
 use crate::analysis::health::{Advice, advise};
-use crate::analysis::{Health, Monitor};
+use crate::analysis::{Health, Monitor, Readouts};
 use crate::export::stream::{self, Ended};
-use crate::export::{CsvWriter, Destination, Readouts, Summary};
+use crate::export::{CsvWriter, Destination, Summary};
 use crate::run::Simulation;
 use crate::text::printable::Shown;
 use anyhow::Context;
 use clap::CommandFactory;
 use clap::error::ErrorKind;
+use std::cell::RefCell;
 use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -64,7 +65,7 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let health = monitor.health(&simulation);
     let advice = advice(&health, &simulation);
     let readouts = Readouts::new(&simulation, &mut monitor, &health, advice.as_ref());
-    report(args, &Summary::new(&simulation, readouts, wall))?;
+    report(args, &Summary::new(readouts, wall))?;
     match ended {
         Ended::NotFinite(error) => {
             complain(&anyhow::Error::new(error).context(args.scenario.scenario.clone()));
@@ -91,8 +92,11 @@ fn play(
 ) -> io::Result<(Ended, Duration)> {
     let steps = simulation.scenario().steps;
     let mut meter = Meter::new();
-    let each = |simulation: &Simulation| monitor.follow(simulation);
+    // Each step is followed at once and held against the exact motion after its block: that is no stepping.
+    let monitor = RefCell::new(monitor);
+    let each = |simulation: &Simulation| monitor.borrow_mut().follow_ahead(simulation);
     let ended = stream::play(simulation, steps, every, output, each, |progress| {
+        monitor.borrow_mut().catch_up();
         meter.show(progress.step, progress.steps);
         match interruption.has_come() {
             true => ControlFlow::Break(()),

@@ -18,10 +18,7 @@ pub(super) fn scenario_of(args: &ScenarioArgs, length: &LengthArgs) -> Result<Sc
     if duration / scenario.motion.time_step_s > MOST_STEPS {
         let rule = format!("{duration:e} s are more than {MOST_STEPS:e} time steps");
         let problem = Problem::at("--duration", rule);
-        return Err(Problems {
-            origin: args.scenario.clone(),
-            list: vec![problem],
-        });
+        return Err(Problems::one(args.scenario.clone(), problem));
     }
     let steps = Simulation::step_at(&scenario, duration).max(1);
     document.set(&format!("motion.steps={steps}"))?;

@@ -2,12 +2,14 @@
 
 use super::args::{Changes, Color, Look, Markers, Screen, ShowArgs, WorkbenchArgs};
 use super::scenario::change;
-use crate::lab::Lab;
+use super::sessions;
 use crate::lab::command;
 use crate::lab::view::View;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::{Background, Theme};
+use crate::lab::{Lab, Summary};
 use crate::scenario::{Document, Scenario};
+use crate::storage::confined::Confined;
 use crate::storage::exporting;
 use crate::storage::session::{self, KeptAside, Session};
 use crate::text::printable::{Shown, printable};
@@ -16,18 +18,32 @@ use crate::tui::screen;
 use crate::tui::surroundings::{self, ColourChoice};
 use anyhow::Context;
 use std::io::{self, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// What is opened where nothing is named.
 const DEFAULT: &str = "method-2";
 
+/// How long the end waits for the disk before it says that the session is not kept.
+const PATIENCE: Duration = Duration::from_secs(3);
+
 /// Opens the lab; without a terminal shows its picture instead.
 pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     let name = args.scenario.as_deref().unwrap_or(DEFAULT);
+    let confined = args.folder.as_deref().map(confined_to).transpose()?;
+    if let Some(folder) = &confined {
+        folder
+            .check(Path::new(name))
+            .map_err(anyhow::Error::msg)
+            .with_context(|| printable(name).into_owned())?;
+    }
     if !(io::stdin().is_terminal() && io::stdout().is_terminal()) {
-        anyhow::ensure!(!args.resume, "--resume needs a terminal to come back to");
+        anyhow::ensure!(
+            args.resume.is_none(),
+            "--resume needs a terminal to come back to"
+        );
         writeln!(
             io::stderr(),
             "gyrolab: no terminal, so this is the picture that gyrolab show {} prints",
@@ -43,34 +59,59 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
         });
     }
     let commands = args.commands.as_deref().map(command::open).transpose()?;
-    let (mut lab, session) = match args.resume {
-        true => come_back(args)?,
-        false => (
-            new(args, name)?,
-            session::folder()
-                .map_err(told)
-                .and_then(|folder| begun(&folder)),
-        ),
+    let folder = sessions::folder_of(confined.as_ref());
+    let (mut lab, session) = match args.resume.as_deref() {
+        Some("") => come_back(args, confined.as_ref(), folder)?,
+        Some(session) => come_back_to(session, args, confined.as_ref(), folder)?,
+        None => (new(args, name)?, folder.and_then(|folder| begun(&folder))),
     };
-    let session = session.map_err(|trouble| lab.tell(trouble)).ok();
+    if let Some(folder) = confined {
+        lab.confine(folder);
+    }
+    lab.set_trouble(session.as_ref().err().cloned());
+    if let Ok(session) = &session {
+        session.check_with(Lab::check);
+    }
     lab.take_advice();
     if let Some(commands) = commands {
         lab.take_commands(commands);
     }
-    app::run(&mut lab, session.as_ref(), args.fps).context("the terminal cannot be used")?;
+    app::run(&mut lab, session.as_ref().ok(), args.fps).context("the terminal cannot be used")?;
     tell_of_exports(&lab)?;
-    if session.is_some() {
-        let (step, title) = (
-            lab.playback().step_number(),
-            &lab.run().scenario().file.title,
-        );
-        writeln!(
-            io::stdout(),
-            "gyrolab --resume comes back to step {step} of {}",
-            printable(title)
-        )?;
-    }
+    tell_of_session(session, args.folder.as_deref())?;
     Ok(ExitCode::SUCCESS)
+}
+
+fn confined_to(folder: &Path) -> anyhow::Result<Confined> {
+    Confined::enter(folder).with_context(|| format!("--folder {}", Shown(folder)))
+}
+
+/// Says on the shell's screen what can be come back to, as the disk has it; or that nothing can, and why.
+fn tell_of_session(session: Result<Session, String>, folder: Option<&Path>) -> anyhow::Result<()> {
+    let kept = session.and_then(|session| {
+        let name = session.name().to_owned();
+        let content = session.close(PATIENCE)?;
+        Lab::check(&content)?;
+        let summary = Lab::summary(&content).map_err(told)?;
+        Ok((name, summary))
+    });
+    match kept {
+        Ok((name, Summary { title, step, .. })) => writeln!(
+            io::stdout(),
+            "gyrolab{} --resume comes back to step {step} of {} (session {name})",
+            folder.map_or(String::new(), |folder| format!(
+                " --folder {}",
+                Shown(folder)
+            )),
+            printable(&title)
+        )?,
+        Err(reason) => writeln!(
+            io::stderr(),
+            "gyrolab: there is no session to come back to: {}",
+            printable(&reason)
+        )?,
+    }
+    Ok(())
 }
 
 /// A lab with what `name` names, as the command line wants it.
@@ -83,20 +124,68 @@ fn new(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
     Ok(lab)
 }
 
+/// The lab that a session has kept, as the command line wants it to look.
+fn resumed(
+    content: &session::Content,
+    look: Look,
+    confined: Option<&Confined>,
+) -> Result<Lab, String> {
+    let view = |scenario: &Scenario| View::new(scenario, marker(look.markers), theme(look));
+    Lab::resumed_in(content, confined, view).map_err(told)
+}
+
+/// The session called `name`, or an error that says why it cannot be had.
+fn come_back_to(
+    name: &str,
+    args: &WorkbenchArgs,
+    confined: Option<&Confined>,
+    folder: Result<PathBuf, String>,
+) -> anyhow::Result<(Lab, Result<Session, String>)> {
+    let folder = folder.map_err(anyhow::Error::msg)?;
+    let shown = printable(name);
+    let found = session::resume_named(&folder, name, |content| {
+        resumed(content, args.look, confined)
+    })
+    .with_context(|| format!("--resume {shown} (gyrolab sessions lists what there is)"))?;
+    let aside = put_aside(&found.kept_aside) + &left_alone(&found.left_alone);
+    if let Some(resumed) = found.resumed {
+        let mut lab = resumed.what;
+        if !aside.is_empty() {
+            lab.tell_first(&aside);
+        }
+        return Ok((lab, Ok(resumed.session)));
+    }
+    match aside.is_empty() {
+        false => anyhow::bail!(
+            "--resume {shown}: {}",
+            printable(aside.trim_end_matches("; "))
+        ),
+        true => anyhow::bail!(
+            "--resume {shown}: it is open in another lab{}",
+            found
+                .in_use_by
+                .first()
+                .map_or(String::new(), |process| format!(", process {process}"))
+        ),
+    }
+}
+
 /// The newest session that is not in use; where there is none, a new lab that says so. What is damaged, or cannot be
 /// kept, never keeps the lab from opening.
-fn come_back(args: &WorkbenchArgs) -> anyhow::Result<(Lab, Result<Session, String>)> {
-    let view =
-        |scenario: &Scenario| View::new(scenario, marker(args.look.markers), theme(args.look));
-    let read =
-        |content: &session::Content| Lab::resumed(content, view).map_err(|error| error.to_string());
-    let folder = session::folder().map_err(told);
+fn come_back(
+    args: &WorkbenchArgs,
+    confined: Option<&Confined>,
+    folder: Result<PathBuf, String>,
+) -> anyhow::Result<(Lab, Result<Session, String>)> {
+    let read = |content: &session::Content| resumed(content, args.look, confined);
     let found = folder
         .clone()
         .and_then(|folder| session::resume(&folder, read).map_err(told));
     let (aside, none) = match found {
         Ok(found) => {
-            let passed_over = put_aside(&found.kept_aside) + &in_use(&found.in_use_by);
+            let passed_over = put_aside(&found.kept_aside)
+                + &left_alone(&found.left_alone)
+                + &in_use(&found.in_use_by);
             if let Some(resumed) = found.resumed {
                 let (mut lab, session) = (resumed.what, Ok(resumed.session));
                 if !passed_over.is_empty() {
@@ -152,6 +241,13 @@ fn put_aside(damaged: &[KeptAside]) -> String {
             one.reason
         )
     });
+    names.collect()
+}
+
+fn left_alone(sessions: &[KeptAside]) -> String {
+    let names = sessions
+        .iter()
+        .map(|one| format!("{} is left alone ({}); ", Shown(&one.path), one.reason));
     names.collect()
 }
 

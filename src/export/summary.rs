@@ -1,140 +1,219 @@
 //! How a run ended, as text for a reader and as JSON for a program.
 
-use super::Readouts;
-use crate::run::{Sample, Simulation};
+use crate::analysis::theory::{Axis, Theory};
+use crate::analysis::{Measured, Readouts, remarks};
+use crate::text::number::{exponent, fixed, shortest};
 use serde::Serialize;
 use std::fmt;
 use std::time::Duration;
 
-/// The end of a run.
+/// The end of a run; as JSON it is the table of [readouts](crate::analysis::readouts).
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[allow(non_snake_case, reason = "names carry their unit as it is written")]
-#[allow(missing_docs, reason = "the names are those of the columns")]
+#[serde(transparent)]
 pub struct Summary {
-    pub title: String,
-    pub scheme: &'static str,
-    /// How the scheme went about it, where it has more than one way (`exact`).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub scheme_kind: Option<String>,
-    pub steps: u64,
-    pub time_step_s: f64,
-    pub t_s: f64,
-    pub x_m: f64,
-    pub y_m: f64,
-    pub z_m: f64,
-    pub Lx_Js: f64,
-    pub Ly_Js: f64,
-    pub Lz_Js: f64,
-    pub tilt_deg: f64,
-    pub azimuth_deg: f64,
-    pub energy_J: f64,
-    /// (E − E₀ − W)/S, see [`Simulation::energy_drift`]; `None` (null in JSON) where it means nothing.
-    pub energy_drift: Option<f64>,
-    #[serde(skip)]
-    pub energy_unit: &'static str,
-    /// Number of edits of time step, scheme or gravity.
-    pub segment: u64,
-    /// Theory, measurement and health.
-    #[serde(flatten)]
-    pub readouts: Readouts,
-    /// Time spent on stepping alone, s: no start-up, no output.
-    pub wall_s: f64,
-    pub steps_per_second: f64,
+    readouts: Readouts,
+}
+
+/// What is measured beside what theory says of it.
+struct Beside {
+    unit: &'static str,
+    measured: Option<Measured>,
+    predicted: Option<f64>,
 }
 
 impl Summary {
-    /// The summary of `simulation` where it stands, after stepping for `wall`.
-    pub fn new(simulation: &Simulation, readouts: Readouts, wall: Duration) -> Self {
-        let Sample {
-            step,
-            time_s,
-            position,
-            momentum,
-            tilt_deg,
-            azimuth_deg,
-            energy,
-            segment,
-            ..
-        } = simulation.sample();
-        let wall_s = wall.as_secs_f64();
+    /// The summary of a run that stands as `readouts` say, after stepping for `wall`.
+    pub fn new(readouts: Readouts, wall: Duration) -> Self {
         Self {
-            title: simulation.scenario().file.title.clone(),
-            scheme: simulation.motion().scheme.name,
-            scheme_kind: simulation.remark(),
-            steps: step,
-            time_step_s: simulation.motion().time_step_s,
-            t_s: time_s,
-            x_m: position.x,
-            y_m: position.y,
-            z_m: position.z,
-            Lx_Js: momentum.x,
-            Ly_Js: momentum.y,
-            Lz_Js: momentum.z,
-            tilt_deg,
-            azimuth_deg,
-            energy_J: energy,
-            energy_drift: simulation.energy_drift(),
-            energy_unit: match simulation.scenario().motion.gravity == 0.0 {
-                true => "of the kinetic energy at the start",
-                false => "of M g |c|",
-            },
-            segment,
-            readouts,
-            wall_s,
-            steps_per_second: if wall_s > 0.0 {
-                step as f64 / wall_s
-            } else {
-                0.0
+            readouts: Readouts {
+                stepping: Some(wall),
+                ..readouts
             },
         }
+    }
+
+    fn write_state(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Readouts {
+            sample,
+            extremes,
+            health,
+            ..
+        } = &self.readouts;
+        let (at, momentum) = (&sample.position, &sample.momentum);
+        let step = shortest(self.readouts.time_step_s);
+        writeln!(f, "  steps         {} of {step} s", sample.step)?;
+        writeln!(f, "  t             {} s", shortest(sample.time_s))?;
+        let [x, y, z] = [at.x, at.y, at.z].map(|metres| fixed(metres, 9));
+        writeln!(f, "  x, y, z       {x}, {y}, {z} m")?;
+        let [x, y, z] = [momentum.x, momentum.y, momentum.z].map(|part| fixed(part, 6));
+        writeln!(f, "  L             {x}, {y}, {z} J s")?;
+        let [now, low, high] = [
+            sample.tilt_deg,
+            extremes.lowest_tilt_deg,
+            extremes.highest_tilt_deg,
+        ]
+        .map(|tilt| fixed(tilt, 6));
+        writeln!(
+            f,
+            "  tilt          {now} degrees; {low} to {high} in the run"
+        )?;
+        let [low, high] = [extremes.lowest_z_m, extremes.highest_z_m].map(|z| fixed(z, 9));
+        writeln!(f, "  z             {low} to {high} m in the run")?;
+        let azimuth = fixed(sample.azimuth_deg, 6);
+        writeln!(f, "  azimuth       {azimuth} degrees")?;
+        let drift = remarks::energy_in_full(health);
+        writeln!(f, "  energy drift  {drift}")
+    }
+
+    fn write_rates(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let readouts = &self.readouts;
+        let precession = Beside {
+            unit: "rad/s",
+            measured: readouts.precession,
+            predicted: readouts.theory.and_then(|theory| theory.precession),
+        };
+        let nutation = Beside {
+            unit: "s",
+            measured: readouts.nutation,
+            predicted: readouts.theory.and_then(|theory| theory.nutation_period_s),
+        };
+        let precession = precession.in_words(readouts);
+        writeln!(f, "  precession    {precession}")?;
+        let strobed = match readouts.nutation_is_resolved() {
+            Some(false) => ": a strobe's picture, the time step is too long to see it",
+            _ => "",
+        };
+        let nutation = nutation.in_words(readouts);
+        writeln!(f, "  nutation      {nutation}{strobed}")
+    }
+
+    fn write_theory(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (kappa, theory) = match (self.readouts.kappa, &self.readouts.theory) {
+            (None, _) => return writeln!(f, "  theory        none: the body is lopsided"),
+            (Some(kappa), None) => {
+                let (kappa, why) = (fixed(kappa, 4), "pushed off its axle, or too long a run");
+                return writeln!(f, "  theory        kappa {kappa}; none now: {why}");
+            }
+            (Some(kappa), Some(theory)) => (fixed(kappa, 4), theory),
+        };
+        let Theory { path, axis, .. } = theory;
+        let (low, high) = theory.tilt_range_deg;
+        let [low, high] = [low, high].map(|tilt| fixed(tilt, 4));
+        let from = match axis {
+            Axis::Z => String::new(),
+            axis => format!(" from {axis}"),
+        };
+        writeln!(
+            f,
+            "  theory        kappa {kappa}; path: {path}, tilt {low} to {high} degrees{from}"
+        )?;
+        if *axis == Axis::Momentum {
+            let why = "without a load the axle goes round L, and no spin is too small to stand";
+            return writeln!(f, "  steady        {why}");
+        }
+        let [slow, fast] = [theory.slow_precession, theory.fast_precession]
+            .map(|rate| rate.map_or("none".to_owned(), |rate| fixed(rate, 6)));
+        let about = about(axis);
+        writeln!(
+            f,
+            "  steady        precession of {slow} (slow) or {fast} (fast) rad/s at this tilt{about}"
+        )?;
+        let spin = self.readouts.spin;
+        let sleeps = match spin.abs() > theory.sleeping_limit {
+            true => "it would",
+            false => "it would not",
+        };
+        let along = match axis {
+            Axis::Z => "  upright       sleeps".to_owned(),
+            axis => format!("  upright       along {axis} it sleeps"),
+        };
+        let [limit, spin] = [theory.sleeping_limit, spin].map(|momentum| fixed(momentum, 3));
+        writeln!(
+            f,
+            "{along} with L.axle above {limit} J s; with {spin} {sleeps}"
+        )
+    }
+
+    fn write_health(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let health = &self.readouts.health;
+        writeln!(f, "  a time step   {}", remarks::step_in_full(health))?;
+        writeln!(f, "  lag           {}", remarks::lag_in_full(health))?;
+        match remarks::constants_in_full(health) {
+            Some(constants) => writeln!(f, "  L             {constants}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Beside {
+    /// "0.886033 rad/s by theory, 0.886033 +- 2.4e-9 rad/s measured"; where theory speaks of another axis than +z, which.
+    fn in_words(&self, readouts: &Readouts) -> String {
+        let unit = self.unit;
+        let axis = readouts
+            .theory
+            .as_ref()
+            .map_or(Axis::Z, |theory| theory.axis);
+        let measured = match self.measured {
+            Some(Measured {
+                value, uncertainty, ..
+            }) if value.is_finite() && uncertainty.is_finite() => {
+                let (value, uncertainty) = (fixed(value, 6), exponent(uncertainty, 1));
+                format!("{value} +- {uncertainty} {unit} measured")
+            }
+            _ => "none measured".to_owned(),
+        };
+        let measured = match axis {
+            Axis::Z => measured,
+            _ => format!("{measured} about +z"),
+        };
+        let about = about(&axis);
+        match self.predicted {
+            Some(value) => format!("{} {unit} by theory{about}, {measured}", fixed(value, 6)),
+            None if readouts.kappa.is_none() => format!("lopsided by theory, {measured}"),
+            None => format!("none by theory{about}, {measured}"),
+        }
+    }
+}
+
+/// Which axis is meant, where it is another than +z.
+fn about(axis: &Axis) -> String {
+    match axis {
+        Axis::Z => String::new(),
+        axis => format!(" about {axis}"),
     }
 }
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let drift = match self.energy_drift {
-            Some(drift) => {
-                format!("{drift:+.3e} {}", self.energy_unit)
-            }
-            None => "n/a".to_owned(),
-        };
-        writeln!(f, "{}", self.title)?;
-        match &self.scheme_kind {
-            Some(kind) => writeln!(f, "  scheme        {} ({kind})", self.scheme)?,
-            None => writeln!(f, "  scheme        {}", self.scheme)?,
+        let readouts = &self.readouts;
+        writeln!(f, "{}", readouts.title)?;
+        match &readouts.scheme_kind {
+            Some(kind) => writeln!(f, "  scheme        {} ({kind})", readouts.scheme)?,
+            None => writeln!(f, "  scheme        {}", readouts.scheme)?,
         }
-        writeln!(
-            f,
-            "  steps         {} of {} s",
-            self.steps, self.time_step_s
-        )?;
-        writeln!(f, "  t             {} s", self.t_s)?;
-        writeln!(
-            f,
-            "  x, y, z       {:.9}, {:.9}, {:.9} m",
-            self.x_m, self.y_m, self.z_m
-        )?;
-        writeln!(
-            f,
-            "  L             {:.6}, {:.6}, {:.6} J s",
-            self.Lx_Js, self.Ly_Js, self.Lz_Js
-        )?;
-        writeln!(f, "  tilt          {:.6} degrees", self.tilt_deg)?;
-        writeln!(f, "  azimuth       {:.6} degrees", self.azimuth_deg)?;
-        writeln!(f, "  energy drift  {drift}")?;
-        write!(f, "{}", self.readouts)?;
-        if self.segment > 0 {
+        self.write_state(f)?;
+        self.write_rates(f)?;
+        self.write_theory(f)?;
+        self.write_health(f)?;
+        if readouts.sample.segment > 0 {
             writeln!(
                 f,
                 "  edits         {} of time step, scheme or gravity",
-                self.segment
+                readouts.sample.segment
             )?;
         }
+        let number =
+            |name, write: fn(f64) -> String| readouts.number(name).map_or("n/a".to_owned(), write);
         writeln!(
             f,
-            "  wall time     {:.3} s, {:.3e} steps a second",
-            self.wall_s, self.steps_per_second
+            "  wall time     {} s, {} steps a second",
+            number("wall_s", |wall| fixed(wall, 3)),
+            number("steps_per_second", |rate| exponent(rate, 3))
         )?;
-        write!(f, "\n{}", self.readouts.health)
+        write!(
+            f,
+            "\n{}",
+            readouts.health.sentence(readouts.advice.as_ref())
+        )
     }
 }

@@ -38,17 +38,19 @@ impl Browser {
     /// Presets, and the scenario, run and CSV files in `folder`, with `name` selected.
     pub fn new(folder: &Path, name: &str) -> Self {
         let mut browser = Self::default();
-        browser.begin(folder, name);
+        browser.begin(folder, name, |_| true);
         browser
     }
 
-    /// Lists what there is anew, as [`new`](Self::new) does.
-    pub fn begin(&mut self, folder: &Path, name: &str) {
+    /// Lists what there is anew, as [`new`](Self::new) does, of the files only those that `may_be_read`.
+    pub fn begin(&mut self, folder: &Path, name: &str, may_be_read: impl Fn(&Path) -> bool) {
         let presets = PRESETS.iter().map(|preset| Entry {
             name: preset.name.to_owned(),
             is_file: false,
         });
-        let files = files(folder).into_iter().map(|name| Entry {
+        let mut names = files(folder);
+        names.retain(|name| may_be_read(Path::new(name)));
+        let files = names.into_iter().map(|name| Entry {
             name,
             is_file: true,
         });

@@ -179,6 +179,7 @@ impl Lab {
     }
 
     fn open_named(&mut self, name: &str) -> Answer {
+        self.admit(std::path::Path::new(name))?;
         match super::opening::again(name).and_then(|document| document.scenario()) {
             Ok(scenario) => {
                 self.open(name, Arc::new(scenario));

@@ -253,6 +253,7 @@ impl Lab {
             return Err("one export at a time: wait until the one under way is done".into());
         }
         is_named(path)?;
+        self.admit(path)?;
         let begun = Exporting::begin(Arc::clone(scenario), path, every, force);
         self.exporting = Some(begun.map_err(refusal)?);
         Ok(Done::saying("the export goes on in the background").going_on(UnderWay::Exporting))
@@ -361,6 +362,7 @@ impl Lab {
 
     pub(super) fn save(&mut self, what: &str, content: &str, path: &Path, force: bool) -> Answer {
         is_named(path)?;
+        self.admit(path)?;
         let mut destination = Destination::open_file(path, force).map_err(refusal)?;
         let written = destination.write_all(content.as_bytes());
         written.map_err(|error| format!("cannot write {}: {error}", Shown(path)))?;

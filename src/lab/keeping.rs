@@ -4,15 +4,18 @@ use super::Lab;
 use crate::lab::view::{Pane, View};
 use crate::observe::pace::Speed;
 use crate::scenario::{Problems, Scenario};
+use crate::storage::confined::Confined;
 use crate::storage::session::Content;
 use crate::text::printable::Shown;
 use crate::work::history::History;
 use crate::work::next_push::NextPush;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use std::sync::Arc;
 
-/// The first words of what is kept: another version may have kept it otherwise.
-const FORM: u32 = 1;
+/// The form of what is kept, and those before it that are read too: of form 1 only the journals were others.
+const FORM: u32 = 2;
+const FORMS: std::ops::RangeInclusive<u32> = 1..=FORM;
 
 /// The runs and what was done to them.
 #[derive(Serialize, Deserialize)]
@@ -40,6 +43,17 @@ struct Place {
     next_push: NextPush,
 }
 
+/// What a session is about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Summary {
+    /// SCENARIO as it was opened.
+    pub name: String,
+    /// What the run is called.
+    pub title: String,
+    /// Where it stands.
+    pub step: u64,
+}
+
 /// What is kept cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
@@ -65,6 +79,31 @@ impl Lab {
             history: self.history.clone(),
         };
         toml::to_string(&work).unwrap_or_default().into()
+    }
+
+    /// Whether `content` is read as what it was written from.
+    ///
+    /// # Errors
+    /// Why it is not.
+    pub fn check(content: &Content) -> Result<(), String> {
+        let work = reads_back::<Work>("the run", &content.work);
+        let place = reads_back::<Place>("the place in it", &content.place);
+        work.and(place).map_err(|error| error.to_string())
+    }
+
+    /// What `content` is about.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    pub fn summary(content: &Content) -> Result<Summary, Unreadable> {
+        let work: Work = read("the run", &content.work)?;
+        let place: Place = read("the place in it", &content.place)?;
+        let present = work.history.present();
+        Ok(Summary {
+            name: present.name.clone(),
+            title: present.journal.file().title,
+            step: place.step,
+        })
     }
 
     fn place(&self) -> Place {
@@ -95,8 +134,20 @@ impl Lab {
         content: &Content,
         view: impl FnOnce(&Scenario) -> View,
     ) -> Result<Self, Unreadable> {
+        Self::resumed_in(content, None, view)
+    }
+
+    /// The same, confined to a folder where one is given.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    pub fn resumed_in(
+        content: &Content,
+        confined: Option<&Confined>,
+        view: impl FnOnce(&Scenario) -> View,
+    ) -> Result<Self, Unreadable> {
         let work: Work = read("the run", &content.work)?;
-        if work.form != FORM {
+        if !FORMS.contains(&work.form) {
             return Err(Unreadable(
                 "it was kept by another version of gyrolab".to_owned(),
             ));
@@ -113,6 +164,7 @@ impl Lab {
             view.window_s = place.window_s;
         }
         let mut lab = Self::new(&present.name.clone(), scenario, view, false);
+        lab.confined = confined.cloned();
         lab.history = work.history;
         lab.set_file(lab.file_as_opened());
         lab.values.set_next_push(place.next_push);
@@ -136,6 +188,9 @@ impl Lab {
 
     /// What the run was opened from, where that is still there; else the run itself.
     fn file_as_opened(&self) -> Arc<Scenario> {
+        if self.admit(Path::new(self.name())).is_err() {
+            return Arc::clone(self.run().scenario());
+        }
         let file = super::opening::again(self.name()).and_then(|document| document.scenario());
         file.map_or_else(|_| Arc::clone(self.run().scenario()), Arc::new)
     }
@@ -146,10 +201,33 @@ impl Lab {
         self.tell(format!("{text}{said}"));
     }
 
+    /// Says why the session is not kept, as long as it is not.
+    pub fn set_trouble(&mut self, trouble: Option<String>) {
+        self.changed |= self.trouble != trouble;
+        self.trouble = trouble;
+    }
+
+    /// Why the session is not kept, if it is not.
+    pub fn trouble(&self) -> Option<&str> {
+        self.trouble.as_deref()
+    }
+
     /// Says `text` until the next key: something about the session that the user should know.
     pub fn tell(&mut self, text: impl Into<String>) {
         self.notice.keep_saying(text);
         self.changed = true;
+    }
+}
+
+/// Whether `text` is read as what it was written from.
+fn reads_back<T: Serialize + for<'a> Deserialize<'a>>(
+    what: &str,
+    text: &str,
+) -> Result<(), Unreadable> {
+    let value: T = read(what, text)?;
+    match toml::to_string(&value).is_ok_and(|again| again == text) {
+        true => Ok(()),
+        false => Err(Unreadable(format!("{what} is read as something else"))),
     }
 }
 

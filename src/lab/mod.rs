@@ -29,7 +29,7 @@ pub mod view;
 
 pub use carry_out::{Answer, Done, Refusal, UnderWay};
 pub use dialogs::Dialog;
-pub use keeping::Unreadable;
+pub use keeping::{Summary, Unreadable};
 pub use script::Script;
 
 use crate::analysis::health::Advice;
@@ -37,9 +37,10 @@ use crate::lab::view::{Pane, Part, View};
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::playback::{Halt, Playback};
-use crate::observe::readouts::Readouts;
+use crate::observe::reading::Reading;
 use crate::run::NotFinite;
 use crate::scenario::{Motion, Scenario};
+use crate::storage::confined::Confined;
 use crate::storage::exporting::{Exporting, Written};
 use crate::work::changed;
 use crate::work::history::History;
@@ -100,6 +101,10 @@ pub struct Lab {
     values: Values,
     /// Where files are looked for and written to, if not in the present folder.
     folder: Option<PathBuf>,
+    /// The folder that is not left, if there is one.
+    confined: Option<Confined>,
+    /// Why the session is not kept, if it is not.
+    trouble: Option<String>,
     dialog: Option<Dialog>,
     exporting: Option<Exporting>,
     written: Vec<Written>,
@@ -134,6 +139,8 @@ impl Lab {
             values: Values::new(&scenario),
             file: scenario,
             folder: None,
+            confined: None,
+            trouble: None,
             dialog: None,
             exporting: None,
             written: Vec::new(),
@@ -163,6 +170,17 @@ impl Lab {
     /// Looks for files in `folder`, and writes them there, instead of the present folder.
     pub fn work_in(&mut self, folder: &Path) {
         self.folder = Some(folder.to_owned());
+    }
+
+    /// From now on reads and writes nothing outside of the folder.
+    pub fn confine(&mut self, folder: Confined) {
+        self.confined = Some(folder);
+    }
+
+    /// Whether the file `path` may be read and written.
+    fn admit(&self, path: &Path) -> Result<(), String> {
+        let confined = self.confined.as_ref();
+        confined.map_or(Ok(()), |folder| folder.check(path))
     }
 
     /// From now on looks in the background for what would mend a run that is not to be believed.
@@ -308,8 +326,8 @@ impl Lab {
     }
 
     /// The latest reading.
-    pub fn readouts(&self) -> &Readouts {
-        self.player.readouts()
+    pub fn reading(&self) -> &Reading {
+        self.player.reading()
     }
 
     /// What gets the keys.

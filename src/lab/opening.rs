@@ -65,10 +65,7 @@ impl Lab {
 pub(super) fn again(name: &str) -> Result<Document, Problems> {
     if presets::find(name).is_none() && Destination::may_wait(Path::new(name)) {
         let rule = "is not a regular file: it can be opened at the command line only";
-        return Err(Problems {
-            origin: name.to_owned(),
-            list: vec![Problem::at("", rule)],
-        });
+        return Err(Problems::one(name, Problem::at("", rule)));
     }
     Document::open(name)
 }

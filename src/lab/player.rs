@@ -9,7 +9,7 @@ use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::pace::Speed;
 use crate::observe::playback::{Halt, Playback};
-use crate::observe::readouts::{self, Readouts};
+use crate::observe::reading::{self, Reading};
 use crate::run::Simulation;
 use crate::scenario::{Motion, Scenario};
 use crate::work::expression::Expression;
@@ -33,7 +33,7 @@ pub struct Player {
     /// Whether to look for what would mend a run.
     pub(super) is_advised: bool,
     advisor: Option<Advisor>,
-    readouts: Readouts,
+    reading: Reading,
     read_at: Duration,
     /// The step to which a run or a session that was come back to is on its way.
     returning_to: Option<u64>,
@@ -46,7 +46,7 @@ impl Player {
         let mut playback = Playback::new(scenario, running);
         playback.set_exact(exact);
         Self {
-            readouts: playback.read(),
+            reading: playback.read(),
             playback,
             ghost: None,
             is_advised: false,
@@ -123,23 +123,23 @@ impl Player {
 
     /// Whether the numbers are to be read at `now`, where the traces show `window_s`.
     pub(super) fn is_due(&self, now: Duration, window_s: f64) -> bool {
-        self.is_fast(window_s) || now >= self.read_at + readouts::EVERY
+        self.is_fast(window_s) || now >= self.read_at + reading::EVERY
     }
 
     /// Whether the pictures run away from numbers that are read off a few times a second.
     fn is_fast(&self, window_s: f64) -> bool {
-        let passes_s = readouts::EVERY.as_secs_f64();
+        let passes_s = reading::EVERY.as_secs_f64();
         self.playback.is_flat_out()
             || matches!(self.playback.speed(), Speed::Times(speed) if speed * passes_s > FAST * window_s)
     }
 
     /// Reads the numbers, and asks what would mend a run that is not to be believed.
     pub(super) fn read(&mut self, now: Duration) {
-        self.readouts = self.playback.read();
+        self.reading = self.playback.read();
         self.read_at = now;
         if self.is_advised
             && self.advisor.is_none()
-            && self.readouts.health.is_believed() == Some(false)
+            && self.reading.readouts.health.is_believed() == Some(false)
         {
             self.advisor = Some(Advisor::ask(Arc::clone(self.run().scenario())));
         }
@@ -234,8 +234,8 @@ impl Player {
     }
 
     /// The latest reading.
-    pub fn readouts(&self) -> &Readouts {
-        &self.readouts
+    pub fn reading(&self) -> &Reading {
+        &self.reading
     }
 
     /// What would mend the run, where that is known.

@@ -229,6 +229,9 @@ impl Lab {
             Action::Help => self.toggle_help(),
             Action::Close => self.close(closed),
             Action::Redraw => return Some(Request::Redraw),
+            Action::Suspend if self.confined.is_some() => {
+                self.say("there is no shell to go back to: q leaves");
+            }
             Action::Suspend => return Some(Request::Suspend),
             Action::Quit if self.may_quit(was_warned) => return Some(Request::Quit),
             Action::Quit
@@ -259,7 +262,10 @@ impl Lab {
     fn browse(&mut self) {
         let folder = self.folder.as_deref().unwrap_or(Path::new("."));
         let name = &self.history.present().name;
-        self.browser.begin(folder, name);
+        let confined = self.confined.as_ref();
+        self.browser.begin(folder, name, |path| {
+            confined.is_none_or(|folder| folder.check(path).is_ok())
+        });
         self.mode = Mode::Browser;
     }
 

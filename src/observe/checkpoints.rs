@@ -11,7 +11,7 @@ const SPACING: u64 = 256;
 /// Memory for all of them, bytes, and what one takes: so much for each point, and the rest.
 const MEMORY: usize = 24 << 20;
 const OF_A_POINT: usize = 64;
-const OF_THE_REST: usize = 6 << 10;
+const OF_THE_REST: usize = 9 << 10;
 /// However large the body, so many are kept.
 const FEWEST: usize = 8;
 

@@ -8,7 +8,7 @@ use super::checkpoints::Checkpoints;
 use super::overlay::Overlay;
 use super::path::Path;
 use super::recording::{Moment, Recording};
-use crate::analysis::{Health, Instruments, Monitor, Theory};
+use crate::analysis::{Health, Instruments, Monitor, Readouts, Theory};
 use crate::run::{NotFinite, Simulation};
 use crate::scenario::Scenario;
 use nalgebra::Vector3;
@@ -297,6 +297,12 @@ impl LiveRun {
     /// How far its numbers can be trusted where it stands.
     pub fn health(&mut self) -> Health {
         self.monitor.health(&self.simulation)
+    }
+
+    /// Every number that is read off it where it stands.
+    pub fn readouts(&mut self) -> Readouts {
+        let health = self.health();
+        Readouts::new(&self.simulation, &mut self.monitor, &health, None)
     }
 
     /// What theory says of the exact motion now; `None` where it says nothing.

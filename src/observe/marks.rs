@@ -18,15 +18,25 @@ impl Marks {
     pub fn of(scenario: &Scenario) -> Self {
         let mut edits = Vec::new();
         let mut stretches = Vec::new();
-        let (mut begin_s, mut acting) = (0.0, &scenario.pushes);
+        // Each push with the time from which on it is as it is, s.
+        let mut pushes: Vec<_> = scenario.pushes.iter().map(|push| (0.0, push)).collect();
         for (time_s, edit) in Clock::edits(scenario) {
             if edits.last() != Some(&time_s) {
                 edits.push(time_s);
             }
-            stretches.extend(between(acting, scenario, (begin_s, time_s)));
-            (begin_s, acting) = (time_s, &edit.pushes);
+            for &place in &edit.set_pushes {
+                let now = (time_s, &edit.pushes[place]);
+                match pushes.get_mut(place) {
+                    Some(slot) => {
+                        let (begin_s, push) = std::mem::replace(slot, now);
+                        stretches.extend(between(push, scenario, (begin_s, time_s)));
+                    }
+                    None => pushes.push(now),
+                }
+            }
         }
-        stretches.extend(between(acting, scenario, (begin_s, f64::INFINITY)));
+        let to_the_end = |(begin_s, push)| between(push, scenario, (begin_s, f64::INFINITY));
+        stretches.extend(pushes.into_iter().filter_map(to_the_end));
         Self {
             pushes: joined(stretches),
             edits,
@@ -34,21 +44,11 @@ impl Marks {
     }
 }
 
-/// From when to when each of `pushes` of `scenario` acts inside `era`, s.
-fn between(
-    pushes: &[Push],
-    scenario: &Scenario,
-    era: (f64, f64),
-) -> impl Iterator<Item = (f64, f64)> {
-    let inside = move |push: &Push| {
-        let (begin, end) = acts_s(push, scenario);
-        (begin.max(era.0), end.min(era.1))
-    };
-    pushes
-        .iter()
-        .filter(|push| push.force.norm() > 0.0)
-        .map(inside)
-        .filter(|(begin, end)| begin < end)
+/// From when to when `push` of `scenario` acts inside `era`, s.
+fn between(push: &Push, scenario: &Scenario, era: (f64, f64)) -> Option<(f64, f64)> {
+    let (begin, end) = acts_s(push, scenario);
+    let (begin, end) = (begin.max(era.0), end.min(era.1));
+    (begin < end && push.force.norm() > 0.0).then_some((begin, end))
 }
 
 /// `stretches` in order, those that touch made one.

@@ -2,7 +2,7 @@
 
 use super::live::{LiveRun, PlayEnd, Played};
 use super::pace::{Pace, Speed};
-use super::readouts::Readouts;
+use super::reading::Reading;
 use crate::run::{Clock, NotFinite, Simulation};
 use crate::scenario::{Scenario, keys};
 use std::sync::Arc;
@@ -307,8 +307,8 @@ impl Playback {
     }
 
     /// The numbers as they are now.
-    pub fn read(&mut self) -> Readouts {
-        Readouts::new(&mut self.run, &self.pace)
+    pub fn read(&mut self) -> Reading {
+        Reading::new(&mut self.run, &self.pace)
     }
 
     /// The step it stands at.

@@ -8,6 +8,9 @@ use super::recording::{Block, Curve, Extent, Recording};
 /// Parts of a column smaller than this are rounding, not time.
 const ROUNDING: f64 = 1e-6;
 
+/// The longest window, s: far enough from the end of the range of numbers to be added to a time.
+const LONGEST_S: f64 = f64::MAX / 4.0;
+
 /// A window of time on a number of columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sweep {
@@ -27,6 +30,7 @@ impl Sweep {
     /// The sweep at `now_s`, in a window of `window_s` (both s) that is `columns` wide, `gap` of them kept empty ahead
     /// of the pen.
     pub fn new(window_s: f64, now_s: f64, columns: usize, gap: usize) -> Self {
+        let window_s = window_s.min(LONGEST_S);
         // A run of exactly one window ends at its right edge, not at its left.
         let sweeps = (now_s / window_s * (1.0 - 1e-12)).floor().max(0.0);
         Self {

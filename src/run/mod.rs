@@ -2,9 +2,10 @@
 //!
 //! [`Simulation`] is the one road forward in time; the command line, the exporters, the tests and any screen all
 //! travel on it. [`clock`] says what time a step has, [`pushes`] which forces act on it, [`sample`] what is read off
-//! after it. [`truth`] is the exact motion beside it, and [`resample`] the same run at another time step.
+//! after it, [`energy`] what its drift is measured in. [`truth`] is the exact motion beside it, and [`resample`] the same run at another time step.
 
 pub mod clock;
+pub mod energy;
 pub mod pushes;
 pub mod resample;
 pub mod sample;
@@ -12,6 +13,7 @@ pub mod simulation;
 pub mod truth;
 
 pub use clock::Clock;
+pub use energy::{EnergyScale, EnergyUnit};
 pub use sample::Sample;
 pub use simulation::{NotFinite, Simulation};
 pub use truth::Truth;

@@ -1,7 +1,7 @@
 //! The one road forward in time.
 
 use super::pushes::{self, Counting, Stretch};
-use super::{Clock, Sample};
+use super::{Clock, EnergyScale, EnergyUnit, Sample};
 use crate::physics::observables::{self, Azimuth};
 use crate::physics::{Loads, PointForce, Scheme, State, StepRecord, Workings};
 use crate::scenario::{Edit, Motion, Push, Scenario};
@@ -43,8 +43,8 @@ struct EnergyAccount {
     start: f64,
     /// Work of pushes and of edits of gravity since then, J.
     work: f64,
-    /// M g |c|, or the kinetic energy at the start where that is 0, J.
-    scale: f64,
+    /// What its error is measured in; `None` where there is nothing to measure it by.
+    scale: Option<EnergyScale>,
 }
 
 /// The numbers of a run are no longer finite.
@@ -71,16 +71,15 @@ impl Simulation {
         scheme.load(&loads);
         scheme.start(&state);
         let kinetic = observables::kinetic_energy(body, &state);
-        let weight = motion.gravity.abs() * body.first_moment().norm();
         let energy = EnergyAccount {
             start: kinetic + motion.gravity * observables::weight_height(body, &state),
             work: 0.0,
-            scale: if weight > 0.0 { weight } else { kinetic },
+            scale: EnergyScale::of(&scenario),
         };
         Self {
             scheme,
             motion,
-            pushes: scenario.pushes.as_slice().into(),
+            pushes: scenario.pushes.iter().copied().collect(),
             acting: Vec::with_capacity(scenario.pushes.len()),
             loads,
             clock: Clock::new(motion.time_step_s),
@@ -153,7 +152,7 @@ impl Simulation {
             .checked_sub(1)
             .map(|last| &scenario.edits[last]);
         let pushes = made.map_or(&scenario.pushes, |edit| &edit.pushes);
-        self.pushes = pushes.as_slice().into();
+        self.pushes = pushes.iter().copied().collect();
         self.scenario = scenario;
     }
 
@@ -189,7 +188,7 @@ impl Simulation {
         let mut work = 0.0;
         let end = stretch.end;
         if self.motion.scheme.continuous {
-            while let Some(change) = pushes::next_change(&self.pushes, self.counting, &stretch) {
+            while let Some(change) = pushes::next_change(&*self.pushes, self.counting, &stretch) {
                 stretch.end = change;
                 work += self.advance_under_push(&stretch, change - stretch.begin);
                 (stretch.begin, stretch.end) = (change, end);
@@ -205,7 +204,7 @@ impl Simulation {
     }
 
     fn advance_under_push(&mut self, stretch: &Stretch, length: f64) -> f64 {
-        pushes::acting(&self.pushes, self.counting, stretch, &mut self.acting);
+        pushes::acting(&*self.pushes, self.counting, stretch, &mut self.acting);
         if self.acting != self.loads.pushes {
             self.loads.pushes.clone_from(&self.acting);
             self.changes += 1;
@@ -223,6 +222,7 @@ impl Simulation {
     /// Carries out the edits made at this step.
     fn make_due_edits(&mut self) {
         let scenario = Arc::clone(&self.scenario);
+        let first = self.edits_made;
         while let Some(edit) = scenario
             .edits
             .get(self.edits_made)
@@ -231,6 +231,12 @@ impl Simulation {
             self.make_edit(edit);
             self.segment += u64::from(edit.touches.segment);
             self.edits_made += 1;
+        }
+        let made = &scenario.edits[first..self.edits_made];
+        if let Some(last) = made.last()
+            && made.iter().any(|edit| !edit.set_pushes.is_empty())
+        {
+            self.pushes = last.pushes.iter().copied().collect();
         }
         self.next_edit = step_of_edit(&scenario, self.edits_made);
     }
@@ -248,7 +254,6 @@ impl Simulation {
             self.scheme.start(&self.state);
         }
         self.motion = edit.motion;
-        self.pushes = edit.pushes.as_slice().into();
         self.loads.gravity = self.motion.gravity;
         self.safe_below = safe_below(&self.scenario, self.motion.gravity);
         self.loads.pushes.clear();
@@ -326,10 +331,16 @@ impl Simulation {
     }
 
     /// (E − E₀ − W)/S: the energy that only the scheme's error can have made, W the work of pushes and of edits of
-    /// gravity, S = M g |c| or else the kinetic energy at the start; `None` where both are 0.
+    /// gravity, S as [`EnergyScale`] has it; `None` where there is no S, or the drift is beyond the range of numbers.
     pub fn energy_drift(&self) -> Option<f64> {
         let gained = self.sample().energy - self.energy.start - self.energy.work;
-        (self.energy.scale > 0.0).then(|| gained / self.energy.scale)
+        let drift = gained / self.energy.scale?.size;
+        drift.is_finite().then_some(drift)
+    }
+
+    /// What the energy drift is measured in; `None` where there is nothing to measure it by.
+    pub fn energy_unit(&self) -> Option<EnergyUnit> {
+        self.energy.scale.map(|scale| scale.unit)
     }
 
     /// The first step at or after `time_s` (s), edits of the time step counted in.

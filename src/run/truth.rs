@@ -7,7 +7,7 @@ use super::Clock;
 use super::pushes::{self, Counting, Stretch};
 use crate::physics::exact::Kind;
 use crate::physics::{ExactMotion, Loads, State};
-use crate::scenario::{Push, Scenario};
+use crate::scenario::{Edit, Pushes, Scenario};
 use std::sync::Arc;
 
 /// The exact motion of one scenario, at any time.
@@ -27,12 +27,14 @@ pub struct Truth {
 struct Era {
     begin_s: f64,
     gravity: f64,
-    pushes: Vec<Push>,
+    pushes: Pushes,
 }
 
 impl Era {
-    fn has_forces_of(&self, other: &Self) -> bool {
-        self.gravity == other.gravity && self.pushes == other.pushes
+    /// Whether gravity and pushes stay as they are in this era at `edit`, the first after it.
+    fn goes_on_after(&self, edit: &Edit) -> bool {
+        let is_same = |&place: &usize| self.pushes.get(place) == edit.pushes.get(place);
+        self.gravity == edit.motion.gravity && edit.set_pushes.iter().all(is_same)
     }
 }
 
@@ -118,7 +120,7 @@ impl Truth {
         let next_era = self.eras.get(index + 1);
         let next_era = next_era.map_or(f64::INFINITY, |era| era.begin_s);
         pushes::next_after(
-            &self.eras[index].pushes,
+            self.eras[index].pushes.iter(),
             Counting::in_seconds(&self.scenario),
             begin,
         )
@@ -138,7 +140,7 @@ impl Truth {
             pushes: Vec::new(),
         };
         pushes::acting(
-            &era.pushes,
+            era.pushes.iter(),
             Counting::in_seconds(&self.scenario),
             &stretch,
             &mut loads.pushes,
@@ -162,14 +164,13 @@ fn eras(scenario: &Scenario) -> Vec<Era> {
         pushes: scenario.pushes.clone(),
     }];
     for (begin_s, edit) in Clock::edits(scenario) {
-        let era = Era {
-            begin_s,
-            gravity: edit.motion.gravity,
-            pushes: edit.pushes.clone(),
-        };
         // An edit of the time step or the scheme touches no force, and so not a bit of the exact motion.
-        if !eras.last().is_some_and(|last| last.has_forces_of(&era)) {
-            eras.push(era);
+        if !eras.last().is_some_and(|last| last.goes_on_after(edit)) {
+            eras.push(Era {
+                begin_s,
+                gravity: edit.motion.gravity,
+                pushes: edit.pushes.clone(),
+            });
         }
     }
     eras

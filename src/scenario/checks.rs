@@ -5,7 +5,7 @@ use super::file::ScenarioFile;
 use super::keys::TOP;
 use super::model::{Body, Scenario};
 use super::parts::{body, motion, pushes};
-use super::problem::{Problem, listed};
+use super::problem::{Found, Problem, listed};
 use super::start::start;
 use crate::physics::{State, observables};
 
@@ -13,7 +13,7 @@ use crate::physics::{State, observables};
 ///
 /// # Errors
 /// Every rule that its numbers break together.
-pub fn scenario(file: ScenarioFile) -> Result<Scenario, Vec<Problem>> {
+pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
     let body = body(&file.body)?;
     let trace = match &file.trace {
         Some(name) => body.find("trace", name)?,
@@ -21,11 +21,11 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Vec<Problem>> {
     };
     let motion = motion(&file.motion);
     let start = start(&file.start, &body.mechanics, motion.gravity)?;
-    let pushes = pushes(&file.push, &body, "push")?;
-    let edits = edits(&file, &body)?;
+    let pushes = pushes(&file.push, &body)?;
+    let edits = edits(&file, &body, &pushes)?;
     if !is_readable(&body, trace, &start, motion.gravity) {
         let rule = "energy or traced point leave the range of floating-point numbers: use momentum, gravity and distances nearer to 1";
-        return Err(vec![Problem::at("start", rule)]);
+        return Err(vec![Problem::at("start", rule)].into());
     }
     Ok(Scenario {
         body,

@@ -2,7 +2,7 @@
 
 use super::checks;
 use super::dotted::{find, is_in, set_key};
-use super::problem::{Problem, Problems, nearest};
+use super::problem::{Found, Problem, Problems, nearest};
 use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, start};
 use crate::text::printable::{brief, printable, printable_lines};
 use std::fs::File;
@@ -12,7 +12,10 @@ use toml::Value;
 use toml::de::{DeTable, DeValue};
 
 /// The longest file that is read as a scenario, bytes: 100 000 points take about 8 MB.
-const LONGEST: u64 = 64 << 20;
+const LONGEST: u64 = 16 << 20;
+
+/// The most lines of one: 100 000 points take about 500 000.
+const MOST_LINES: usize = 2_000_000;
 
 /// How the header of every CSV begins that gyrolab writes, below the run file.
 const CSV_HEADER: &str = "step,t_s,";
@@ -54,10 +57,7 @@ impl Document {
         let origin = path.display().to_string();
         match read_text(path) {
             Ok(text) => Self::parse(&origin, &text),
-            Err(problem) => Err(Problems {
-                origin,
-                list: vec![problem],
-            }),
+            Err(problem) => Err(Problems::one(origin, problem)),
         }
     }
 
@@ -72,6 +72,7 @@ impl Document {
         let fail = |problem| Problems {
             origin: origin.to_owned(),
             list: vec![problem],
+            more: 0,
         };
         read.and_then(|_| short_enough(text))
             .map_err(fail)
@@ -105,6 +106,11 @@ impl Document {
     /// When it is not TOML.
     pub fn parse(origin: &str, text: &str) -> Result<Self, Problems> {
         let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
+        let lines = text.bytes().filter(|&byte| byte == b'\n').count();
+        if lines > MOST_LINES {
+            let rule = format!("has {lines} lines: at most {MOST_LINES} are allowed");
+            return Err(Problems::one(origin, Problem::at("", rule)));
+        }
         match text.parse() {
             Ok(table) => Ok(Self {
                 origin: origin.to_owned(),
@@ -114,10 +120,7 @@ impl Document {
             }),
             Err(error) => {
                 let problem = syntax_problem(&text, &error);
-                Err(Problems {
-                    origin: origin.to_owned(),
-                    list: vec![problem],
-                })
+                Err(Problems::one(origin, problem))
             }
         }
     }
@@ -127,16 +130,27 @@ impl Document {
     /// # Errors
     /// Never for a file that came from a checked scenario.
     pub fn from_file(origin: &str, file: &ScenarioFile) -> Result<Self, Problems> {
-        let table = toml::Table::try_from(file).map_err(|error| Problems {
-            origin: origin.to_owned(),
-            list: vec![Problem::at("", error.to_string())],
-        })?;
+        let table = toml::Table::try_from(file)
+            .map_err(|error| Problems::one(origin, Problem::at("", error.to_string())))?;
         Ok(Self {
             origin: origin.to_owned(),
             text: String::new(),
             table,
             set: Vec::new(),
         })
+    }
+
+    /// The scenario that `file` would be written and read as, checked, without writing and reading it.
+    ///
+    /// # Errors
+    /// As [`scenario`](Self::scenario).
+    pub fn check_file(origin: &str, file: ScenarioFile) -> Result<Scenario, Problems> {
+        let document = Self::from_file(origin, &file)?;
+        let problems = keys::check(&document.table);
+        if !problems.list.is_empty() {
+            return Err(document.placed(problems));
+        }
+        checks::scenario(file).map_err(|problems| document.placed(problems))
     }
 
     /// Carries out one `--set KEY=VALUE`: the value is TOML, or else text.
@@ -148,10 +162,7 @@ impl Document {
         let place = set_place(argument);
         let fail = |mut problem: Problem| {
             problem.place = Some(place.clone());
-            Problems {
-                origin: self.origin.clone(),
-                list: vec![problem],
-            }
+            Problems::one(self.origin.as_str(), problem)
         };
         let Some((key, value)) = argument.split_once('=') else {
             return Err(fail(Problem::at(
@@ -208,7 +219,7 @@ impl Document {
     /// Everything that is wrong with it, each with its place.
     pub fn scenario(&self) -> Result<Scenario, Problems> {
         let problems = keys::check(&self.table);
-        if !problems.is_empty() {
+        if !problems.list.is_empty() {
             return Err(self.placed(problems));
         }
         checks::scenario(self.file()?).map_err(|problems| self.placed(problems))
@@ -240,12 +251,13 @@ impl Document {
     }
 
     /// Problems with the places at which the user wrote their keys, in the order of the file.
-    pub fn placed(&self, mut list: Vec<Problem>) -> Problems {
+    pub fn placed(&self, found: impl Into<Found>) -> Problems {
+        let Found { list, more } = found.into();
         let spans = DeTable::parse(&self.text).ok();
         let written = (!self.set.is_empty()).then(|| self.text.parse().unwrap_or_default());
         let line_ends: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
         let mut lines: Vec<(usize, Problem)> = Vec::with_capacity(list.len());
-        for mut problem in list.drain(..) {
+        for mut problem in list {
             if let Some(argument) = self.setting_behind(&problem.key, written.as_ref()) {
                 problem.place = Some(set_place(argument));
                 lines.push((usize::MAX, problem));
@@ -262,6 +274,7 @@ impl Document {
         Problems {
             origin: self.origin.clone(),
             list: lines.into_iter().map(|(_, problem)| problem).collect(),
+            more,
         }
     }
 }
@@ -277,10 +290,7 @@ fn no_preset(name: &str) -> Problems {
         false => "a file's name holds a / or ends in .toml or .csv".to_owned(),
     };
     let rule = format!("no preset of that name: {near} ({hint})");
-    Problems {
-        origin: name.to_owned(),
-        list: vec![Problem::at("", rule)],
-    }
+    Problems::one(name, Problem::at("", rule))
 }
 
 /// The text of a scenario, or the run file in the header of a CSV, of which no more is read.
@@ -320,13 +330,26 @@ fn read_text(path: &Path) -> Result<String, Problem> {
             "is not the CSV of a run: no line \"{CSV_HEADER}...\" below a run file"
         )));
     }
-    reader.read_to_end(&mut text).map_err(cannot)?;
-    short_enough(text)
+    let length = std::fs::metadata(path).map_or(0, |file| file.len());
+    if length <= LONGEST {
+        reader.read_to_end(&mut text).map_err(cannot)?; // of a FIFO no more than the limit
+    }
+    if length > LONGEST || text.len() as u64 > LONGEST {
+        let how_long = match length > LONGEST {
+            true => format!("{length} bytes long, longer"),
+            false => "longer".to_owned(),
+        };
+        let most = LONGEST >> 20;
+        return Err(whole(format!(
+            "is {how_long} than {most} MiB ({LONGEST} bytes), the most that a scenario or run file may have"
+        )));
+    }
+    utf8(text)
 }
 
 fn short_enough(text: Vec<u8>) -> Result<String, Problem> {
     if text.len() as u64 > LONGEST {
-        let rule = format!("is longer than {} MiB: not a scenario", LONGEST >> 20);
+        let rule = format!("is longer than {LONGEST} bytes, the most that is read");
         return Err(Problem::at("", rule));
     }
     utf8(text)
@@ -374,7 +397,7 @@ fn line_at(text: &str, offset: usize) -> usize {
 
 /// Where the dotted `key`, or as much of it as there is, stands in the text: a value's key, a table's head.
 fn offset_of(table: &DeTable<'_>, key: &str) -> Option<usize> {
-    let entry = |name: &str| table.iter().find(|(found, _)| found.get_ref() == name);
+    let entry = |name: &str| table.get_key_value(name);
     let quoted = key.strip_prefix('"').and_then(|key| key.strip_suffix('"'));
     let (name, rest) = match quoted {
         Some(name) => (name, ""),

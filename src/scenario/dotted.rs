@@ -94,3 +94,8 @@ pub fn is_in(key: &str, table: &str) -> bool {
     key.strip_prefix(table)
         .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
+
+/// The number, from 0, of the push that the dotted `key` belongs to.
+pub fn number_of_push(key: &str) -> Option<usize> {
+    key.strip_prefix("push.")?.split('.').next()?.parse().ok()
+}

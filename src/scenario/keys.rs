@@ -4,8 +4,10 @@
 //! wherever it comes from. Rules that need more than one value are in `checks` and `parts`.
 
 pub use super::kind::{Kind, Range};
-use super::problem::{Problem, nearest};
+use super::problem::{Found, Problem, nearest};
 use crate::physics::scheme;
+use std::collections::HashMap;
+use std::sync::LazyLock;
 use toml::Value;
 
 /// One key a scenario or run file may hold.
@@ -236,39 +238,61 @@ const SCHEME_NAMES: [&str; scheme::SCHEMES.len()] = scheme::names();
 const REQUIRED_TABLES: [&str; 2] = ["start", "motion"];
 
 /// Holds the whole of `table` against the keys: unknown names, wrong types, numbers out of range, what is missing.
-pub fn check(table: &toml::Table) -> Vec<Problem> {
-    let mut problems = Vec::new();
+pub fn check(table: &toml::Table) -> Found {
+    let mut problems = Found::default();
     check_table(table, "", "", &mut problems);
     problems
 }
 
+/// Holds the part `value` of a file, the table at the dotted `path`, against the keys.
+pub(super) fn check_part(value: &Value, path: &str) -> Vec<Problem> {
+    let mut problems = Found::default();
+    let is_place = |name: &str| name.parse::<usize>().is_ok();
+    let names = path
+        .split('.')
+        .map(|name| if is_place(name) { "*" } else { name });
+    let pattern = names.collect::<Vec<_>>().join(".");
+    match value {
+        Value::Table(table) => check_table(table, &pattern, path, &mut problems),
+        other => problems.add(|| Problem::with_value(path, other, "must be a table")),
+    }
+    problems.list
+}
+
 /// Walks a table whose keys are all those of the pattern `under` and a further name.
-fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Vec<Problem>) {
+fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Found) {
+    let nothing = Level::default();
+    let level = LEVELS.get(under).unwrap_or(&nothing);
     for (name, value) in table {
-        let (pattern, key) = (join(under, name), join(path, name));
-        if name.contains(['.', '*']) || !is_known(&pattern) {
-            let near = elsewhere(name).unwrap_or_else(|| nearest(name, names_under(under)));
-            // In quotes, or a dot in the name would make it the path of another key.
-            let key = match name.contains('.') {
-                true => join(path, &format!("\"{name}\"")),
-                false => key,
-            };
-            problems.push(Problem::at(key, format!("unknown key: {near}")));
+        let key = join(path, name);
+        if !level.names.contains(&name.as_str()) {
+            problems.add(|| {
+                let near =
+                    elsewhere(name).unwrap_or_else(|| nearest(name, level.names.iter().copied()));
+                // In quotes, or a dot in the name would make it the path of another key.
+                let key = match name.contains('.') {
+                    true => join(path, &format!("\"{name}\"")),
+                    false => key,
+                };
+                Problem::at(key, format!("unknown key: {near}"))
+            });
         } else {
-            check_value(value, &pattern, &key, problems);
+            check_value(value, &join(under, name), &key, problems);
         }
     }
     let is_there = |name: &&str| table.contains_key(*name);
-    for missing in required_under(under).filter(|name| !is_there(name)) {
-        let key = KEYS.iter().find(|key| key.path == join(under, missing));
-        if key.is_some_and(|key| key.instead.iter().any(is_there)) {
+    for (missing, key) in &level.required {
+        let is_replaced = key.is_some_and(|key| key.instead.iter().any(is_there));
+        if is_there(missing) || is_replaced {
             continue;
         }
-        let rule = match key {
-            Some(key) => format!("is missing ({})", key.about),
-            None => format!("is missing: add a table [{missing}]"),
-        };
-        problems.push(Problem::at(join(path, missing), rule));
+        problems.add(|| {
+            let rule = match key {
+                Some(key) => format!("is missing ({})", key.about),
+                None => format!("is missing: add a table [{missing}]"),
+            };
+            Problem::at(join(path, missing), rule)
+        });
     }
 }
 
@@ -285,10 +309,10 @@ fn elsewhere(name: &str) -> Option<String> {
     }
 }
 
-fn check_value(value: &Value, pattern: &str, path: &str, problems: &mut Vec<Problem>) {
+fn check_value(value: &Value, pattern: &str, path: &str, problems: &mut Found) {
     if let Some(key) = KEYS.iter().find(|key| key.path == pattern) {
         if let Err(rule) = key.kind.check(value) {
-            problems.push(Problem::with_value(path, value, rule));
+            problems.add(|| Problem::with_value(path, value, rule));
         }
         return;
     }
@@ -299,18 +323,18 @@ fn check_value(value: &Value, pattern: &str, path: &str, problems: &mut Vec<Prob
                 let path = join(path, &index.to_string());
                 match item {
                     Value::Table(table) => check_table(table, &element, &path, problems),
-                    other => problems.push(Problem::with_value(path, other, "must be a table")),
+                    other => problems.add(|| Problem::with_value(path, other, "must be a table")),
                 }
             }
         }
         Value::Table(table) if !is_known(&element) => check_table(table, pattern, path, problems),
         other if is_known(&element) => {
             let rule = format!("must be an array of tables: write [[{pattern}]]");
-            problems.push(Problem::with_value(path, other, rule));
+            problems.add(|| Problem::with_value(path, other, rule));
         }
         other => {
             let rule = format!("must be a table: write [{pattern}]");
-            problems.push(Problem::with_value(path, other, rule));
+            problems.add(|| Problem::with_value(path, other, rule));
         }
     }
 }
@@ -326,31 +350,36 @@ fn is_under(path: &str, table: &str) -> bool {
         .is_some_and(|rest| rest.starts_with('.'))
 }
 
-/// The names that may stand in the table of the pattern `under`, each once.
-fn names_under(under: &str) -> impl Iterator<Item = &'static str> + Clone {
-    let mut names: Vec<&'static str> = Vec::new();
-    for key in KEYS {
-        let rest = if under.is_empty() {
-            Some(key.path)
-        } else {
-            key.path.strip_prefix(under)
-        };
-        let name = rest.and_then(|rest| rest.trim_start_matches('.').split('.').next());
-        let inside = under.is_empty() || is_under(key.path, under);
-        if let Some(name) = name.filter(|name| inside && !names.contains(name)) {
-            names.push(name);
-        }
-    }
-    names.into_iter()
+/// What may stand in the tables of one pattern, and what must.
+#[derive(Debug, Default)]
+struct Level {
+    /// The names, each once.
+    names: Vec<&'static str>,
+    /// Those without which the table is incomplete; a key's row, of a table none.
+    required: Vec<(&'static str, Option<&'static Key>)>,
 }
 
-fn required_under(under: &str) -> impl Iterator<Item = &'static str> {
-    names_under(under).filter(move |name| {
-        let path = join(under, name);
-        REQUIRED_TABLES.contains(&path.as_str())
-            || KEYS.iter().any(|key| key.path == path && key.required)
-    })
-}
+/// Every pattern of a table, such as `body.point.*`, and what it holds: looked up for each table of a file.
+static LEVELS: LazyLock<HashMap<String, Level>> = LazyLock::new(|| {
+    let mut levels: HashMap<String, Level> = HashMap::new();
+    for key in KEYS {
+        let mut under = String::new();
+        for name in key.path.split('.') {
+            let path = join(&under, name);
+            let level = levels.entry(under).or_default();
+            if name != "*" && !level.names.contains(&name) {
+                level.names.push(name);
+                if REQUIRED_TABLES.contains(&path.as_str()) {
+                    level.required.push((name, None));
+                } else if key.path == path && key.required {
+                    level.required.push((name, Some(key)));
+                }
+            }
+            under = path;
+        }
+    }
+    levels
+});
 
 /// `name` below the dotted path `under`.
 pub fn join(under: &str, name: &str) -> String {
@@ -437,6 +466,7 @@ mod tests {
 
     fn problems(text: &str) -> Vec<String> {
         check(&text.parse().unwrap())
+            .list
             .iter()
             .map(ToString::to_string)
             .collect()

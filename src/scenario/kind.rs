@@ -6,6 +6,12 @@ use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole, Words}
 use Range::{NotNegative, Positive};
 use toml::Value;
 
+/// Characters of a name, a title or another text on one line, at most.
+pub const LONGEST_LINE: usize = 1000;
+
+/// Characters of a text of several lines, at most.
+pub const LONGEST_PARAGRAPH: usize = 20_000;
+
 /// What a key may hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
@@ -48,7 +54,7 @@ impl Kind {
     pub fn check(self, value: &Value) -> Result<(), String> {
         match self {
             Line => text(value).and_then(check_line),
-            Paragraph => text(value).and_then(|text| check_characters(text, "\n")),
+            Paragraph => text(value).and_then(|text| check_text(text, LONGEST_PARAGRAPH, "\n")),
             Number(range) => number(value).and_then(|number| range.check(number)),
             Whole(least, most) => check_whole(value, least, most),
             Vector => check_vector(value),
@@ -109,10 +115,16 @@ fn check_line(text: &str) -> Result<(), String> {
     if text.trim().is_empty() {
         return Err("must not be empty".to_owned());
     }
-    check_characters(text, "")
+    check_text(text, LONGEST_LINE, "")
 }
 
-fn check_characters(text: &str, allowed: &str) -> Result<(), String> {
+fn check_text(text: &str, most: usize, allowed: &str) -> Result<(), String> {
+    let length = text.chars().count();
+    if length > most {
+        return Err(format!(
+            "must be at most {most} characters long, not {length}"
+        ));
+    }
     match text
         .chars()
         .find(|&c| is_steering(c) && !allowed.contains(c))

@@ -17,6 +17,7 @@ pub mod nudge;
 mod parts;
 pub mod presets;
 pub mod problem;
+mod pushes;
 pub mod rescale;
 pub mod start;
 
@@ -24,3 +25,4 @@ pub use document::Document;
 pub use file::ScenarioFile;
 pub use model::{Body, Edit, Motion, Push, Scenario, Touches, Window};
 pub use problem::{Problem, Problems};
+pub use pushes::Pushes;

@@ -2,6 +2,7 @@
 
 use super::file::ScenarioFile;
 use super::problem::{Problem, nearest};
+use super::pushes::Pushes;
 use crate::physics::{self, SchemeInfo, State};
 use nalgebra::Vector3;
 use std::collections::HashMap;
@@ -24,7 +25,7 @@ pub struct Scenario {
     /// The time step for which its step counts were written, s.
     pub written_for_s: f64,
     /// The pushes at the start.
-    pub pushes: Vec<Push>,
+    pub pushes: Pushes,
     /// What the user changed during the run, in the order of the steps.
     pub edits: Vec<Edit>,
 }
@@ -88,7 +89,9 @@ pub struct Edit {
     /// How the body moves from then on.
     pub motion: Motion,
     /// The pushes from then on.
-    pub pushes: Vec<Push>,
+    pub pushes: Pushes,
+    /// The places of those that it set, each once, in their order.
+    pub set_pushes: Vec<usize>,
     /// What it set.
     pub touches: Touches,
 }
@@ -100,6 +103,15 @@ pub struct Touches {
     pub time_step: bool,
     /// The time step, the scheme or gravity: a new segment begins.
     pub segment: bool,
+}
+
+impl Edit {
+    /// The pushes that it set, as they are from then on.
+    pub fn pushes_set(&self) -> impl Iterator<Item = &Push> {
+        self.set_pushes
+            .iter()
+            .filter_map(|&place| self.pushes.get(place))
+    }
 }
 
 impl Body {

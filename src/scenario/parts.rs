@@ -4,40 +4,38 @@
 use super::file::{BodyFile, MotionFile, PushFile};
 use super::keys::{GRAVITY, MOST_POINTS};
 use super::model::{Body, Motion, Push, Window};
-use super::problem::Problem;
+use super::problem::{Found, Problem};
+use super::pushes::Pushes;
 use crate::physics::{self, PointMass, SchemeInfo};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
-pub(super) fn body(file: &BodyFile) -> Result<Body, Vec<Problem>> {
+pub(super) fn body(file: &BodyFile) -> Result<Body, Found> {
     let rim = file.rim.as_ref().map_or(0, |rim| rim.points);
     let count = rim + file.point.len();
     if count > usize::try_from(MOST_POINTS).unwrap_or(usize::MAX) {
-        return Err(vec![Problem::at(
-            "body",
-            format!("has {count} points; at most {MOST_POINTS} are allowed"),
-        )]);
+        let rule = format!("has {count} points; at most {MOST_POINTS} are allowed");
+        return Err(vec![Problem::at("body", rule)].into());
     }
     let mut points = rim_points(file);
     let mut names = HashMap::with_capacity(file.point.len());
-    let mut problems = Vec::new();
+    let mut problems = Found::default();
     for (index, point) in file.point.iter().enumerate() {
         if names.insert(point.name.clone(), points.len()).is_some() {
-            let value = toml::Value::String(point.name.clone());
-            let key = format!("body.point.{index}.name");
-            problems.push(Problem::with_value(
-                key,
-                &value,
-                "is the name of another point too: each needs its own",
-            ));
+            problems.add(|| {
+                let value = toml::Value::String(point.name.clone());
+                let key = format!("body.point.{index}.name");
+                let rule = "is the name of another point too: each needs its own";
+                Problem::with_value(key, &value, rule)
+            });
         }
         points.push(PointMass {
             at: Vector3::from(point.at_m),
             mass: point.mass_kg.unwrap_or(0.0),
         });
     }
-    if !problems.is_empty() {
+    if !problems.list.is_empty() {
         return Err(problems);
     }
     let mechanics =
@@ -69,19 +67,15 @@ pub(super) fn motion(file: &MotionFile) -> Motion {
     }
 }
 
-pub(super) fn pushes(
-    files: &[PushFile],
-    body: &Body,
-    key: &str,
-) -> Result<Vec<Push>, Vec<Problem>> {
+pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Vec<Problem>> {
     files
         .iter()
         .enumerate()
-        .map(|(index, file)| push(file, body, &format!("{key}.{index}")))
+        .map(|(index, file)| push(file, body, &format!("push.{index}")))
         .collect()
 }
 
-fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Vec<Problem>> {
+pub(super) fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Vec<Problem>> {
     let wrong = |rule: &str| Err(vec![Problem::at(key, rule)]);
     let window = match (file.first_step, file.steps, file.from_s, file.for_s) {
         (first, Some(count), None, None) => Window::Steps {

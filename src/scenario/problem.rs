@@ -55,6 +55,36 @@ impl fmt::Display for Problem {
     }
 }
 
+/// The most problems of one file that are told one by one: more of them help nobody.
+const MOST_TOLD: usize = 100;
+
+/// Problems as they are found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Found {
+    /// The first hundred.
+    pub list: Vec<Problem>,
+    /// How many more there are.
+    pub more: usize,
+}
+
+impl Found {
+    /// Adds a problem; beyond the first hundred they are only counted.
+    pub fn add(&mut self, problem: impl FnOnce() -> Problem) {
+        match self.list.len() < MOST_TOLD {
+            true => self.list.push(problem()),
+            false => self.more += 1,
+        }
+    }
+}
+
+impl From<Vec<Problem>> for Found {
+    fn from(mut list: Vec<Problem>) -> Self {
+        let more = list.len().saturating_sub(MOST_TOLD);
+        list.truncate(MOST_TOLD);
+        Self { list, more }
+    }
+}
+
 /// Everything found wrong with one file; never empty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problems {
@@ -62,9 +92,20 @@ pub struct Problems {
     pub origin: String,
     /// What was found, in the order of the file.
     pub list: Vec<Problem>,
+    /// How many more were found, which are not in the list.
+    pub more: usize,
 }
 
 impl Problems {
+    /// The one `problem` of the file `origin`.
+    pub fn one(origin: impl Into<String>, problem: Problem) -> Self {
+        Self {
+            origin: origin.into(),
+            list: vec![problem],
+            more: 0,
+        }
+    }
+
     /// The first of them in one line, without file, line or `--set`: `motion.time_step_s (-0.1) must be greater than zero`.
     pub fn in_one_line(&self) -> String {
         let bare = |problem: &Problem| {
@@ -105,7 +146,7 @@ impl fmt::Display for Problems {
                 None => write!(f, "{newline}{}: {problem}", printable(&self.origin))?,
             }
         }
-        match self.list.len().saturating_sub(SHOWN) {
+        match self.list.len().saturating_sub(SHOWN) + self.more {
             0 => Ok(()),
             more => write!(f, "\n{}: and {more} more", printable(&self.origin)),
         }
@@ -151,9 +192,17 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
         return format!("there is {}", listed(known));
     }
     let lower = wrong.to_lowercase();
+    // Of more names than this the rest is not looked at: the body may have 100 000 points.
+    const MOST_COMPARED: usize = 2000;
+    let furthest = |name: &str| 2.max(name.len() / 3);
+    let length = lower.chars().count();
     let near = known
         .clone()
-        .filter(|name| name.len() <= LONGEST)
+        .take(MOST_COMPARED)
+        // What differs more in length than it may in letters need not be compared.
+        .filter(|name| {
+            name.len() <= LONGEST && name.chars().count().abs_diff(length) <= furthest(name)
+        })
         .map(|name| {
             (
                 strsim::damerau_levenshtein(&lower, &name.to_lowercase()),
@@ -167,7 +216,7 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
         .find(|name| !lower.is_empty() && name.to_lowercase().starts_with(&lower));
     match (begins, near) {
         (Some(name), _) => format!("did you mean {}?", brief(name, LONGEST)),
-        (None, Some((distance, name))) if distance <= 2.max(name.len() / 3) => {
+        (None, Some((distance, name))) if distance <= furthest(name) => {
             format!("did you mean {name}?")
         }
         _ => format!("there is {}", listed(known)),

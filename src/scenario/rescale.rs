@@ -2,6 +2,7 @@
 
 use super::file::{PushFile, ScenarioFile};
 use super::problem::Problem;
+use super::{Edit, Scenario};
 
 /// `file` at the time step `time_step_s` (s): as long in seconds, and its pushes at the same times.
 ///
@@ -34,6 +35,16 @@ pub fn at_time_step(file: &ScenarioFile, time_step_s: f64) -> Result<ScenarioFil
 /// Whether steps mean nothing in `file` that seconds cannot hold.
 pub fn can_be_rescaled(file: &ScenarioFile) -> bool {
     file.edit.is_empty() && !file.push.iter().any(|push| push.accumulates == Some(true))
+}
+
+/// Whether a push of `scenario` accumulates step by step: at another time step it is another force.
+pub fn accumulates(scenario: &Scenario) -> bool {
+    let edited = scenario.edits.iter().flat_map(Edit::pushes_set);
+    scenario
+        .pushes
+        .iter()
+        .chain(edited)
+        .any(|push| push.accumulates)
 }
 
 /// The most steps a run may be given by a length in seconds: whole numbers are exact up to here.

@@ -2,5 +2,6 @@
 //! whatever ends the process.
 
 pub mod at_exit;
+pub mod confined;
 pub mod exporting;
 pub mod session;

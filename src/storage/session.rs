@@ -9,9 +9,12 @@
 //! The content is two texts that mean nothing here: the work, which changes seldom and may be long, and the place in
 //! it, which changes all the time.
 
+mod form;
+mod own;
 mod slot;
+mod writer;
 
-pub use slot::{Content, KeptAside};
+pub use slot::{Check, Content, KeptAside};
 
 use super::at_exit::{self, Registered};
 use crate::text::printable::Shown;
@@ -19,19 +22,20 @@ use etcetera::{BaseStrategy, base_strategy::Xdg};
 use slot::Slot;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::sync::Arc;
 use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::{Duration, SystemTime};
+use writer::Shared;
 
-/// Between two writes, so that a run that plays does not keep the disk busy.
-const PERIOD: Duration = Duration::from_millis(500);
 /// How long a flush may hold up the end of the process.
 const PATIENCE: Duration = Duration::from_millis(400);
 
 /// The session of this process: no other one takes it while this lives. Dropped, it is flushed and free.
 pub struct Session {
+    name: String,
     shared: Arc<Shared>,
-    writer: Option<JoinHandle<()>>,
+    /// It gives back what it wrote to, unless it wrote nothing.
+    writer: Option<JoinHandle<Option<Slot>>>,
     _at_end: Registered,
 }
 
@@ -42,6 +46,8 @@ pub struct Found<T> {
     pub resumed: Option<Resumed<T>>,
     /// What could not be read on the way to it, kept under other names.
     pub kept_aside: Vec<KeptAside>,
+    /// What is not the user's own, or cannot be opened: it is as it was.
+    pub left_alone: Vec<KeptAside>,
     /// The processes that have the newer ones, as far as they are known.
     pub in_use_by: Vec<u32>,
 }
@@ -53,6 +59,21 @@ pub struct Resumed<T> {
     pub session: Session,
     /// What was read from it.
     pub what: T,
+}
+
+/// A session, as it is listed.
+#[derive(Debug)]
+pub struct Listed {
+    /// What it is called.
+    pub name: String,
+    /// When it was written last.
+    pub written: SystemTime,
+    /// Whether a living process has it.
+    pub is_in_use: bool,
+    /// The number of that process, where it is known.
+    pub owner: Option<u32>,
+    /// What it holds, or why it cannot be read.
+    pub content: Result<Content, String>,
 }
 
 /// There is no home for sessions.
@@ -81,46 +102,96 @@ pub fn folder() -> Result<PathBuf, NoHome> {
 /// When `folder` cannot be looked into, or there is no thread to be had; that there is none yet is no error.
 pub fn resume<T>(
     folder: &Path,
+    read: impl FnMut(&Content) -> Result<T, String>,
+) -> io::Result<Found<T>> {
+    let _door = slot::door(folder);
+    resume_one_of(folder, &earlier(folder)?, read)
+}
+
+/// Takes up the session called `name` in `folder`, as [`resume`] does with the newest.
+///
+/// # Errors
+/// As [`resume`]; and when there is no session of that name.
+pub fn resume_named<T>(
+    folder: &Path,
+    name: &str,
+    read: impl FnMut(&Content) -> Result<T, String>,
+) -> io::Result<Found<T>> {
+    let _door = slot::door(folder);
+    let named: Vec<_> = earlier(folder)?
+        .into_iter()
+        .filter(|id| id == name)
+        .collect();
+    if named.is_empty() {
+        return Err(io::Error::new(
+            io::ErrorKind::NotFound,
+            "there is no such session",
+        ));
+    }
+    resume_one_of(folder, &named, read)
+}
+
+fn resume_one_of<T>(
+    folder: &Path,
+    ids: &[String],
     mut read: impl FnMut(&Content) -> Result<T, String>,
 ) -> io::Result<Found<T>> {
-    let (mut kept_aside, mut in_use_by) = (Vec::new(), Vec::new());
-    let _door = slot::door(folder);
-    for id in earlier(folder)? {
-        let mut slot = match Slot::take(folder, &id) {
+    let mut found = Found {
+        resumed: None,
+        kept_aside: Vec::new(),
+        left_alone: Vec::new(),
+        in_use_by: Vec::new(),
+    };
+    for id in ids {
+        let taken = slot::is_own(folder, id).and_then(|()| Slot::take(folder, id));
+        let mut slot = match taken {
             Ok(Some(slot)) => slot,
             Ok(None) => {
-                in_use_by.extend(slot::owner(folder, &id));
+                found.in_use_by.extend(slot::owner(folder, id));
                 continue;
             }
             Err(error) => {
-                let path = folder.join(format!("{id}.lock"));
-                let reason = format!("it cannot be opened: {error}");
-                kept_aside.push(KeptAside { path, reason });
+                let path = folder.join(format!("{id}.work"));
+                let reason = error.to_string();
+                found.left_alone.push(KeptAside { path, reason });
                 continue;
             }
         };
         let what = slot.load().and_then(|(content, aside)| {
-            kept_aside.extend(aside);
+            found.kept_aside.extend(aside);
             read(&content)
         });
         match what {
             Ok(what) => {
                 let session = Session::keep(slot)?;
-                let resumed = Some(Resumed { session, what });
-                return Ok(Found {
-                    resumed,
-                    kept_aside,
-                    in_use_by,
-                });
+                found.resumed = Some(Resumed { session, what });
+                break;
             }
-            Err(reason) => kept_aside.push(slot.put_all_aside(reason)),
+            Err(reason) => found.kept_aside.push(slot.put_all_aside(reason)),
         }
     }
-    Ok(Found {
-        resumed: None,
-        kept_aside,
-        in_use_by,
-    })
+    Ok(found)
+}
+
+/// The user's own sessions in `folder`, the one written last first. Nothing is changed.
+///
+/// # Errors
+/// When `folder` cannot be looked into; that there is none yet is no error.
+pub fn list(folder: &Path) -> io::Result<Vec<Listed>> {
+    let mut ids = earlier(folder)?;
+    ids.retain(|id| slot::is_own(folder, id).is_ok());
+    let _door = (!ids.is_empty()).then(|| slot::door(folder));
+    let listed = ids.into_iter().map(|name| {
+        let is_in_use = slot::is_in_use(folder, &name);
+        Listed {
+            written: slot::written_at(folder, &name),
+            is_in_use,
+            owner: slot::owner(folder, &name).filter(|_| is_in_use),
+            content: slot::stored(folder, &name).map(|stored| stored.content),
+            name,
+        }
+    });
+    Ok(listed.collect())
 }
 
 fn earlier(folder: &Path) -> io::Result<Vec<String>> {
@@ -152,16 +223,18 @@ impl Session {
     }
 
     fn keep(slot: Slot) -> io::Result<Self> {
+        let name = slot.id().to_owned();
         let shared = Arc::new(Shared::default());
         let (ours, at_end) = (Arc::clone(&shared), Arc::clone(&shared));
         let writer = thread::Builder::new()
             .name("session".to_owned())
             .spawn(move || ours.keep_writing(slot))?;
         Ok(Self {
+            name,
             shared,
             writer: Some(writer),
             _at_end: at_exit::hook(move |_| {
-                at_end.flush();
+                at_end.flush(PATIENCE);
             }),
         })
     }
@@ -172,26 +245,68 @@ impl Session {
         self.shared.note(content);
     }
 
-    /// Writes at once what is not written yet. It gives up after half a second, so that it may be called from a signal's
-    /// thread and from a panic; every farewell calls it by itself.
-    pub fn flush(&self) {
-        self.shared.flush();
+    /// What the session is called.
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
-    /// Why the session cannot be kept, once each time that this begins; it is tried again all the while.
-    pub fn new_trouble(&self) -> Option<String> {
-        self.shared.state().trouble.as_mut()?.take()
+    /// From now on a work is written only if `check` accepts it, but for one that has to be written at once.
+    pub fn check_with(&self, check: Check) {
+        self.shared.state().check = Some(check);
+    }
+
+    /// Writes at once what is not written yet, or gives up after half a second, so that it may be called from a signal's
+    /// thread and from a panic; every farewell calls it by itself. Gives whether it was tried in that time.
+    pub fn flush(&self) -> bool {
+        self.shared.flush(PATIENCE)
+    }
+
+    /// Why the session cannot be kept, as long as that is so; it is tried again all the while.
+    pub fn trouble(&self) -> Option<String> {
+        self.shared.state().trouble.clone()
+    }
+
+    /// Ends the session, and gives what can be come back to: what the disk holds, if that is what was noted last. It
+    /// waits for the disk at most for `patience`.
+    ///
+    /// # Errors
+    /// Why there is nothing to come back to, or not to what was noted last.
+    pub fn close(mut self, patience: Duration) -> Result<Content, String> {
+        if !self.shared.flush(patience) {
+            return Err("the session is not kept: the disk takes too long".to_owned());
+        }
+        if let Some(trouble) = self.trouble() {
+            return Err(trouble);
+        }
+        let slot = self
+            .end()
+            .ok_or("the session is not kept: there is nothing in it")?;
+        let content = slot
+            .read_back()
+            .map_err(|reason| format!("the session was not kept: {reason}"))?;
+        match self.shared.state().noted.as_ref() == Some(&content) {
+            true => Ok(content),
+            false => Err("the session was not kept: the disk holds an earlier one".to_owned()),
+        }
+    }
+
+    /// Has the thread end, and waits for it.
+    fn end(&mut self) -> Option<Slot> {
+        self.shared.state().is_closing = true;
+        self.shared.changed.notify_all();
+        self.writer.take()?.join().ok()?
     }
 }
 
 impl Drop for Session {
     fn drop(&mut self) {
-        let is_free = self.shared.flush();
-        self.shared.state().is_closing = true;
-        self.shared.changed.notify_all();
-        // A thread that hangs in a dead disk is left to itself.
-        if let Some(writer) = self.writer.take().filter(|_| is_free) {
-            let _ = writer.join();
+        if self.writer.is_none() {
+            return;
+        }
+        match self.shared.flush(PATIENCE) {
+            true => drop(self.end()),
+            // A thread that hangs in a dead disk is left to itself.
+            false => self.shared.state().is_closing = true,
         }
     }
 }
@@ -199,139 +314,5 @@ impl Drop for Session {
 impl std::fmt::Debug for Session {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Session").finish_non_exhaustive()
-    }
-}
-
-/// What the loop, the thread and the flush have between them.
-#[derive(Default)]
-struct Shared {
-    state: Mutex<State>,
-    changed: Condvar,
-}
-
-#[derive(Default)]
-struct State {
-    noted: Option<Content>,
-    /// How many contents have been noted, and which of them is on the disk.
-    notes: u64,
-    written: u64,
-    /// Somebody waits for the note of that number.
-    hurry: Option<u64>,
-    is_closing: bool,
-    /// That it cannot be kept, and why until this is told.
-    trouble: Option<Option<String>>,
-}
-
-impl Shared {
-    fn state(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn note(&self, content: Content) {
-        let mut state = self.state();
-        if state
-            .noted
-            .as_ref()
-            .is_some_and(|old| Arc::ptr_eq(&old.work, &content.work) && old.place == content.place)
-        {
-            return;
-        }
-        let was_written = state.written == state.notes;
-        state.noted = Some(content);
-        state.notes += 1;
-        if was_written {
-            self.changed.notify_all();
-        }
-    }
-
-    /// Whether what was noted has been tried to be written in time.
-    fn flush(&self) -> bool {
-        let end = Instant::now() + PATIENCE;
-        let Some(mut state) = self.state_by(end) else {
-            return false;
-        };
-        state.hurry = Some(state.notes);
-        self.changed.notify_all();
-        while state.hurry.is_some() {
-            let left = end.saturating_duration_since(Instant::now());
-            if left.is_zero() {
-                return false;
-            }
-            state = self.wait(state, left);
-        }
-        true
-    }
-
-    /// The state, unless the thread that panicked has it in its hands.
-    fn state_by(&self, end: Instant) -> Option<MutexGuard<'_, State>> {
-        loop {
-            match self.state.try_lock() {
-                Ok(state) => return Some(state),
-                Err(TryLockError::Poisoned(state)) => return Some(state.into_inner()),
-                Err(TryLockError::WouldBlock) if Instant::now() >= end => return None,
-                Err(TryLockError::WouldBlock) => thread::sleep(Duration::from_millis(1)),
-            }
-        }
-    }
-
-    fn wait<'a>(&'a self, state: MutexGuard<'a, State>, most: Duration) -> MutexGuard<'a, State> {
-        let woken = self.changed.wait_timeout(state, most);
-        woken.unwrap_or_else(PoisonError::into_inner).0
-    }
-
-    /// The thread's work: it ends when the session is closed.
-    fn keep_writing(&self, mut slot: Slot) {
-        let mut not_before = Instant::now();
-        while let Some((content, note)) = self.next(not_before) {
-            let result = slot.save(&content);
-            self.tell(note, result);
-            not_before = Instant::now() + PERIOD;
-        }
-        if slot.is_empty() {
-            slot.remove();
-        }
-    }
-
-    /// Waits until there is something to write and time to do so.
-    fn next(&self, not_before: Instant) -> Option<(Content, u64)> {
-        const FOR_EVER: Duration = Duration::from_secs(3600);
-        let mut state = self.state();
-        while !state.is_closing {
-            let to_go = not_before.saturating_duration_since(Instant::now());
-            // Asked to hurry it writes the same once more: the session that was left last is to be the newest.
-            let is_due = state.written < state.notes || state.hurry.is_some();
-            match state.noted.as_ref().filter(|_| is_due) {
-                Some(content) if state.hurry.is_some() || to_go.is_zero() => {
-                    return Some((content.clone(), state.notes));
-                }
-                Some(_) => state = self.wait(state, to_go),
-                None => {
-                    if state.hurry.take().is_some() {
-                        self.changed.notify_all();
-                    }
-                    state = self.wait(state, FOR_EVER);
-                }
-            }
-        }
-        None
-    }
-
-    fn tell(&self, note: u64, result: io::Result<()>) {
-        let mut state = self.state();
-        let is_enough = state.hurry.is_some_and(|wanted| note >= wanted);
-        match result {
-            Ok(()) => {
-                state.written = note;
-                state.trouble = None;
-            }
-            Err(error) if state.trouble.is_none() => {
-                state.trouble = Some(Some(format!("the session cannot be kept: {error}")));
-            }
-            Err(_) => {}
-        }
-        if is_enough {
-            state.hurry = None;
-            self.changed.notify_all();
-        }
     }
 }

@@ -1,7 +1,52 @@
-//! Numbers in as few digits as a reader needs. Counts and sizes are `indicatif`'s `HumanCount` and `DecimalBytes`.
+//! Numbers in as few digits as a reader needs. Whatever the number, the text is short, and it is never NaN or inf: what
+//! is not a finite number is "n/a". Counts and sizes are `indicatif`'s `HumanCount` and `DecimalBytes`.
 
-/// The shortest text that is read back as `number`.
+/// What stands for a number that there is not.
+pub const NONE: &str = "n/a";
+
+/// From this size on a number is written with an exponent: digits before the point are no longer read.
+const LARGE: f64 = 1e9;
+/// Digits after the point of a number that is written with an exponent where decimals were asked for.
+const MOST_DIGITS: usize = 6;
+
+/// `number` with `decimals` digits after the point: `0.886033`.
+pub fn fixed(number: f64, decimals: usize) -> String {
+    if number.abs() < LARGE {
+        return format!("{number:.decimals$}");
+    }
+    exponent(number, decimals.min(MOST_DIGITS))
+}
+
+/// As [`fixed`], with its sign: `+0.1160`.
+pub fn signed(number: f64, decimals: usize) -> String {
+    with_sign(number, fixed(number, decimals))
+}
+
+/// `number` with an exponent and `digits` digits after the point: `2.4e-9`.
+pub fn exponent(number: f64, digits: usize) -> String {
+    match number.is_finite() {
+        true => format!("{number:.digits$e}"),
+        false => NONE.to_owned(),
+    }
+}
+
+/// As [`exponent`], with its sign: `+2.4e-9`.
+pub fn signed_exponent(number: f64, digits: usize) -> String {
+    with_sign(number, exponent(number, digits))
+}
+
+fn with_sign(number: f64, text: String) -> String {
+    match number.is_finite() && number.is_sign_positive() {
+        true => format!("+{text}"),
+        false => text,
+    }
+}
+
+/// The shortest text that is read back as `number`: 0.1, 1e308.
 pub fn shortest(number: f64) -> String {
+    if !number.is_finite() {
+        return NONE.to_owned();
+    }
     let text = format!("{number:?}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
@@ -22,14 +67,89 @@ pub fn rounded(number: f64, digits: usize) -> f64 {
 /// with an exponent and three decimals.
 pub fn decimal(number: f64) -> String {
     match number.abs() {
-        size if size >= 1e6 => format!("{number:.3e}"),
-        _ => (libm::round(number * 1e6) / 1e6).to_string(),
+        size if size < 1e6 => (libm::round(number * 1e6) / 1e6).to_string(),
+        _ => exponent(number, 3),
+    }
+}
+
+/// Three digits, without a train of zeros: `0.389`, `34.4`, `1.2e-7`.
+pub fn short(number: f64) -> String {
+    match number.abs() {
+        0.0 => "0".to_owned(),
+        size if (1e-3..1e5).contains(&size) => {
+            let digits = (2.0 - libm::floor(libm::log10(size))).max(0.0) as usize;
+            format!("{number:.digits$}")
+        }
+        _ => exponent(number, 1),
+    }
+}
+
+/// A number that is not negative with about three digits, in as many characters while its size does not change.
+pub fn steady(number: f64) -> String {
+    match number {
+        n if n >= 1e6 => exponent(n, 1),
+        n if n >= 1.0 => fixed(n, 2),
+        n if n >= 0.1 => fixed(n, 3),
+        n => fixed(n, 4),
+    }
+}
+
+/// How many times one number is another, without digits that only flicker.
+pub fn times(ratio: f64) -> String {
+    match ratio {
+        r if r >= 1e6 => exponent(r, 1),
+        r if r < 10.0 => fixed(r, 1),
+        r => fixed(r, 0),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    const WAYS: [fn(f64) -> String; 9] = [
+        |n| fixed(n, 9),
+        |n| signed(n, 4),
+        |n| exponent(n, 3),
+        |n| signed_exponent(n, 3),
+        shortest,
+        decimal,
+        short,
+        steady,
+        times,
+    ];
+
+    proptest! {
+        #[test]
+        fn no_number_is_long_or_no_number(bits in any::<u64>()) {
+            let number = f64::from_bits(bits);
+            for text in WAYS.map(|way| way(number)) {
+                prop_assert!(text.len() <= 24, "{text}");
+                prop_assert_eq!(text == NONE, !number.is_finite(), "{}", text);
+                prop_assert!(!text.contains("inf") && !text.contains("NaN"));
+            }
+        }
+
+        #[test]
+        fn the_shortest_reads_back(number in any::<f64>().prop_filter("finite", |n| n.is_finite())) {
+            prop_assert_eq!(shortest(number).parse::<f64>().unwrap(), number);
+        }
+    }
+
+    #[test]
+    fn ordinary_numbers_look_ordinary() {
+        assert_eq!(fixed(0.886033, 6), "0.886033");
+        assert_eq!(fixed(1.5e300, 9), "1.500000e300");
+        assert_eq!(signed(0.116, 4), "+0.1160");
+        assert_eq!(signed_exponent(-2.4e-9, 1), "-2.4e-9");
+        assert_eq!(shortest(0.1), "0.1");
+        assert_eq!(shortest(1e308), "1e308");
+        assert_eq!(short(34.4321), "34.4");
+        assert_eq!(short(5e-324), "4.9e-324");
+        assert_eq!(times(106.7), "107");
+        assert_eq!(shortest(f64::NAN), "n/a");
+    }
 
     #[test]
     fn numbers_are_short() {

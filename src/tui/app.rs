@@ -49,15 +49,13 @@ pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<
     }
 }
 
-/// Has `session` keep `lab` as it stands; says so where it cannot.
+/// Has `session` keep `lab` as it stands; says so as long as it cannot.
 fn keep(lab: &mut Lab, session: Option<&Session>) {
     let Some(session) = session else {
         return;
     };
     session.note(lab.content());
-    if let Some(trouble) = session.new_trouble() {
-        lab.tell(trouble);
-    }
+    lab.set_trouble(session.trouble());
 }
 
 /// For the tests of the end, which are built with debug assertions: `GYROLAB_PANIC_AFTER_MS=1000` makes this thread panic

@@ -51,7 +51,7 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
 
 /// Draws one pane of `lab` on `area`.
 pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
-    let (run, view, readouts) = (lab.run(), lab.view(), lab.readouts());
+    let (run, view, reading) = (lab.run(), lab.view(), lab.reading());
     let ghost = lab.ghost();
     match pane {
         Pane::Traces => Traces { run, ghost, view }.render(area, buf),
@@ -60,7 +60,7 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
         Pane::Parameters => Parameters {
             scenario: run.scenario(),
             motion: &lab.motion(),
-            readouts,
+            reading,
             editor: lab.editor(),
             view,
         }

@@ -3,6 +3,7 @@
 
 use crate::scenario::rescale::at_time_step;
 use crate::scenario::{Motion, Scenario};
+use crate::text::number::shortest;
 
 /// What there is to see in `scenario`, as its file says.
 pub fn look_at(scenario: &Scenario) -> Option<&str> {
@@ -22,7 +23,11 @@ fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
     let (old, new) = (last_motion(before), last_motion(now));
     let mut changes = Vec::new();
     if new.time_step_s != old.time_step_s {
-        changes.push(format!("dt {} s, not {}", new.time_step_s, old.time_step_s));
+        changes.push(format!(
+            "dt {} s, not {}",
+            shortest(new.time_step_s),
+            shortest(old.time_step_s)
+        ));
     }
     if new.scheme.name != old.scheme.name {
         changes.push(format!(
@@ -31,7 +36,11 @@ fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
         ));
     }
     if new.gravity != old.gravity {
-        changes.push(format!("gravity {} m/s2, not {}", new.gravity, old.gravity));
+        changes.push(format!(
+            "gravity {} m/s2, not {}",
+            shortest(new.gravity),
+            shortest(old.gravity)
+        ));
     }
     let others = [
         (now.file.body != before.file.body, "another body"),

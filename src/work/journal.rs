@@ -3,8 +3,14 @@
 //! Everything else, any earlier state and any export, is computed from it again. What is done at a step acts from the
 //! next one on; doing something earlier than what was done before drops the later entries. The last entry can be taken
 //! back, and brought again.
+//!
+//! The journal is the plain list of what was done, in the order in which it was done. Which of it holds is computed from
+//! the steps: an entry that a later one dropped stays in the list, and holds again when that one is taken back.
+
+mod stored;
 
 use super::parameters;
+pub use crate::scenario::dotted::number_of_push;
 use crate::scenario::file::{EditFile, PushFile, ScenarioFile};
 use crate::scenario::keys::Effect;
 use crate::scenario::{Document, Problems, Scenario, rescale};
@@ -15,16 +21,17 @@ use toml::{Table, Value};
 /// Characters of a value in words.
 const LONGEST_VALUE: usize = 30;
 
-/// A scenario and what was done to it, in the order of the steps.
+/// A scenario and what was done to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(from = "stored::Stored")]
 pub struct Journal {
     /// The scenario before anything was done to it.
     base: ScenarioFile,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    done: Vec<Entry>,
+    /// What was done, in the order in which it was done, with what was dropped by it later.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    log: Vec<Entry>,
     /// What was taken back, the last one first to be brought again.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     undone: Vec<Entry>,
 }
 
@@ -42,9 +49,6 @@ pub struct Entry {
     /// Whether it is one more nudge, taken back together with the entry before it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     is_chained: bool,
-    /// What came after the first later entry that it dropped: all of it but for what has no time is gone.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    dropped: Vec<Entry>,
 }
 
 /// What can be done to a run without beginning a new one.
@@ -91,10 +95,9 @@ impl Journal {
             act: Act::Edit(edit.set),
             from_file: true,
             is_chained: false,
-            dropped: Vec::new(),
         };
         Self {
-            done: std::mem::take(&mut file.edit)
+            log: std::mem::take(&mut file.edit)
                 .into_iter()
                 .map(entry)
                 .collect(),
@@ -108,9 +111,25 @@ impl Journal {
         &self.base
     }
 
+    /// The entries that hold, in the order of their steps: those that no later entry has dropped. What has no time is
+    /// never dropped, and drops nothing.
+    fn done(&self) -> Vec<&Entry> {
+        let mut earliest = u64::MAX; // step of the entries that were made later
+        let holds = |entry: &&Entry| {
+            let holds = !entry.is_later_than(earliest);
+            if entry.drops() {
+                earliest = earliest.min(entry.step);
+            }
+            holds
+        };
+        let mut done: Vec<_> = self.log.iter().rev().filter(holds).collect();
+        done.reverse();
+        done
+    }
+
     /// The run file.
     pub fn file(&self) -> ScenarioFile {
-        self.made_of(&self.done)
+        self.made_of(&self.done())
     }
 
     /// The run, checked.
@@ -118,7 +137,7 @@ impl Journal {
     /// # Errors
     /// What is wrong with it; nothing, where [`act`](Self::act) made it.
     pub fn scenario(&self) -> Result<Scenario, Problems> {
-        checked(&self.file())
+        checked(self.file())
     }
 
     /// The run as it was when its length was told last: by its file, or by what was done since.
@@ -130,32 +149,29 @@ impl Journal {
             Act::Describe(set) => set.contains_key("motion.steps"),
             Act::Edit(_) | Act::Push(_) => entry.from_file,
         };
-        let told = self.done.iter().rposition(tells).map_or(0, |last| last + 1);
-        checked(&self.made_of(&self.done[..told]))
+        let done = self.done();
+        let told = done.iter().rposition(|entry| tells(entry));
+        checked(self.made_of(&done[..told.map_or(0, |last| last + 1)]))
     }
 
     /// The run file of the run up to `step`: as long, and without what was done later.
     pub fn file_until(&self, step: u64) -> ScenarioFile {
-        let earlier: Vec<_> = self
-            .done
-            .iter()
-            .filter(|entry| !entry.is_later_than(step))
-            .cloned()
-            .collect();
-        let mut file = self.made_of(&earlier);
+        let mut done = self.done();
+        done.retain(|entry| !entry.is_later_than(step));
+        let mut file = self.made_of(&done);
         file.motion.steps = step.max(1);
         file
     }
 
     /// How many entries stand later than `step`.
     pub fn later_than(&self, step: u64) -> usize {
-        self.done
-            .iter()
+        let done = self.done();
+        done.iter()
             .filter(|entry| entry.is_later_than(step))
             .count()
     }
 
-    fn made_of(&self, done: &[Entry]) -> ScenarioFile {
+    fn made_of(&self, done: &[&Entry]) -> ScenarioFile {
         let mut file = self.base.clone();
         let mut last_is_of_file = true;
         for entry in done {
@@ -195,7 +211,7 @@ impl Journal {
     /// # Errors
     /// As [`act`](Self::act).
     pub fn act_again(&mut self, step: u64, act: Act) -> Result<Scenario, Problems> {
-        self.enter(step, act, !self.done.is_empty())
+        self.enter(step, act, !self.log.is_empty())
     }
 
     fn enter(&mut self, step: u64, act: Act, is_chained: bool) -> Result<Scenario, Problems> {
@@ -205,32 +221,22 @@ impl Journal {
                 parameters::changed(&file, key, value.clone()).map(drop)
             })?;
         }
-        let mut next = self.clone();
         let act = match act {
-            Act::Push(push) => next.push_at_the_end(push),
+            Act::Push(push) => self.push_at_the_end(push),
             act => act,
         };
-        let is_drop = |entry: &Entry| entry.is_later_than(step) && !matches!(act, Act::Describe(_));
-        let first = next.done.iter().position(is_drop);
-        let dropped = next.done.split_off(first.unwrap_or(next.done.len()));
-        next.push(Entry {
+        self.log.push(Entry {
             step,
             act,
             from_file: false,
             is_chained,
-            dropped,
         });
-        next.undone.clear();
-        let scenario = next.scenario()?;
-        *self = next;
-        Ok(scenario)
-    }
-
-    /// Does `entry` last, what it drops being gone: what has no time goes on to hold.
-    fn push(&mut self, entry: Entry) {
-        let stay = entry.dropped.iter().filter(|entry| entry.has_no_time());
-        self.done.extend(stay.cloned());
-        self.done.push(entry);
+        let scenario = self.scenario();
+        match &scenario {
+            Ok(_) => self.undone.clear(),
+            Err(_) => drop(self.log.pop()),
+        }
+        scenario
     }
 
     /// A push as a table of its own; where edits have added pushes, whose numbers must stay, as one more edit.
@@ -247,14 +253,12 @@ impl Journal {
         }
     }
 
-    /// Takes the last entry back, or all nudges of a chain; gives from which step on, and what the last of it was.
+    /// Takes the last entry back, or all nudges of a chain; gives from which step on, and what the last of it was. What it
+    /// had dropped holds again.
     pub fn undo(&mut self) -> Option<(u64, Act)> {
-        let last = self.done.last()?.act.clone();
+        let last = self.log.last()?.act.clone();
         loop {
-            let entry = self.done.pop()?;
-            let stayed = entry.dropped.iter().filter(|entry| entry.has_no_time());
-            self.take_off(stayed.count());
-            self.done.extend(entry.dropped.iter().cloned());
+            let entry = self.log.pop()?;
             let (step, is_chained) = (entry.step, entry.is_chained);
             self.undone.push(entry);
             if !is_chained {
@@ -268,18 +272,12 @@ impl Journal {
         let first = self.undone.last()?.step;
         loop {
             let entry = self.undone.pop()?;
-            self.take_off(entry.dropped.len());
             let act = entry.act.clone();
-            self.push(entry);
+            self.log.push(entry);
             if !self.undone.last().is_some_and(|next| next.is_chained) {
                 return Some((first, act));
             }
         }
-    }
-
-    /// Takes the last `count` entries off.
-    fn take_off(&mut self, count: usize) {
-        self.done.truncate(self.done.len().saturating_sub(count));
     }
 
     /// What was taken back can no longer be brought again.
@@ -289,16 +287,16 @@ impl Journal {
 
     /// How many entries act by `step`, those made there counted in.
     pub fn in_force(&self, step: u64) -> usize {
-        self.done.len() - self.later_than(step)
+        let mut done = self.done();
+        done.retain(|entry| !entry.is_later_than(step));
+        done.len()
     }
 
     /// How many pushes there are by `step`, over or to come: those of the scenario, and those given since.
     pub fn pushes_by(&self, step: u64) -> usize {
-        let given = self
-            .done
-            .iter()
-            .filter(|entry| entry.step <= step && matches!(entry.act, Act::Push(_)));
-        self.base.push.len() + given.count()
+        let mut given = self.done();
+        given.retain(|entry| entry.step <= step && matches!(entry.act, Act::Push(_)));
+        self.base.push.len() + given.len()
     }
 
     /// A new run with the values of `set`: nothing is done to it yet, and it moves from the start as this one does at `step`.
@@ -315,7 +313,9 @@ impl Journal {
     fn as_it_moves_at(&self, step: u64) -> Result<ScenarioFile, Problems> {
         let mut file = self.base.clone();
         let mut time_step_s = file.motion.time_step_s;
-        for entry in self.done.iter().filter(|entry| !entry.is_later_than(step)) {
+        let mut done = self.done();
+        done.retain(|entry| !entry.is_later_than(step));
+        for entry in done {
             let (Act::Edit(set) | Act::Describe(set)) = &entry.act else {
                 continue;
             };
@@ -337,15 +337,15 @@ impl Journal {
     }
 }
 
-/// The number, from 0, of the push that the dotted `key` belongs to.
-pub fn number_of_push(key: &str) -> Option<usize> {
-    key.strip_prefix("push.")?.split('.').next()?.parse().ok()
-}
-
 impl Entry {
     /// Whether it acts on steps after the one that follows `step`.
     fn is_later_than(&self, step: u64) -> bool {
         self.step > step && !self.has_no_time()
+    }
+
+    /// Whether it drops the entries before it that stand at later steps. What stood in the file was never done.
+    fn drops(&self) -> bool {
+        !self.from_file && !self.has_no_time()
     }
 
     /// Whether no number depends on it.
@@ -367,8 +367,8 @@ fn number(value: &Value) -> Option<f64> {
         .or_else(|| Some(value.as_integer()? as f64))
 }
 
-fn checked(file: &ScenarioFile) -> Result<Scenario, Problems> {
-    Document::from_file("the run", file)?.scenario()
+fn checked(file: ScenarioFile) -> Result<Scenario, Problems> {
+    Document::check_file("the run", file)
 }
 
 /// `file` with every key of `set` written; not yet checked.
@@ -489,7 +489,7 @@ mod tests {
         journal.act(5, gravity(3.0)).unwrap();
         journal.act(3, gravity(4.0)).unwrap();
         journal.undo();
-        journal.done.clear();
+        journal.log.clear();
         assert!(journal.redo().is_some());
     }
 

@@ -4,7 +4,7 @@ use crate::physics::{State, rotation};
 use crate::scenario::file::{MotionFile, PushFile, ScenarioFile, StartFile, ViewFile};
 use crate::scenario::problem::{Problem, Problems};
 use crate::scenario::rescale::MOST_STEPS;
-use crate::scenario::{Document, Motion, Push, Scenario, Window};
+use crate::scenario::{Document, Motion, Push, Pushes, Scenario, Window};
 use crate::text::number;
 use nalgebra::{Matrix3, Vector3};
 
@@ -32,10 +32,7 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
         .filter_map(|(index, push)| now.push(index, push).transpose());
     let push = moved
         .collect::<Result<Vec<_>, _>>()
-        .map_err(|problem| Problems {
-            origin: origin.to_owned(),
-            list: vec![problem],
-        })?;
+        .map_err(|problem| Problems::one(origin.to_owned(), problem))?;
     let old = &scenario.file;
     let speed = old.view.as_ref().and_then(|view| view.speed);
     let file = ScenarioFile {
@@ -81,8 +78,9 @@ fn as_long(scenario: &Scenario, motion: &Motion) -> u64 {
 }
 
 /// Gravity, scheme, time step and pushes of the step after `step`.
-pub fn in_force(scenario: &Scenario, step: u64) -> (Motion, &[Push]) {
-    let last = scenario.edits.iter().rev().find(|edit| edit.step <= step);
+pub fn in_force(scenario: &Scenario, step: u64) -> (Motion, &Pushes) {
+    let made = scenario.edits.partition_point(|edit| edit.step <= step);
+    let last = scenario.edits[..made].last();
     last.map_or((scenario.motion, &scenario.pushes), |edit| {
         (edit.motion, &edit.pushes)
     })

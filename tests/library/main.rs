@@ -6,15 +6,19 @@
 mod support;
 
 mod commands;
+mod coverage;
 mod exact;
 mod health;
 mod journal;
+mod kept;
 mod laws;
+mod limits;
 mod mangled;
 mod parameters;
 mod pictures;
 mod present;
 mod presets;
+mod readouts;
 mod reference;
 mod refusals;
 mod replay;

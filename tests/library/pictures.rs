@@ -9,7 +9,7 @@ use gyrolab::lab::view::{Pane, View};
 use gyrolab::observe::ghost::Ghost;
 use gyrolab::observe::live::LiveRun;
 use gyrolab::observe::pace::Pace;
-use gyrolab::observe::readouts::Readouts;
+use gyrolab::observe::reading::Reading;
 use gyrolab::scenario::{Document, presets};
 use gyrolab::tui::panes::form::FormPane;
 use gyrolab::tui::panes::from_above::FromAbove;
@@ -308,7 +308,7 @@ fn editor(group: &str, label: &str) -> Editor {
 /// The parameters with `editor` on a sheet of this size; where they have the focus, or fill the screen.
 fn parameters(editor: &Editor, (focus, filled): (bool, bool), size: (u16, u16)) -> Buffer {
     let mut now = run("wobble-push", &[], "", 500);
-    let readouts = &Readouts::new(&mut now, &Pace::new(1.0, false));
+    let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
     let mut view = view(&now, Marker::Braille);
     view.filled = filled;
     view.focus = if focus {
@@ -320,7 +320,7 @@ fn parameters(editor: &Editor, (focus, filled): (bool, bool), size: (u16, u16)) 
     Parameters {
         scenario: now.scenario(),
         motion: now.simulation().motion(),
-        readouts,
+        reading,
         editor,
         view: &view,
     }
@@ -487,13 +487,13 @@ proptest! {
         let mut lines = editor("motion", "dt");
         lines.shift(selected - 16);
         let mut now = run("wobble-push", &[], "", 3);
-        let readouts = &Readouts::new(&mut now, &Pace::new(1.0, false));
+        let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
         let mut view = view(&now, Marker::Ascii);
         (view.filled, view.focus) = (filled, Pane::Parameters);
         let pane = Parameters {
             scenario: now.scenario(),
             motion: now.simulation().motion(),
-            readouts,
+            reading,
             editor: &lines,
             view: &view,
         };

@@ -1,6 +1,8 @@
 //! Every shipped preset: it is complete, and it does what it says.
 
 use crate::support::scenarios::preset as preset_named;
+use gyrolab::analysis::health::{Advice, advise};
+use gyrolab::analysis::{Monitor, Readouts};
 use gyrolab::export::Column;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::presets::PRESETS;
@@ -88,4 +90,48 @@ fn every_preset_does_what_it_expects() {
             );
         }
     }
+}
+
+/// The readouts at the end of the preset `name`.
+fn readouts(name: &str) -> Readouts {
+    let scenario = preset_named(name, &[]);
+    let mut simulation = Simulation::new(Arc::new(scenario));
+    let mut monitor = Monitor::new(&simulation);
+    while simulation.step_number() < simulation.scenario().steps {
+        simulation.step().unwrap();
+        monitor.follow(&simulation);
+    }
+    let health = monitor.health(&simulation);
+    Readouts::new(&simulation, &mut monitor, &health, None)
+}
+
+/// What a preset says of itself, in one text.
+fn words(name: &str) -> String {
+    let file = preset_named(name, &[]).file;
+    file.about.unwrap() + &file.view.unwrap().look_at.unwrap()
+}
+
+#[test]
+fn the_figures_in_the_texts_are_those_of_the_runs() {
+    let swing = |name: &str| {
+        let readouts = readouts(name);
+        let number = |name: &str| readouts.number(name).unwrap();
+        number("measured_highest_z_m") - number("measured_lowest_z_m")
+    };
+    let slow = format!("z swings by {:.1e} m", swing("method-2-slow"));
+    assert!(words("method-2-slow").contains(&slow), "{slow}");
+    let percent = 100.0 * swing("method-2") / 0.8;
+    let percent = format!("z swings by {percent:.1} %");
+    assert!(words("method-2").contains(&percent), "{percent}");
+    let fast = readouts("steady-fast");
+    let rate = |name: &str| fast.number(name).unwrap();
+    let ratio = rate("fast_precession_rad_per_s") / rate("slow_precession_rad_per_s");
+    let ratio = format!("{ratio:.2} times round");
+    assert!(words("steady-fast").contains(&ratio), "{ratio}");
+    let push = preset_named("wobble-push", &[]);
+    let Advice::TimeStep(step) = advise(&push) else {
+        panic!("{:?}", advise(&push));
+    };
+    let note = format!("at dt = {step} it is gone");
+    assert!(words("wobble-push").contains(&note), "{note}");
 }

@@ -504,7 +504,7 @@ fn files_that_are_no_scenarios() {
     assert!(read_refusal(&lab.path().join("none.toml")).contains("No such file"));
     if Path::new("/dev/zero").exists() {
         let message = read_refusal(Path::new("/dev/zero"));
-        assert!(message.contains("longer than 64 MiB"), "{message}");
+        assert!(message.contains("longer than 16 MiB"), "{message}");
     }
 }
 

@@ -2,8 +2,8 @@
 
 use crate::support::scenarios::preset as opened;
 use gyrolab::analysis::theory::Path;
-use gyrolab::analysis::{Health, Measured, Monitor, Theory};
-use gyrolab::export::{Readouts, Summary};
+use gyrolab::analysis::{Health, Measured, Monitor, Readouts, Theory};
+use gyrolab::export::Summary;
 use gyrolab::physics::SchemeInfo;
 use gyrolab::run::resample::resampled;
 use gyrolab::run::{Simulation, Truth};
@@ -335,7 +335,7 @@ fn summary(scenario: &Arc<Scenario>) -> Summary {
     let (simulation, mut monitor) = followed(scenario);
     let health: Health = monitor.health(&simulation);
     let readouts = Readouts::new(&simulation, &mut monitor, &health, None);
-    Summary::new(&simulation, readouts, Duration::from_secs(1))
+    Summary::new(readouts, Duration::from_secs(1))
 }
 
 #[test]

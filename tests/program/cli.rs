@@ -495,7 +495,7 @@ fn fifos_and_devices_are_written_directly() {
 
 #[test]
 fn an_open_file_that_is_named_as_output_is_written_as_it_is() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let run = "\"$G\" run method-1 --steps 3";
     done(lab.shell(&format!("{run} -o a.csv")));
     let rows = lab.read("a.csv");
@@ -527,7 +527,7 @@ fn an_open_file_that_is_named_as_output_is_written_as_it_is() {
 
 #[test]
 fn a_scenario_comes_from_a_fifo_too() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let preset = done(lab.run(&["presets", "cusps"]));
     lab.write("cusps.toml", stdout(&preset));
     for command in [
@@ -556,7 +556,7 @@ fn a_scenario_comes_from_a_fifo_too() {
 
 #[test]
 fn a_replaced_file_keeps_its_rights_but_not_those_of_a_set_user_id() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     let run = || done(lab.run(&["run", "method-1", "--steps", "3", "-o", "a.csv", "--force"]));
     for (before, after) in [(0o640, 0o640), (0o6755, 0o755), (0o1604, 0o604)] {
         lab.write("a.csv", "old");
@@ -577,7 +577,7 @@ fn a_replaced_file_keeps_its_rights_but_not_those_of_a_set_user_id() {
 
 #[test]
 fn ctrl_c_acts_at_once_when_the_steps_are_done() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     // A summary that nobody reads holds the program up after its last step, as a long search for advice does.
     done(lab.shell("mkfifo fifo"));
     let mut child = lab
@@ -616,7 +616,7 @@ fn full(mut fifo: fs::File) -> fs::File {
 
 #[test]
 fn a_signal_ends_the_wait_of_a_comparison_for_the_reader_of_a_fifo() {
-    let lab = Lab::new();
+    let lab = Ground::new();
     done(lab.shell("mkfifo fifo"));
     let mut child = lab
         .command(&["compare", "cusps", "-o", "fifo"])
@@ -932,4 +932,43 @@ fn a_scenario_may_come_through_a_pipe() {
         .unwrap();
     assert!(child.wait().unwrap().success());
     assert_eq!(steps(&csv), [0.0, 1.0, 2.0, 3.0]);
+}
+
+#[test]
+fn the_measured_extremes_are_those_of_the_csv_and_theory_has_its_own_names() {
+    let lab = Ground::new();
+    let output = done(lab.run(&["run", "wobble-push", "-o", "a.csv", "--json"]));
+    let json: serde_json::Value = serde_json::from_str(stdout(&output)).unwrap();
+    let csv = lab.read("a.csv");
+    let (_, columns, rows) = parts(&csv);
+    let column = |name: &str| {
+        let index = columns
+            .split(',')
+            .position(|column| column == name)
+            .unwrap();
+        rows.iter().map(|row| row[index]).collect::<Vec<f64>>()
+    };
+    for (name, column) in [("tilt_deg", column("tilt_deg")), ("z_m", column("z_m"))] {
+        let least = column.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        assert_eq!(json[format!("measured_lowest_{name}")], least, "{name}");
+        assert_eq!(json[format!("measured_highest_{name}")], most, "{name}");
+    }
+    assert!(json["measured_highest_tilt_deg"].as_f64() > Some(56.0));
+    assert!(json["predicted_highest_tilt_deg"].as_f64() < Some(45.1));
+    assert!(json.get("lowest_tilt_deg").is_none() && json.get("highest_tilt_deg").is_none());
+    let summary = stderr(&output);
+    assert!(
+        summary.contains("degrees; 36.099381 to 56.945407 in the run"),
+        "{summary}"
+    );
+    assert!(
+        summary.contains("z             0.617092542 to 0.914143407 m in the run"),
+        "{summary}"
+    );
+    let listed = done(lab.run(&["readouts"]));
+    for name in json.as_object().unwrap().keys() {
+        let begins = |line: &str| line.split(' ').next() == Some(name);
+        assert!(stdout(&listed).lines().any(begins), "{name}");
+    }
 }

@@ -434,3 +434,15 @@ fn one_core_and_two_give_the_same_numbers() {
     assert_eq!(one, numbers("2"));
     assert_eq!(one, numbers("3"));
 }
+
+#[test]
+fn time_steps_that_cannot_be_counted_are_refused_with_a_remedy() {
+    let output = Ground::new().run(&["cusps", "--time-steps", "1e-300"]);
+    assert_eq!(code(&output), 1);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        stderr.contains("--time-steps 1e-300 would be")
+            && stderr.contains("give longer time steps"),
+        "{stderr}"
+    );
+}

@@ -9,5 +9,7 @@ mod support;
 mod cli;
 mod commands;
 mod compare;
+mod escapes;
 mod journeys;
+mod sessions;
 mod terminal;

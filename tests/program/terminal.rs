@@ -202,7 +202,7 @@ fn a_paste_into_a_field_is_cut_and_says_so() {
     terminal.ask(&paste("from-the\n-clipboard.csv"), "from-the-clipboard.csv");
     terminal.ask("\r", "wrote 11 rows");
     assert_eq!(
-        terminal.ground().names(),
+        terminal.ground().files(),
         ["from-the-clipboard.csv", "state"]
     );
     terminal.ask("o/", "(");
@@ -267,7 +267,7 @@ fn nothing_is_saved_where_it_could_hang_the_lab_or_write_over_the_picture() {
     terminal.ask("s", "save the run file");
     terminal.ask("\u{15}-\r", "the run is in");
     terminal.quit();
-    assert_eq!(terminal.ground().names(), ["-", "fifo", "state"]);
+    assert_eq!(terminal.ground().files(), ["-", "fifo", "state"]);
 }
 
 #[test]

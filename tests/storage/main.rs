@@ -8,4 +8,5 @@
 mod support;
 
 mod exporting;
+mod hostile;
 mod session;

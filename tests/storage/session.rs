@@ -1,7 +1,7 @@
 //! Sessions on the disk, across processes that live, quit and are killed.
 
 use gyrolab::storage::at_exit::{self, Farewell};
-use gyrolab::storage::session::{Content, Found, Session, resume};
+use gyrolab::storage::session::{Content, Found, Session, list, resume, resume_named};
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::fs::PermissionsExt;
@@ -47,6 +47,19 @@ fn newest(folder: &Path) -> Option<Content> {
 fn kept(folder: &Path, work: &str, place: &str) {
     let session = Session::begin(folder).unwrap();
     session.note(content(work, place));
+    closed(session);
+}
+
+/// Waits until what was noted has been tried to be written: on a busy machine a flush may give up before.
+#[track_caller]
+fn written(session: &Session) {
+    wait_until(|| session.flush());
+}
+
+/// Waits until the session is on the disk and free.
+#[track_caller]
+fn closed(session: Session) -> Content {
+    session.close(PATIENCE).unwrap()
 }
 
 fn names(folder: &Path, end: &str) -> Vec<PathBuf> {
@@ -77,15 +90,15 @@ fn file_of(folder: &Path, text: &str) -> PathBuf {
         .unwrap()
 }
 
-/// Puts the writing of `path` so many seconds into the past.
+/// Puts the writing of a session with the work at `path` so many seconds into the past. A session that was written
+/// before it was flushed has its place in a file of its own too.
 fn age(path: &Path, seconds: u64) {
     let time = SystemTime::now() - Duration::from_secs(seconds);
-    fs::File::options()
-        .append(true)
-        .open(path)
-        .unwrap()
-        .set_modified(time)
-        .unwrap();
+    for path in [path, &path.with_extension("place")] {
+        if let Ok(file) = fs::File::options().append(true).open(path) {
+            file.set_modified(time).unwrap();
+        }
+    }
 }
 
 #[track_caller]
@@ -121,13 +134,13 @@ fn what_was_noted_last_comes_back_and_is_gone_on_with() {
         let (work, place) = (Arc::clone(&work), format!("step {step}"));
         session.note(Content { work, place });
     }
-    drop(session);
+    closed(session);
     let found = any(&folder).resumed.unwrap();
     assert_eq!(found.what, content(&work, "step 999"));
     found.session.note(content("another run", "step 5"));
-    found.session.flush();
+    written(&found.session);
     found.session.note(content("another run", "step 6"));
-    drop(found);
+    closed(found.session);
     assert_eq!(newest(&folder), Some(content("another run", "step 6")));
     assert_eq!(names(&folder, ".work").len(), 1, "it is one session");
 }
@@ -138,7 +151,7 @@ fn only_the_user_may_read_it() {
     let session = Session::begin(&folder).unwrap();
     for place in ["one", "two"] {
         session.note(content("run", place));
-        session.flush();
+        written(&session);
     }
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
     assert_eq!(mode(&folder), 0o700);
@@ -171,7 +184,7 @@ fn a_flush_writes_at_once() {
     for step in 0..50 {
         let place = format!("step {step}.");
         session.note(content("run", &place));
-        session.flush();
+        written(&session);
         let end = if step == 0 { ".work" } else { ".place" };
         let text = fs::read_to_string(only(&folder, end)).unwrap();
         assert!(text.ends_with(&format!("{place}{}", if step == 0 { "run" } else { "" })));
@@ -184,12 +197,12 @@ fn a_place_is_never_taken_with_another_work() {
     let session = Session::begin(&folder).unwrap();
     for (work, place) in [("first", "a"), ("first", "b")] {
         session.note(content(work, place));
-        session.flush();
+        written(&session);
     }
     let of_the_first = fs::read_to_string(only(&folder, ".place")).unwrap();
     assert!(of_the_first.ends_with('b'));
     session.note(content("second", "c"));
-    drop(session);
+    closed(session);
     // As if the process had died between the work and its place.
     fs::write(only(&folder, ".place"), of_the_first).unwrap();
     assert_eq!(newest(&folder), Some(content("second", "c")));
@@ -202,7 +215,7 @@ fn the_newest_that_is_not_in_use_is_taken() {
     age(&only(&folder, ".work"), 100);
     let middle = Session::begin(&folder).unwrap();
     middle.note(content("middle", "1"));
-    middle.flush();
+    written(&middle);
     age(&file_of(&folder, "1middle"), 200);
     kept(&folder, "new", "");
     assert_eq!(newest(&folder).unwrap().work.as_ref(), "new");
@@ -213,7 +226,7 @@ fn the_newest_that_is_not_in_use_is_taken() {
         "two are in use"
     );
     middle.note(content("middle", "2"));
-    drop(middle);
+    closed(middle);
     drop(new);
     assert_eq!(
         newest(&folder),
@@ -321,9 +334,9 @@ fn a_damaged_place_costs_the_place_alone() {
     let session = Session::begin(&folder).unwrap();
     for place in ["one", "two"] {
         session.note(content("run", place));
-        session.flush();
+        written(&session);
     }
-    drop(session);
+    closed(session);
     cut(&only(&folder, ".place"), 1);
     let found = any(&folder);
     assert_eq!(found.resumed.unwrap().what, content("run", "one"));
@@ -341,7 +354,7 @@ fn the_oldest_are_cleared_away_but_none_in_use() {
     let (_outer, folder) = folder();
     let in_use = Session::begin(&folder).unwrap();
     in_use.note(content("in use", ""));
-    in_use.flush();
+    written(&in_use);
     age(&only(&folder, ".work"), 100_000);
     for n in 0..30 {
         kept(&folder, &n.to_string(), "");
@@ -350,7 +363,7 @@ fn the_oldest_are_cleared_away_but_none_in_use() {
     drop(Session::begin(&folder).unwrap());
     assert_eq!(names(&folder, ".work").len(), 21);
     assert_eq!(names(&folder, ".lock").len(), 21);
-    drop(in_use);
+    closed(in_use);
     let mut found = Vec::new();
     while let Some(resumed) = any(&folder).resumed {
         found.push(resumed);
@@ -380,27 +393,108 @@ fn a_folder_that_cannot_be_had_is_an_error_in_words() {
 }
 
 #[test]
-fn trouble_is_told_once_and_it_is_tried_again() {
+fn trouble_is_told_as_long_as_it_lasts_and_it_is_tried_again() {
     let (_outer, folder) = folder();
     let session = Session::begin(&folder).unwrap();
     session.note(content("run", "one"));
-    session.flush();
-    assert_eq!(session.new_trouble(), None);
+    written(&session);
+    assert_eq!(session.trouble(), None);
     // A folder in the way of the temporary file does for a full disk.
     let in_the_way = only(&folder, ".work").with_extension("place.new");
     fs::create_dir(&in_the_way).unwrap();
     session.note(content("run", "two"));
-    session.flush();
-    assert!(session.new_trouble().unwrap().contains("cannot be kept"));
-    session.note(content("run", "three"));
-    session.flush();
-    assert_eq!(session.new_trouble(), None, "told twice");
+    written(&session);
+    for place in ["three", "four"] {
+        assert!(session.trouble().unwrap().contains("cannot be kept"));
+        session.note(content("run", place));
+        written(&session);
+    }
     fs::remove_dir(&in_the_way).unwrap();
-    wait_until(|| names(&folder, ".place").len() == 1);
+    wait_until(|| session.trouble().is_none());
+    assert_eq!(names(&folder, ".place").len(), 1);
     fs::create_dir(&in_the_way).unwrap();
+    session.note(content("run", "five"));
+    written(&session);
+    assert!(session.trouble().is_some(), "it is new again");
+}
+
+#[test]
+fn the_end_promises_only_what_the_disk_has() {
+    let (_outer, folder) = folder();
+    let session = Session::begin(&folder).unwrap();
+    fs::create_dir(folder.join("1.work.new")).unwrap();
+    session.note(content("run", "one"));
+    let reason = session.close(PATIENCE).unwrap_err();
+    assert!(reason.contains("cannot be kept"), "{reason}");
+    assert_eq!(names(&folder, ".work"), [] as [PathBuf; 0]);
+
+    let session = Session::begin(&folder).unwrap();
+    session.note(content("run", "two"));
+    written(&session);
+    fs::write(only(&folder, ".work"), "something else").unwrap();
+    session.note(content("run", "three"));
+    assert!(session.close(PATIENCE).is_err());
+
+    let session = Session::begin(&folder).unwrap();
+    assert!(session.close(PATIENCE).is_err(), "there is nothing in it");
+
+    let session = Session::begin(&folder).unwrap();
     session.note(content("run", "four"));
-    session.flush();
-    assert!(session.new_trouble().is_some(), "it is new again");
+    session.note(content("run", "five"));
+    assert_eq!(closed(session), content("run", "five"));
+}
+
+#[test]
+fn a_work_that_cannot_be_read_back_does_not_take_the_place_of_one_that_can() {
+    let (_outer, folder) = folder();
+    let session = Session::begin(&folder).unwrap();
+    session.check_with(|content| match content.work.as_ref() {
+        "bad" => Err("the run is too deep".to_owned()),
+        _ => Ok(()),
+    });
+    session.note(content("good", ""));
+    wait_until(|| names(&folder, ".work").len() == 1);
+    session.note(content("bad", ""));
+    wait_until(|| session.trouble().is_some());
+    assert!(session.trouble().unwrap().contains("too deep"));
+    let text = fs::read_to_string(only(&folder, ".work")).unwrap();
+    assert!(text.ends_with("good"), "{text}");
+}
+
+#[test]
+fn sessions_have_short_names_that_stay() {
+    let (_outer, folder) = folder();
+    kept(&folder, "first", "");
+    let second = Session::begin(&folder).unwrap();
+    second.note(content("second", ""));
+    written(&second);
+    assert_eq!(second.name(), "2");
+    kept(&folder, "third", "");
+    let listed = list(&folder).unwrap();
+    let mut names: Vec<_> = listed
+        .iter()
+        .map(|session| (session.name.as_str(), session.is_in_use, session.owner))
+        .collect();
+    names.sort_unstable();
+    let own = std::process::id();
+    assert_eq!(
+        names,
+        [
+            ("1", false, None),
+            ("2", true, Some(own)),
+            ("3", false, None)
+        ]
+    );
+    let found = resume_named(&folder, "1", |content| Ok(content.clone())).unwrap();
+    let resumed = found.resumed.unwrap();
+    assert_eq!(resumed.what.work.as_ref(), "first");
+    assert_eq!(resumed.session.name(), "1");
+    let found = resume_named(&folder, "2", |_| Ok(())).unwrap();
+    assert!(found.resumed.is_none());
+    assert_eq!(found.in_use_by, [own]);
+    for name in ["4", "", "lock", "../1", "1.work"] {
+        assert!(resume_named(&folder, name, |_| Ok(())).is_err(), "{name}");
+    }
 }
 
 #[test]
@@ -408,12 +502,12 @@ fn a_folder_that_was_cleared_away_is_made_again() {
     let (_outer, folder) = folder();
     let session = Session::begin(&folder).unwrap();
     session.note(content("run", "one"));
-    session.flush();
+    written(&session);
     fs::remove_dir_all(&folder).unwrap();
     session.note(content("run", "two"));
-    session.flush();
+    written(&session);
     assert_eq!(newest(&folder), None, "it is in use");
-    drop(session);
+    closed(session);
     assert_eq!(newest(&folder), Some(content("run", "two")));
 }
 
@@ -535,10 +629,10 @@ fn who_has_the_newer_ones_is_told() {
     age(&only(&folder, ".work"), 100);
     let newer = Session::begin(&folder).unwrap();
     newer.note(content("newer", ""));
-    newer.flush();
+    written(&newer);
     let found = any(&folder);
     assert_eq!(found.resumed.unwrap().what.work.as_ref(), "old");
     assert_eq!(found.in_use_by, [std::process::id()]);
-    drop(newer);
+    closed(newer);
     assert!(any(&folder).in_use_by.is_empty());
 }

@@ -28,8 +28,13 @@ impl Desk {
 
     pub fn with(name: &str, scenario: Scenario) -> Self {
         let view = view(&scenario, Marker::Braille, false);
+        Self::of(Lab::new(name, Arc::new(scenario), view, false))
+    }
+
+    /// A lab that there is already.
+    pub fn of(lab: Lab) -> Self {
         Self {
-            lab: Lab::new(name, Arc::new(scenario), view, false),
+            lab,
             now: Duration::ZERO,
         }
     }

@@ -18,6 +18,13 @@ impl Ground {
         Self(Arc::new(tempfile::tempdir().unwrap()))
     }
 
+    /// One whose name begins with `prefix`.
+    pub fn named(prefix: &str) -> Self {
+        Self(Arc::new(
+            tempfile::Builder::new().prefix(prefix).tempdir().unwrap(),
+        ))
+    }
+
     pub fn path(&self) -> &Path {
         self.0.path()
     }

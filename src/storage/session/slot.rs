@@ -9,15 +9,17 @@
 //! ```
 //!
 //! A file is written under another name and then renamed, so that it is always whole. Nothing is synced to the disk:
-//! it is processes that die here, not machines, and the system keeps what a dead process has written.
+//! it is processes that die here, not machines, and the system keeps what a dead process has written. The ID is a number,
+//! the one after the largest that is there; older versions had longer ones, with hyphens.
 
+use super::{form, own};
 use crate::text::printable::Shown;
+use signal_hook::consts::SIGXFSZ;
 use std::fs::{self, DirBuilder, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Once};
 use std::thread;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
@@ -25,9 +27,6 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 const MOST_KEPT: usize = 20;
 /// How long another process may be busy choosing.
 const PATIENCE: Duration = Duration::from_millis(200);
-
-const WORK: &str = "gyrolab session 1";
-const PLACE: &str = "gyrolab place 1";
 
 /// What is kept of the lab.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,6 +37,9 @@ pub struct Content {
     pub place: String,
 }
 
+/// Says whether a content can be read back as what it was kept of; else why not.
+pub type Check = fn(&Content) -> Result<(), String>;
+
 /// A session's files: ours as long as this lives.
 pub(super) struct Slot {
     folder: PathBuf,
@@ -46,6 +48,16 @@ pub(super) struct Slot {
     /// Of the work that is on the disk.
     revision: u64,
     written: Option<Content>,
+}
+
+/// What the files of a session hold.
+pub(super) struct Stored {
+    /// The work, and the place in it.
+    pub content: Content,
+    /// Of the work.
+    pub revision: u64,
+    /// Why the place written last could not be read: the content has an earlier one.
+    pub damage: Option<String>,
 }
 
 /// A lock file that is locked.
@@ -73,6 +85,7 @@ pub(super) fn make_folder(folder: &Path) -> io::Result<()> {
         .recursive(true)
         .mode(0o700)
         .create(folder)
+        .and_then(|()| own::check_folder(folder))
         .map_err(|error| {
             let text = format!("sessions cannot be kept in {}: {error}", Shown(folder));
             io::Error::new(error.kind(), text)
@@ -94,6 +107,7 @@ pub(super) fn door(folder: &Path) -> Option<Lock> {
 
 /// The sessions in `folder`, the one written last first.
 pub(super) fn sessions(folder: &Path) -> io::Result<Vec<String>> {
+    own::check_folder(folder)?;
     let mut found: Vec<_> = names(folder)?
         .iter()
         .filter_map(|name| name.strip_suffix(".work"))
@@ -109,12 +123,64 @@ fn names(folder: &Path) -> io::Result<Vec<String>> {
     Ok(names.collect())
 }
 
-fn written_at(folder: &Path, id: &str) -> SystemTime {
-    ["work", "place"]
-        .into_iter()
-        .filter_map(|kind| fs::metadata(file(folder, id, kind)).ok()?.modified().ok())
-        .max()
-        .unwrap_or(UNIX_EPOCH)
+/// When the session `id` was written last.
+pub(super) fn written_at(folder: &Path, id: &str) -> SystemTime {
+    let modified = |kind| {
+        fs::symlink_metadata(file(folder, id, kind))
+            .ok()?
+            .modified()
+            .ok()
+    };
+    let times = ["work", "place"].into_iter().filter_map(modified);
+    times.max().unwrap_or(UNIX_EPOCH)
+}
+
+/// Whether the session `id` is the user's own.
+///
+/// # Errors
+/// When it belongs to another.
+pub(super) fn is_own(folder: &Path, id: &str) -> io::Result<()> {
+    own::look(&file(folder, id, "work")).map(drop)
+}
+
+/// Whether a living process has the session `id`.
+pub(super) fn is_in_use(folder: &Path, id: &str) -> bool {
+    let lock = own::open(&file(folder, id, "lock"), OpenOptions::new().read(true));
+    lock.is_ok_and(|lock| matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)))
+}
+
+/// What the session `id` holds, whoever has it; and why the place in it had to be left out, if it had to be.
+///
+/// # Errors
+/// Why it cannot be read.
+pub(super) fn stored(folder: &Path, id: &str) -> Result<Stored, String> {
+    let text = own::read(&file(folder, id, "work"))?;
+    let (revision, carried, work) = form::parse_work(&text)
+        .ok_or("it has been cut off or changed, or another version of gyrolab wrote it")?;
+    let (place, damage) = match stored_place(folder, id, revision) {
+        Ok(place) => (place, None),
+        Err(reason) => (None, Some(reason)),
+    };
+    let content = Content {
+        work: Arc::from(work),
+        place: place.unwrap_or_else(|| carried.to_owned()),
+    };
+    Ok(Stored {
+        content,
+        revision,
+        damage,
+    })
+}
+
+/// The place written last, if it belongs to the work of that `revision`.
+fn stored_place(folder: &Path, id: &str, revision: u64) -> Result<Option<String>, String> {
+    let path = file(folder, id, "place");
+    if !own::is_there(&path) {
+        return Ok(None);
+    }
+    let text = own::read(&path)?;
+    let (of, place) = form::parse_place(&text).ok_or("it has been cut off or changed")?;
+    Ok((of == revision).then(|| place.to_owned()))
 }
 
 fn file(folder: &Path, id: &str, kind: &str) -> PathBuf {
@@ -125,11 +191,12 @@ fn file(folder: &Path, id: &str, kind: &str) -> PathBuf {
 /// cleared away stays.
 pub(super) fn prune(folder: &Path) {
     let old = sessions(folder).unwrap_or_default();
-    let free = old.iter().filter_map(|id| Slot::take(folder, id).ok()?);
+    let own = old.iter().filter(|id| is_own(folder, id).is_ok());
+    let free = own.filter_map(|id| Slot::take(folder, id).ok()?);
     free.skip(MOST_KEPT).for_each(Slot::remove);
     for name in names(folder).unwrap_or_default() {
         if let Some(id) = name.strip_suffix(".lock")
-            && !file(folder, id, "work").exists()
+            && !own::is_there(&file(folder, id, "work"))
             && let Ok(Some(slot)) = Slot::take(folder, id)
         {
             slot.remove();
@@ -137,14 +204,20 @@ pub(super) fn prune(folder: &Path) {
     }
 }
 
+/// A write past `ulimit -f` is an error from now on, like one to a full disk, and not the end of the process.
+fn outlive_the_file_limit() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
+    });
+}
+
 /// The lock at `path`, or `None` where a living process has it. Where the file system knows no locks it counts as free.
 fn take(path: &Path) -> io::Result<Option<Lock>> {
-    let mut lock = OpenOptions::new()
-        .write(true)
-        .create(true)
-        .truncate(false)
-        .mode(0o600)
-        .open(path)?;
+    outlive_the_file_limit();
+    let mut options = OpenOptions::new();
+    options.write(true).create(true).truncate(false).mode(0o600);
+    let mut lock = own::open(path, &mut options)?;
     match lock.try_lock() {
         Err(TryLockError::WouldBlock) => Ok(None),
         // Its last owner may have removed it between the two calls: then it is a lock to nothing.
@@ -161,15 +234,12 @@ fn take(path: &Path) -> io::Result<Option<Lock>> {
 
 /// The number of the process that has the session `id`, as far as it can be told.
 pub(super) fn owner(folder: &Path, id: &str) -> Option<u32> {
-    fs::read_to_string(file(folder, id, "lock"))
-        .ok()?
-        .parse()
-        .ok()
+    own::read(&file(folder, id, "lock")).ok()?.parse().ok()
 }
 
 fn is_at(file: &File, path: &Path) -> bool {
     let identity = |of: fs::Metadata| (of.dev(), of.ino());
-    match (file.metadata(), fs::metadata(path)) {
+    match (file.metadata(), fs::symlink_metadata(path)) {
         (Ok(ours), Ok(there)) => identity(ours) == identity(there),
         _ => false,
     }
@@ -178,18 +248,19 @@ fn is_at(file: &File, path: &Path) -> bool {
 impl Slot {
     /// A session that is not there yet.
     pub(super) fn new(folder: &Path) -> io::Result<Self> {
-        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let number = |name: &String| name.split('.').next()?.parse::<u32>().ok();
+        let largest = names(folder)?.iter().filter_map(number).max();
+        let mut number = largest.unwrap_or(0);
         loop {
-            let since = SystemTime::now().duration_since(UNIX_EPOCH);
-            let id = format!(
-                "{:013}-{}-{}",
-                since.unwrap_or_default().as_millis(),
-                std::process::id(),
-                COUNT.fetch_add(1, Ordering::Relaxed)
-            );
-            // Another process of that number, in another container, may have the folder too.
-            let is_new = !file(folder, &id, "lock").exists() && !file(folder, &id, "work").exists();
-            if is_new && let Some(slot) = Self::take(folder, &id)? {
+            number = number.wrapping_add(1);
+            let id = number.to_string();
+            let is_new = || !own::is_there(&file(folder, &id, "work"));
+            // Another process may have begun it, or even ended it, between two of these calls.
+            if is_new()
+                && !own::is_there(&file(folder, &id, "lock"))
+                && let Some(slot) = Self::take(folder, &id)?
+                && is_new()
+            {
                 return Ok(slot);
             }
         }
@@ -211,12 +282,18 @@ impl Slot {
         file(&self.folder, &self.id, kind)
     }
 
-    /// Writes what has changed since it was written last. When that fails, what was there before is still there.
-    pub(super) fn save(&mut self, content: &Content) -> io::Result<()> {
-        match self.save_changes(content) {
+    /// What the session is called.
+    pub(super) fn id(&self) -> &str {
+        &self.id
+    }
+
+    /// Writes what has changed since it was written last, a work only if `check` accepts it. When that fails, what was
+    /// there before is still there.
+    pub(super) fn save(&mut self, content: &Content, check: Option<Check>) -> io::Result<()> {
+        match self.save_changes(content, check) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 self.make_again()?;
-                self.save_changes(content)?;
+                self.save_changes(content, check)?;
             }
             saved => saved?,
         }
@@ -224,10 +301,13 @@ impl Slot {
         Ok(())
     }
 
-    fn save_changes(&mut self, content: &Content) -> io::Result<()> {
+    fn save_changes(&mut self, content: &Content, check: Option<Check>) -> io::Result<()> {
         match &self.written {
             Some(written) if same(&written.work, &content.work) => self.save_place(&content.place),
-            _ => self.save_work(content),
+            _ => {
+                check.map_or(Ok(()), |check| check(content).map_err(io::Error::other))?;
+                self.save_work(content)
+            }
         }
     }
 
@@ -244,58 +324,42 @@ impl Slot {
     fn save_work(&mut self, content: &Content) -> io::Result<()> {
         let (place, work) = (&content.place, &content.work);
         let revision = self.revision + 1;
-        let (place_bytes, work_bytes) = (place.len(), work.len());
-        let head = format!("{WORK}\nrevision {revision}\nplace {place_bytes}\nwork {work_bytes}\n");
-        replace(&self.file("work"), &[&head, place, work])?;
+        let head = form::head_of_work(revision, place, work);
+        own::replace(&self.file("work"), &[&head, place, work])?;
         self.revision = revision;
         Ok(())
     }
 
     fn save_place(&mut self, place: &str) -> io::Result<()> {
-        let head = format!(
-            "{PLACE}\nrevision {}\nplace {}\n",
-            self.revision,
-            place.len()
-        );
-        replace(&self.file("place"), &[&head, place])
+        let head = form::head_of_place(self.revision, place);
+        own::replace(&self.file("place"), &[&head, place])
     }
 
     /// Reads the session, and what of it had to be put aside; or says why it cannot be read.
     pub(super) fn load(&mut self) -> Result<(Content, Option<KeptAside>), String> {
-        let text = read(&self.file("work"))?;
-        let (revision, carried, work) = parse_work(&text)
-            .ok_or("it has been cut off or changed, or another version of gyrolab wrote it")?;
-        let (place, aside) = match self.load_place(revision) {
-            Ok(place) => (place, None),
-            Err(reason) => (None, Some(self.put_aside("place", reason))),
-        };
-        let content = Content {
-            work: Arc::from(work),
-            place: place.unwrap_or_else(|| carried.to_owned()),
-        };
-        self.revision = revision;
-        self.written = Some(content.clone());
-        Ok((content, aside))
+        let stored = stored(&self.folder, &self.id)?;
+        let aside = stored.damage.map(|reason| self.put_aside("place", reason));
+        self.revision = stored.revision;
+        self.written = Some(stored.content.clone());
+        Ok((stored.content, aside))
     }
 
-    /// The place written last, if it belongs to the work of that `revision`.
-    fn load_place(&self, revision: u64) -> Result<Option<String>, String> {
-        let path = self.file("place");
-        if !path.exists() {
-            return Ok(None);
-        }
-        let text = read(&path)?;
-        let (of, place) = parse_place(&text).ok_or("it has been cut off or changed")?;
-        Ok((of == revision).then(|| place.to_owned()))
+    /// What is on the disk.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    pub(super) fn read_back(&self) -> Result<Content, String> {
+        let stored = stored(&self.folder, &self.id)?;
+        stored.damage.map_or(Ok(stored.content), Err)
     }
 
     /// Gives the session's files other names, so that they are neither read again nor lost.
     pub(super) fn put_all_aside(self, reason: String) -> KeptAside {
-        if self.file("place").exists() {
+        if own::is_there(&self.file("place")) {
             let _ = self.put_aside("place", String::new());
         }
         let aside = self.put_aside("work", reason);
-        if !self.file("work").exists() {
+        if !own::is_there(&self.file("work")) {
             self.remove();
         }
         aside
@@ -308,7 +372,7 @@ impl Slot {
                 1 => self.file(&format!("{kind}.damaged")),
                 n => self.file(&format!("{kind}.damaged-{n}")),
             })
-            .find(|path| !path.exists());
+            .find(|path| !own::is_there(path));
         match free.map(|to| fs::rename(&from, &to).map(|()| to)) {
             Some(Ok(path)) => KeptAside { path, reason },
             Some(Err(error)) => KeptAside {
@@ -338,60 +402,4 @@ impl Slot {
 /// The pointer tells at once in nearly every case; the text where the same work has been written down anew.
 fn same(one: &Arc<str>, other: &Arc<str>) -> bool {
     Arc::ptr_eq(one, other) || one == other
-}
-
-fn replace(path: &Path, parts: &[&str]) -> io::Result<()> {
-    let mut temporary = path.as_os_str().to_owned();
-    temporary.push(".new");
-    let temporary = Path::new(&temporary);
-    let written = write(temporary, parts).and_then(|()| fs::rename(temporary, path));
-    if written.is_err() {
-        let _ = fs::remove_file(temporary); // on a full disk it would be in the way
-    }
-    written
-}
-
-fn write(path: &Path, parts: &[&str]) -> io::Result<()> {
-    let mut file = OpenOptions::new()
-        .write(true)
-        .create(true)
-        .truncate(true)
-        .mode(0o600)
-        .open(path)?;
-    parts
-        .iter()
-        .try_for_each(|part| file.write_all(part.as_bytes()))
-}
-
-fn read(path: &Path) -> Result<String, String> {
-    match fs::metadata(path) {
-        Ok(there) if !there.is_file() => return Err("it is not a file".to_owned()),
-        _ => {}
-    }
-    fs::read_to_string(path).map_err(|error| match error.kind() {
-        io::ErrorKind::InvalidData => "it is not UTF-8 text".to_owned(),
-        _ => format!("it cannot be read: {error}"),
-    })
-}
-
-fn parse_work(text: &str) -> Option<(u64, &str, &str)> {
-    let rest = text.strip_prefix(WORK)?.strip_prefix('\n')?;
-    let (revision, rest) = number("revision ", rest)?;
-    let (place, rest) = number("place ", rest)?;
-    let (work, rest) = number("work ", rest)?;
-    let (place, rest) = rest.split_at_checked(usize::try_from(place).ok()?)?;
-    (rest.len() as u64 == work).then_some((revision, place, rest))
-}
-
-fn parse_place(text: &str) -> Option<(u64, &str)> {
-    let rest = text.strip_prefix(PLACE)?.strip_prefix('\n')?;
-    let (revision, rest) = number("revision ", rest)?;
-    let (place, rest) = number("place ", rest)?;
-    (rest.len() as u64 == place).then_some((revision, rest))
-}
-
-/// The number on a line of its own after `name`, and what follows that line.
-fn number<'a>(name: &str, text: &'a str) -> Option<(u64, &'a str)> {
-    let (line, rest) = text.split_once('\n')?;
-    Some((line.strip_prefix(name)?.parse().ok()?, rest))
 }

@@ -1,10 +1,11 @@
 //! The lines around the panes: title, health, hint and keys.
 
 use super::{shortened, wrapped_to, write};
+use crate::analysis::remarks::remarks;
 use crate::lab::Lab;
 use crate::lab::action::Action;
-use crate::observe::health::remarks;
-use crate::observe::readouts::Readouts;
+use crate::observe::reading::Reading;
+use crate::text::number::{fixed, shortest};
 use crate::tui::keymap::{BINDINGS, Mode};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -21,7 +22,8 @@ const SEPARATOR: &str = " · ";
 pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     let motion = lab.motion();
-    let clock = clock(lab.readouts(), motion.time_step_s, area.width as usize);
+    let step = shortest(motion.time_step_s);
+    let clock = clock(lab.reading(), motion.time_step_s, area.width as usize);
     let clock_x = area.width.saturating_sub(clock.chars().count() as u16);
     write(area, (clock_x, 0), &clock, theme.style(Role::Text), buf);
     let left = Rect {
@@ -30,12 +32,9 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     };
     let room = left.width.saturating_sub(1) as usize;
     let details = [
-        format!(
-            " · {} scheme · dt {} s",
-            motion.scheme.name, motion.time_step_s
-        ),
+        format!(" · {} scheme · dt {step} s", motion.scheme.name),
         format!(" · {} scheme", motion.scheme.name),
-        format!(" · dt {} s", motion.time_step_s),
+        format!(" · dt {step} s"),
         String::new(),
     ];
     let title = &lab.run().scenario().file.title;
@@ -52,15 +51,15 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 /// Time, step and pace in fixed columns, or closer together where `width` is short of them.
-fn clock(readouts: &Readouts, time_step_s: f64, width: usize) -> String {
+fn clock(reading: &Reading, time_step_s: f64, width: usize) -> String {
     let digits = (-time_step_s.log10()).ceil().clamp(0.0, 6.0) as usize;
-    let (t, step) = (readouts.sample.time_s, readouts.sample.step);
-    let pace = &readouts.pace;
+    let (t, step) = (reading.readouts.sample.time_s, reading.readouts.sample.step);
+    let (t, pace) = (fixed(t, digits), &reading.pace);
     let moves = pace.split([' ', ',']).next().unwrap_or_default();
     let clocks = [
-        format!("t {t:>8.digits$} s  step {step:<8} {pace:<11}"),
-        format!("t {t:.digits$} s  step {step}  {pace} "),
-        format!("t {t:.digits$} s step {step} {moves}"),
+        format!("t {t:>8} s  step {step:<8} {pace:<11}"),
+        format!("t {t} s  step {step}  {pace} "),
+        format!("t {t} s step {step} {moves}"),
     ];
     let fits = |clock: &&String| clock.chars().count() <= width;
     match clocks.iter().find(fits) {
@@ -72,7 +71,7 @@ fn clock(readouts: &Readouts, time_step_s: f64, width: usize) -> String {
 /// What the time step makes of the numbers, in words: at length if all of it fits, else in short, as much as fits.
 pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let remarks = remarks(&lab.readouts().health, lab.advice());
+    let remarks = remarks(&lab.reading().readouts.health, lab.advice());
     let length = |text: &String| text.chars().count() + SEPARATOR.chars().count();
     let whole: usize = remarks.iter().map(|remark| length(&remark.long)).sum();
     let mut x = 1;
@@ -117,7 +116,21 @@ pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
     }
 }
 
+/// Before whatever is said while the session is not kept.
+const NOT_KEPT: &str = "session not kept";
+
+/// What stands in the line of hints. That the session is not kept stands there as long as it is so.
 fn said(lab: &Lab) -> (String, Role) {
+    let is_quiet = lab.count().is_none() && lab.notice().is_none();
+    let (text, role) = said_of_run(lab);
+    match lab.trouble() {
+        None => (text, role),
+        Some(trouble) if is_quiet => (trouble.to_owned(), Role::Warning),
+        Some(_) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), role),
+    }
+}
+
+fn said_of_run(lab: &Lab) -> (String, Role) {
     match (lab.count(), lab.notice()) {
         (Some(count), _) => (
             format!("{count}: now the key, such as . for that many steps; Esc forgets it"),

@@ -7,7 +7,7 @@ mod rows;
 use super::{frame, shortened, write};
 use crate::lab::editor::{Editor, Line};
 use crate::lab::view::{Pane, Part, View};
-use crate::observe::readouts::Readouts;
+use crate::observe::reading::Reading;
 use crate::scenario::{Motion, Scenario};
 use crate::text::printable::printable;
 use crate::text::wrap::columns;
@@ -41,7 +41,7 @@ pub struct Parameters<'a> {
     /// Gravity, scheme and time step as they are now: edits may have changed them.
     pub motion: &'a Motion,
     /// The latest reading of its run.
-    pub readouts: &'a Readouts,
+    pub reading: &'a Reading,
     /// What can be edited.
     pub editor: &'a Editor,
     /// How it is looked at.
@@ -97,7 +97,7 @@ impl Parameters<'_> {
             WATCHED_FROM.. => spare.max(height * 2 / 5),
             _ => 0,
         };
-        let read = read_rows(self.view, self.readouts, room);
+        let read = read_rows(self.view, self.reading, room);
         let lower = read.len() as u16;
         let upper = Rect {
             height: area.height - lower,
@@ -119,7 +119,7 @@ impl Parameters<'_> {
             return self.edited_above_read(editor, area, buf);
         }
         let mut read = derived_rows(self.scenario);
-        read.extend(shown(self.view, now_rows(self.readouts)));
+        read.extend(shown(self.view, now_rows(self.reading)));
         let edited = edited_rows(editor);
         let height = area.height.saturating_sub(1) as usize;
         let grouped = by_group(&edited, height).map_or(usize::MAX, |columns| columns.len());
@@ -214,7 +214,7 @@ impl Parameters<'_> {
         rows.extend(body_rows(self.scenario));
         rows.extend(start_rows(self.scenario));
         rows.extend(motion_rows(self.scenario, self.motion));
-        rows.extend(shown(self.view, now_rows(self.readouts)));
+        rows.extend(shown(self.view, now_rows(self.reading)));
         rows
     }
 }
@@ -314,13 +314,13 @@ fn near(told: f64, number: f64) -> bool {
 }
 
 /// The readouts for `room` lines: all of them, or those to watch.
-fn read_rows(view: &View, readouts: &Readouts, room: usize) -> Vec<Row> {
-    let all = shown(view, now_rows(readouts));
+fn read_rows(view: &View, reading: &Reading, room: usize) -> Vec<Row> {
+    let all = shown(view, now_rows(reading));
     if all.len() <= room {
         return all;
     }
     let mut watched = vec![heading("now")];
-    watched.extend(shown(view, watched_rows(readouts).into()));
+    watched.extend(shown(view, watched_rows(reading).into()));
     let mut rows = fitting(watched, room);
     rows.truncate(room);
     rows

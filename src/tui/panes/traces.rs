@@ -9,7 +9,7 @@ use crate::observe::marks::Marks;
 use crate::observe::overlay::Overlay;
 use crate::observe::recording::{Curve, Extent, Recording};
 use crate::observe::sweep::Sweep;
-use crate::text::number::decimal;
+use crate::text::number::{decimal, exponent, fixed};
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -296,6 +296,8 @@ const TILT_LEAST: f64 = 0.02;
 const PLANE_LEAST: f64 = 1e-4;
 /// Times below this, s, are written with all their digits.
 const LONG_TIME_S: f64 = 1e6;
+/// From this time on (s) it has more digits than anyone reads.
+const MOST_TIME_S: f64 = 1e15;
 
 struct Look {
     name: &'static str,
@@ -351,7 +353,11 @@ impl Scale {
         let digits = (1.0 - (self.high - self.low).log10())
             .ceil()
             .clamp(0.0, 9.0) as usize;
-        format!("{:.digits$} .. {:.digits$}", self.low, self.high)
+        format!(
+            "{} .. {}",
+            fixed(self.low, digits),
+            fixed(self.high, digits)
+        )
     }
 }
 
@@ -408,8 +414,12 @@ fn ends(sweep: &Sweep, width: usize) -> (String, String) {
         return (decimal(begin_s), format!("{} s", decimal(end_s)));
     }
     let digits = (1.0 - sweep.window_s.log10()).ceil().clamp(0.0, 6.0) as usize;
-    let begin = format!("{begin_s:.digits$}");
-    let end = format!("{end_s:.digits$} s");
+    // Whole numbers that tell the two ends apart, up to where they have more digits than anyone reads.
+    let [begin, end] = [begin_s, end_s].map(|time_s| match time_s < MOST_TIME_S {
+        true => format!("{time_s:.digits$}"),
+        false => exponent(time_s, 3),
+    });
+    let end = format!("{end} s");
     if begin.len() + end.len() < width {
         return (begin, end);
     }
@@ -418,7 +428,7 @@ fn ends(sweep: &Sweep, width: usize) -> (String, String) {
     if whole.len() + later.len() < width {
         return (whole, later);
     }
-    (format!("{begin_s:.3e} s"), later)
+    (format!("{} s", exponent(begin_s, 3)), later)
 }
 
 #[cfg(test)]

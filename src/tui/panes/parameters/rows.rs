@@ -1,8 +1,10 @@
 //! What stands in the pane's lines, each number with as many decimals as there is room for.
 
-use crate::observe::readouts::Readouts;
+use crate::analysis::remarks::short_unit;
+use crate::observe::reading::Reading;
 use crate::physics::Body;
 use crate::scenario::{Motion, Scenario, Window};
+use crate::text::number::{NONE, exponent, fixed as decimals_of, shortest};
 use crate::tui::theme::Role;
 use std::borrow::Cow;
 
@@ -98,12 +100,12 @@ pub(super) fn start_rows(scenario: &Scenario) -> Vec<Row> {
 pub(super) fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
     let pushes = match (scenario.pushes.len(), scenario.pushes.first()) {
         (0, _) => "none".to_owned(),
-        (1, Some(push)) => format!("{:.0} N", push.force.norm()),
+        (1, Some(push)) => format!("{} N", decimals_of(push.force.norm(), 0)),
         (more, _) => more.to_string(),
     };
     let mut rows = vec![
         heading("motion"),
-        value(0, "dt", format!("{}", motion.time_step_s), "s"),
+        value(0, "dt", shortest(motion.time_step_s), "s"),
         value(3, "scheme", motion.scheme.name.to_owned(), ""),
         number(4, "gravity", motion.gravity, 3, "m/s2"),
         value(6, "steps", scenario.steps.to_string(), ""),
@@ -114,21 +116,24 @@ pub(super) fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
             "",
         ),
     ];
-    if let [push] = scenario.pushes[..] {
+    if let (1, Some(push)) = (scenario.pushes.len(), scenario.pushes.first()) {
         let (when, unit) = match push.window {
             Window::Steps { first, count } => (
                 format!("{first} to {}", (first - 1).saturating_add(count)),
                 "step",
             ),
-            Window::Time { from_s, for_s } => (format!("{from_s} to {}", from_s + for_s), "s"),
+            Window::Time { from_s, for_s } => {
+                let (from, to) = (shortest(from_s), shortest(from_s + for_s));
+                (format!("{from} to {to}"), "s")
+            }
         };
         rows.push(value(3, "acts", when, unit));
     }
     rows
 }
 
-pub(super) fn now_rows(readouts: &Readouts) -> Vec<Row> {
-    let sample = &readouts.sample;
+pub(super) fn now_rows(reading: &Reading) -> Vec<Row> {
+    let sample = &reading.readouts.sample;
     let axis = |label, role, metres: f64| Row {
         label_role: role,
         ..number(0, label, metres, 4, "m")
@@ -139,9 +144,9 @@ pub(super) fn now_rows(readouts: &Readouts) -> Vec<Row> {
         axis("y", Role::Y, sample.position.y),
         axis("z", Role::Z, sample.position.z),
     ];
-    rows.extend(watched_rows(readouts));
+    rows.extend(watched_rows(reading));
     let after_nutation = rows.len() - 1;
-    let predicted = readouts.predicted_nutation_s;
+    let predicted = reading.readouts.number("predicted_nutation_period_s");
     rows.insert(after_nutation, measured(1, PREDICTED, predicted, 5, "s"));
     rows.extend([
         number(3, "|L|", sample.momentum.norm(), 3, "J s"),
@@ -152,21 +157,29 @@ pub(super) fn now_rows(readouts: &Readouts) -> Vec<Row> {
 }
 
 /// The readouts to watch while values are edited; the last is the energy's drift.
-pub(super) fn watched_rows(readouts: &Readouts) -> [Row; 5] {
-    let precession = readouts.precession_deg_per_s;
-    let predicted = readouts.predicted_precession_deg_per_s;
-    let nutation = match readouts.nutation_is_strobed {
-        true => "nutation?", // a strobe's picture: the line below the panes says whose swing it is
-        false => "nutation",
+pub(super) fn watched_rows(reading: &Reading) -> [Row; 5] {
+    let readouts = &reading.readouts;
+    let precession = reading.precession_deg_per_s();
+    let predicted = readouts.number("predicted_precession_rad_per_s");
+    let nutation = match readouts.nutation_is_resolved() {
+        Some(false) => "nutation?", // a strobe's picture: the line below the panes says whose swing it is
+        _ => "nutation",
     };
     let drift = readouts.health.energy_drift;
-    let drift = drift.map_or("n/a".to_owned(), |drift| signed("E drift", drift, 4));
+    let drift = drift.map_or(NONE.to_owned(), |drift| signed("E drift", drift, 4));
+    let unit = short_unit(readouts.health.energy_unit);
     [
         number(0, "tilt", readouts.sample.tilt_deg, 3, "deg"),
         measured(0, "precession", precession, 3, "deg/s"),
-        measured(1, PREDICTED, predicted, 3, "deg/s"),
-        measured(1, nutation, readouts.nutation_s, 5, "s"),
-        value(2, "E drift", drift, "mgl"),
+        measured(1, PREDICTED, predicted.map(f64::to_degrees), 3, "deg/s"),
+        measured(
+            1,
+            nutation,
+            readouts.number("measured_nutation_period_s"),
+            5,
+            "s",
+        ),
+        value(2, "E drift", drift, unit),
     ]
 }
 
@@ -190,7 +203,7 @@ fn fixed(label: &str, number: Option<f64>, digits: usize) -> String {
 
 /// As [`fixed`], with its sign.
 fn signed(label: &str, number: f64, digits: usize) -> String {
-    let is_zero = format!("{number:.digits$}")
+    let is_zero = decimals_of(number, digits)
         .trim_matches(['-', '0', '.'])
         .is_empty();
     let number = if is_zero { 0.0 } else { number }; // no -0.0000
@@ -204,12 +217,15 @@ fn signed(label: &str, number: f64, digits: usize) -> String {
 
 /// The most decimals with which `format` keeps off `label`, a blank between them; an exponent where none do.
 fn fitted(label: &str, digits: usize, format: impl Fn(usize) -> String, number: f64) -> String {
+    if !number.is_finite() {
+        return NONE.to_owned();
+    }
     let room = (VALUE_END as usize).saturating_sub(label.len() + 2);
     let decimals = (0..=digits).rev().map(format);
-    let exponents = (0..=3).rev().map(|digits| format!("{number:.digits$e}"));
+    let exponents = (0..=3).rev().map(|digits| exponent(number, digits));
     let fits = |text: &String| text.len() <= room;
     let text = decimals.chain(exponents).find(fits);
-    text.unwrap_or_else(|| format!("{number:.0e}"))
+    text.unwrap_or_else(|| exponent(number, 0))
 }
 
 #[cfg(test)]

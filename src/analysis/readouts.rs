@@ -1,0 +1,365 @@
+//! The one table of readouts: every number that is read off a run, under the name by which it leaves the program, with
+//! its unit and its meaning. The JSON, the summary, the lab and whoever asks for a number by its name read this table.
+//!
+//! A bare name is the live value of the run's last step. `predicted_...` is theory's, `measured_...` the run's own. What
+//! cannot be stated honestly is [`Value::Nothing`], null in JSON: no number of it is ever NaN or infinite.
+
+use super::health::Advice;
+use super::theory::Axis;
+use super::{Extremes, Health, Measured, Monitor, Theory};
+use crate::physics::SymmetricTop;
+use crate::run::{Sample, Simulation};
+use crate::scenario::problem;
+use serde::ser::{Serialize, SerializeMap, Serializer};
+use std::f64::consts::PI;
+use std::time::Duration;
+
+/// A run at one step, with what has been measured on it and what theory says of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Readouts {
+    /// The scenario's title.
+    pub title: String,
+    /// The name of the scheme in force.
+    pub scheme: &'static str,
+    /// How the scheme went about it, where it has more than one way.
+    pub scheme_kind: Option<String>,
+    /// The time step in force, s.
+    pub time_step_s: f64,
+    /// The state.
+    pub sample: Sample,
+    /// L·axle, J s.
+    pub spin: f64,
+    /// I3/I1 of a symmetric body.
+    pub kappa: Option<f64>,
+    /// How it stands.
+    pub health: Health,
+    /// What would mend it, where that has been sought.
+    pub advice: Option<Advice>,
+    /// What theory says of the exact motion now, about the axis that it names.
+    pub theory: Option<Theory>,
+    /// The least and the greatest so far.
+    pub extremes: Extremes,
+    /// Precession since the forces last changed, rad/s.
+    pub precession: Option<Measured>,
+    /// Nutation period since the forces last changed, s.
+    pub nutation: Option<Measured>,
+    /// Time spent on stepping alone, where it was measured.
+    pub stepping: Option<Duration>,
+}
+
+impl Readouts {
+    /// The readouts of `simulation` as it stands: `monitor` has followed it, `health` is how it stands, and `advice`
+    /// what would mend it.
+    pub fn new(
+        simulation: &Simulation,
+        monitor: &mut Monitor,
+        health: &Health,
+        advice: Option<&Advice>,
+    ) -> Self {
+        let state = simulation.state();
+        Self {
+            title: simulation.scenario().file.title.clone(),
+            scheme: simulation.motion().scheme.name,
+            scheme_kind: simulation.remark(),
+            time_step_s: simulation.motion().time_step_s,
+            sample: simulation.sample(),
+            spin: state.momentum.dot(&state.axle()),
+            kappa: SymmetricTop::of(&simulation.scenario().body.mechanics).map(|top| top.kappa()),
+            health: *health,
+            advice: advice.copied(),
+            theory: monitor.theory(state.time_s),
+            extremes: *monitor.extremes(),
+            precession: monitor.instruments().precession_rad_per_s(),
+            nutation: monitor.instruments().nutation_period_s(),
+            stepping: None,
+        }
+    }
+
+    /// The number that `name` stands for; `None` where there is none of that name, it is a text, or it cannot be stated.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        find(name)?.of(self).number()
+    }
+
+    /// Theory, where its axis is +z, about which the measured numbers are too.
+    pub fn theory_about_z(&self) -> Option<&Theory> {
+        self.theory.as_ref().filter(|theory| theory.axis == Axis::Z)
+    }
+
+    /// Whether the time step shows the nutation as it is: `Some(false)` where what is measured is a strobe's picture of
+    /// it, `None` where the step is short and theory knows no period to hold it against.
+    pub fn nutation_is_resolved(&self) -> Option<bool> {
+        let period_s = self
+            .theory_about_z()
+            .and_then(|theory| theory.nutation_period_s);
+        let is_short = period_s.map(|period_s| 2.0 * self.time_step_s < period_s);
+        // Turned by half a turn a step or more, the axle's swing about L is seen too seldom as well. The schemes that
+        // turn the body exactly still follow the nutation of a known period that is longer.
+        let turns_exactly = !["report", "rk4"].contains(&self.scheme);
+        let follows = self.turn_rad() < PI || (turns_exactly && period_s.is_some());
+        match is_short {
+            _ if !follows => Some(false),
+            Some(is_short) => Some(is_short),
+            None => None,
+        }
+    }
+
+    /// By how much the body turns in a time step, or the axle about L where that is more, rad.
+    fn turn_rad(&self) -> f64 {
+        let turn = self.health.turns_per_step * 2.0 * PI;
+        match (&self.theory, self.kappa) {
+            // A free symmetric top's axle goes round L at |L|/I1.
+            (Some(theory), Some(_)) if theory.axis == Axis::Momentum => {
+                let rate = theory.precession.unwrap_or(0.0).abs();
+                turn.max(rate * self.time_step_s)
+            }
+            _ => turn,
+        }
+    }
+}
+
+/// What a readout is at one step.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// A finite number, in the readout's unit.
+    Number(f64),
+    /// A count.
+    Whole(u64),
+    /// Whether it is so.
+    Flag(bool),
+    /// A name or a sentence.
+    Text(String),
+    /// There is none, or none that can be stated.
+    Nothing,
+}
+
+impl Value {
+    /// As a number: 1 and 0 for yes and no; `None` of a text.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::Whole(count) => Some(*count as f64),
+            Self::Flag(is_so) => Some(f64::from(u8::from(*is_so))),
+            Self::Text(_) | Self::Nothing => None,
+        }
+    }
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        match number.is_finite() {
+            true => Self::Number(number),
+            false => Self::Nothing,
+        }
+    }
+}
+
+impl From<u64> for Value {
+    fn from(count: u64) -> Self {
+        Self::Whole(count)
+    }
+}
+
+impl From<bool> for Value {
+    fn from(is_so: bool) -> Self {
+        Self::Flag(is_so)
+    }
+}
+
+impl From<String> for Value {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+impl<T: Into<Self>> From<Option<T>> for Value {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Self::Nothing, Into::into)
+    }
+}
+
+/// One row of the table.
+#[derive(Debug)]
+pub struct Readout {
+    /// The name, with the unit as it is written.
+    pub name: &'static str,
+    /// The unit; empty for a pure number and for a text.
+    pub unit: &'static str,
+    /// What it is, in one line.
+    pub meaning: &'static str,
+    /// How it is obtained.
+    pub source: Source,
+    get: fn(&Readouts) -> Value,
+}
+
+/// How a readout is obtained.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// From the scenario and its edits.
+    Scenario,
+    /// From the state at the last step.
+    State,
+    /// From every step of the run.
+    EveryStep,
+    /// From the steps since the forces last changed.
+    Measured,
+    /// By a formula for the scheme at this time step.
+    Scheme,
+    /// Beside the exact motion.
+    Exact,
+    /// By the theory of the heavy symmetric top, for the exact motion under the present forces.
+    Theory,
+    /// By the clock of the machine: it is another number each time.
+    Clock,
+}
+
+impl Source {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Scenario => "the scenario",
+            Self::State => "the last step",
+            Self::EveryStep => "every step of the run, its start included",
+            Self::Measured => "measured on the steps since the forces last changed",
+            Self::Scheme => "a formula for the scheme at this time step",
+            Self::Exact => "held against the exact motion",
+            Self::Theory => {
+                "theory of the heavy symmetric top, for the exact motion under the present forces"
+            }
+            Self::Clock => "the machine's clock",
+        }
+    }
+}
+
+impl Readout {
+    /// What `readouts` has under this name.
+    pub fn of(&self, readouts: &Readouts) -> Value {
+        (self.get)(readouts)
+    }
+}
+
+/// The readout of that name.
+pub fn find(name: &str) -> Option<&'static Readout> {
+    READOUTS.iter().find(|readout| readout.name == name)
+}
+
+/// Every name, in the table's order.
+pub fn names() -> impl Iterator<Item = &'static str> + Clone {
+    READOUTS.iter().map(|readout| readout.name)
+}
+
+/// For a refusal of `wrong`, which is no readout: "did you mean tilt_deg?", or the names there are.
+pub fn nearest(wrong: &str) -> String {
+    // Of "lowest_tilt_deg" it is not said whose it is: theory's, or the run's.
+    let fuller = names().filter(|name| {
+        name.strip_suffix(wrong)
+            .is_some_and(|kind| kind.ends_with('_'))
+    });
+    match fuller.collect::<Vec<_>>()[..] {
+        [] => problem::nearest(wrong, names()),
+        ref fuller => format!("did you mean {}?", fuller.join(" or ")),
+    }
+}
+
+impl Serialize for Readouts {
+    /// One object, a field a readout, in the table's order; how the scheme went about it is left out where it has one way.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_map(None)?;
+        for readout in READOUTS {
+            let value = readout.of(self);
+            if readout.name != "scheme_kind" || value != Value::Nothing {
+                object.serialize_entry(readout.name, &value)?;
+            }
+        }
+        object.end()
+    }
+}
+
+fn value(measured: Option<Measured>) -> Option<f64> {
+    measured.map(|measured| measured.value)
+}
+
+fn uncertainty(measured: Option<Measured>) -> Option<f64> {
+    measured.map(|measured| measured.uncertainty)
+}
+
+/// Makes a row of each line: name, unit, source, meaning, how it is got of the readouts `r`.
+macro_rules! readouts {
+    ($($name:literal, $unit:literal, $source:ident, $meaning:literal, |$r:ident| $get:expr;)*) => {
+        /// Every readout.
+        pub const READOUTS: &[Readout] = &[
+            $(Readout {
+                name: $name,
+                unit: $unit,
+                meaning: $meaning,
+                source: Source::$source,
+                get: |$r| Value::from($get),
+            }),*
+        ];
+    };
+}
+
+readouts! {
+    "title", "", Scenario, "the scenario's title", |r| r.title.clone();
+    "scheme", "", Scenario, "the numerical scheme in force", |r| r.scheme.to_owned();
+    "scheme_kind", "", Scenario, "how the scheme went about it, where it has more than one way", |r| r.scheme_kind.clone();
+    "steps", "", State, "time steps taken", |r| r.sample.step;
+    "time_step_s", "s", Scenario, "the time step in force", |r| r.time_step_s;
+    "t_s", "s", State, "time", |r| r.sample.time_s;
+    "x_m", "m", State, "traced point, world frame", |r| r.sample.position.x;
+    "y_m", "m", State, "traced point, world frame", |r| r.sample.position.y;
+    "z_m", "m", State, "traced point, world frame", |r| r.sample.position.z;
+    "Lx_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.x;
+    "Ly_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.y;
+    "Lz_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.z;
+    "wx_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.x;
+    "wy_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.y;
+    "wz_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.z;
+    "tilt_deg", "deg", State, "angle of the axle from +z", |r| r.sample.tilt_deg;
+    "azimuth_deg", "deg", State, "azimuth of the axle, counted on through full turns", |r| r.sample.azimuth_deg;
+    "energy_J", "J", State, "kinetic energy, and that of the weight from the pivot", |r| r.sample.energy;
+    "energy_drift", "", State, "energy that only the scheme's error can have made, in units of M g |c|, or of the kinetic energy at the start where M g |c| is below 1e-9 of it", |r| r.health.energy_drift;
+    "segment", "", Scenario, "edits of time step, scheme or gravity before this step", |r| r.sample.segment;
+    "measured_lowest_tilt_deg", "deg", EveryStep, "least angle of the axle from +z", |r| r.extremes.lowest_tilt_deg;
+    "measured_highest_tilt_deg", "deg", EveryStep, "greatest angle of the axle from +z", |r| r.extremes.highest_tilt_deg;
+    "measured_lowest_z_m", "m", EveryStep, "least z of the traced point", |r| r.extremes.lowest_z_m;
+    "measured_highest_z_m", "m", EveryStep, "greatest z of the traced point", |r| r.extremes.highest_z_m;
+    "turns_per_step", "", State, "turns of the body in one time step, |Omega| dt/2 pi", |r| r.health.turns_per_step;
+    "nutation_multiplier", "", Scheme, "the report's scheme alone: its factor on a nutation's size each step; the truth is 1", |r| r.health.nutation.map(|nutation| nutation.multiplier);
+    "lag_deg", "deg", State, "angle between axle and L", |r| r.health.lag_deg;
+    "steady_lag_deg", "deg", Scheme, "the report's scheme alone: its angle between axle and L in steady precession", |r| r.health.nutation.map(|nutation| nutation.scheme_lag_deg);
+    "true_steady_lag_deg", "deg", Theory, "the true angle between axle and L in steady precession", |r| r.health.nutation.map(|nutation| nutation.true_lag_deg);
+    "distance_m", "m", Exact, "distance of the traced point from the exact motion's", |r| r.health.deviation.map(|off| off.distance_m);
+    "most_distance_m", "m", Exact, "the largest such distance so far", |r| r.health.most_distance_m;
+    "L_axle_drift_Js", "J s", Exact, "L along the axle less the exact motion's", |r| r.health.deviation.map(|off| off.spin);
+    "Lz_drift_Js", "J s", Exact, "L_z less the exact motion's", |r| r.health.deviation.map(|off| off.lz);
+    "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle", |r| r.kappa;
+    "theory_axis", "", Theory, "the axis that theory speaks of: +z, or another (against the forces, or along L where there are none), and then what it says about that axis is null", |r| r.theory.map(|theory| theory.axis.to_string());
+    "path", "", Theory, "the path of the axle about +z", |r| r.theory_about_z().map(|theory| theory.path.to_string());
+    "predicted_lowest_tilt_deg", "deg", Theory, "least tilt of the exact motion from +z", |r| r.theory_about_z().map(|theory| theory.tilt_range_deg.0);
+    "predicted_highest_tilt_deg", "deg", Theory, "greatest tilt of the exact motion from +z", |r| r.theory_about_z().map(|theory| theory.tilt_range_deg.1);
+    "cusp_tilt_deg", "deg", Theory, "tilt at which the axle stands still in azimuth", |r| r.theory_about_z().and_then(|theory| theory.cusp_tilt_deg);
+    "predicted_precession_rad_per_s", "rad/s", Theory, "mean precession of the exact motion about +z", |r| r.theory_about_z().and_then(|theory| theory.precession);
+    "measured_precession_rad_per_s", "rad/s", Measured, "mean precession about +z", |r| value(r.precession);
+    "measured_precession_uncertainty_rad_per_s", "rad/s", Measured, "one standard error of it", |r| uncertainty(r.precession);
+    "slow_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the slow one", |r| r.theory_about_z().and_then(|theory| theory.slow_precession);
+    "fast_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the fast one", |r| r.theory_about_z().and_then(|theory| theory.fast_precession);
+    "fast_top_precession_rad_per_s", "rad/s", Theory, "the fast top's precession M g h/L3", |r| r.theory_about_z().and_then(|theory| theory.fast_top_precession);
+    "predicted_nutation_period_s", "s", Theory, "nutation period of the exact motion", |r| r.theory_about_z().and_then(|theory| theory.nutation_period_s);
+    "measured_nutation_period_s", "s", Measured, "mean time between two turning points of the tilt", |r| value(r.nutation);
+    "measured_nutation_uncertainty_s", "s", Measured, "one standard error of it", |r| uncertainty(r.nutation);
+    "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what is measured is a strobe's picture of it", |r| r.nutation_is_resolved();
+    "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation);
+    "L_axle_Js", "J s", State, "L along the axle", |r| r.spin;
+    "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps", |r| r.theory_about_z().map(|theory| theory.sleeping_limit);
+    "health", "", Exact, "whether the numbers hold, in one sentence", |r| r.health.sentence(r.advice.as_ref());
+    "wall_s", "s", Clock, "time spent on stepping alone", |r| r.stepping.map(|wall| wall.as_secs_f64());
+    "steps_per_second", "1/s", Clock, "steps taken in a second of it", |r| r.stepping.map(|wall| per_second(r.sample.step, wall));
+}
+
+fn per_second(steps: u64, wall: Duration) -> f64 {
+    match wall.as_secs_f64() {
+        wall_s if wall_s > 0.0 => steps as f64 / wall_s,
+        _ => 0.0,
+    }
+}

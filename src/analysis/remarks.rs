@@ -1,0 +1,372 @@
+//! The health of a run in words, all of them: the sentence after a run, the remarks on the lab's screen, and the lines of
+//! the summary.
+
+use super::Health;
+use super::health::{Advice, BETTER_SCHEME, Nutation, Picture};
+use crate::run::EnergyUnit;
+use crate::text::number::{
+    NONE, exponent, fixed, short, shortest, signed, signed_exponent, steady, times,
+};
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+
+/// Radians a step beyond which no scheme that follows the rotation by polynomials keeps up.
+const TOO_FAR_RAD: f64 = 1.0;
+/// Distances smaller than this are what decimals leave over, m.
+const ROUNDING_M: f64 = 1e-12;
+
+impl fmt::Display for Picture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Right => "it shows as it is",
+            Self::Strobed => "its points are taken for one another, a strobe's picture",
+            Self::TooSlow => "it seems to turn too slowly",
+            Self::Backwards => "it seems to turn backwards",
+            Self::Unknown => "further than numbers reach",
+        })
+    }
+}
+
+impl Health {
+    /// In one sentence: whether the numbers hold, what is wrong with them, and what would mend it.
+    pub fn sentence(&self, advice: Option<&Advice>) -> String {
+        sentence(self, advice)
+    }
+}
+
+fn sentence(health: &Health, advice: Option<&Advice>) -> String {
+    let Some(most) = health.most_distance_m else {
+        return "Not held against the exact motion, which would take too long or leaves the range of numbers.".to_owned();
+    };
+    if health.arm_m == 0.0 {
+        return "Nothing can be said: the traced point is the pivot, which stands still in every run.".to_owned();
+    }
+    let far = format!(
+        "{} m ({} % of its arm)",
+        short(most),
+        short(100.0 * most / health.arm_m)
+    );
+    if health.is_believed() == Some(true) {
+        let picture = match health.picture {
+            Picture::Right => String::new(),
+            Picture::Unknown => {
+                format!(" (in a step the wheel turns {})", health.picture)
+            }
+            _ => format!(
+                " (the wheel turns {} times a step: {})",
+                short(health.turns_per_step),
+                health.picture
+            ),
+        };
+        let nutation = lost_nutation(health).map_or(String::new(), |lost| format!("; but {lost}"));
+        return format!(
+            "The numbers hold: the traced point has kept within {far} of the exact motion{picture}{nutation}."
+        );
+    }
+    let mend = advice.map_or(String::new(), |advice| how_to_mend(health, advice));
+    format!(
+        "Do not believe this run: {}, and the traced point is up to {far} off the exact motion{mend}.",
+        cause(health)
+    )
+}
+
+/// What is not the run's although its traced point holds: a nutation too small to show there, which the scheme has changed.
+fn lost_nutation(health: &Health) -> Option<String> {
+    let (nutation, left) = (health.nutation?, health.changed_nutation()?);
+    let swing = short(health.swing_deg?);
+    let now = match left {
+        left if left < 1e-3 => "is gone".to_owned(),
+        left => format!("has {} times its size", short(left)),
+    };
+    let (verb, percent) = change(&nutation);
+    Some(format!(
+        "not its nutation, a swing of {swing} degrees, which should last: the scheme {verb} it by {percent} % a step, so that it {now}"
+    ))
+}
+
+/// Whether the scheme damps a nutation or feeds it, and by how many per cent a step.
+fn change(nutation: &Nutation) -> (&'static str, String) {
+    let verb = if nutation.multiplier < 1.0 {
+        "damps"
+    } else {
+        "feeds"
+    };
+    let percent = 100.0 * (nutation.multiplier - 1.0).abs();
+    (verb, short(percent))
+}
+
+fn cause(health: &Health) -> String {
+    let psi = TAU * health.turns_per_step;
+    let (turns, name) = (short(health.turns_per_step), health.scheme.name);
+    match health.nutation {
+        Some(_) if psi >= PI => {
+            format!(
+                "the wheel turns {turns} times in a time step, so that the swing of the axle is the time step's"
+            )
+        }
+        Some(nutation) if health.nutation_is_the_cause() => {
+            let (verb, percent) = change(&nutation);
+            format!(
+                "the scheme {verb} the nutation by {percent} % a step, which should last as it is"
+            )
+        }
+        _ if !psi.is_finite() => {
+            "the body turns further in a time step than numbers reach".to_owned()
+        }
+        _ if psi >= TOO_FAR_RAD => {
+            format!(
+                "the body turns {turns} times in a time step, more than the scheme {name} can follow"
+            )
+        }
+        _ if health.scheme.order.is_none() => {
+            "what another scheme did before the edit is carried on exactly".to_owned()
+        }
+        _ => format!("the error that the scheme {name} makes at this time step has added up"),
+    }
+}
+
+fn how_to_mend(health: &Health, advice: &Advice) -> String {
+    // A run with edits at steps is refused another time step: it has to be written anew.
+    let throughout = match health.can_be_rescaled {
+        true => "",
+        false => " throughout, with its edits of gravity and pushes at the same times,",
+    };
+    match advice {
+        Advice::Holds => String::new(),
+        Advice::Nothing => "; nothing that could be tried in reasonable time mends it".to_owned(),
+        Advice::BoundToItsTimeStep => {
+            "; no other scheme mends it at this time step, and at another one its accumulating pushes make it another run"
+                .to_owned()
+        }
+        Advice::TimeStep(step) => {
+            let step = shortest(*step);
+            let option = match health.can_be_rescaled {
+                true => format!(" (--time-step {step})"),
+                false => String::new(),
+            };
+            format!("; a time step of {step} s{option}{throughout} keeps it within 1 %")
+        }
+        Advice::Scheme {
+            time_step_s,
+            tried_s,
+        } if time_step_s == tried_s => {
+            let step = shortest(*time_step_s);
+            format!("; the scheme {BETTER_SCHEME} at {step} s{throughout} mends it")
+        }
+        Advice::Scheme {
+            time_step_s,
+            tried_s,
+        } => {
+            let (step, tried) = (shortest(*time_step_s), shortest(*tried_s));
+            format!(
+                "; no time step down to {tried} s mends it, but the scheme {BETTER_SCHEME} at {step} s{throughout} does"
+            )
+        }
+    }
+}
+
+/// One thing to say on the screen, at length where there is room, and in short.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Remark {
+    /// In full.
+    pub long: String,
+    /// In few words.
+    pub short: String,
+    /// Whether something is wrong.
+    pub warns: bool,
+}
+
+impl Remark {
+    fn new(text: String, warns: bool) -> Self {
+        Self {
+            long: text.clone(),
+            short: text,
+            warns,
+        }
+    }
+}
+
+/// What there is to say of `health`, and of what would mend it, where that is known; most important first.
+pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
+    let mut remarks = vec![turns(health), distance(health)];
+    if health.is_believed() == Some(false) {
+        remarks.extend(advice.and_then(|advice| mend(health, advice)));
+    }
+    remarks.push(Remark::new(energy(health), false));
+    remarks.extend(
+        health
+            .nutation
+            .iter()
+            .flat_map(|nutation| swing(health, nutation)),
+    );
+    remarks
+}
+
+fn mend(health: &Health, advice: &Advice) -> Option<Remark> {
+    let (long, short) = match advice {
+        Advice::TimeStep(step) => {
+            let step = shortest(*step);
+            let long = match health.can_be_rescaled {
+                true => format!("--time-step {step} would mend it"),
+                false => format!("a time step of {step} s throughout would mend it"),
+            };
+            (long, format!("dt {step} s mends it"))
+        }
+        Advice::Scheme {
+            time_step_s,
+            tried_s,
+        } => {
+            let step = shortest(*time_step_s);
+            let long = match health.can_be_rescaled {
+                true => format!("--scheme {BETTER_SCHEME} --time-step {step} would mend it"),
+                false if time_step_s == tried_s => {
+                    format!("--scheme {BETTER_SCHEME} would mend it")
+                }
+                false => format!("{BETTER_SCHEME} at {step} s throughout would mend it"),
+            };
+            (long, format!("{BETTER_SCHEME}, dt {step} s mends it"))
+        }
+        Advice::Holds | Advice::Nothing | Advice::BoundToItsTimeStep => return None,
+    };
+    Some(Remark {
+        long,
+        short,
+        warns: false,
+    })
+}
+
+fn swing(health: &Health, nutation: &Nutation) -> Vec<Remark> {
+    let lag = nutation.lag_ratio().map(|ratio| match ratio {
+        0.5..2.0 => Remark::new("axle lags L as far as it should".to_owned(), false),
+        2.0.. => Remark::new(format!("axle lags L {} times too far", times(ratio)), true),
+        _ => Remark::new(
+            format!("axle lags L {} of what it should", times(ratio)),
+            true,
+        ),
+    });
+    let factor = format!("nutation ×{} a step", fixed(nutation.multiplier, 4));
+    let is_gone = health.changed_nutation().is_some_and(|left| left < 1e-3);
+    let factor = match is_gone {
+        true => Remark::new(format!("{factor}: gone"), true),
+        false => Remark::new(factor, false),
+    };
+    lag.into_iter().chain([factor]).collect()
+}
+
+fn turns(health: &Health) -> Remark {
+    if health.picture == Picture::Unknown {
+        let text = "the wheel turns further in a step than numbers reach".to_owned();
+        return Remark::new(text, true);
+    }
+    let turns = steady(health.turns_per_step);
+    let (long, short, warns) = match (health.picture, health.nutation) {
+        (Picture::Right, _) => (String::new(), String::new(), false),
+        (Picture::Strobed, _) => (
+            format!(": {}", health.picture),
+            ": strobed".to_owned(),
+            false,
+        ),
+        (picture, None) => (format!(": {picture}"), ": aliased".to_owned(), true),
+        (_, Some(_)) => (
+            ", so that the swing is the time step's".to_owned(),
+            " make the swing".to_owned(),
+            true,
+        ),
+    };
+    Remark {
+        long: format!("the wheel turns {turns} times a step{long}"),
+        short: format!("{turns} turns a step{short}"),
+        warns,
+    }
+}
+
+fn distance(health: &Health) -> Remark {
+    let Some(deviation) = health.deviation else {
+        return Remark::new("not held against the exact motion".to_owned(), false);
+    };
+    let metres = length(deviation.distance_m);
+    Remark {
+        long: format!("{metres} off the exact motion"),
+        short: format!("{metres} off exact"),
+        warns: health.is_believed() == Some(false),
+    }
+}
+
+fn energy(health: &Health) -> String {
+    match health.energy_drift {
+        Some(drift) => format!(
+            "energy drift {} {}",
+            signed(drift, 4),
+            short_unit(health.energy_unit)
+        ),
+        None => "energy n/a".to_owned(),
+    }
+}
+
+/// The unit of an energy drift in few letters, as a column of the lab has it.
+pub fn short_unit(unit: Option<EnergyUnit>) -> &'static str {
+    match unit {
+        Some(EnergyUnit::Weight) => "mgl",
+        Some(EnergyUnit::KineticAtStart) => "Ekin",
+        None => "",
+    }
+}
+
+/// A distance in metres, as many characters whatever its size; rounding is no distance.
+fn length(metres: f64) -> String {
+    match metres {
+        m if m < ROUNDING_M => "0 m".to_owned(),
+        m if m >= 1e-3 => format!("{} m", fixed(m, 4)),
+        m => format!("{} m", exponent(m, 1)),
+    }
+}
+
+/// The energy drift in words: its size and its unit, or why there is none.
+pub fn energy_in_full(health: &Health) -> String {
+    match (health.energy_drift, health.energy_unit) {
+        (Some(drift), Some(unit)) => format!("{} of {unit}", signed_exponent(drift, 3)),
+        (_, None) => format!("{NONE}: neither weight nor kinetic energy to measure it by"),
+        (None, Some(_)) => format!("{NONE}: beyond the range of numbers"),
+    }
+}
+
+/// What a time step does to the body and its nutation, for a line of the summary.
+pub fn step_in_full(health: &Health) -> String {
+    let turns = match health.turns_per_step {
+        turns if turns.is_finite() => format!("turns the body {} times", fixed(turns, 4)),
+        _ => format!("turns the body {NONE}: further than numbers reach"),
+    };
+    match health.nutation {
+        Some(Nutation { multiplier, .. }) => {
+            format!("{turns}, multiplies nutation by {}", fixed(multiplier, 6))
+        }
+        None => turns,
+    }
+}
+
+/// The angle between axle and L, for a line of the summary.
+pub fn lag_in_full(health: &Health) -> String {
+    let now = format!("{} degrees now", fixed(health.lag_deg, 4));
+    let Some(nutation) = health.nutation else {
+        return now;
+    };
+    let steady = format!(
+        "{now}; steady: {} by the scheme, {} in truth",
+        fixed(nutation.scheme_lag_deg, 4),
+        fixed(nutation.true_lag_deg, 4)
+    );
+    match nutation.lag_ratio() {
+        Some(ratio) => format!("{steady}, {} times", fixed(ratio, 1)),
+        None => steady,
+    }
+}
+
+/// How far the constants of the motion are off, for a line of the summary; `None` where that is not known.
+pub fn constants_in_full(health: &Health) -> Option<String> {
+    let off = health.deviation?;
+    Some(format!(
+        "L.axle is off by {} J s, L_z by {} J s",
+        signed_exponent(off.spin, 1),
+        signed_exponent(off.lz, 1)
+    ))
+}

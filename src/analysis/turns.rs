@@ -1,0 +1,140 @@
+//! The turning points of the axle's height, and the straight line of time and azimuth through them.
+
+/// So many turning points are kept at most; when there are more every second one goes.
+const MOST: usize = 32;
+
+/// A measured number with its uncertainty, in its own unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// The best value.
+    pub value: f64,
+    /// One standard error.
+    pub uncertainty: f64,
+    /// How many nutations it was taken from, a half one counted as one; 0 where there was none.
+    pub nutations: u64,
+}
+
+/// A swing of the axle's height smaller than this is rounding, not nutation.
+pub(super) const ROUNDING: f64 = 1e-9;
+
+/// One turning point of the axle's height.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Turn {
+    pub time_s: f64,
+    /// How far the time is off by its interpolation, s.
+    pub time_off_s: f64,
+    /// Standard error of the time from all else, s.
+    pub time_error_s: f64,
+    /// Azimuth of the axle, full turns included, rad.
+    pub azimuth: f64,
+    /// How far the azimuth is off by its interpolation, rad.
+    pub azimuth_off: f64,
+    /// Standard error of the azimuth at a given time from all else, rad.
+    pub azimuth_error: f64,
+    /// Rate of the azimuth there, rad/s.
+    pub azimuth_rate: f64,
+    /// Sine of the tilt there.
+    pub level: f64,
+}
+
+/// Turning points at even distances, in bounded memory, the first always among them.
+#[derive(Clone, Debug)]
+pub(super) struct Turns {
+    kept: Vec<(u64, Turn)>,
+    stride: u64,
+}
+
+/// What the turning points say: from the first to the last, and how far those between are off a steady rate.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    pub first: Turn,
+    pub last: Turn,
+    /// How many intervals between two turning points there are from the first to the last.
+    pub intervals: u64,
+    /// Root mean square of the others' distance from even times, s.
+    pub time_scatter_s: f64,
+    /// The same of the azimuth at their times, rad.
+    pub azimuth_scatter: f64,
+    /// How many others there are.
+    pub between: usize,
+}
+
+impl Turns {
+    pub fn new() -> Self {
+        Self {
+            kept: Vec::new(),
+            stride: 1,
+        }
+    }
+
+    /// Whether the turning point of this number is to be kept.
+    pub fn wants(&self, number: u64) -> bool {
+        number.is_multiple_of(self.stride)
+    }
+
+    pub fn keep(&mut self, number: u64, turn: Turn) {
+        self.kept.push((number, turn));
+        if self.kept.len() > MOST {
+            self.stride *= 2;
+            let stride = self.stride;
+            self.kept
+                .retain(|(number, _)| number.is_multiple_of(stride));
+        }
+    }
+
+    /// The line from the first turning point to `last`, which has this number; `None` if they are the same.
+    pub fn line_to(&self, number: u64, last: Turn) -> Option<Line> {
+        let (_, first) = *self.kept.first().filter(|_| number > 0)?;
+        let (mut times, mut azimuths, mut between) = (0.0, 0.0, 0);
+        // What the interpolation is known to be off by does not count twice.
+        let [begin, end] = [&first, &last].map(|turn| turn.time_s - turn.time_off_s);
+        let true_rate =
+            (last.azimuth - last.azimuth_off - first.azimuth + first.azimuth_off) / (end - begin);
+        for (at, turn) in self.kept[1..].iter().take_while(|(at, _)| *at < number) {
+            let way = turn.time_s - turn.time_off_s - begin;
+            let turned = turn.azimuth - turn.azimuth_off - first.azimuth + first.azimuth_off;
+            times += (way - *at as f64 / number as f64 * (end - begin)).powi(2);
+            azimuths += (turned - true_rate * way).powi(2);
+            between += 1;
+        }
+        let mean = |sum: f64| (sum / between.max(1) as f64).sqrt();
+        Some(Line {
+            first,
+            last,
+            intervals: number,
+            time_scatter_s: mean(times),
+            azimuth_scatter: mean(azimuths),
+            between,
+        })
+    }
+}
+
+impl Line {
+    pub fn time_s(&self) -> f64 {
+        self.last.time_s - self.first.time_s
+    }
+
+    /// Mean rate of the azimuth, rad/s.
+    pub fn rate(&self) -> f64 {
+        (self.last.azimuth - self.first.azimuth) / self.time_s()
+    }
+
+    /// Standard error of [`time_s`](Self::time_s), s, where the scatter counts `weight` times.
+    pub fn time_error_s(&self, weight: f64) -> f64 {
+        let of_end = |turn: &Turn| turn.time_off_s.hypot(turn.time_error_s);
+        let ends = of_end(&self.first).hypot(of_end(&self.last));
+        ends.hypot(2_f64.sqrt() * weight * self.time_scatter_s)
+    }
+
+    /// Standard error of [`rate`](Self::rate), rad/s, likewise.
+    pub fn rate_error(&self, weight: f64) -> f64 {
+        let rate = self.rate();
+        let of_end = |turn: &Turn| {
+            let late = (turn.azimuth_rate - rate) * turn.time_error_s;
+            let off = turn.azimuth_off - rate * turn.time_off_s;
+            turn.azimuth_error.hypot(late).hypot(off)
+        };
+        let ends = of_end(&self.first).hypot(of_end(&self.last));
+        ends.hypot(2_f64.sqrt() * weight * self.azimuth_scatter) / self.time_s()
+    }
+}

@@ -1,0 +1,79 @@
+//! The numbers on the screen, read off a few times a second: digits that change in every frame can be read by nobody,
+//! and a slow line has better things to carry.
+
+use super::live::LiveRun;
+use super::pace::{Pace, Speed};
+use crate::analysis::{Measured, Readouts};
+use crate::text::number::{exponent, fixed, shortest};
+use std::time::Duration;
+
+/// Time between two readings while the run goes on.
+pub const EVERY: Duration = Duration::from_millis(250);
+
+/// A precession without nutations counts as measured from this relative uncertainty on.
+const SETTLED: f64 = 0.05;
+
+/// One reading: the numbers, and what is the lab's alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// The run's numbers, by the one table.
+    pub readouts: Readouts,
+    /// Whether the run goes on, and how fast.
+    pub pace: String,
+}
+
+impl Reading {
+    /// Reads `run`, which is played at `pace`.
+    pub fn new(run: &mut LiveRun, pace: &Pace) -> Self {
+        Self {
+            readouts: run.readouts(),
+            pace: pace_in_words(pace),
+        }
+    }
+
+    /// Precession as it was measured so far, degrees a second, once it says something.
+    pub fn precession_deg_per_s(&self) -> Option<f64> {
+        self.readouts
+            .precession
+            .filter(is_settled)
+            .map(|measured| measured.value.to_degrees())
+    }
+}
+
+/// Whether `measured` says something: known to a half from whole nutations, or settled without any. An axle that passes
+/// through the vertical has nutations and no azimuth to speak of.
+fn is_settled(measured: &Measured) -> bool {
+    let within = if measured.nutations > 0 { 0.5 } else { SETTLED };
+    measured.uncertainty <= within * measured.value.abs()
+}
+
+fn pace_in_words(pace: &Pace) -> String {
+    match (pace.is_running(), pace.speed()) {
+        (false, Speed::Times(speed)) => format!("paused ×{}", short(speed)),
+        (false, Speed::Top) => "paused, top".to_owned(),
+        (true, Speed::Top) => format!("► top ×{}", short(two_digits(pace.achieved()))),
+        (true, Speed::Times(_)) if pace.falls_behind() => {
+            format!("► ×{} max", short(two_digits(pace.achieved())))
+        }
+        (true, Speed::Times(speed)) => format!("► ×{}", short(speed)),
+    }
+}
+
+/// `number` without the digits that only flicker.
+fn two_digits(number: f64) -> f64 {
+    if !(number > 0.0 && number.is_finite()) {
+        return 0.0;
+    }
+    let unit = libm::exp10(number.log10().floor() - 1.0);
+    (number / unit).round() * unit
+}
+
+/// As few digits as say it: 20, 0.002, 5e5.
+fn short(speed: f64) -> String {
+    match speed {
+        n if n >= 1e5 => exponent(n, 0),
+        n if n >= 10.0 => fixed(n, 0),
+        n if n >= 1e-3 => shortest((n * 1e6).round() / 1e6),
+        n => exponent(n, 0),
+    }
+}

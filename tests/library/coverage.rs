@@ -1,0 +1,222 @@
+//! Stated uncertainties hold the truth: measured precession and nutation of random runs, beside theory.
+
+use crate::support::dice::Dice;
+use gyrolab::analysis::{Instruments, Measured, Monitor};
+use gyrolab::run::Simulation;
+use gyrolab::scenario::{Document, Scenario};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+fn preset(name: &str, set: &[&str]) -> Arc<Scenario> {
+    let mut document = Document::open(name).unwrap();
+    set.iter().for_each(|set| document.set(set).unwrap());
+    Arc::new(document.scenario().unwrap())
+}
+
+fn measured(scenario: &Arc<Scenario>) -> [Option<Measured>; 2] {
+    let mut simulation = Simulation::new(Arc::clone(scenario));
+    let mut instruments = Instruments::new(&simulation);
+    while simulation.step_number() < scenario.steps {
+        simulation.step().unwrap();
+        instruments.follow(&simulation);
+    }
+    [
+        instruments.precession_rad_per_s(),
+        instruments.nutation_period_s(),
+    ]
+}
+
+fn log_between(dice: &mut Dice, least: f64, most: f64) -> f64 {
+    least * (dice.unit() * (most / least).ln()).exp()
+}
+
+fn between(dice: &mut Dice, least: f64, most: f64) -> f64 {
+    least + dice.unit() * (most - least)
+}
+
+/// 1 and a random part more or less.
+fn about_one(dice: &mut Dice, least: f64, most: f64) -> f64 {
+    let part = log_between(dice, least, most);
+    if dice.unit() < 0.5 {
+        1.0 - part
+    } else {
+        1.0 + part
+    }
+}
+
+/// How a random run begins.
+const STARTS: [&str; 8] = [
+    "released",
+    "loops and waves",
+    "near steady precession, slow",
+    "near the sleeping limit, almost upright",
+    "falling",
+    "near the vertical",
+    "hanging",
+    "near steady precession, fast",
+];
+
+/// A random run under `exact`, with its true precession (rad/s) and nutation period (s), and how many nutations it lasts.
+struct Case {
+    scenario: Arc<Scenario>,
+    truth: [f64; 2],
+    nutations: f64,
+}
+
+fn random(seed: u64) -> Option<Case> {
+    let mut dice = Dice(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+    (0..20).for_each(|_| {
+        dice.unit();
+    });
+    let dice = &mut dice;
+    let points = 3 + (dice.unit() * 10.0) as usize;
+    let (radius, height) = (between(dice, 0.3, 1.5), between(dice, 0.2, 1.5));
+    let (kg, top_kg) = (between(dice, 0.1, 1.0), dice.unit());
+    let mass = points as f64 * kg;
+    let across = mass * (0.5 * radius * radius + height * height) + top_kg * 4.0 * height * height;
+    let load = 9.8 * (mass * height + top_kg * 2.0 * height);
+    let limit = 2.0 * (across * load).sqrt();
+    let mut tilt = between(dice, 5.0, 120.0);
+    let mut spin = limit * log_between(dice, 0.3, 10.0);
+    let mut aside = [0.0, 0.0];
+    let start = (seed % 8) as usize;
+    match STARTS[start] {
+        "released" => {}
+        "loops and waves" => aside = [(); 2].map(|()| between(dice, -0.7, 0.7) * spin),
+        "near steady precession, slow" | "near steady precession, fast" => {
+            tilt = between(dice, 5.0, 80.0);
+            spin = limit * log_between(dice, 1.05, 10.0);
+            let (sin, cos) = tilt.to_radians().sin_cos();
+            let root = spin + (spin * spin - 4.0 * across * load * cos).sqrt();
+            let rate = match start {
+                2 => 2.0 * load / root,
+                _ => root / (2.0 * across * cos),
+            };
+            aside[1] = across * rate * sin * about_one(dice, 1e-6, 1e-1);
+        }
+        "near the sleeping limit, almost upright" => {
+            tilt = log_between(dice, 0.01, 3.0);
+            spin = limit * between(dice, 0.6, 1.5);
+        }
+        "falling" => {
+            tilt = between(dice, 5.0, 60.0);
+            spin = limit * between(dice, 0.01, 0.4);
+        }
+        "near the vertical" => {
+            // It passes through the vertical where L_z is L.axle.
+            let (sin, cos) = tilt.to_radians().sin_cos();
+            aside[1] = (spin * about_one(dice, 1e-6, 1e-1) - spin * cos) / sin;
+        }
+        _ => {
+            tilt = between(dice, 120.0, 179.0);
+            aside = [(); 2].map(|()| between(dice, -0.7, 0.7) * spin);
+        }
+    }
+    let build = |step: f64, steps: u64| {
+        let [x, y] = aside;
+        let text = format!(
+            "title = 'x'\n[body.rim]\npoints = {points}\nradius_m = {radius}\nheight_m = {height}\n\
+             point_mass_kg = {kg}\n[[body.point]]\nname = 'top'\nat_m = [0, 0, {}]\nmass_kg = {top_kg}\n\
+             [start]\ntilt_deg = {tilt}\nmomentum_Js = [{x}, {y}, {spin}]\nmomentum_frame = 'body'\n\
+             [motion]\nscheme = 'exact'\ntime_step_s = {step}\nsteps = {steps}\n",
+            2.0 * height
+        );
+        let document = Document::parse("x.toml", &text).unwrap();
+        Arc::new(document.scenario().unwrap())
+    };
+    let theory = Monitor::new(&Simulation::new(build(0.01, 1))).theory(0.0)?;
+    let truth = [theory.precession?, theory.nutation_period_s?];
+    let per_nutation = log_between(dice, 2.2, 300.0);
+    let steps = (log_between(dice, 0.3, 100.0) * per_nutation).max(2.0) as u64;
+    Some(Case {
+        scenario: build(truth[1] / per_nutation, steps),
+        truth,
+        nutations: steps as f64 / per_nutation,
+    })
+}
+
+#[test]
+fn stated_uncertainties_hold_the_truth_in_random_runs() {
+    let runs: Vec<_> = (1..=1000_u64)
+        .into_par_iter()
+        .filter_map(|seed| {
+            let case = random(seed)?;
+            Some((seed, measured(&case.scenario), case))
+        })
+        .collect();
+    assert_eq!(runs.len(), 1000, "theory speaks of all of them");
+    for (which, name) in ["precession", "nutation"].into_iter().enumerate() {
+        let mut errors = Vec::new();
+        for (seed, measured, case) in &runs {
+            let Some(measured) = measured[which] else {
+                // Only where less than a whole nutation, or the vertical itself, was seen there is none.
+                assert!(case.nutations < 1.0 || *seed % 8 == 3, "{name} of {seed}");
+                continue;
+            };
+            let off = (measured.value - case.truth[which]).abs() / measured.uncertainty;
+            assert!(
+                off < 6.0,
+                "{name} of {seed}: {off} standard errors, {measured:?}"
+            );
+            errors.push(off);
+        }
+        errors.sort_by(f64::total_cmp);
+        let (count, within) = (errors.len(), errors.partition_point(|&off| off <= 2.0));
+        let median = errors[count / 2];
+        println!("{name}: {count} given, {within} within 2 standard errors, median {median}");
+        assert!(
+            within as f64 >= 0.93 * count as f64,
+            "{name}: {within} of {count}"
+        );
+        assert!(median >= 0.2, "{name} is padded: {median}");
+        assert!(count >= 850, "{name} is withheld: {count} given");
+    }
+}
+
+#[test]
+fn a_short_run_says_no_more_than_it_has_seen() {
+    let loops = [
+        "motion.scheme=exact",
+        "start.momentum_Js=[0,-16,60]",
+        "motion.time_step_s=0.005",
+        "motion.steps=2000",
+    ];
+    let [precession, _] = measured(&preset("loops", &loops));
+    let precession = precession.unwrap();
+    let off = (precession.value - 0.76714098).abs();
+    assert!(off < 2.0 * precession.uncertainty + 1e-8, "{precession:?}");
+
+    // A nutation takes 2.366 s.
+    for (steps, known) in [(3000, true), (1000, false)] {
+        let steps = format!("motion.steps={steps}");
+        let sleeping = preset(
+            "sleeping",
+            &["motion.scheme=exact", "motion.time_step_s=0.001", &steps],
+        );
+        let found = measured(&sleeping);
+        for (found, truth) in found.iter().zip([1.70342095, 2.36591637]) {
+            assert_eq!(found.is_some(), known, "{steps}: {found:?}");
+            let off = found.map_or(0.0, |found| {
+                (found.value - truth).abs() - 2.0 * found.uncertainty
+            });
+            assert!(off < 1e-8, "{found:?}");
+        }
+    }
+}
+
+#[test]
+fn whole_turns_between_two_rows_are_counted() {
+    // An unstable sleeper lingers upright and turns there, by more than a turn in each of these time steps.
+    let coarse = preset(
+        "sleeping-unstable",
+        &[
+            "motion.scheme=exact",
+            "motion.time_step_s=3.7",
+            "motion.steps=40",
+        ],
+    );
+    let [precession, _] = measured(&coarse);
+    let precession = precession.unwrap();
+    let off = (precession.value - 2.36684257).abs() / precession.uncertainty;
+    assert!(off < 3.0, "{off} standard errors: {precession:?}");
+}

@@ -1,0 +1,452 @@
+//! The table of readouts: its names, what they hold, and that no text of the program ever shows what is no number.
+
+use crate::support::desk::Desk;
+use crate::support::dice::Dice;
+use gyrolab::analysis::compare::{Table, compare};
+use gyrolab::analysis::readouts::{READOUTS, Value, find, names, nearest};
+use gyrolab::analysis::theory::Axis;
+use gyrolab::analysis::{Monitor, Readouts};
+use gyrolab::export::{COLUMNS, Summary};
+use gyrolab::physics::scheme::SCHEMES;
+use gyrolab::run::{EnergyScale, EnergyUnit, Simulation};
+use gyrolab::scenario::presets::PRESETS;
+use gyrolab::scenario::{Document, Scenario};
+use gyrolab::tui::keymap::Key;
+use gyrolab::tui::screen;
+use std::collections::BTreeSet;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Duration;
+
+fn preset(name: &str, set: &[&str]) -> Scenario {
+    let mut document = Document::open(name).unwrap();
+    set.iter().for_each(|set| document.set(set).unwrap());
+    let scenario = document.scenario();
+    scenario.unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// The readouts at the end of the run, and every row of it.
+fn played(scenario: &Scenario) -> (Readouts, Vec<gyrolab::run::Sample>) {
+    let scenario = Arc::new(scenario.clone());
+    let mut simulation = Simulation::new(Arc::clone(&scenario));
+    let mut monitor = Monitor::new(&simulation);
+    let mut rows = vec![simulation.sample()];
+    while simulation.step_number() < scenario.steps && simulation.step().is_ok() {
+        monitor.follow(&simulation);
+        rows.push(simulation.sample());
+    }
+    let health = monitor.health(&simulation);
+    let readouts = Readouts::new(&simulation, &mut monitor, &health, None);
+    (readouts, rows)
+}
+
+fn readouts(scenario: &Scenario) -> Readouts {
+    played(scenario).0
+}
+
+fn summary(readouts: Readouts) -> Summary {
+    Summary::new(readouts, Duration::from_secs(1))
+}
+
+fn json(readouts: &Readouts) -> serde_json::Value {
+    serde_json::to_value(readouts).unwrap()
+}
+
+#[test]
+fn the_table_is_whole_and_its_names_say_their_units() {
+    let unique: BTreeSet<_> = names().collect();
+    assert_eq!(unique.len(), READOUTS.len());
+    for readout in READOUTS {
+        let ending = match readout.unit {
+            "" => "",
+            "J s" => "_Js",
+            "rad/s" => "_rad_per_s",
+            "1/s" => "_per_second",
+            unit => &format!("_{unit}"),
+        };
+        assert!(readout.name.ends_with(ending), "{}", readout.name);
+        assert!(readout.meaning.len() > 3, "{}", readout.name);
+    }
+    assert_eq!(nearest("tilt"), "did you mean tilt_deg?");
+    assert_eq!(
+        nearest("lowest_tilt_deg"),
+        "did you mean measured_lowest_tilt_deg or predicted_lowest_tilt_deg?"
+    );
+    assert!(find("lowest_tilt_deg").is_none());
+}
+
+#[test]
+fn a_column_of_the_csv_is_the_readout_of_its_name() {
+    let (readouts, rows) = played(&preset("wobble-push", &[]));
+    let last = rows.last().unwrap();
+    for column in COLUMNS.iter().filter(|column| column.name != "step") {
+        let number = readouts.number(column.name);
+        assert_eq!(number, Some(column.value(last).number()), "{}", column.name);
+    }
+    assert_eq!(readouts.number("steps"), Some(2300.0));
+    assert_eq!(readouts.number("title"), None);
+    let object = json(&readouts);
+    for readout in READOUTS {
+        match readout.of(&readouts) {
+            Value::Nothing => assert!(object[readout.name].is_null(), "{}: {object}", readout.name),
+            value => assert_eq!(object[readout.name], serde_json::to_value(value).unwrap()),
+        }
+    }
+}
+
+/// Least and greatest of one number of the rows.
+fn extremes(rows: &[gyrolab::run::Sample], of: fn(&gyrolab::run::Sample) -> f64) -> [f64; 2] {
+    let numbers = || rows.iter().map(of);
+    [
+        numbers().fold(f64::INFINITY, f64::min),
+        numbers().fold(f64::NEG_INFINITY, f64::max),
+    ]
+}
+
+const EXTREMES: [&str; 4] = [
+    "measured_lowest_tilt_deg",
+    "measured_highest_tilt_deg",
+    "measured_lowest_z_m",
+    "measured_highest_z_m",
+];
+
+fn expected_extremes(rows: &[gyrolab::run::Sample]) -> [f64; 4] {
+    let [tilt, z] = [
+        extremes(rows, |row| row.tilt_deg),
+        extremes(rows, |row| row.position.z),
+    ];
+    [tilt[0], tilt[1], z[0], z[1]]
+}
+
+#[test]
+fn the_extremes_are_those_of_the_columns() {
+    for preset in PRESETS {
+        for scheme in SCHEMES {
+            let scheme = format!("motion.scheme={}", scheme.name);
+            let mut scenario = self::preset(preset.name, &[&scheme]);
+            scenario.steps = scenario.steps.min(3000);
+            let (readouts, rows) = played(&scenario);
+            let told = EXTREMES.map(|name| readouts.number(name).unwrap());
+            assert_eq!(told, expected_extremes(&rows), "{}, {scheme}", preset.name);
+        }
+    }
+    // Near the vertical and the horizontal, where the tilt's cosine or sine says little.
+    let mut dice = Dice(0x9E37_79B9_7F4A_7C15);
+    for _ in 0..100 {
+        let tilt = dice.pick(&[0.0, 90.0, 180.0]) + dice.pick(&[0.0, 1e-9, 1e-5, -1e-7]);
+        let tilt = format!("start.tilt_deg={}", f64::abs(tilt));
+        let aside = format!(
+            "start.momentum_Js=[{},0,60]",
+            dice.pick(&[0.0, 1e-12, 1e-6])
+        );
+        let set = [&tilt, &aside, "motion.steps=300"];
+        let (readouts, rows) = played(&preset("sleeping", &set));
+        let told = EXTREMES.map(|name| readouts.number(name).unwrap());
+        assert_eq!(told, expected_extremes(&rows), "{set:?}");
+    }
+}
+
+#[test]
+fn the_extremes_outlive_going_back_and_forth() {
+    let scenario = preset("method-2", &[]);
+    let (_, rows) = played(&scenario);
+    let mut desk = Desk::with("method-2", scenario);
+    for step in [2000_u64, 3, 700, 0, 1500, 1499, 256, 2300, 10] {
+        desk.press(&[Key::Char('r')]);
+        desk.type_text(&format!("{step}g"));
+        desk.wait(2);
+        let readouts = &desk.lab.reading().readouts;
+        assert_eq!(readouts.sample.step, step);
+        let told = EXTREMES.map(|name| readouts.number(name).unwrap());
+        let known = expected_extremes(&rows[..=step as usize]);
+        assert_eq!(told, known, "at step {step}");
+    }
+}
+
+/// What theory says about an axis.
+const ABOUT_THE_AXIS: &[&str] = &[
+    "path",
+    "predicted_lowest_tilt_deg",
+    "predicted_highest_tilt_deg",
+    "predicted_precession_rad_per_s",
+    "predicted_nutation_period_s",
+    "slow_precession_rad_per_s",
+    "cusp_tilt_deg",
+    "sleeping_limit_Js",
+];
+
+#[test]
+fn theory_names_its_axis() {
+    let upright = readouts(&preset("cusps", &[]));
+    assert_eq!(json(&upright)["theory_axis"], "+z");
+    assert!((upright.number("predicted_lowest_tilt_deg").unwrap() - 30.0).abs() < 1e-9);
+    let text = summary(upright).to_string();
+    assert!(text.contains("tilt 30.0000 to 36.6891 degrees\n"), "{text}");
+
+    let free = readouts(&preset("cusps", &["motion.gravity_m_per_s2=0"]));
+    let sideways = "push.0={point='top',force_N=[10,0,0],from_s=0,for_s=1000}";
+    let pushed = readouts(&preset("cusps", &[sideways]));
+    let hung = readouts(&preset("cusps", &["motion.gravity_m_per_s2=-9.8"]));
+    for (readouts, axis, words) in [
+        (&free, "L", "degrees from L\n"),
+        (
+            &pushed,
+            "the forces' vertical (-0.293, 0.000, 0.956)",
+            "degrees from the forces' vertical (-0.293, 0.000, 0.956)\n",
+        ),
+        (
+            &hung,
+            "the forces' vertical (0.000, 0.000, -1.000)",
+            "degrees from the forces' vertical (0.000, 0.000, -1.000)\n",
+        ),
+    ] {
+        let object = json(readouts);
+        assert_eq!(object["theory_axis"], axis);
+        for name in ABOUT_THE_AXIS {
+            assert!(object[*name].is_null(), "{axis}: {name}: {object}");
+        }
+        let text = summary(readouts.clone()).to_string();
+        assert!(text.contains(words), "{text}");
+        assert!(text.contains("measured about +z"), "{text}");
+        assert!(!text.contains("to 0.0000 degrees\n"), "{text}");
+    }
+    // Without gravity, but with L along +z, it is +z that the axle goes round.
+    let free = readouts(&preset("torque-free", &[]));
+    assert_eq!(free.theory.unwrap().axis, Axis::Z);
+    assert!((free.number("predicted_precession_rad_per_s").unwrap() - 60.0 / 6.6).abs() < 1e-9);
+}
+
+#[test]
+fn a_strobed_nutation_is_named_with_theory_or_without() {
+    let resolved = |scenario: &Scenario| json(&readouts(scenario))["nutation_is_resolved"].clone();
+    let lopsided = |spin: &str, step: &str| {
+        let spin = format!("start.momentum_Js=[0,0,{spin}]");
+        let step = format!("motion.time_step_s={step}");
+        let mut set = vec!["body.point.2.at_m=[0.3,0,0]", "body.point.2.mass_kg=0.5"];
+        set.extend([spin.as_str(), step.as_str(), "motion.steps=200"]);
+        preset("cusps", &set)
+    };
+    let strobed = lopsided("1000", "0.1");
+    assert_eq!(resolved(&strobed), false);
+    let text = summary(readouts(&strobed)).to_string();
+    assert!(text.contains("a strobe's picture"), "{text}");
+    assert!(resolved(&lopsided("60", "0.001")).is_null());
+    for scheme in SCHEMES {
+        let scheme = format!("motion.scheme={}", scheme.name);
+        let free = |step: &str| {
+            let step = format!("motion.time_step_s={step}");
+            let set = [
+                "motion.gravity_m_per_s2=0",
+                &step,
+                &scheme,
+                "motion.steps=20",
+            ];
+            preset("cusps", &set)
+        };
+        assert_eq!(resolved(&free("1")), false, "{scheme}");
+        // The axle goes round L 60/6.6 rad in a second, faster or slower than the body turns.
+        assert_eq!(resolved(&free("0.36")), false, "{scheme}");
+        assert!(resolved(&free("0.001")).is_null(), "{scheme}");
+        let method_2 = preset("method-2", &[&scheme, "motion.steps=200"]);
+        assert_eq!(resolved(&method_2), false, "{scheme}");
+    }
+    assert_eq!(resolved(&preset("cusps", &[])), true);
+}
+
+#[test]
+fn the_drift_of_a_balanced_body_is_measured_by_its_kinetic_energy() {
+    let balanced = |height: &str, momentum: &str| {
+        let height = format!("body.rim.height_m={height}");
+        let momentum = format!("start.momentum_Js={momentum}");
+        preset(
+            "cusps",
+            &[
+                &height,
+                &momentum,
+                "motion.time_step_s=0.01",
+                "motion.steps=1000",
+            ],
+        )
+    };
+    let drift = |scenario: &Scenario| readouts(scenario).number("energy_drift").unwrap();
+    for height in ["0", "1e-15", "1e-11"] {
+        let scenario = balanced(height, "[0,-30,60]");
+        let scale = EnergyScale::of(&scenario).unwrap();
+        assert_eq!(scale.unit, EnergyUnit::KineticAtStart, "{height}");
+        let off = drift(&scenario).abs();
+        println!("rim at {height} m: {off:e}");
+        assert!(off < 1e-2, "{height}: {off:e}");
+        let text = summary(readouts(&scenario)).to_string();
+        assert!(
+            text.contains("of the kinetic energy at the start"),
+            "{text}"
+        );
+        let rk4 = gyrolab::physics::SchemeInfo::find("rk4").unwrap();
+        let rows = compare(&scenario, &[rk4], &[0.01], |_, _| ControlFlow::Continue(())).unwrap();
+        assert!(rows[0].energy_drift.unwrap() < 1e-2);
+        let table = Table {
+            rows: &rows,
+            energy_unit: Some(scale.unit),
+        };
+        assert!(
+            table
+                .to_string()
+                .contains("of the kinetic energy at the start")
+        );
+    }
+    let heavy = EnergyScale::of(&balanced("1", "[0,-30,60]")).unwrap();
+    assert_eq!(heavy.unit, EnergyUnit::Weight);
+    assert!((heavy.size - 49.0).abs() < 1e-9);
+    // At rest, and balanced but for rounding: there is nothing to measure by.
+    assert_eq!(EnergyScale::of(&balanced("1e-16", "[0,0,0]")), None);
+    assert_eq!(
+        readouts(&balanced("1e-16", "[0,0,0]")).health.energy_drift,
+        None
+    );
+}
+
+/// A text for people that shows something that is no number, or digits that nobody reads.
+fn blemish(text: &str) -> Option<String> {
+    let is_word = |word: &str, c: char| word.contains(c);
+    let words = text.split(|c: char| !(c.is_alphanumeric() || is_word("._+-", c)));
+    let bad = |word: &&str| {
+        let bare = word
+            .trim_matches(|c: char| "+-.".contains(c))
+            .to_lowercase();
+        let digits = word
+            .split(|c: char| !c.is_ascii_digit())
+            .map(str::len)
+            .max();
+        ["nan", "inf", "-inf", "null"].contains(&bare.as_str()) || digits > Some(30)
+    };
+    let mut words = words;
+    words.find(bad).map(str::to_owned)
+}
+
+/// What is changed in a preset so that its numbers come to the edge of their range.
+const EXTREME: &[&[&str]] = &[
+    &["motion.gravity_m_per_s2=5e-324"],
+    &["motion.gravity_m_per_s2=1e300"],
+    &["motion.gravity_m_per_s2=-1e-300"],
+    &["motion.time_step_s=1e308"],
+    &["motion.time_step_s=1e300", "motion.gravity_m_per_s2=0"],
+    &["motion.time_step_s=5e-324"],
+    &["motion.time_step_s=1e-300"],
+    &["push.0={point='top',force_N=[1e300,0,0],steps=3}"],
+    &["push.0={point='top',force_N=[0,0,1e300],steps=3}"],
+    &[
+        "push.0={point='top',force_N=[0,0,5e-324],steps=3}",
+        "motion.gravity_m_per_s2=0",
+    ],
+    &["push.0={point='top',force_N=[0,0,1],from_s=1e307,for_s=1e300}"],
+    &["start.momentum_Js=[0,0,1e154]"],
+    &["start.momentum_Js=[0,1e154,1e154]"],
+    &["start.momentum_Js=[1e150,0,0]", "motion.gravity_m_per_s2=0"],
+    &[
+        "start.momentum_Js=[0,0,5e-324]",
+        "motion.gravity_m_per_s2=0",
+    ],
+    &["start.momentum_Js=[0,0,0]", "motion.gravity_m_per_s2=0"],
+    &["start.momentum_Js=[0,0,0]", "start.tilt_deg=0"],
+    &[
+        "start.momentum_Js=[0,0,1e-200]",
+        "motion.gravity_m_per_s2=1e-200",
+    ],
+    &["start.momentum_Js=[0,0,1e100]"],
+    &["body.rim.point_mass_kg=1e290"],
+    &["body.rim.point_mass_kg=1e-290"],
+    &[
+        "body.rim.radius_m=1e-100",
+        "body.rim.height_m=1e-100",
+        "trace=foot",
+    ],
+    &["body.rim.height_m=1e100", "body.rim.radius_m=1e100"],
+    &["body.point.1.at_m=[0,0,1e300]", "trace=top"],
+    &["body.point.1.at_m=[0,0,1e-300]", "trace=top"],
+];
+
+/// The presets that are taken to the edge.
+const BEGUN_FROM: [&str; 3] = ["cusps", "method-2", "torque-free"];
+
+#[test]
+fn no_text_shows_what_is_no_number() {
+    let mut looked_at = 0;
+    for (name, set) in BEGUN_FROM
+        .iter()
+        .flat_map(|name| EXTREME.iter().map(move |set| (name, set)))
+    {
+        for scheme in SCHEMES {
+            let mut document = Document::open(name).unwrap();
+            let scheme_set = format!("motion.scheme={}", scheme.name);
+            let set: Vec<_> = set
+                .iter()
+                .copied()
+                .chain([scheme_set.as_str(), "motion.steps=40"])
+                .collect();
+            let is_set = set.iter().try_for_each(|set| document.set(set));
+            let Ok(scenario) = is_set.and_then(|()| document.scenario()) else {
+                continue; // refused
+            };
+            looked_at += 1;
+            let case = format!("{name} {set:?}");
+            let readouts = readouts(&scenario);
+            let text = summary(readouts.clone()).to_string();
+            assert_eq!(blemish(&text), None, "{case}\n{text}");
+            let numbers = serde_json::to_string(&readouts).unwrap();
+            let numbers = numbers.replace(":null", ":none");
+            assert_eq!(blemish(&numbers), None, "{case}\n{numbers}");
+            let picture = picture(&scenario);
+            assert_eq!(blemish(&picture), None, "{case}\n{picture}");
+            for remark in gyrolab::analysis::remarks::remarks(&readouts.health, None) {
+                assert_eq!(blemish(&remark.long), None, "{case}: {remark:?}");
+            }
+        }
+    }
+    println!("{looked_at} scenarios looked at");
+    assert!(looked_at > 200, "{looked_at}");
+}
+
+/// The lab on a large screen, at the end of the run.
+fn picture(scenario: &Scenario) -> String {
+    let mut desk = Desk::with("x.toml", scenario.clone());
+    let _ = desk.lab.begin_at(scenario.steps); // where its numbers end it stays there
+    screen::text(&desk.lab, true, (200, 50))
+}
+
+#[test]
+fn no_table_shows_what_is_no_number() {
+    for (name, set) in BEGUN_FROM
+        .iter()
+        .flat_map(|name| EXTREME.iter().map(move |set| (name, set)))
+    {
+        let mut document = Document::open(name).unwrap();
+        let set: Vec<_> = set.iter().copied().chain(["motion.steps=8"]).collect();
+        let is_set = set.iter().try_for_each(|set| document.set(set));
+        let Ok(scenario) = is_set.and_then(|()| document.scenario()) else {
+            continue; // refused
+        };
+        let schemes: Vec<_> = SCHEMES.iter().collect();
+        let step = scenario.motion.time_step_s;
+        if step / 2.0 == 0.0 {
+            continue;
+        }
+        let rows = compare(&scenario, &schemes, &[step, step / 2.0], |_, _| {
+            ControlFlow::Continue(())
+        });
+        let rows = rows.unwrap();
+        let energy_unit = EnergyScale::of(&scenario).map(|scale| scale.unit);
+        let table = Table {
+            rows: &rows,
+            energy_unit,
+        };
+        let text = table.to_string();
+        assert_eq!(blemish(&text), None, "{name} {set:?}\n{text}");
+        let mut csv = csv::Writer::from_writer(Vec::new());
+        rows.iter().for_each(|row| csv.serialize(row).unwrap());
+        let text = String::from_utf8(csv.into_inner().unwrap()).unwrap();
+        assert!(
+            !text.contains("NaN") && !text.contains("inf"),
+            "{name} {set:?}\n{text}"
+        );
+    }
+}

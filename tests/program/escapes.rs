@@ -1,0 +1,158 @@
+//! Names that could steer the terminal, in every place where the user or the machine may put one: none of them gets
+//! there as it is.
+
+use crate::support::ground::Ground;
+use crate::support::pty::LEAVES_ALTERNATE_SCREEN;
+use gyrolab::text::printable::is_steering;
+use std::process::Output;
+
+/// Sets a window's title, turns text round, and hides.
+const NASTY: &str = "x\u{1b}]0;P\u{7}\u{202e}\u{200b}\u{2028}\u{feff}\u{e0041}\u{9b}2Jy";
+
+const BODY: &str = "[[body.point]]\nname = 'top'\nat_m = [0, 0, 1]\nmass_kg = 1\n[[body.point]]\nname = 'a'\n\
+                    at_m = [1, 0, 1]\nmass_kg = 1\n[[body.point]]\nname = 'b'\nat_m = [0, 1, 1]\nmass_kg = 1\n\
+                    [start]\nmomentum_Js = [0, 0, 9]\n[motion]\ntime_step_s = 0.01\nsteps = 5\n";
+
+#[track_caller]
+fn is_printable(args: &[&str], output: &Output) {
+    for stream in [&output.stdout, &output.stderr] {
+        let text = String::from_utf8_lossy(stream);
+        let steering = text.chars().find(|&c| c != '\n' && is_steering(c));
+        assert_eq!(steering, None, "{args:?}: {text:?}");
+    }
+}
+
+#[test]
+fn no_argument_steers_the_terminal() {
+    let ground = Ground::named(NASTY);
+    let good = format!("{NASTY}.toml");
+    std::fs::write(ground.file(&good), format!("title = 'A top'\n{BODY}")).unwrap();
+    std::fs::write(ground.file("broken.toml"), format!("title = {NASTY}\n")).unwrap();
+    std::fs::write(ground.file(&format!("{NASTY}.csv")), "a,b\n1,2\n").unwrap();
+    std::fs::create_dir(ground.file(NASTY)).unwrap();
+    for (name, line) in [
+        ("title", "title = \"N\""),
+        ("key", "title = 'x'\n\"N\" = 1"),
+        ("trace", "title = 'x'\ntrace = \"N\""),
+        ("scheme", "title = 'x'\nmotion.scheme = \"N\""),
+        ("about", "title = 'x'\nabout = \"N\""),
+        ("view", "title = 'x'\nview = { look_at = \"N\" }"),
+        ("type", "title = [\"N\"]"),
+    ] {
+        let escaped: String = NASTY
+            .chars()
+            .map(|c| format!("\\U{:08X}", c as u32))
+            .collect();
+        let text = format!("{}\n{BODY}", line.replace('N', &escaped));
+        std::fs::write(ground.file(&format!("{name}.toml")), text).unwrap();
+    }
+    let here = format!("./{good}");
+    let csv = format!("{NASTY}.csv");
+    let [key, value, word, title, option] = [
+        format!("{NASTY}=1"),
+        format!("motion.time_step_s={NASTY}"),
+        format!("motion.scheme={NASTY}"),
+        format!("title={NASTY}"),
+        format!("--{NASTY}"),
+    ];
+    let [deep, missing, place] = [
+        format!("motion.{NASTY}.a.b={NASTY}"),
+        format!("./{NASTY}.d/y"),
+        format!("push.{NASTY}=1"),
+    ];
+    let commands: &[&[&str]] = &[
+        &[NASTY],
+        &[&good, "--at", "3"],
+        &[&option],
+        &["run", NASTY],
+        &["run", &good],
+        &["run", &here, "-o", NASTY],
+        &["run", &here, "-o", &missing],
+        &["run", &here, "-o", &csv],
+        &["run", &here, "--json"],
+        &["run", &csv],
+        &["run", NASTY, NASTY],
+        &["run", "method-2", "--set", NASTY],
+        &["run", "method-2", "--set", &key],
+        &["run", "method-2", "--set", &value],
+        &["run", "method-2", "--set", &word],
+        &["run", "method-2", "--set", &title],
+        &["run", "method-2", "--set", &deep],
+        &["run", "method-2", "--set", &place],
+        &["run", "method-2", "--scheme", NASTY],
+        &["run", "method-2", "--time-step", NASTY],
+        &["run", "method-2", "--steps", NASTY],
+        &["run", "method-2", "--every", NASTY],
+        &["compare", NASTY],
+        &["compare", "method-2", "--schemes", NASTY],
+        &["compare", &here, "--time-steps", NASTY],
+        &["compare", &here, "-o", NASTY],
+        &["show", NASTY],
+        &["show", &here],
+        &["show", &here, "--size", NASTY],
+        &["presets", NASTY],
+        &["check", NASTY, &good, &here, &csv, "broken.toml"],
+        &[
+            "check",
+            "title.toml",
+            "key.toml",
+            "trace.toml",
+            "scheme.toml",
+            "about.toml",
+        ],
+        &["check", "view.toml", "type.toml"],
+        &["completions", NASTY],
+        &["help", NASTY],
+        &["--resume", NASTY],
+        &["--color", NASTY],
+    ];
+    for args in commands {
+        is_printable(args, &ground.run(args));
+    }
+    let checked = ground.run(&["check", "title.toml", "about.toml", "view.toml"]);
+    let told = String::from_utf8_lossy(&checked.stderr);
+    for key in ["title", "about", "view.look_at"] {
+        assert!(told.contains(&format!(" {key} (\"x\\u")), "{told}");
+    }
+    assert!(told.contains("(here U+001B)"), "{told}");
+}
+
+#[test]
+fn the_lab_and_its_farewell_show_names_escaped() {
+    let ground = Ground::named(NASTY);
+    let file = format!("{NASTY}.toml");
+    std::fs::write(ground.file(&file), format!("title = 'A top'\n{BODY}")).unwrap();
+    let variables = [("TERM", "xterm"), ("LANG", "C.UTF-8"), ("USER", NASTY)];
+    let mut terminal = ground.open_with(&[&file, "--paused", "--at", "5"], &variables);
+    terminal.wait_for("A top");
+    terminal.ask("o", r"x\u{1b}]0;P\u{7}");
+    terminal.press("\u{1b}");
+    terminal.wait_until("the lab", |terminal| {
+        !terminal.words().contains("Enter open")
+    });
+    terminal.ask("x", "export steps 0 to 5");
+    terminal.ask("\r", "wrote");
+    terminal.quit();
+    terminal.has_given_the_terminal_back();
+    terminal.wait_until("the farewell", |terminal| {
+        terminal.sent_text().contains("gyrolab --resume")
+    });
+    let sent = terminal.sent_text();
+    assert!(!sent.contains("]0;P\u{7}"));
+    let (_, farewell) = sent.rsplit_once(LEAVES_ALTERNATE_SCREEN).unwrap();
+    // The last sequence of the lab's own gives the cursor back.
+    let (_, own) = farewell.rsplit_once("\u{1b}[").unwrap();
+    let own_end = own.find(|c: char| c.is_ascii_alphabetic()).unwrap();
+    let lines: Vec<_> = own[own_end + 1..].lines().collect();
+    assert!(
+        lines.iter().any(|line| line.contains("no scp line")),
+        "{lines:?}"
+    );
+    assert!(
+        lines.iter().any(|line| line.contains(": 6 rows")),
+        "{lines:?}"
+    );
+    for line in lines {
+        assert!(!line.chars().any(is_steering), "{line:?}");
+    }
+}

@@ -1,0 +1,189 @@
+//! Sessions as the program keeps, lists and confines them: the program itself in a pty.
+
+use crate::support::ground::Ground;
+use crate::support::pty::Terminal;
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::process::Command;
+
+const ESC: &str = "\u{1b}";
+const CTRL_Z: &str = "\u{1a}";
+/// Takes away what a dialog offers, or what was typed into it.
+const CLEAR: &str = "\u{15}";
+const AS_LEFT: &str = "as it was left";
+
+#[test]
+fn seventy_six_acts_each_earlier_than_the_one_before_are_come_back_to() {
+    let ground = Ground::new();
+    let mut lab = ground.open(&["method-2", "--paused"]);
+    lab.wait_for("q quit");
+    lab.press("157g");
+    lab.wait_for_step(157);
+    for step in (81..157).rev() {
+        lab.press("p,");
+        lab.wait_for_step(step);
+    }
+    lab.quit();
+    lab.wait_for("comes back to step 81 of Method 2");
+    let mut lab = ground.open(&["--resume"]);
+    lab.wait_for(AS_LEFT);
+    lab.wait_for_step(81);
+    lab.quit();
+    assert!(ground.kept(".damaged").is_empty());
+}
+
+/// A file size limit of zero does for a full disk: a file can be made, and no byte of it be written.
+#[test]
+fn on_a_full_disk_the_trouble_stays_and_nothing_is_promised() {
+    let ground = Ground::new();
+    let mut lab = ground.open_shell();
+    lab.wait_for("shell>");
+    let program = env!("CARGO_BIN_EXE_gyrolab");
+    lab.press(&format!("ulimit -f 0; {program} --paused --at 30\r"));
+    lab.wait_for("the session cannot be kept");
+    lab.press(".");
+    lab.wait_for_step(31);
+    lab.wait_for("the session cannot be kept");
+    lab.ask("P", "session not kept · the push to come");
+    lab.ask(ESC, "session not kept");
+    lab.forget();
+    lab.press("q");
+    lab.wait_for("there is no session to come back to");
+    assert!(!lab.words().contains("comes back to"), "{}", lab.words());
+}
+
+#[test]
+fn sessions_are_listed_and_one_is_taken_by_its_name() {
+    let ground = Ground::new();
+    for (preset, step) in [("cusps", "20"), ("method-2", "30")] {
+        let mut lab = ground.open(&[preset, "--paused", "--at", step]);
+        lab.wait_for("q quit");
+        lab.quit();
+    }
+    let mut first = ground.open(&["--resume", "1"]);
+    first.wait_for(AS_LEFT);
+    first.wait_for_step(20);
+    let listed = ground.run(&["sessions"]);
+    let text = String::from_utf8(listed.stdout).unwrap();
+    let lines: Vec<_> = text.lines().map(str::to_owned).collect();
+    assert_eq!(lines.len(), 3, "{text}");
+    let line = |name: &str| lines.iter().find(|line| line.starts_with(name)).unwrap();
+    let process = format!("by process {}", first.child.process_id().unwrap());
+    assert!(
+        line("1 ").contains(&process) && line("1 ").contains("(cusps)"),
+        "{text}"
+    );
+    for words in [" 30 ", " no ", "Method 2 (method-2)"] {
+        assert!(line("2 ").contains(words), "{words}: {text}");
+    }
+    for (name, words) in [
+        ("1", "it is open in another lab"),
+        ("7", "there is no such session"),
+    ] {
+        let mut lab = ground.open(&["--resume", name]);
+        assert_eq!(lab.wait_for_end().exit_code(), 1);
+        lab.wait_for(words);
+    }
+    first.quit();
+}
+
+/// A lab confined to the folder `inside`; beside it lies `secret.toml`.
+fn confined(ground: &Ground) -> Terminal {
+    let inside = ground.file("inside");
+    if !inside.exists() {
+        fs::create_dir(&inside).unwrap();
+        let preset = ground.run(&["presets", "cusps"]).stdout;
+        fs::write(ground.file("secret.toml"), &preset).unwrap();
+        fs::write(inside.join("own.toml"), &preset).unwrap();
+        symlink(ground.file("secret.toml"), inside.join("out.toml")).unwrap();
+        symlink(ground.file(""), inside.join("up")).unwrap();
+        let fifo = Command::new("mkfifo").arg(inside.join("pipe.csv")).status();
+        assert!(fifo.unwrap().success());
+    }
+    let folder = inside.to_str().unwrap();
+    let lab = ground.open(&["--folder", folder, "--paused", "--at", "30"]);
+    lab.wait_for("q quit");
+    lab
+}
+
+#[test]
+fn a_confined_lab_writes_in_its_folder_alone() {
+    let ground = Ground::new();
+    let mut lab = confined(&ground);
+    for key in ["x", "s", "S"] {
+        for (name, reason) in [
+            ("../new.toml", "stays in its folder"),
+            ("/tmp/gyrolab-new.toml", "stays in its folder"),
+            ("up/new.toml", "leads out of it"),
+            ("out.toml", "leads out of it"),
+            ("own/../../new.toml", "stays in its folder"),
+            (".gyrolab/1.work", "begin with a dot"),
+            ("/dev/tty", "stays in its folder"),
+            ("pipe.csv", "regular files alone"),
+            ("-", "no name for a file"),
+        ] {
+            lab.press(key);
+            lab.press(&format!("{CLEAR}{name}\r"));
+            lab.wait_for(reason);
+            lab.press(ESC);
+            lab.wait_until("no dialog", |lab| !lab.words().contains(reason));
+        }
+    }
+    lab.press("s");
+    lab.press(&format!("{CLEAR}new.toml\r"));
+    lab.wait_for("the run is in");
+    lab.ask(CTRL_Z, "there is no shell to go back to");
+    lab.quit();
+    let names = |folder: &str| {
+        let entries = fs::read_dir(ground.file(folder)).unwrap();
+        let mut names: Vec<_> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort_unstable();
+        names
+    };
+    assert_eq!(ground.files(), ["inside", "secret.toml"], "no state folder");
+    assert_eq!(
+        names("inside"),
+        [
+            ".gyrolab", "new.toml", "out.toml", "own.toml", "pipe.csv", "up"
+        ]
+    );
+    assert!(names("inside/.gyrolab").contains(&"1.work".to_owned()));
+}
+
+#[test]
+fn a_confined_lab_reads_in_its_folder_alone() {
+    let ground = Ground::new();
+    let mut lab = confined(&ground);
+    lab.press("o");
+    lab.ask("/toml", "own.toml");
+    assert!(!lab.words().contains("out.toml"), "{}", lab.words());
+    lab.press("\r");
+    lab.wait_for_step(0);
+    lab.quit();
+
+    let folder = ground.file("inside");
+    let folder = folder.to_str().unwrap();
+    for scenario in [
+        "../secret.toml",
+        "out.toml",
+        "up/secret.toml",
+        "/dev/null.toml",
+    ] {
+        let mut lab = ground.open(&["--folder", folder, scenario]);
+        assert_eq!(lab.wait_for_end().exit_code(), 1, "{scenario}");
+        lab.wait_for("stays in its folder");
+    }
+    let secret = ground.file("secret.toml");
+    let piped = ground.run(&["--folder", folder, secret.to_str().unwrap()]);
+    assert_eq!(piped.status.code(), Some(1));
+
+    let listed = ground.run(&["sessions", "--folder", folder]);
+    let text = String::from_utf8(listed.stdout).unwrap();
+    assert!(text.contains("(own.toml)"), "{text}");
+    let mut lab = ground.open(&["--folder", folder, "--resume"]);
+    lab.wait_for(AS_LEFT);
+    lab.quit();
+    lab.wait_for("gyrolab --folder");
+}
