@@ -148,7 +148,7 @@ fn steps_asked_for_by_the_million_do_not_hold_up_the_keys() {
             .shows("to go, Esc stops");
         let underway = stage.step();
         assert!((1000..9_000_000).contains(&underway), "{underway}");
-        stage.press(stop).shows("paused").shows("stopped with 8 ");
+        stage.press(stop).shows("paused").shows("stopped with 8,");
         let stopped = stage.step();
         stage.wait(1.0).shows("paused");
         assert_eq!(stage.step(), stopped);
