@@ -49,7 +49,8 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             "gyrolab: no terminal, so this is the picture that gyrolab show {} prints",
             printable(name)
         )?;
-        return print(&Picture {
+        return print(Picture {
+            confined,
             name,
             changes: &args.changes,
             at: args.at,
@@ -268,7 +269,8 @@ fn tell_of_exports(lab: &Lab) -> io::Result<()> {
 
 /// Prints the lab's picture at the end of a run, or after commands.
 pub(super) fn show(args: &ShowArgs) -> anyhow::Result<ExitCode> {
-    print(&Picture {
+    print(Picture {
+        confined: None,
         name: args.scenario.as_deref().unwrap_or(DEFAULT),
         changes: &args.changes,
         at: args.at,
@@ -280,6 +282,8 @@ pub(super) fn show(args: &ShowArgs) -> anyhow::Result<ExitCode> {
 
 /// What a picture is to show.
 struct Picture<'a> {
+    /// The folder that its commands do not leave, if there is one.
+    confined: Option<Confined>,
     name: &'a str,
     changes: &'a Changes,
     at: Option<u64>,
@@ -289,13 +293,16 @@ struct Picture<'a> {
     markers: Option<Markers>,
 }
 
-fn print(wanted: &Picture<'_>) -> anyhow::Result<ExitCode> {
+fn print(wanted: Picture<'_>) -> anyhow::Result<ExitCode> {
     let plain = Theme {
         colour: false,
         background: Background::Dark,
     };
     let commands = wanted.commands.map(command::open).transpose()?;
     let mut lab = lab(wanted.name, wanted.changes, wanted.markers, plain, false)?;
+    if let Some(folder) = wanted.confined {
+        lab.confine(folder);
+    }
     let end = match commands {
         Some(_) => 0,
         None => lab.run().scenario().steps,
