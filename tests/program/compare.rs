@@ -437,7 +437,7 @@ fn one_core_and_two_give_the_same_numbers() {
 
 #[test]
 fn time_steps_that_cannot_be_counted_are_refused_with_a_remedy() {
-    let output = Ground::new().run(&["cusps", "--time-steps", "1e-300"]);
+    let output = Ground::new().run(&["compare", "cusps", "--time-steps", "1e-300"]);
     assert_eq!(code(&output), 1);
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(

@@ -740,9 +740,15 @@ fn a_damaged_session_is_named_and_kept_aside() {
 fn without_a_place_for_sessions_the_lab_opens_and_says_so() {
     let ground = Ground::new();
     fs::write(ground.state(), "in the way").unwrap();
-    for args in [["--paused", "--at", "30"].as_slice(), &["--resume"]] {
+    for (args, words) in [
+        (
+            ["--paused", "--at", "30"].as_slice(),
+            "sessions cannot be kept in",
+        ),
+        (&["--resume"], "session not kept"),
+    ] {
         let mut lab = ground.open(args);
-        lab.wait_for("sessions cannot be kept in");
+        lab.wait_for(words);
         push(&mut lab);
         lab.quit();
         assert_eq!(ground.read("state"), "in the way");
