@@ -14,6 +14,7 @@ use crate::storage::exporting;
 use crate::storage::session::{self, KeptAside, Session};
 use crate::text::printable::{Shown, printable};
 use crate::tui::app;
+use crate::tui::panes;
 use crate::tui::screen;
 use crate::tui::surroundings::{self, ColourChoice};
 use anyhow::Context;
@@ -131,7 +132,8 @@ fn resumed(
     look: Look,
     confined: Option<&Confined>,
 ) -> Result<Lab, String> {
-    let view = |scenario: &Scenario| View::new(scenario, marker(look.markers), theme(look));
+    let view =
+        |scenario: &Scenario| View::new(scenario, marker(look.markers), theme(look), &panes::IDS);
     Lab::resumed_in(content, confined, view).map_err(told)
 }
 
@@ -336,7 +338,7 @@ fn lab(
     let file = document.scenario().ok();
     change(&mut document, changes)?;
     let scenario = Arc::new(document.scenario()?);
-    let view = View::new(&scenario, marker(markers), theme);
+    let view = View::new(&scenario, marker(markers), theme, &panes::IDS);
     let mut lab = Lab::new(name, scenario, view, running);
     if let Some(file) = file {
         lab.set_file(Arc::new(file));

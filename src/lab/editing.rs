@@ -24,14 +24,14 @@ impl Lab {
     }
 
     pub(super) fn turn_to_parameters(&mut self) {
-        self.turn_to(Pane::Parameters);
+        self.turn_to(Pane::PARAMETERS);
         self.say(
             "Up and Down choose a value, Left and Right nudge it, Enter types it; u takes it back",
         );
     }
 
     pub(super) fn choose_push(&mut self) {
-        self.turn_to(Pane::Parameters);
+        self.turn_to(Pane::PARAMETERS);
         self.values.select_next_push();
         self.say("the push to come: p gives it");
     }
@@ -43,7 +43,7 @@ impl Lab {
 
     /// Asks for the value of the line that is selected.
     pub(super) fn ask_for_value(&mut self) {
-        if self.view.focus != Pane::Parameters {
+        if self.view.focus != Pane::PARAMETERS {
             return self.turn_to_parameters();
         }
         let Some(line) = self.values.editor().selected().cloned() else {

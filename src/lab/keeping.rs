@@ -1,7 +1,7 @@
 //! The lab as a session keeps it: the runs with their journals, and where the lab stands.
 
 use super::Lab;
-use crate::lab::view::{Pane, View};
+use crate::lab::view::View;
 use crate::observe::pace::Speed;
 use crate::scenario::{Problems, Scenario};
 use crate::storage::confined::Confined;
@@ -35,7 +35,8 @@ struct Place {
     speed: Option<f64>,
     shows_exact: bool,
     window_s: f64,
-    focus: Pane,
+    /// The id of the pane in focus.
+    focus: String,
     filled: bool,
     /// The file an export was being written to.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -116,7 +117,7 @@ impl Lab {
             speed,
             shows_exact: self.run().overlay().is_some(),
             window_s: self.view.window_s,
-            focus: self.view.focus,
+            focus: self.view.focus.id().to_owned(),
             filled: self.view.filled,
             exporting: self
                 .exporting
@@ -159,7 +160,10 @@ impl Lab {
         let scenario = present.journal.scenario().map_err(unreadable)?;
         let scenario = Arc::new(scenario);
         let mut view = view(&scenario);
-        (view.focus, view.filled) = (place.focus, place.filled);
+        view.focus = view
+            .kept_as(&place.focus)
+            .ok_or_else(|| Unreadable(format!("there is no pane {}", place.focus)))?;
+        view.filled = place.filled;
         if place.window_s.is_finite() && place.window_s >= 2.0 * scenario.motion.time_step_s {
             view.window_s = place.window_s;
         }

@@ -6,11 +6,17 @@ use crate::lab::view::Pane;
 impl Lab {
     /// Every pane that can have the focus: those on the screen, or all where there is room for one or two.
     fn focusable(&self) -> Vec<Pane> {
-        if !self.view.filled && self.side_by_side.len() > 2 {
-            return self.side_by_side.clone();
-        }
         let may_have_it = |pane: &Pane| self.view.may_show(*pane) || self.is_filled_by(*pane);
-        Pane::ALL.into_iter().filter(may_have_it).collect()
+        if !self.view.filled && self.side_by_side.len() > 2 {
+            // What was hidden since the screen was fitted is among them still.
+            let panes = self.side_by_side.iter().copied();
+            let left: Vec<_> = panes.filter(may_have_it).collect();
+            if !left.is_empty() {
+                return left;
+            }
+        }
+        let panes = self.view.panes.iter().copied();
+        panes.filter(may_have_it).collect()
     }
 
     pub(super) fn shift_focus(&mut self, forward: bool) {

@@ -146,6 +146,7 @@ impl Lab {
             written: Vec::new(),
             was_warned: false,
             work: None,
+            side_by_side: view.panes.to_vec(),
             view,
             mode: Mode::Lab,
             under_help: Mode::Lab,
@@ -154,7 +155,6 @@ impl Lab {
             notice: Notice::default(),
             script: Script::default(),
             now: Duration::ZERO,
-            side_by_side: Pane::ALL.to_vec(),
             changed: true,
         };
         lab.list_parameters();

@@ -112,8 +112,8 @@ impl Lab {
             Action::FillScreen => one(Command::Fill(
                 (!self.view.filled).then_some(self.view.focus),
             )),
-            Action::ThreeD if !self.is_filled_by(Pane::ThreeD) => {
-                one(Command::Fill(Some(Pane::ThreeD)))
+            Action::ThreeD if !self.is_filled_by(Pane::THREE_D) => {
+                one(Command::Fill(Some(Pane::THREE_D)))
             }
             Action::WiderWindow => Ok(self.other_window(true)),
             Action::NarrowerWindow => Ok(self.other_window(false)),
@@ -146,13 +146,13 @@ impl Lab {
     /// What the arrow `direction` leads to, pressed `times` times.
     fn moved(&self, direction: Direction, times: i32) -> Result<Option<Vec<Command>>, String> {
         match (self.mode, self.view.focus) {
-            (Mode::Lab, Pane::ThreeD) => Ok(Some(vec![self.turned(direction, times)])),
-            (Mode::Lab, Pane::Parameters) => match direction {
+            (Mode::Lab, Pane::THREE_D) => Ok(Some(vec![self.turned(direction, times)])),
+            (Mode::Lab, Pane::PARAMETERS) => match direction {
                 Direction::Left => self.nudged(-times),
                 Direction::Right => self.nudged(times),
                 _ => Ok(None),
             },
-            (Mode::Lab, Pane::Traces | Pane::FromAbove) => {
+            (Mode::Lab, _) => {
                 Err("arrows change values (e), turn the 3-D view (d) and move in lists".to_owned())
             }
             _ => Ok(None),
@@ -254,7 +254,7 @@ impl Lab {
         let rows = rows(direction) * times as isize;
         match (self.mode, self.view.focus) {
             (Mode::Browser | Mode::Filter, _) => self.browser.shift(rows),
-            (Mode::Lab, Pane::Parameters) => self.values.shift(rows.signum() * times as isize),
+            (Mode::Lab, Pane::PARAMETERS) => self.values.shift(rows.signum() * times as isize),
             _ => self.view.scroll = self.view.scroll.saturating_add_signed(rows),
         }
     }

@@ -38,6 +38,26 @@ pub enum Curve {
 impl Curve {
     /// Every curve, in the order in which blocks hold them.
     pub const ALL: [Self; 4] = [Self::X, Self::Y, Self::Z, Self::Tilt];
+
+    /// What it is called where it is drawn.
+    pub fn name(self) -> &'static str {
+        self.named().0
+    }
+
+    /// The unit of its extents, as it is written after numbers.
+    pub fn unit(self) -> &'static str {
+        self.named().1
+    }
+
+    /// Name and unit.
+    fn named(self) -> (&'static str, &'static str) {
+        match self {
+            Self::X => ("x", "m"),
+            Self::Y => ("y", "m"),
+            Self::Z => ("z", "m"),
+            Self::Tilt => ("tilt", "deg"),
+        }
+    }
 }
 
 /// Where the body is at one moment, as far as the pictures go.

@@ -3,6 +3,7 @@
 use crate::lab::{Lab, Request};
 use crate::storage::session::Session;
 use crate::tui::keymap::{self, Key};
+use crate::tui::panes;
 use crate::tui::screen;
 use crate::tui::terminal::{Event, Screen};
 use std::io;
@@ -131,7 +132,7 @@ fn handle(
 
 /// Carries out what `key` means, or says that it means nothing.
 pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
-    match keymap::action(lab.mode(), key) {
+    match keymap::action_with(panes::keys(lab.view().focus), lab.mode(), key) {
         Some(action) => lab.update(action),
         None => {
             lab.refuse(keymap::refusal(lab.mode(), key));

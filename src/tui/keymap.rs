@@ -129,8 +129,14 @@ pub static BINDINGS: &[Binding] = &[
 
 /// What `key` means in `mode`.
 pub fn action(mode: Mode, key: Key) -> Option<Action> {
-    let bound = BINDINGS
+    action_with(&[], mode, key)
+}
+
+/// What `key` means in `mode` where the pane in focus adds these `keys`, which come before the others.
+pub fn action_with(keys: &'static [Binding], mode: Mode, key: Key) -> Option<Action> {
+    let bound = keys
         .iter()
+        .chain(BINDINGS)
         .find(|row| row.modes.contains(&mode) && row.keys.contains(&key));
     match (bound, mode, key) {
         (Some(row), _, _) => Some(row.action),

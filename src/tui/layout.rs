@@ -1,23 +1,19 @@
 //! Which panes stand where, at every size of the screen.
 //!
-//! From 80x24 on all of them stand side by side, from 120 columns on with the 3-D view; on smaller screens there are
-//! fewer, the most important first, and the hint line says so.
+//! The table of panes says how wide each must be at least, and in which order they join the others: at 80x24 all but the
+//! 3-D view stand side by side, from 120 columns on that too. On smaller screens there are fewer, and the hint line says
+//! so.
 
+use super::panes::{PANES, PaneRow, Width};
 use crate::lab::view::{Pane, View};
 use ratatui::layout::Rect;
 
-/// From this width on all panes but 3-D stand side by side.
-const ALL_FROM: u16 = 80;
-/// From this width on the 3-D view stands among them.
-const THREE_D_FROM: u16 = 120;
+/// The width the whole lab wants.
+const WIDTH: u16 = 80;
 /// From this width on two panes stand side by side.
 const TWO_FROM: u16 = 52;
-/// From this height of the panes on, the view from above and the 3-D view stand one above the other.
-const STACKED_FROM: u16 = 36;
 /// From this width on a hint fits on one line.
 const ONE_LINE_FROM: u16 = 140;
-/// Width of the parameters.
-const PARAMETERS: u16 = 26;
 /// The height the whole lab wants.
 const HEIGHT: u16 = 24;
 /// From this height on a hint may have two lines.
@@ -52,7 +48,7 @@ impl Layout {
             false => hint,
         };
         let health = cut(&mut rest, area.height >= 9, true);
-        let is_cramped = area.width < ALL_FROM || area.height < HEIGHT;
+        let is_cramped = area.width < WIDTH || area.height < HEIGHT;
         Self {
             title,
             panes: panes(rest, view),
@@ -89,53 +85,65 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     if area.is_empty() {
         return Vec::new();
     }
+    let joined = joined(area.width);
     if view.filled || area.width < TWO_FROM {
-        return vec![(view.focus, area)];
+        vec![(view.focus, area)]
+    } else if !PANES.iter().all(|row| view.may_show(row.id)) {
+        chosen(area, view)
+    } else if joined.len() > 2 {
+        columns(area, &joined)
+    } else {
+        halves(area, view.focus)
     }
-    if !Pane::ALL.into_iter().all(|pane| view.may_show(pane)) {
-        return chosen(area, view);
-    }
-    if area.width < ALL_FROM {
-        let widths = [area.width - area.width / 2, area.width / 2];
-        let second = if view.focus == Pane::Traces {
-            Pane::FromAbove
-        } else {
-            view.focus
-        };
-        return beside(area, &[Pane::Traces, second], &widths);
-    }
-    let rest = area.width - PARAMETERS;
-    if area.width < THREE_D_FROM {
-        let round = (rest / 2).min(2 * area.height);
-        let widths = [rest - round, round, PARAMETERS];
-        return beside(
-            area,
-            &[Pane::Traces, Pane::FromAbove, Pane::Parameters],
-            &widths,
-        );
-    }
-    if area.height < STACKED_FROM {
-        let round = (rest / 3).min(2 * area.height);
-        return beside(
-            area,
-            &Pane::ALL,
-            &[rest - 2 * round, round, round, PARAMETERS],
-        );
-    }
-    stacked(area, (rest / 2).min(area.height))
+}
+
+/// The panes that have room beside each other on `width` columns, in the table's order: by their ranks, up to the first
+/// that has none.
+fn joined(width: u16) -> Vec<&'static PaneRow> {
+    let mut ranked: Vec<_> = PANES.iter().collect();
+    ranked.sort_by_key(|row| row.rank);
+    let mut taken = 0;
+    let has_room = |row: &&PaneRow| {
+        taken += row.least.0;
+        taken <= width
+    };
+    let last = ranked.iter().copied().take_while(has_room).count();
+    let is_joined = |row: &&PaneRow| ranked[..last].iter().any(|other| other.id == row.id);
+    PANES.iter().filter(is_joined).collect()
+}
+
+/// The pane of the first rank, and beside it the one in focus or else that of the second rank.
+fn halves(area: Rect, focus: Pane) -> Vec<(Pane, Rect)> {
+    let ranked = |rank| PANES.iter().find(|row| row.rank == rank);
+    let (Some(first), Some(second)) = (ranked(0), ranked(1)) else {
+        return vec![(focus, area)];
+    };
+    let second = if focus == first.id { second.id } else { focus };
+    let left = Rect {
+        width: area.width - area.width / 2,
+        ..area
+    };
+    let right = Rect {
+        x: left.right(),
+        width: area.width / 2,
+        ..area
+    };
+    vec![(first.id, left), (second, right)]
 }
 
 /// The panes that were chosen, side by side: all of them, or two where there is room for no more.
 fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
-    let is_named = |pane: &Pane| view.shown.contains(pane);
-    let has_room = |pane: &Pane| *pane != Pane::ThreeD || area.width >= THREE_D_FROM;
-    let is_chosen = |pane: &Pane| view.may_show(*pane) && (is_named(pane) || has_room(pane));
-    let mut panes: Vec<_> = Pane::ALL.into_iter().filter(is_chosen).collect();
-    if area.width < ALL_FROM {
+    // What stands side by side with all others on a screen of the least width that the whole lab wants.
+    let joined = joined(area.width.max(WIDTH));
+    let is_named = |row: &&PaneRow| view.shown.contains(&row.id);
+    let has_room = |row: &&PaneRow| joined.iter().any(|other| other.id == row.id);
+    let is_chosen = |row: &&PaneRow| view.may_show(row.id) && (is_named(row) || has_room(row));
+    let mut panes: Vec<_> = PANES.iter().filter(is_chosen).collect();
+    if area.width < WIDTH {
         let rest = panes.iter().skip(1).copied();
         let second = rest
             .clone()
-            .find(|pane| *pane == view.focus)
+            .find(|row| row.id == view.focus)
             .or_else(|| rest.clone().next());
         panes.truncate(1);
         panes.extend(second);
@@ -145,56 +153,77 @@ fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     };
     let share = area.width / panes.len() as u16;
     let round = share.min(2 * area.height);
-    let width = |pane: &Pane| match pane {
-        Pane::Parameters => share.min(PARAMETERS),
-        Pane::Traces => share,
-        Pane::FromAbove | Pane::ThreeD => round,
+    let width = |row: &&PaneRow| match row.width {
+        Width::Fixed => share.min(row.least.0),
+        Width::Wide => share,
+        Width::Round => round,
     };
     let mut widths: Vec<_> = others.iter().map(width).collect();
     widths.insert(0, area.width - widths.iter().sum::<u16>()); // the first has what the others leave
     beside(area, &panes, &widths)
 }
 
-fn beside(area: Rect, panes: &[Pane], widths: &[u16]) -> Vec<(Pane, Rect)> {
+fn beside(area: Rect, panes: &[&PaneRow], widths: &[u16]) -> Vec<(Pane, Rect)> {
     let mut x = area.x;
-    let place = |(&pane, &width)| {
+    let place = |(row, &width): (&&PaneRow, &u16)| {
         let place = Rect { x, width, ..area };
         x += width;
-        (pane, place)
+        (row.id, place)
     };
     panes.iter().zip(widths).map(place).collect()
 }
 
-/// The two round panes, `round` wide, one above the other between traces and parameters.
-fn stacked(area: Rect, round: u16) -> Vec<(Pane, Rect)> {
-    let rest = area.width - PARAMETERS - round;
-    let columns = beside(
-        area,
-        &[Pane::Traces, Pane::FromAbove, Pane::Parameters],
-        &[rest, round, PARAMETERS],
-    );
-    let mut places = Vec::with_capacity(columns.len() + 1);
-    for (pane, place) in columns {
-        if pane != Pane::FromAbove {
-            places.push((pane, place));
+/// All of `rows` side by side. Where the screen is high enough, the round ones stand in pairs, one above the other.
+fn columns(area: Rect, rows: &[&PaneRow]) -> Vec<(Pane, Rect)> {
+    let of = |width| rows.iter().filter(move |row| row.width == width);
+    let fixed: u16 = of(Width::Fixed).map(|row| row.least.0).sum();
+    let rest = area.width - fixed;
+    let rounds = of(Width::Round).count() as u16;
+    let pair: u16 = of(Width::Round).take(2).map(|row| row.least.1).sum();
+    let is_stacked = rounds > 1 && area.height >= pair;
+    let (in_a_column, widest) = match is_stacked {
+        true => (2, area.height),
+        false => (1, 2 * area.height),
+    };
+    let round_columns = rounds.div_ceil(in_a_column);
+    let wides = of(Width::Wide).count() as u16;
+    let round = (rest / (round_columns + wides).max(1)).min(widest);
+    let wide = (rest - round * round_columns) / wides.max(1);
+    let mut x = area.x;
+    let mut rounds_before = 0;
+    let mut places = Vec::with_capacity(rows.len());
+    for row in rows {
+        let width = match row.width {
+            Width::Wide => wide,
+            Width::Round => round,
+            Width::Fixed => row.least.0,
+        };
+        let column = Rect { x, width, ..area };
+        if row.width != Width::Round {
+            places.push((row.id, column));
+            x += width;
             continue;
         }
-        let upper = place.height / 2;
+        rounds_before += 1;
+        let is_upper = is_stacked && rounds_before % 2 == 1 && rounds_before < rounds;
+        let is_lower = is_stacked && rounds_before % 2 == 0;
+        let upper = column.height / 2;
         places.push((
-            pane,
-            Rect {
-                height: upper,
-                ..place
+            row.id,
+            match (is_upper, is_lower) {
+                (true, _) => Rect {
+                    height: upper,
+                    ..column
+                },
+                (_, true) => Rect {
+                    y: column.y + upper,
+                    height: column.height - upper,
+                    ..column
+                },
+                _ => column,
             },
         ));
-        places.push((
-            Pane::ThreeD,
-            Rect {
-                y: place.y + upper,
-                height: place.height - upper,
-                ..place
-            },
-        ));
+        x += if is_upper { 0 } else { width };
     }
     places
 }

@@ -1,13 +1,10 @@
 //! The whole picture: every pane in its place, and on top what has been opened.
 
+use super::panes;
 use super::panes::browser::BrowserPane;
 use super::panes::chrome;
 use super::panes::form::FormPane;
-use super::panes::from_above::FromAbove;
 use super::panes::help::Help;
-use super::panes::parameters::Parameters;
-use super::panes::three_d::ThreeD;
-use super::panes::traces::Traces;
 use crate::lab::Lab;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, Part};
@@ -51,20 +48,8 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
 
 /// Draws one pane of `lab` on `area`.
 pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
-    let (run, view, reading) = (lab.run(), lab.view(), lab.reading());
-    let ghost = lab.ghost();
-    match pane {
-        Pane::Traces => Traces { run, ghost, view }.render(area, buf),
-        Pane::FromAbove => FromAbove { run, ghost, view }.render(area, buf),
-        Pane::ThreeD => ThreeD { run, view }.render(area, buf),
-        Pane::Parameters => Parameters {
-            scenario: run.scenario(),
-            motion: &lab.motion(),
-            reading,
-            editor: lab.editor(),
-            view,
-        }
-        .render(area, buf),
+    if let Some(row) = panes::row(pane) {
+        (row.draw)(lab, area, buf);
     }
 }
 

@@ -3,6 +3,7 @@
 #![allow(non_snake_case, reason = "keys carry their unit as it is written")]
 
 use crate::support::desk::{Desk, commands};
+use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::lab::Refusal;
 use gyrolab::lab::command::{self, COMMANDS, Command, Force, Place, PushChoice};
 use gyrolab::lab::view::{Pane, Part};
@@ -10,7 +11,7 @@ use gyrolab::observe::camera::Camera;
 use gyrolab::observe::pace::Speed;
 use gyrolab::scenario::Document;
 use gyrolab::tui::keymap::Key;
-use gyrolab::tui::{layout::Layout, screen};
+use gyrolab::tui::{layout::Layout, panes, screen};
 use gyrolab::work::expression::Expression;
 use gyrolab::work::next_push::Toward;
 use proptest::prelude::*;
@@ -21,6 +22,12 @@ fn read(text: &str) -> Result<Vec<Command>, String> {
     let document = Document::parse("demo.toml", text).map_err(|problems| problems.to_string())?;
     let read = command::read(&document).map_err(|problems| problems.to_string())?;
     Ok(read.list.into_iter().map(|placed| placed.command).collect())
+}
+
+/// The panes that files and commands can name.
+fn named_panes() -> Vec<Pane> {
+    let ids = gyrolab::scenario::keys::PANES.into_iter();
+    ids.filter_map(Pane::named).collect()
 }
 
 fn a_name() -> impl Strategy<Value = String> {
@@ -118,8 +125,8 @@ fn a_command() -> impl Strategy<Value = Command> {
         "t_s >= 60",
         "abs(tilt_deg - 3) < 1e-3 or step > motion.steps",
     ]);
-    let pane = || prop::sample::select(Pane::ALL.to_vec());
-    let parts = Pane::ALL.into_iter().map(Part::Pane);
+    let pane = || prop::sample::select(named_panes());
+    let parts = named_panes().into_iter().map(Part::Pane);
     let part = prop::sample::select(
         parts
             .chain([Part::Health, Part::Predicted, Part::LookAt])
@@ -596,7 +603,7 @@ fn shown_panes_share_the_screen_at_every_width() {
         let area = ratatui::layout::Rect::new(0, 0, width, height);
         let layout = Layout::new(area, desk.lab.view(), true);
         let panes: Vec<_> = layout.panes.iter().map(|(pane, _)| *pane).collect();
-        assert_eq!(panes, [Pane::FromAbove, Pane::ThreeD], "{width}");
+        assert_eq!(panes, [Pane::FROM_ABOVE, Pane::THREE_D], "{width}");
         let widths: u16 = layout.panes.iter().map(|(_, place)| place.width).sum();
         assert_eq!(widths, width);
     }
@@ -612,7 +619,12 @@ fn shown_panes_share_the_screen_at_every_width() {
 #[test]
 fn a_pane_has_the_name_that_files_give_it() {
     use gyrolab::scenario::keys::{FILLING, HIDEABLE, PANES};
-    assert_eq!(Pane::ALL.map(Pane::id), PANES);
+    assert_eq!(PANES, ["traces", "above", "3d", "parameters"]);
+    for id in PANES {
+        let pane = Pane::named(id).unwrap();
+        assert_eq!(pane.id(), id);
+        assert!(panes::row(pane).is_some(), "{id} has no row");
+    }
     assert!(
         HIDEABLE
             .iter()
@@ -623,5 +635,42 @@ fn a_pane_has_the_name_that_files_give_it() {
             .iter()
             .all(|id| *id == "none" || Pane::named(id).is_some())
     );
-    assert_eq!(FILLING.len(), Pane::ALL.len() + 1);
+    assert_eq!(FILLING.len(), PANES.len() + 1);
+}
+
+#[test]
+fn the_focus_leaves_a_pane_that_is_hidden() {
+    for size in [SMALL, LARGE] {
+        let mut stage = Stage::open("loops", &[], size);
+        stage.commands("hide = ['traces']");
+        assert_eq!(stage.focus(), "above", "at {size}");
+        stage.commands("show = ['3d', 'parameters']\nhide = []");
+        assert_eq!(stage.focus(), "3d", "at {size}");
+        stage.commands("fill = 'traces'");
+        assert_eq!(stage.focus(), "traces", "what is named fills the screen");
+        stage.commands("fill = 'none'");
+        assert_eq!(stage.focus(), "3d", "at {size}");
+    }
+}
+
+#[test]
+fn the_focus_comes_back_from_the_filled_3d_view_to_a_pane_that_is_shown() {
+    let mut stage = Stage::open("loops", &[], SMALL);
+    stage.commands("hide = ['traces']");
+    stage.press("d");
+    assert_eq!(stage.focus(), "3d");
+    stage.press("d");
+    assert_eq!(stage.focus(), "above");
+}
+
+#[test]
+fn a_picture_of_one_pane_shows_none_that_is_hidden() {
+    // As `gyrolab show` draws it, on a screen that the lab has not been told of.
+    let mut desk = opened_with(&[]);
+    desk.commands("hide = ['traces']");
+    let seen = picture(&desk, (40, 20));
+    assert!(!seen.contains("over time"), "{seen}");
+    let desk = opened_with(&["view.hide=['traces']"]);
+    let seen = picture(&desk, (40, 20));
+    assert!(!seen.contains("over time"), "{seen}");
 }

@@ -8,6 +8,7 @@ use gyrolab::lab::view::theme::{Background, Theme};
 use gyrolab::scenario::Scenario;
 use gyrolab::storage::session::{Content, resume};
 use gyrolab::tui::keymap::Key;
+use gyrolab::tui::panes;
 use std::fs;
 use std::path::Path;
 
@@ -16,7 +17,7 @@ fn view(scenario: &Scenario) -> View {
         colour: false,
         background: Background::Dark,
     };
-    View::new(scenario, Marker::Braille, theme)
+    View::new(scenario, Marker::Braille, theme, &panes::IDS)
 }
 
 /// The lab as `content` has it, arrived where it was left.
@@ -122,4 +123,28 @@ fn a_session_of_form_1_comes_back_with_all_that_can_be_undone() {
     let mut again = resumed(&back().lab.content());
     again.press(&[Key::Char('u'), Key::Char('u')]);
     assert_eq!(done(&again), (vec![13.3], 1));
+}
+
+#[test]
+fn the_focus_that_earlier_versions_kept_comes_back() {
+    for (earlier, present) in [
+        ("traces", "traces"),
+        ("from-above", "above"),
+        ("three-d", "3d"),
+        ("parameters", "parameters"),
+    ] {
+        let mut content = Desk::open("loops").lab.content();
+        assert!(content.place.contains("focus = \"traces\""));
+        content.place = content
+            .place
+            .replace("focus = \"traces\"", &format!("focus = \"{earlier}\""));
+        let mut back = resumed(&content);
+        assert_eq!(back.lab.view().focus.id(), present);
+        let again = resumed(&back.lab.content());
+        assert_eq!(again.lab.view().focus.id(), present);
+    }
+    let mut content = Desk::open("loops").lab.content();
+    content.place = content.place.replace("\"traces\"", "\"nowhere\"");
+    let refused = Lab::resumed(&content, view).err().unwrap().to_string();
+    assert_eq!(refused, "there is no pane nowhere");
 }

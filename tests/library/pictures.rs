@@ -312,9 +312,9 @@ fn parameters(editor: &Editor, (focus, filled): (bool, bool), size: (u16, u16)) 
     let mut view = view(&now, Marker::Braille);
     view.filled = filled;
     view.focus = if focus {
-        Pane::Parameters
+        Pane::PARAMETERS
     } else {
-        Pane::Traces
+        Pane::TRACES
     };
     let mut buf = Buffer::empty(Rect::new(0, 0, size.0, size.1));
     Parameters {
@@ -489,7 +489,7 @@ proptest! {
         let mut now = run("wobble-push", &[], "", 3);
         let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
         let mut view = view(&now, Marker::Ascii);
-        (view.filled, view.focus) = (filled, Pane::Parameters);
+        (view.filled, view.focus) = (filled, Pane::PARAMETERS);
         let pane = Parameters {
             scenario: now.scenario(),
             motion: now.simulation().motion(),

@@ -3,7 +3,6 @@
 
 use crate::support::stage::{LARGE, SMALL, Stage, picture};
 use gyrolab::lab::Request;
-use gyrolab::lab::view::Pane;
 use gyrolab::lab::view::markers::Marker;
 use gyrolab::scenario::presets::PRESETS;
 use gyrolab::tui::keymap::{BINDINGS, Key, Mode};
@@ -578,7 +577,7 @@ proptest! {
         stage.wait(seconds).press(&keys);
         let around = Rect::new(0, 0, width + 6, height + 6);
         let inside = Rect::new(3, 3, width, height);
-        for pane in Pane::ALL {
+        for pane in gyrolab::tui::panes::IDS {
             let mut buffer = Buffer::filled(around, ratatui::buffer::Cell::new("#"));
             screen::draw_pane(&stage.lab, pane, inside, &mut buffer);
             for position in around.positions().filter(|position| !inside.contains(*position)) {

@@ -38,5 +38,5 @@ pub fn view(scenario: &Scenario, marker: Marker, colour: bool) -> View {
         colour,
         background: Background::Dark,
     };
-    View::new(scenario, marker, theme)
+    View::new(scenario, marker, theme, &gyrolab::tui::panes::IDS)
 }

@@ -1,5 +1,6 @@
 //! The lab on a screen of a size, without a terminal: keys go in, pictures come out.
 
+use super::desk::commands;
 use super::scenarios::{preset, view};
 use gyrolab::lab::view::markers::Marker;
 use gyrolab::lab::{Lab, Request};
@@ -84,6 +85,22 @@ impl Stage {
         }
         self.now -= FRAME;
         self
+    }
+
+    /// Carries out the commands in `text`, the lines of a `[[do]]` each, and fits the lab to the screen again, as the
+    /// terminal does before the next frame.
+    #[track_caller]
+    pub fn commands(&mut self, text: &str) -> &mut Self {
+        for command in commands(text) {
+            self.lab.carry_out(&command).unwrap();
+        }
+        screen::refit(&mut self.lab, self.size);
+        self.wait(0.0)
+    }
+
+    /// The id of the pane in focus.
+    pub fn focus(&self) -> &'static str {
+        self.lab.view().focus.id()
     }
 
     pub fn picture(&self) -> String {

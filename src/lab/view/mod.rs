@@ -11,35 +11,18 @@ use crate::observe::camera::Camera;
 use crate::run::Clock;
 use crate::scenario::{Scenario, keys};
 use markers::Marker;
-use serde::{Deserialize, Serialize};
 use theme::{Background, Theme};
 
 /// A sweep that takes longer than this to be drawn, s, is no picture of the run.
 const LONGEST_SWEEP_S: f64 = 120.0;
 
-/// The panes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Pane {
-    /// x, y, z and tilt over time.
-    Traces,
-    /// The path from above.
-    FromAbove,
-    /// The scene in space.
-    ThreeD,
-    /// The scenario's values and the readouts.
-    Parameters,
-}
+/// A pane, named by its id: the same word in commands, in `[view]` and in sessions. The terminal has the table of all
+/// panes; those named here are the ones that the lab itself turns to or moves something in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pane(&'static str);
 
-impl Pane {
-    /// Every pane, in the order in which the focus goes through them.
-    pub const ALL: [Self; 4] = [
-        Self::Traces,
-        Self::FromAbove,
-        Self::ThreeD,
-        Self::Parameters,
-    ];
-}
+/// What earlier versions called panes in the sessions they kept, and the present ids.
+const EARLIER_IDS: [(&str, &str); 2] = [("from-above", "above"), ("three-d", "3d")];
 
 /// What can be hidden of the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,19 +38,28 @@ pub enum Part {
 }
 
 impl Pane {
-    /// Its name in files and commands.
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::Traces => "traces",
-            Self::FromAbove => "above",
-            Self::ThreeD => "3d",
-            Self::Parameters => "parameters",
-        }
+    /// x, y, z and tilt over time.
+    pub const TRACES: Self = Self("traces");
+    /// The path from above.
+    pub const FROM_ABOVE: Self = Self("above");
+    /// The scene in space.
+    pub const THREE_D: Self = Self("3d");
+    /// The scenario's values and the readouts.
+    pub const PARAMETERS: Self = Self("parameters");
+
+    /// The pane of this id.
+    pub const fn new(id: &'static str) -> Self {
+        Self(id)
     }
 
-    /// The pane of that name.
+    /// Its name in files, commands and sessions.
+    pub const fn id(self) -> &'static str {
+        self.0
+    }
+
+    /// The pane of that name in files and commands.
     pub fn named(id: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|pane| pane.id() == id)
+        keys::PANES.into_iter().find(|pane| *pane == id).map(Self)
     }
 }
 
@@ -93,6 +85,8 @@ impl Part {
 /// Options of the view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
+    /// Every pane there is, in the order in which the focus goes through them.
+    pub panes: &'static [Pane],
     /// The pane in focus.
     pub focus: Pane,
     /// Whether it fills the screen.
@@ -116,10 +110,11 @@ pub struct View {
 }
 
 impl View {
-    /// What a lab starts with: the traces show the run of `scenario`.
-    pub fn new(scenario: &Scenario, marker: Marker, theme: Theme) -> Self {
+    /// What a lab starts with that has these `panes`: the first has the focus, and the traces show the run of `scenario`.
+    pub fn new(scenario: &Scenario, marker: Marker, theme: Theme, panes: &'static [Pane]) -> Self {
         let mut view = Self {
-            focus: Pane::Traces,
+            panes,
+            focus: panes.first().copied().unwrap_or(Pane::TRACES),
             filled: false,
             marker,
             theme,
@@ -143,6 +138,9 @@ impl View {
         let parts = file.hide.iter().flatten();
         self.hidden = parts.filter_map(|id| Part::named(id)).collect();
         self.look_at = None;
+        if !self.may_show(self.focus) {
+            self.keep_focus(&self.to_show());
+        }
         if let Some(fill) = &file.fill {
             self.fill(Pane::named(fill));
         }
@@ -164,6 +162,19 @@ impl View {
     pub fn may_show(&self, pane: Pane) -> bool {
         let is_shown = self.shown.is_empty() || self.shown.contains(&pane);
         is_shown && !self.hides(Part::Pane(pane))
+    }
+
+    /// The panes that may be on the screen, in the order in which the focus goes through them.
+    pub fn to_show(&self) -> Vec<Pane> {
+        let panes = self.panes.iter().copied();
+        panes.filter(|pane| self.may_show(*pane)).collect()
+    }
+
+    /// The pane of this id, as sessions name it: those that earlier versions kept are known too.
+    pub fn kept_as(&self, id: &str) -> Option<Pane> {
+        let earlier = EARLIER_IDS.iter().find(|(earlier, _)| *earlier == id);
+        let id = earlier.map_or(id, |(_, present)| present);
+        self.panes.iter().copied().find(|pane| pane.id() == id)
     }
 
     /// `pane` fills the screen, or none does.
@@ -209,17 +220,17 @@ impl View {
     /// The focus on one of `shown`.
     pub fn keep_focus(&mut self, shown: &[Pane]) {
         if !shown.contains(&self.focus) {
-            self.focus = shown.first().copied().unwrap_or(Pane::Traces);
+            self.focus = shown.first().copied().unwrap_or(Pane::TRACES);
         }
     }
 
     /// The 3-D view fills the screen, or no longer.
     pub fn toggle_three_d(&mut self) {
-        let shown = self.filled && self.focus == Pane::ThreeD;
+        let shown = self.filled && self.focus == Pane::THREE_D;
         (self.focus, self.filled) = if shown {
-            (Pane::Traces, false)
+            (Pane::TRACES, false)
         } else {
-            (Pane::ThreeD, true)
+            (Pane::THREE_D, true)
         };
     }
 

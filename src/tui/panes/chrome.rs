@@ -145,15 +145,17 @@ fn said_of_run(lab: &Lab) -> (String, Role) {
 pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     let mut x = 1;
-    for (key, word) in footer(lab.mode(), lab.playback().is_running(), area.width as usize) {
+    for (key, word) in footer(lab, area.width as usize) {
         x = write(area, (x, 0), &key, theme.style(Role::Focus), buf);
         x = write(area, (x + 1, 0), word, theme.style(Role::Quiet), buf) + 2;
     }
 }
 
-fn footer(mode: Mode, is_running: bool, width: usize) -> Vec<(String, &'static str)> {
-    let rows = BINDINGS
+fn footer(lab: &Lab, width: usize) -> Vec<(String, &'static str)> {
+    let (mode, is_running) = (lab.mode(), lab.playback().is_running());
+    let rows = super::keys(lab.view().focus)
         .iter()
+        .chain(BINDINGS)
         .filter(|row| row.modes.contains(&mode) && !row.footer.is_empty());
     let mut words: Vec<_> = rows
         .map(|row| {

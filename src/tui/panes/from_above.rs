@@ -1,6 +1,6 @@
 //! The path of the traced point from above, x to the right and y up: a true circle at every size.
 
-use super::{frame, write};
+use super::{PaneRow, Width, frame, write};
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, View};
 use crate::observe::ghost::Ghost;
@@ -34,6 +34,20 @@ const LEAST: f64 = 1e-6;
 /// The radius shown grows by this factor's exponential, or not at all.
 const STEP: f64 = 0.05;
 
+/// Its row in the table of panes.
+pub const ROW: PaneRow = PaneRow {
+    id: Pane::FROM_ABOVE,
+    title: "from above",
+    width: Width::Round,
+    rank: 1,
+    least: (27, 18),
+    draw: |lab, area, buf| {
+        let (run, ghost, view) = (lab.run(), lab.ghost(), lab.view());
+        FromAbove { run, ghost, view }.render(area, buf);
+    },
+    keys: &[],
+};
+
 /// The view from above on a run.
 pub struct FromAbove<'a> {
     /// The run.
@@ -47,13 +61,7 @@ pub struct FromAbove<'a> {
 impl Widget for FromAbove<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
-        let inside = frame(
-            "from above",
-            area,
-            self.view.focus == Pane::FromAbove,
-            theme,
-            buf,
-        );
+        let inside = frame(ROW.title, area, self.view.focus == ROW.id, theme, buf);
         if inside.height < 2 || inside.width == 0 {
             return;
         }

@@ -1,9 +1,8 @@
 //! The list of keys, from the table of keys.
 
-use super::{frame_on_top, write};
-use crate::text::wrap::wrapped;
-
+use super::{PANES, frame_on_top, write};
 use crate::lab::view::theme::Theme;
+use crate::text::wrap::wrapped;
 use crate::tui::keymap::{BINDINGS, Binding, Mode};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -73,6 +72,10 @@ fn lines(width: usize) -> Vec<Line> {
         );
         let rows = BINDINGS.iter().filter(|row| row.modes[0] == mode);
         lines.extend(rows.flat_map(|row| explained(row, width)));
+    }
+    for pane in PANES.iter().filter(|pane| !pane.keys.is_empty()) {
+        lines.push(Line::of(1, pane.title, Role::Heading));
+        lines.extend(pane.keys.iter().flat_map(|row| explained(row, width)));
     }
     lines
 }

@@ -1,4 +1,6 @@
 //! The panes: each borrows what it shows, and draws it on its area. None of them changes anything.
+//!
+//! [`PANES`] is the one table of panes. A new pane is a file with its `ROW`, and that row's name in the table.
 
 pub mod browser;
 pub mod chrome;
@@ -9,15 +11,72 @@ pub mod parameters;
 pub mod three_d;
 pub mod traces;
 
+use crate::lab::Lab;
+use crate::lab::view::Pane;
 use crate::lab::view::theme::Theme;
 use crate::text::printable::printable;
 use crate::text::wrap::{columns, wrapped};
+use crate::tui::keymap::Binding;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::widgets::{Block, Clear, Widget};
 use std::borrow::Cow;
+
+/// A pane: what the layout, the focus, the footer and the help need of it.
+#[derive(Debug)]
+pub struct PaneRow {
+    /// Its id.
+    pub id: Pane,
+    /// Its title, in its frame and over its keys in the help; the pane may add words to it.
+    pub title: &'static str,
+    /// How wide it is where panes stand side by side.
+    pub width: Width,
+    /// Its place in the order in which panes join the others as the screen becomes wider; the first is 0.
+    pub rank: u8,
+    /// The fewest columns with which it stands beside others, and the fewest rows with which it shares a column.
+    pub least: (u16, u16),
+    /// Draws it.
+    pub draw: fn(&Lab, Rect, &mut Buffer),
+    /// The keys that mean something else, or something at all, while it has the focus.
+    pub keys: &'static [Binding],
+}
+
+/// How wide a pane is where panes stand side by side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Width {
+    /// What the others leave.
+    Wide,
+    /// As the others of this kind, and no wider than a circle needs; two of them share a column of a high screen.
+    Round,
+    /// Its least width.
+    Fixed,
+}
+
+/// Every pane, from left to right on the screen; the focus goes through them in this order.
+pub const PANES: &[PaneRow] = &[traces::ROW, from_above::ROW, three_d::ROW, parameters::ROW];
+
+/// The ids of all panes, in the table's order.
+pub static IDS: [Pane; PANES.len()] = {
+    let mut ids = [PANES[0].id; PANES.len()];
+    let mut row = 0;
+    while row < PANES.len() {
+        ids[row] = PANES[row].id;
+        row += 1;
+    }
+    ids
+};
+
+/// The row of `pane`.
+pub fn row(pane: Pane) -> Option<&'static PaneRow> {
+    PANES.iter().find(|row| row.id == pane)
+}
+
+/// The keys that `pane` adds while it has the focus.
+pub fn keys(pane: Pane) -> &'static [Binding] {
+    row(pane).map_or(&[], |row| row.keys)
+}
 
 /// A frame with a title, the accent on it where it has the focus; gives the area inside.
 pub(super) fn frame(title: &str, area: Rect, focus: bool, theme: &Theme, buf: &mut Buffer) -> Rect {
@@ -87,6 +146,21 @@ pub(super) fn wrapped_to(text: &str, width: usize, height: usize) -> Vec<String>
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_pane_has_an_id_and_a_rank_of_its_own() {
+        for (index, row) in PANES.iter().enumerate() {
+            let mut before = PANES[..index].iter();
+            assert!(before.all(|other| other.id != row.id && other.rank != row.rank));
+        }
+    }
+
+    #[test]
+    fn every_pane_that_files_name_is_in_the_table() {
+        for id in crate::scenario::keys::PANES {
+            assert!(IDS.iter().any(|pane| pane.id() == id), "{id}");
+        }
+    }
 
     #[test]
     fn what_is_cut_has_dots() {

@@ -4,7 +4,7 @@
 
 mod rows;
 
-use super::{frame, shortened, write};
+use super::{PaneRow, Width, frame, shortened, write};
 use crate::lab::editor::{Editor, Line};
 use crate::lab::view::{Pane, Part, View};
 use crate::observe::reading::Reading;
@@ -34,6 +34,26 @@ const BELOW: &str = "▼";
 /// From this height on the readouts to watch have a place below the editor's lines.
 const WATCHED_FROM: usize = 8;
 
+/// Its row in the table of panes.
+pub const ROW: PaneRow = PaneRow {
+    id: Pane::PARAMETERS,
+    title: "parameters",
+    width: Width::Fixed,
+    rank: 2,
+    least: (COLUMN, 0),
+    draw: |lab, area, buf| {
+        Parameters {
+            scenario: lab.run().scenario(),
+            motion: &lab.motion(),
+            reading: lab.reading(),
+            editor: lab.editor(),
+            view: lab.view(),
+        }
+        .render(area, buf);
+    },
+    keys: &[],
+};
+
 /// The values of a scenario and of its run.
 pub struct Parameters<'a> {
     /// The scenario.
@@ -50,7 +70,7 @@ pub struct Parameters<'a> {
 
 impl Widget for Parameters<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let focus = self.view.focus == Pane::Parameters;
+        let focus = self.view.focus == ROW.id;
         let editor = Some(self.editor).filter(|_| focus);
         let inside = frame(&title(editor), area, focus, &self.view.theme, buf);
         if inside.is_empty() {
@@ -222,8 +242,8 @@ impl Parameters<'_> {
 /// The pane's title, which tells where in the list the selected line is.
 fn title(editor: Option<&Editor>) -> String {
     match editor.map(|editor| (editor.selected_index() + 1, editor.lines().len())) {
-        Some((at, all @ 1..)) => format!("parameters {at} of {all}"),
-        _ => "parameters".to_owned(),
+        Some((at, all @ 1..)) => format!("{} {at} of {all}", ROW.title),
+        _ => ROW.title.to_owned(),
     }
 }
 

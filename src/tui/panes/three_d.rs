@@ -1,6 +1,6 @@
 //! The scene in space: wheel, axle, the path of the axle's top, and the vectors L and Ω.
 
-use super::{frame, write};
+use super::{PaneRow, Width, frame, write};
 use crate::lab::view::{Pane, View};
 use crate::observe::live::LiveRun;
 use crate::observe::recording::{Curve, Recording};
@@ -27,6 +27,20 @@ const MOST_PUSHES: usize = 20;
 /// Points of the body beyond this many are not drawn as a wheel.
 const MOST_SPOKES: usize = 400;
 
+/// Its row in the table of panes.
+pub const ROW: PaneRow = PaneRow {
+    id: Pane::THREE_D,
+    title: "3-D",
+    width: Width::Round,
+    rank: 3,
+    least: (40, 18),
+    draw: |lab, area, buf| {
+        let (run, view) = (lab.run(), lab.view());
+        ThreeD { run, view }.render(area, buf);
+    },
+    keys: &[],
+};
+
 /// The scene in space.
 pub struct ThreeD<'a> {
     /// The run.
@@ -38,7 +52,7 @@ pub struct ThreeD<'a> {
 impl Widget for ThreeD<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
-        let inside = frame("3-D", area, self.view.focus == Pane::ThreeD, theme, buf);
+        let inside = frame(ROW.title, area, self.view.focus == ROW.id, theme, buf);
         if inside.is_empty() {
             return;
         }

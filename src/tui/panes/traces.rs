@@ -1,6 +1,6 @@
 //! x, y, z and the magnified tilt over time, a strip each, as an oscilloscope draws them.
 
-use super::{frame, write};
+use super::{PaneRow, Width, frame, write};
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, View};
 use crate::observe::ghost::Ghost;
@@ -21,6 +21,20 @@ const GAP: usize = 2;
 /// Fewest rows of a strip: its label and one row of dots.
 const STRIP: u16 = 2;
 
+/// Its row in the table of panes.
+pub const ROW: PaneRow = PaneRow {
+    id: Pane::TRACES,
+    title: "over time",
+    width: Width::Wide,
+    rank: 0,
+    least: (27, 0),
+    draw: |lab, area, buf| {
+        let (run, ghost, view) = (lab.run(), lab.ghost(), lab.view());
+        Traces { run, ghost, view }.render(area, buf);
+    },
+    keys: &[],
+};
+
 /// The traces of a run.
 pub struct Traces<'a> {
     /// The run.
@@ -34,13 +48,7 @@ pub struct Traces<'a> {
 impl Widget for Traces<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
-        let inside = frame(
-            &self.title(),
-            area,
-            self.view.focus == Pane::Traces,
-            theme,
-            buf,
-        );
+        let inside = frame(&self.title(), area, self.view.focus == ROW.id, theme, buf);
         let strips = (inside.height.saturating_sub(1) / STRIP).min(Curve::ALL.len() as u16);
         if strips == 0 || inside.width == 0 {
             return;
@@ -92,8 +100,9 @@ impl Widget for Traces<'_> {
 impl Traces<'_> {
     fn title(&self) -> String {
         let named = self.run.scenario().file.trace.as_deref();
-        format!("{} over time", named.unwrap_or("axle top"))
+        format!("{} {}", named.unwrap_or("axle top"), ROW.title)
     }
+
     fn sweep(&self, inside: Rect) -> Sweep {
         let across = self.view.marker.dots().0;
         let columns = inside.width as usize * across;
@@ -106,9 +115,9 @@ impl Traces<'_> {
     }
 
     fn label(&self, curve: Curve, area: Rect, buf: &mut Buffer) {
-        let (look, theme) = (Look::of(curve), &self.view.theme);
-        let name = write(area, (0, 0), look.name, theme.style(look.role), buf);
-        let range = format!(" {} {}", self.scale(curve).in_words(), look.unit);
+        let theme = &self.view.theme;
+        let name = write(area, (0, 0), curve.name(), theme.style(role(curve)), buf);
+        let range = format!(" {} {}", self.scale(curve).in_words(), curve.unit());
         write(area, (name, 0), &range, theme.style(Role::Quiet), buf);
     }
 
@@ -126,12 +135,7 @@ impl Traces<'_> {
             draw(&mut dots, &exact, &scale, Ink::Faint(Role::Exact));
         }
         let extents = sweep.extents(self.run.recording(), curve, &marks.edits);
-        draw(
-            &mut dots,
-            &extents,
-            &scale,
-            Ink::Strong(Look::of(curve).role),
-        );
+        draw(&mut dots, &extents, &scale, Ink::Strong(role(curve)));
         dots.render(&self.view.theme, buf);
     }
 
@@ -299,21 +303,13 @@ const LONG_TIME_S: f64 = 1e6;
 /// From this time on (s) it has more digits than anyone reads.
 const MOST_TIME_S: f64 = 1e15;
 
-struct Look {
-    name: &'static str,
-    unit: &'static str,
-    role: Role,
-}
-
-impl Look {
-    fn of(curve: Curve) -> Self {
-        let (name, unit, role) = match curve {
-            Curve::X => ("x", "m", Role::X),
-            Curve::Y => ("y", "m", Role::Y),
-            Curve::Z => ("z", "m", Role::Z),
-            Curve::Tilt => ("tilt", "deg", Role::Path),
-        };
-        Self { name, unit, role }
+/// The colour of a curve.
+fn role(curve: Curve) -> Role {
+    match curve {
+        Curve::X => Role::X,
+        Curve::Y => Role::Y,
+        Curve::Z => Role::Z,
+        Curve::Tilt => Role::Path,
     }
 }
 
