@@ -119,9 +119,10 @@ impl Summary {
             "  steady        precession of {slow} (slow) or {fast} (fast) rad/s at this tilt{about}"
         )?;
         let spin = self.readouts.spin;
-        let sleeps = match spin.abs() > theory.sleeping_limit {
-            true => "it would",
-            false => "it would not",
+        let sleeps = if spin.abs() > theory.sleeping_limit {
+            "it would"
+        } else {
+            "it would not"
         };
         let along = match axis {
             Axis::Z => "  upright       sleeps".to_owned(),

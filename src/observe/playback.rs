@@ -197,9 +197,10 @@ impl Playback {
     /// Takes the run to where it is on its way to, however long that takes: to a step, or until a condition holds. Gives
     /// why it stopped, if it was on its way at all.
     pub fn finish(&mut self) -> Option<Halt> {
-        match self.hurries || self.until.is_some() {
-            true => self.play(f64::INFINITY, Duration::ZERO, || false),
-            false => None,
+        if self.hurries || self.until.is_some() {
+            self.play(f64::INFINITY, Duration::ZERO, || false)
+        } else {
+            None
         }
     }
 

@@ -98,9 +98,10 @@ impl Confined {
     fn check_full(&self, path: &Path) -> Result<(), String> {
         let inside = path.strip_prefix(&self.root).map_err(|_| leads_out(path))?;
         let is_hidden = |part: Component<'_>| part.as_os_str().as_encoded_bytes().starts_with(b".");
-        match inside.components().any(is_hidden) {
-            true => Err("names that begin with a dot are the lab's own".to_owned()),
-            false => Ok(()),
+        if inside.components().any(is_hidden) {
+            Err("names that begin with a dot are the lab's own".to_owned())
+        } else {
+            Ok(())
         }
     }
 }

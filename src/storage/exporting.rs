@@ -165,9 +165,10 @@ impl Job {
         let csv = Some(&mut self.csv);
         let watch = |progress: &stream::Progress| {
             shared.step.store(progress.step, Ordering::Relaxed);
-            match shared.is_cancelled() {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
+            if shared.is_cancelled() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
             }
         };
         let (path, steps) = (self.path, shared.steps);
@@ -282,9 +283,10 @@ fn scp_line_from(
         Ok(22) | Err(_) => String::new(),
         Ok(port) => format!("-P {port} "),
     };
-    let user = match user.is_empty() {
-        true => String::new(),
-        false => format!("{}@", name(user).ok_or("the user's name")?),
+    let user = if user.is_empty() {
+        String::new()
+    } else {
+        format!("{}@", name(user).ok_or("the user's name")?)
     };
     let host = name(host).ok_or("this machine's name")?;
     let path = path.to_str().filter(|path| printable(path) == *path);

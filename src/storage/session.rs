@@ -284,9 +284,10 @@ impl Session {
         let content = slot
             .read_back()
             .map_err(|reason| format!("the session was not kept: {reason}"))?;
-        match self.shared.state().noted.as_ref() == Some(&content) {
-            true => Ok(content),
-            false => Err("the session was not kept: the disk holds an earlier one".to_owned()),
+        if self.shared.state().noted.as_ref() == Some(&content) {
+            Ok(content)
+        } else {
+            Err("the session was not kept: the disk holds an earlier one".to_owned())
         }
     }
 

@@ -326,9 +326,10 @@ impl Journal {
             }
             file = with(&file, &lasting)?;
         }
-        Ok(match time_step_s == file.motion.time_step_s {
-            true => file,
-            false => rescale::at_time_step(&file, time_step_s).unwrap_or(file),
+        Ok(if time_step_s == file.motion.time_step_s {
+            file
+        } else {
+            rescale::at_time_step(&file, time_step_s).unwrap_or(file)
         })
     }
 

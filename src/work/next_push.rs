@@ -185,14 +185,15 @@ impl NextPush {
             Window::Steps { count, .. } => count as f64 * scenario.written_for_s,
             Window::Time { for_s, .. } => for_s,
         };
-        match size > 0.0 {
-            true => Self {
+        if size > 0.0 {
+            Self {
                 point: file.point.clone(),
                 size_N: size,
                 toward: named.unwrap_or(Toward::Along(unit.into())),
                 for_s,
-            },
-            false => Self::felt(scenario),
+            }
+        } else {
+            Self::felt(scenario)
         }
     }
 

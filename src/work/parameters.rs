@@ -339,9 +339,10 @@ fn typed_whole(text: &str) -> Result<i64, String> {
         return Ok(whole);
     }
     let number = nudge::typed(text, "")?;
-    match number.fract() == 0.0 && number.abs() <= EXACT {
-        true => Ok(number as i64),
-        false => Err("must be a whole number".to_owned()),
+    if number.fract() == 0.0 && number.abs() <= EXACT {
+        Ok(number as i64)
+    } else {
+        Err("must be a whole number".to_owned())
     }
 }
 

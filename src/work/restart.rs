@@ -66,14 +66,13 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
 
 /// As many steps as the run of `scenario` has seconds, at the time step it has now.
 fn as_long(scenario: &Scenario, motion: &Motion) -> u64 {
-    match motion.time_step_s == scenario.motion.time_step_s {
-        true => scenario.steps,
-        false => {
-            let length_s = scenario.steps as f64 * scenario.motion.time_step_s;
-            (length_s / motion.time_step_s)
-                .round()
-                .clamp(1.0, MOST_STEPS) as u64
-        }
+    if motion.time_step_s == scenario.motion.time_step_s {
+        scenario.steps
+    } else {
+        let length_s = scenario.steps as f64 * scenario.motion.time_step_s;
+        (length_s / motion.time_step_s)
+            .round()
+            .clamp(1.0, MOST_STEPS) as u64
     }
 }
 
@@ -103,9 +102,10 @@ fn start(state: &State) -> StartFile {
 fn angles_deg(orientation: &Matrix3<f64>) -> [f64; 3] {
     let axle = orientation.column(2);
     let tilt = libm::atan2(libm::hypot(axle.x, axle.y), axle.z);
-    let turn = match axle.x == 0.0 && axle.y == 0.0 {
-        true => 0.0,
-        false => libm::atan2(axle.x, -axle.y),
+    let turn = if axle.x == 0.0 && axle.y == 0.0 {
+        0.0
+    } else {
+        libm::atan2(axle.x, -axle.y)
     };
     let upright = rotation::about(&Vector3::z(), turn) * rotation::about(&Vector3::x(), tilt);
     let rolled = upright.tr_mul(orientation);
@@ -208,11 +208,12 @@ impl Now<'_> {
                 // Whole steps first: their difference has no rounding.
                 let begin = first as f64 - 1.0;
                 let end = begin + count as f64;
-                match self.counts_steps() {
-                    true => [begin, end]
+                if self.counts_steps() {
+                    [begin, end]
                         .map(|steps| (steps - self.step as f64) * dt)
-                        .into(),
-                    false => [begin, end].map(|steps| steps * dt - now_s).into(),
+                        .into()
+                } else {
+                    [begin, end].map(|steps| steps * dt - now_s).into()
                 }
             }
         }

@@ -75,11 +75,12 @@ fn write(path: &Path, parts: &[&str]) -> io::Result<()> {
     file.rewind()?;
     let mut back = Vec::new();
     file.read_to_end(&mut back)?;
-    match back == parts.concat().as_bytes() {
-        true => Ok(()),
-        false => Err(io::Error::other(
+    if back == parts.concat().as_bytes() {
+        Ok(())
+    } else {
+        Err(io::Error::other(
             "the disk gives back other bytes than were written",
-        )),
+        ))
     }
 }
 
@@ -105,16 +106,18 @@ fn check(there: &Metadata) -> io::Result<()> {
         return Err(refused("it is not a file"));
     }
     check_owner(there)?;
-    match there.nlink() > 1 {
-        true => Err(refused("it has a second name elsewhere")),
-        false => Ok(()),
+    if there.nlink() > 1 {
+        Err(refused("it has a second name elsewhere"))
+    } else {
+        Ok(())
     }
 }
 
 fn check_owner(there: &Metadata) -> io::Result<()> {
-    match there.uid() == rustix::process::geteuid().as_raw() {
-        true => Ok(()),
-        false => Err(refused("it belongs to another user")),
+    if there.uid() == rustix::process::geteuid().as_raw() {
+        Ok(())
+    } else {
+        Err(refused("it belongs to another user"))
     }
 }
 

@@ -167,10 +167,7 @@ mod tests {
                         let (act, is_chained) = (deed(kind, value), value > 40);
                         let is_first = journal.log.is_empty();
                         prop_assert_eq!(is_first, before.done.is_empty());
-                        match is_chained {
-                            true => journal.act_again(step, act.clone()).unwrap(),
-                            false => journal.act(step, act.clone()).unwrap(),
-                        };
+                        if is_chained { journal.act_again(step, act.clone()).unwrap() } else { journal.act(step, act.clone()).unwrap() };
                         before.act(step, &act, is_chained && !is_first);
                     }
                 }
