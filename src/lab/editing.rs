@@ -8,7 +8,7 @@ use crate::run::Clock;
 use crate::run::pushes::acts_s;
 use crate::scenario::Scenario;
 use crate::scenario::keys::Effect;
-use crate::work::history::{History, Turn};
+use crate::work::history::{History, Reversal};
 use crate::work::journal::{Act, number_of_push};
 use crate::work::next_push::NextPush;
 use crate::work::parameters::Parameter;
@@ -73,7 +73,7 @@ impl Lab {
     pub(super) fn begin_with(&mut self, set: &Table, acts: Vec<Act>, is_again: bool) -> Answer {
         let here = self.player.playback.step_number();
         let had_begun = here > 0;
-        self.history.stands(here, self.values.next_push()); // wherever it was bound for: the new run moves as it does here
+        self.history.set_left_at(here, self.values.next_push()); // wherever it was bound for: the new run moves as it does here
         let before = (!acts.is_empty()).then(|| self.history.clone());
         let begun = match is_again {
             true => self.history.begin_again_with(set),
@@ -194,7 +194,7 @@ impl Lab {
         times: u32,
         (done, other_way): (&str, &str),
         nothing: &str,
-        turn: impl Fn(&mut History) -> Option<Turn>,
+        turn: impl Fn(&mut History) -> Option<Reversal>,
     ) -> Answer {
         let mut answer = Done::SILENT;
         for _ in 0..times {
@@ -202,12 +202,12 @@ impl Lab {
             self.stands();
             answer = match turn(&mut self.history) {
                 None => return Err(nothing.into()),
-                Some(Turn::Here { step, act }) => {
+                Some(Reversal::SameRun { step, act }) => {
                     self.turn_here(step, &act)?;
                     let act = act.in_words();
                     Done::saying(format!("{done}: {act}, at step {step}; {other_way}"))
                 }
-                Some(Turn::Elsewhere) => {
+                Some(Reversal::OtherRun) => {
                     self.turn_elsewhere(&name)?;
                     Done::saying(format!("{done}: another run; {other_way}"))
                 }
@@ -222,7 +222,7 @@ impl Lab {
         let scenario = Arc::new(scenario.map_err(|problems| problems.in_one_line())?);
         if scenario.steps != self.run().scenario().steps {
             // Not by this scenario: edits of the time step since then have not moved the end.
-            let told = self.history.present().journal.when_its_length_was_told();
+            let told = self.history.present().journal.when_steps_were_set();
             self.history
                 .set_end(Clock::end_s(told.as_ref().unwrap_or(&scenario)));
         }

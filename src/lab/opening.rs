@@ -19,7 +19,7 @@ impl Lab {
     /// The history is to know where the run stands, or is on its way back to: it may be left.
     pub(super) fn stands(&mut self) {
         self.history
-            .stands(self.player.step_to_keep(), self.values.next_push());
+            .set_left_at(self.player.step_to_keep(), self.values.next_push());
     }
 
     /// Shows the run of `scenario`, which is none of the present scenario's.

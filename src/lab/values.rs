@@ -57,7 +57,7 @@ impl Values {
     /// Lists what can be edited in `run`, of which `journal` tells, as it is now.
     pub(super) fn list(&mut self, run: &LiveRun, journal: &Journal) {
         let step = run.simulation().step_number();
-        self.entries_listed = journal.in_force(step);
+        self.entries_listed = journal.count_by(step);
         let scenario = run.scenario();
         let table = parameters::table_at(scenario, step);
         // Of a push that is given later, nothing can be set here: what is done here takes its place.
@@ -81,7 +81,7 @@ impl Values {
 
     /// Whether other entries of `journal` act at `step` than on what is listed.
     pub(super) fn is_outdated(&self, step: u64, journal: &Journal) -> bool {
-        journal.in_force(step) != self.entries_listed
+        journal.count_by(step) != self.entries_listed
     }
 
     /// The lines, and which of them is selected.

@@ -1,16 +1,17 @@
-//! The line that says what to look at; where the scenario was changed from its file, what was changed instead, for
-//! what the file says of it may then be false.
+//! The scenario's `look_at` line, and the line that replaces it once the user has changed the scenario: the file's
+//! line may then be false, so the lab lists the changes instead.
 
 use crate::scenario::rescale::at_time_step;
 use crate::scenario::{Motion, Scenario};
 use crate::text::number::shortest;
 
-/// What there is to see in `scenario`, as its file says.
+/// The `look_at` line of the file of `scenario`: what the viewer should watch for.
 pub fn look_at(scenario: &Scenario) -> Option<&str> {
     scenario.file.view.as_ref()?.look_at.as_deref()
 }
 
-/// Says how `now` moves otherwise than `before`; `None` where its file's note still holds, or is a new one.
+/// Lists what makes `now` move differently from `before`. `None` where nothing does, or where the `look_at` line itself
+/// is a new one.
 pub fn changed(before: &Scenario, now: &Scenario) -> Option<String> {
     let changes = changes(before, now);
     if changes.is_empty() || look_at(before) != look_at(now) {
@@ -45,12 +46,12 @@ fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
     let others = [
         (now.file.body != before.file.body, "another body"),
         (now.file.start != before.file.start, "another start"),
-        (are_pushes_changed(before, now), pushes(before, now)),
+        (are_pushes_changed(before, now), push_change(before, now)),
     ];
     changes.extend(
         others
             .iter()
-            .filter(|(is, _)| *is)
+            .filter(|(is_changed, _)| *is_changed)
             .map(|(_, what)| (*what).to_owned()),
     );
     if changes.is_empty() && now.file.edit != before.file.edit {
@@ -59,7 +60,7 @@ fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
     changes
 }
 
-/// Gravity, scheme and time step once all edits are made.
+/// Gravity, scheme and time step after the last edit.
 fn last_motion(scenario: &Scenario) -> &Motion {
     scenario
         .edits
@@ -67,7 +68,8 @@ fn last_motion(scenario: &Scenario) -> &Motion {
         .map_or(&scenario.motion, |edit| &edit.motion)
 }
 
-fn pushes(before: &Scenario, now: &Scenario) -> &'static str {
+/// How the pushes have changed, in words.
+fn push_change(before: &Scenario, now: &Scenario) -> &'static str {
     match now.file.push.len().saturating_sub(before.file.push.len()) {
         0 => "other pushes",
         1 => "one more push",
@@ -75,11 +77,11 @@ fn pushes(before: &Scenario, now: &Scenario) -> &'static str {
     }
 }
 
-/// Whether the pushes are others, not only the same at another time step.
+/// Whether the pushes differ by more than the rescaling that a new time step causes.
 fn are_pushes_changed(before: &Scenario, now: &Scenario) -> bool {
     let (old, new) = (&before.file, &now.file);
-    let is_resampled = || {
-        at_time_step(old, now.motion.time_step_s).is_ok_and(|resampled| resampled.push == new.push)
+    let is_rescaled = || {
+        at_time_step(old, now.motion.time_step_s).is_ok_and(|rescaled| rescaled.push == new.push)
     };
-    new.push != old.push && !is_resampled()
+    new.push != old.push && !is_rescaled()
 }

@@ -1,4 +1,5 @@
-//! The runs one after the other: an edit of the body, or another file, begins a new one, and the old one is one undo away.
+//! The runs of a session, in order. An edit of the body or of the start, and the opening of another file, begin a new
+//! run; undo returns to the run before it.
 
 use super::journal::{Act, Journal};
 use super::next_push::NextPush;
@@ -7,80 +8,82 @@ use crate::scenario::{Problems, Scenario};
 use serde::{Deserialize, Serialize};
 use toml::Table;
 
-/// Runs that can be gone back to, and for large bodies as many as have so many points together.
+/// The most earlier runs that are kept.
 const MOST_RUNS: usize = 200;
+/// The most points that the bodies of all kept runs may have together; it limits the memory for large bodies.
 const MOST_POINTS: usize = 200_000;
 
-/// One run: where it came from, its journal, and where it was left.
+/// One run of the history: its name, its journal, and the step at which the user left it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Chapter {
-    /// SCENARIO as it was opened.
+pub struct RunRecord {
+    /// The name under which the user opened the scenario: a preset or a file.
     pub name: String,
-    /// The step it was left at.
+    /// The step at which the user left the run.
     pub left_at: u64,
-    /// When it is over, s: an edit of the time step changes how many steps that is.
+    /// Time at which the run ends, s. An edit of the time step changes the number of steps, not this time.
     pub end_s: f64,
-    /// The push that was to come when it was left.
+    /// The push that the user had prepared when they left the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub next_push: Option<NextPush>,
-    /// What it is.
+    /// The scenario, and what the user did to it.
     pub journal: Journal,
 }
 
-/// The runs so far, and those that were taken back.
+/// All runs of a session, with those that were undone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct History {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    past: Vec<Chapter>,
-    present: Chapter,
-    /// The next one to be brought again last.
+    past: Vec<RunRecord>,
+    present: RunRecord,
+    /// Undone runs, the one undone last at the end: redo takes it first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    undone: Vec<Chapter>,
+    undone: Vec<RunRecord>,
 }
 
-/// What taking back, or bringing again, has led to.
+/// What an undo or a redo has changed.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Turn {
-    /// Another journal of the same run: the same up to `step`.
-    Here {
-        /// The step at which it was done.
+pub enum Reversal {
+    /// The present run has changed after `step`; up to there it is the same.
+    SameRun {
+        /// The step at which the act was done.
         step: u64,
-        /// What was taken back or brought again.
+        /// The act that was undone or redone.
         act: Act,
     },
-    /// Another run.
-    Elsewhere,
+    /// Another run is now the present one.
+    OtherRun,
 }
 
 impl History {
-    /// Begins with the run of `scenario`, opened as `name`.
+    /// A history whose only run is that of `scenario`, opened as `name`.
     pub fn new(name: &str, scenario: &Scenario) -> Self {
         Self {
             past: Vec::new(),
-            present: Chapter::new(name, Journal::of(scenario.file.clone()), scenario),
+            present: RunRecord::new(name, Journal::of(scenario.file.clone()), scenario),
             undone: Vec::new(),
         }
     }
 
-    /// Whether every run in it can be gone to: nothing is wrong with any, unless it was changed by hand.
+    /// Checks the journals of all past and undone runs. They are valid unless somebody has edited a session file by hand.
     ///
     /// # Errors
-    /// What is wrong with the first that cannot.
+    /// What is wrong with the first invalid one.
     pub fn check(&self) -> Result<(), Problems> {
         let runs = self.past.iter().chain(&self.undone);
-        runs.map(|chapter| &chapter.journal)
+        runs.map(|run| &run.journal)
             .try_for_each(|journal| journal.scenario().map(drop))
     }
 
     /// The present run.
-    pub fn present(&self) -> &Chapter {
+    pub fn present(&self) -> &RunRecord {
         &self.present
     }
 
-    /// Says where the present run stands, and which push is to come: it may be left.
-    pub fn stands(&mut self, step: u64, next_push: &NextPush) {
+    /// Records at which `step` the present run stands and which push the user has prepared. To be called before the
+    /// present run is left.
+    pub fn set_left_at(&mut self, step: u64, next_push: &NextPush) {
         self.present.left_at = step;
         self.present.next_push = Some(next_push.clone());
     }
@@ -88,113 +91,111 @@ impl History {
     /// Leaves the present run and begins that of `scenario`, opened as `name`.
     pub fn begin(&mut self, name: &str, scenario: &Scenario) {
         let journal = Journal::of(scenario.file.clone());
-        self.begin_chapter(Chapter::new(name, journal, scenario));
+        self.begin_run(RunRecord::new(name, journal, scenario));
     }
 
-    fn begin_chapter(&mut self, next: Chapter) {
-        self.present.journal.forget_undone(); // something new was done: this
+    fn begin_run(&mut self, next: RunRecord) {
+        self.present.journal.forget_undone(); // a new run is a new act: nothing can be redone after it
         self.past.push(std::mem::replace(&mut self.present, next));
         self.undone.clear();
-        self.forget_the_oldest();
+        self.drop_oldest();
     }
 
-    fn forget_the_oldest(&mut self) {
-        let points = |chapter: &Chapter| chapter.journal.base().body.point.len();
-        let mut room = MOST_POINTS;
-        let affordable = self
-            .past
-            .iter()
-            .rev()
-            .take(MOST_RUNS)
-            .take_while(|chapter| {
-                let needed = points(chapter);
-                let fits = needed <= room;
-                room = room.saturating_sub(needed);
-                fits
-            });
+    /// Drops the oldest runs beyond [`MOST_RUNS`] and [`MOST_POINTS`]; the newest past run always stays.
+    fn drop_oldest(&mut self) {
+        let points = |run: &RunRecord| run.journal.base().body.point.len();
+        let mut points_left = MOST_POINTS;
+        let affordable = self.past.iter().rev().take(MOST_RUNS).take_while(|run| {
+            let needed = points(run);
+            let fits = needed <= points_left;
+            points_left = points_left.saturating_sub(needed);
+            fits
+        });
         let kept = affordable.count().max(1).min(self.past.len());
         self.past.drain(..self.past.len() - kept);
     }
 
-    /// Does `act` at `step` of the present run; gives what the run is then.
+    /// Does `act` at `step` of the present run and returns the run's new scenario.
     ///
     /// # Errors
-    /// Why it cannot be done; nothing has changed then.
+    /// Why the act is refused; the history is then unchanged.
     pub fn act(&mut self, step: u64, act: Act) -> Result<Scenario, Problems> {
         let scenario = self.present.journal.act(step, act)?;
         self.undone.clear();
         Ok(scenario)
     }
 
-    /// The same as one more nudge, which is taken back together with those before.
+    /// As [`act`](Self::act), for one more nudge of the same value: one undo takes back all nudges of the chain.
     ///
     /// # Errors
-    /// Why it cannot be done; nothing has changed then.
+    /// Why the act is refused; the history is then unchanged.
     pub fn act_again(&mut self, step: u64, act: Act) -> Result<Scenario, Problems> {
         let scenario = self.present.journal.act_again(step, act)?;
         self.undone.clear();
         Ok(scenario)
     }
 
-    /// Begins a new run with the values of `set`, as [`Journal::begun_with`] has it.
+    /// Begins a new run: the present one as it moves where it was left, with the values of `set`; see
+    /// [`Journal::begun_with`].
     ///
     /// # Errors
-    /// Why it cannot begin so; nothing has changed then.
+    /// Why the values are refused; the history is then unchanged.
     pub fn begin_with(&mut self, set: &Table) -> Result<Scenario, Problems> {
         let left = &self.present;
         let (journal, scenario) = left.journal.begun_with(left.left_at, set)?;
-        self.begin_chapter(Chapter::new(&left.name, journal, &scenario));
+        self.begin_run(RunRecord::new(&left.name, journal, &scenario));
         Ok(scenario)
     }
 
-    /// Begins the present run once more with other values of the keys that it was begun with, in its place.
+    /// Replaces the present run with one that began with the values of `set` instead: one more nudge of the value that
+    /// began the present run. One undo then returns to the run before both.
     ///
     /// # Errors
-    /// Why it cannot begin so; nothing has changed then.
+    /// Why the values are refused; the history is then unchanged.
     pub fn begin_again_with(&mut self, set: &Table) -> Result<Scenario, Problems> {
         let Some(left) = self.past.last() else {
             return self.begin_with(set);
         };
         let (journal, scenario) = left.journal.begun_with(left.left_at, set)?;
-        self.present = Chapter::new(&left.name, journal, &scenario);
+        self.present = RunRecord::new(&left.name, journal, &scenario);
         self.undone.clear();
         Ok(scenario)
     }
 
-    /// Says that the present run is now over at `end_s` (s).
+    /// Sets the time at which the present run ends, s.
     pub fn set_end(&mut self, end_s: f64) {
         self.present.end_s = end_s;
     }
 
-    /// Takes the last thing back: what was done in the present run, or else the run itself.
-    pub fn undo(&mut self) -> Option<Turn> {
+    /// Undoes the last act of the present run; where it has none, returns to the run before. `None` where there is none.
+    pub fn undo(&mut self) -> Option<Reversal> {
         if let Some((step, act)) = self.present.journal.undo() {
-            return Some(Turn::Here { step, act });
+            return Some(Reversal::SameRun { step, act });
         }
-        self.turn(|history| (&mut history.past, &mut history.undone))
+        self.exchange(|history| (&mut history.past, &mut history.undone))
     }
 
-    /// Brings again what was taken back last.
-    pub fn redo(&mut self) -> Option<Turn> {
+    /// Does again what was undone last. `None` where nothing is undone.
+    pub fn redo(&mut self) -> Option<Reversal> {
         if let Some((step, act)) = self.present.journal.redo() {
-            return Some(Turn::Here { step, act });
+            return Some(Reversal::SameRun { step, act });
         }
-        self.turn(|history| (&mut history.undone, &mut history.past))
+        self.exchange(|history| (&mut history.undone, &mut history.past))
     }
 
-    /// Another run in the place of the present one.
-    fn turn(
+    /// Takes the present run from the top of the first of the two `stacks`, and puts the old one on the second.
+    fn exchange(
         &mut self,
-        stacks: impl Fn(&mut Self) -> (&mut Vec<Chapter>, &mut Vec<Chapter>),
-    ) -> Option<Turn> {
+        stacks: impl Fn(&mut Self) -> (&mut Vec<RunRecord>, &mut Vec<RunRecord>),
+    ) -> Option<Reversal> {
         let next = stacks(self).0.pop()?;
         let left = std::mem::replace(&mut self.present, next);
         stacks(self).1.push(left);
-        Some(Turn::Elsewhere)
+        Some(Reversal::OtherRun)
     }
 }
 
-impl Chapter {
+impl RunRecord {
     fn new(name: &str, journal: Journal, scenario: &Scenario) -> Self {
         Self {
             name: name.to_owned(),
@@ -221,7 +222,7 @@ mod tests {
     }
 
     fn leave(history: &mut History, step: u64) {
-        history.stands(step, &NextPush::of(&opened("method-2")));
+        history.set_left_at(step, &NextPush::of(&opened("method-2")));
     }
 
     fn begin_with_tilt(history: &mut History, step: u64, tilt_deg: f64) {
@@ -244,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_is_taken_back_and_brought_again_in_order() {
+    fn undo_and_redo_go_through_all_acts_and_runs_in_order() {
         let mut history = History::new("method-2", &opened("method-2"));
         history
             .act(40, Act::set("motion.time_step_s", Value::Float(0.05)))
@@ -255,9 +256,9 @@ mod tests {
             .unwrap();
         leave(&mut history, 9);
         history.begin("cusps", &opened("cusps"));
-        assert_eq!(history.undo(), Some(Turn::Elsewhere));
+        assert_eq!(history.undo(), Some(Reversal::OtherRun));
         assert_eq!((history.present().left_at, tilt(&history)), (9, Some(30.0)));
-        let Some(Turn::Here { step: 7, .. }) = history.undo() else {
+        let Some(Reversal::SameRun { step: 7, .. }) = history.undo() else {
             panic!()
         };
         assert_eq!(
@@ -265,12 +266,12 @@ mod tests {
             0.05,
             "the new run moves as the old one did when it was left"
         );
-        assert_eq!(history.undo(), Some(Turn::Elsewhere));
+        assert_eq!(history.undo(), Some(Reversal::OtherRun));
         assert_eq!(
             (history.present().left_at, tilt(&history)),
             (90, Some(45.0))
         );
-        let Some(Turn::Here { step: 40, .. }) = history.undo() else {
+        let Some(Reversal::SameRun { step: 40, .. }) = history.undo() else {
             panic!()
         };
         assert_eq!(history.undo(), None);
@@ -282,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_done_anew_cannot_be_redone() {
+    fn a_new_act_leaves_nothing_to_redo() {
         let mut history = History::new("method-2", &opened("method-2"));
         begin_with_tilt(&mut history, 90, 30.0);
         history.undo();
@@ -293,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_is_nudged_again_is_one_run() {
+    fn nudging_a_run_again_replaces_it() {
         let mut history = History::new("method-2", &opened("method-2"));
         begin_with_tilt(&mut history, 90, 30.0);
         for tilt_deg in [31.0, 32.0] {
@@ -303,7 +304,7 @@ mod tests {
                 .unwrap();
         }
         assert_eq!(tilt(&history), Some(32.0));
-        assert_eq!(history.undo(), Some(Turn::Elsewhere));
+        assert_eq!(history.undo(), Some(Reversal::OtherRun));
         assert_eq!(
             (history.present().left_at, tilt(&history)),
             (90, Some(45.0))
@@ -312,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn a_new_run_is_brought_again_before_what_was_undone_earlier() {
+    fn redo_brings_the_new_run_back_and_not_an_edit_undone_before_it() {
         let mut history = History::new("method-2", &opened("method-2"));
         history
             .act(40, Act::set("motion.time_step_s", Value::Float(0.05)))
@@ -320,7 +321,7 @@ mod tests {
         history.undo();
         begin_with_tilt(&mut history, 90, 30.0);
         history.undo();
-        assert_eq!(history.redo(), Some(Turn::Elsewhere));
+        assert_eq!(history.redo(), Some(Reversal::OtherRun));
         assert_eq!(tilt(&history), Some(30.0));
     }
 

@@ -1,11 +1,11 @@
 //! A run: a scenario, and the journal of what the user did to it at which step.
 //!
-//! Everything else, any earlier state and any export, is computed from it again. What is done at a step acts from the
-//! next one on; doing something earlier than what was done before drops the later entries. The last entry can be taken
-//! back, and brought again.
+//! Everything else, any earlier state and any export, is computed again from these two. An act done at a step has its
+//! effect from the next step on. When the user goes back and acts at an earlier step, the entries at later steps are
+//! dropped. Undo takes the last entry back; redo does it again.
 //!
-//! The journal is the plain list of what was done, in the order in which it was done. Which of it holds is computed from
-//! the steps: an entry that a later one dropped stays in the list, and holds again when that one is taken back.
+//! The journal lists all acts in the order in which the user did them. Which entries are in force is computed from their
+//! steps: an entry that a newer one dropped stays in the list, and is in force again once the newer one is undone.
 
 mod stored;
 
@@ -18,35 +18,35 @@ use crate::text::printable::brief;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-/// Characters of a value in words.
+/// The most characters of a value that a message shows.
 const LONGEST_VALUE: usize = 30;
 
-/// A scenario and what was done to it.
+/// A scenario and what the user did to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "stored::Stored")]
 pub struct Journal {
-    /// The scenario before anything was done to it.
+    /// The scenario before the first act.
     base: ScenarioFile,
-    /// What was done, in the order in which it was done, with what was dropped by it later.
+    /// All acts in the order in which the user did them, dropped ones included.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     log: Vec<Entry>,
-    /// What was taken back, the last one first to be brought again.
+    /// Undone entries, the one undone last at the end: redo takes it first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     undone: Vec<Entry>,
 }
 
-/// Something that was done.
+/// One act, and the step at which it was done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Entry {
-    /// The step at which it was done.
+    /// The step at which the user acted.
     pub step: u64,
-    /// What it was.
+    /// What the user did.
     pub act: Act,
-    /// Whether it stood in the file the run was opened from.
+    /// Whether the entry is an edit that the opened file contained.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     from_file: bool,
-    /// Whether it is one more nudge, taken back together with the entry before it.
+    /// Whether it is one more nudge of the same value: undo takes it back together with the entry before it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     is_chained: bool,
 }
@@ -55,16 +55,17 @@ pub struct Entry {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Act {
-    /// A push from then on.
+    /// Adds a push.
     Push(PushFile),
-    /// Keys of motion or push and their new values from then on.
+    /// Sets keys of `motion` or `push`, with effect from the next step on.
     Edit(Table),
-    /// Keys that no number depends on: title, length of the run, what the lab starts with.
+    /// Sets keys on which no number of the run depends: title, number of steps, `[view]`.
     Describe(Table),
 }
 
 impl Act {
-    /// `value` at `key`; of a key that has no effect, a description.
+    /// Sets `key` to `value`: a [`Describe`](Self::Describe) where the key has no effect on the numbers, else an
+    /// [`Edit`](Self::Edit).
     pub fn set(key: &str, value: Value) -> Self {
         let set = Table::from_iter([(key.to_owned(), value)]);
         match Effect::of(key) {
@@ -73,7 +74,7 @@ impl Act {
         }
     }
 
-    /// What was done, for a line that says so.
+    /// The act in words, for a message.
     pub fn in_words(&self) -> String {
         match self {
             Self::Push(push) => format!("the push on {}", push.point),
@@ -88,7 +89,7 @@ impl Act {
 }
 
 impl Journal {
-    /// The run that `file` holds: its edits are what was done.
+    /// The journal of a run file: the file without its edits is the base, and each edit is an entry.
     pub fn of(mut file: ScenarioFile) -> Self {
         let entry = |edit: EditFile| Entry {
             step: edit.step,
@@ -106,80 +107,87 @@ impl Journal {
         }
     }
 
-    /// The scenario before anything was done to it.
+    /// The scenario before the first act.
     pub fn base(&self) -> &ScenarioFile {
         &self.base
     }
 
-    /// The entries that hold, in the order of their steps: those that no later entry has dropped. What has no time is
-    /// never dropped, and drops nothing.
-    fn done(&self) -> Vec<&Entry> {
-        let mut earliest = u64::MAX; // step of the entries that were made later
-        let holds = |entry: &&Entry| {
-            let holds = !entry.is_later_than(earliest);
-            if entry.drops() {
+    /// The entries in force, in the order in which they were done: those that no newer entry has dropped. Descriptions
+    /// are never dropped and drop nothing.
+    fn in_force(&self) -> Vec<&Entry> {
+        let mut earliest = u64::MAX; // smallest step of the newer entries
+        let is_in_force = |entry: &&Entry| {
+            let is_in_force = !entry.is_later_than(earliest);
+            if entry.drops_later_steps() {
                 earliest = earliest.min(entry.step);
             }
-            holds
+            is_in_force
         };
-        let mut done: Vec<_> = self.log.iter().rev().filter(holds).collect();
-        done.reverse();
-        done
+        let mut entries: Vec<_> = self.log.iter().rev().filter(is_in_force).collect();
+        entries.reverse();
+        entries
     }
 
-    /// The run file.
+    /// The entries in force that have an effect by `step`; descriptions always do.
+    fn in_force_by(&self, step: u64) -> Vec<&Entry> {
+        let mut entries = self.in_force();
+        entries.retain(|entry| !entry.is_later_than(step));
+        entries
+    }
+
+    /// The run file: the base with all entries in force.
     pub fn file(&self) -> ScenarioFile {
-        self.made_of(&self.done())
+        self.file_with(&self.in_force())
     }
 
-    /// The run, checked.
+    /// The checked scenario of the run file.
     ///
     /// # Errors
-    /// What is wrong with it; nothing, where [`act`](Self::act) made it.
+    /// What is wrong with the run file. A journal that was changed by [`act`](Self::act) alone has no errors.
     pub fn scenario(&self) -> Result<Scenario, Problems> {
         checked(self.file())
     }
 
-    /// The run as it was when its length was told last: by its file, or by what was done since.
+    /// The scenario as it was when its number of steps was set last: by the opened file, or by a later `motion.steps`.
     ///
     /// # Errors
     /// As [`scenario`](Self::scenario).
-    pub fn when_its_length_was_told(&self) -> Result<Scenario, Problems> {
-        let tells = |entry: &Entry| match &entry.act {
+    pub fn when_steps_were_set(&self) -> Result<Scenario, Problems> {
+        let sets_steps = |entry: &Entry| match &entry.act {
             Act::Describe(set) => set.contains_key("motion.steps"),
             Act::Edit(_) | Act::Push(_) => entry.from_file,
         };
-        let done = self.done();
-        let told = done.iter().rposition(|entry| tells(entry));
-        checked(self.made_of(&done[..told.map_or(0, |last| last + 1)]))
+        let entries = self.in_force();
+        let last = entries.iter().rposition(|entry| sets_steps(entry));
+        checked(self.file_with(&entries[..last.map_or(0, |last| last + 1)]))
     }
 
-    /// The run file of the run up to `step`: as long, and without what was done later.
+    /// The run file of the run up to `step`: it has that many steps (at least one), and no later entry.
     pub fn file_until(&self, step: u64) -> ScenarioFile {
-        let mut done = self.done();
-        done.retain(|entry| !entry.is_later_than(step));
-        let mut file = self.made_of(&done);
+        let mut file = self.file_with(&self.in_force_by(step));
         file.motion.steps = step.max(1);
         file
     }
 
-    /// How many entries stand later than `step`.
+    /// How many entries in force stand at steps later than `step`.
     pub fn later_than(&self, step: u64) -> usize {
-        let done = self.done();
-        done.iter()
+        let entries = self.in_force();
+        entries
+            .iter()
             .filter(|entry| entry.is_later_than(step))
             .count()
     }
 
-    fn made_of(&self, done: &[&Entry]) -> ScenarioFile {
+    /// The base with `entries`.
+    fn file_with(&self, entries: &[&Entry]) -> ScenarioFile {
         let mut file = self.base.clone();
         let mut last_is_of_file = true;
-        for entry in done {
+        for entry in entries {
             match &entry.act {
                 Act::Describe(set) => file = with(&file, set).unwrap_or(file), // checked when it was done
                 Act::Push(push) => file.push.push(push.clone()),
                 Act::Edit(set) => match file.edit.last_mut() {
-                    // Edits of one moment are one edit, unless they were two in the file.
+                    // Edits at one step become one edit, unless the file had them apart.
                     Some(last)
                         if last.step == entry.step && !last_is_of_file && may_be_joined(entry) =>
                     {
@@ -198,15 +206,16 @@ impl Journal {
         file
     }
 
-    /// Does `act` at `step`; gives what the run is then.
+    /// Does `act` at `step` and returns the run's new scenario.
     ///
     /// # Errors
-    /// Why it cannot be done; nothing has changed then.
+    /// Why the act is refused; the journal is then unchanged.
     pub fn act(&mut self, step: u64, act: Act) -> Result<Scenario, Problems> {
         self.enter(step, act, false)
     }
 
-    /// Does `act` at `step` as one more nudge of what was nudged before: undo takes them all back at once.
+    /// Does `act` at `step` as one more nudge of the value that the last entry set: undo takes all nudges of this chain
+    /// back at once.
     ///
     /// # Errors
     /// As [`act`](Self::act).
@@ -222,7 +231,7 @@ impl Journal {
             })?;
         }
         let act = match act {
-            Act::Push(push) => self.push_at_the_end(push),
+            Act::Push(push) => self.push_with_new_number(push),
             act => act,
         };
         self.log.push(Entry {
@@ -239,8 +248,9 @@ impl Journal {
         scenario
     }
 
-    /// A push as a table of its own; where edits have added pushes, whose numbers must stay, as one more edit.
-    fn push_at_the_end(&self, push: PushFile) -> Act {
+    /// The act that adds `push`: a `[[push]]` table. Where edits have added pushes, one more table would change their
+    /// numbers, so the push is then added by one more edit.
+    fn push_with_new_number(&self, push: PushFile) -> Act {
         let file = self.file();
         let set = file.edit.iter().flat_map(|edit| edit.set.keys());
         let added = set.filter_map(|key| number_of_push(key)).max();
@@ -253,8 +263,8 @@ impl Journal {
         }
     }
 
-    /// Takes the last entry back, or all nudges of a chain; gives from which step on, and what the last of it was. What it
-    /// had dropped holds again.
+    /// Takes the last entry back, or all nudges of its chain. Entries that they had dropped are in force again. Returns the
+    /// step of the first entry taken back and the act of the last one; `None` where there is no entry.
     pub fn undo(&mut self) -> Option<(u64, Act)> {
         let last = self.log.last()?.act.clone();
         loop {
@@ -267,7 +277,8 @@ impl Journal {
         }
     }
 
-    /// Brings again what was taken back last; gives from which step on, and what the last of it was.
+    /// Does again what was undone last: an entry, or all nudges of a chain. Returns the step of the first of them and the
+    /// act of the last one; `None` where nothing is undone.
     pub fn redo(&mut self) -> Option<(u64, Act)> {
         let first = self.undone.last()?.step;
         loop {
@@ -280,42 +291,40 @@ impl Journal {
         }
     }
 
-    /// What was taken back can no longer be brought again.
+    /// Drops what was undone: it can no longer be redone.
     pub fn forget_undone(&mut self) {
         self.undone.clear();
     }
 
-    /// How many entries act by `step`, those made there counted in.
-    pub fn in_force(&self, step: u64) -> usize {
-        let mut done = self.done();
-        done.retain(|entry| !entry.is_later_than(step));
-        done.len()
+    /// How many entries in force were done at `step` or earlier, descriptions of any step included.
+    pub fn count_by(&self, step: u64) -> usize {
+        self.in_force_by(step).len()
     }
 
-    /// How many pushes there are by `step`, over or to come: those of the scenario, and those given since.
+    /// How many pushes the run has at `step`, past and future ones: those of the scenario, and those that the user has
+    /// added at `step` or earlier.
     pub fn pushes_by(&self, step: u64) -> usize {
-        let mut given = self.done();
-        given.retain(|entry| entry.step <= step && matches!(entry.act, Act::Push(_)));
-        self.base.push.len() + given.len()
+        let mut added = self.in_force();
+        added.retain(|entry| entry.step <= step && matches!(entry.act, Act::Push(_)));
+        self.base.push.len() + added.len()
     }
 
-    /// A new run with the values of `set`: nothing is done to it yet, and it moves from the start as this one does at `step`.
+    /// A new run with the values of `set` and an empty journal. From its start on it has the gravity, scheme, time step and
+    /// pushes that this run has at `step`.
     ///
     /// # Errors
-    /// Why it cannot begin so.
+    /// Why the values are refused.
     pub fn begun_with(&self, step: u64, set: &Table) -> Result<(Self, Scenario), Problems> {
-        let scenario = parameters::changed_all(&self.as_it_moves_at(step)?, set)?;
+        let scenario = parameters::changed_all(&self.settings_at(step)?, set)?;
         Ok((Self::of(scenario.file.clone()), scenario))
     }
 
-    /// The scenario with gravity, scheme, time step and pushes as they are at `step`, without the pushes that were
-    /// added on the way. The time step is taken over where that changes no push.
-    fn as_it_moves_at(&self, step: u64) -> Result<ScenarioFile, Problems> {
+    /// The base with gravity, scheme, time step and its own pushes as they are at `step`, without added pushes. The base
+    /// keeps its time step where its pushes cannot be rescaled to the new one.
+    fn settings_at(&self, step: u64) -> Result<ScenarioFile, Problems> {
         let mut file = self.base.clone();
         let mut time_step_s = file.motion.time_step_s;
-        let mut done = self.done();
-        done.retain(|entry| !entry.is_later_than(step));
-        for entry in done {
+        for entry in self.in_force_by(step) {
             let (Act::Edit(set) | Act::Describe(set)) = &entry.act else {
                 continue;
             };
@@ -339,24 +348,25 @@ impl Journal {
 }
 
 impl Entry {
-    /// Whether it acts on steps after the one that follows `step`.
+    /// Whether it has its effect later than an act done at `step` would. A description belongs to no step.
     fn is_later_than(&self, step: u64) -> bool {
-        self.step > step && !self.has_no_time()
+        self.step > step && !self.is_description()
     }
 
-    /// Whether it drops the entries before it that stand at later steps. What stood in the file was never done.
-    fn drops(&self) -> bool {
-        !self.from_file && !self.has_no_time()
+    /// Whether it drops older entries that stand at later steps. Edits of the opened file do not: they stand beside each
+    /// other in any order.
+    fn drops_later_steps(&self) -> bool {
+        !self.from_file && !self.is_description()
     }
 
-    /// Whether no number depends on it.
-    fn has_no_time(&self) -> bool {
+    /// Whether no number of the run depends on it.
+    fn is_description(&self) -> bool {
         matches!(self.act, Act::Describe(_))
     }
 }
 
-/// Whether an edit can be one with others of its moment. A table has its keys in the order of their letters, push 10
-/// before push 9: a push that is added keeps its place by being an edit of its own.
+/// Whether an edit may be joined with others at the same step. An edit that adds a push may not: a TOML table sorts its
+/// keys as text, `push.10` before `push.9`, and pushes must be added in the order of their numbers.
 fn may_be_joined(entry: &Entry) -> bool {
     let adds = matches!(&entry.act, Act::Edit(set) if set.values().any(Value::is_table));
     !entry.from_file && !adds
@@ -372,7 +382,7 @@ fn checked(file: ScenarioFile) -> Result<Scenario, Problems> {
     Document::check_file("the run", file)
 }
 
-/// `file` with every key of `set` written; not yet checked.
+/// `file` with the values of `set`, not yet checked.
 fn with(file: &ScenarioFile, set: &Table) -> Result<ScenarioFile, Problems> {
     if set.is_empty() {
         return Ok(file.clone());
@@ -410,7 +420,7 @@ mod tests {
     }
 
     #[test]
-    fn doing_something_earlier_drops_what_came_later_until_it_is_undone() {
+    fn an_act_drops_entries_at_later_steps_until_it_is_undone() {
         let mut journal = journal("method-2");
         journal.act(10, gravity(1.0)).unwrap();
         journal.act(50, push(5.0)).unwrap();
@@ -435,13 +445,13 @@ mod tests {
         assert_eq!(
             journal.file_until(20).edit.len(),
             2,
-            "what is done here is in it"
+            "an act at the last step is included"
         );
         assert_eq!(journal.later_than(15), 1);
     }
 
     #[test]
-    fn what_no_number_depends_on_has_no_time() {
+    fn a_description_belongs_to_every_step() {
         let mut journal = journal("method-2");
         let title = Act::set("title", Value::String("Mine".to_owned()));
         journal.act(500, title).unwrap();
@@ -454,7 +464,7 @@ mod tests {
     }
 
     #[test]
-    fn edits_of_a_file_are_what_they_were_after_an_undo() {
+    fn undo_restores_the_edits_of_the_file() {
         let edits = "[[edit]]\nstep = 60\nset = { 'motion.gravity_m_per_s2' = 1 }\n".repeat(2);
         let text = format!("{}\n{edits}", presets::find("method-2").unwrap().text);
         let file = Document::parse("edited", &text)
@@ -471,7 +481,7 @@ mod tests {
     }
 
     #[test]
-    fn pushes_of_one_moment_are_added_one_after_the_other() {
+    fn pushes_added_at_one_step_keep_their_order() {
         let own = "[[push]]\npoint = 'top'\nforce_N = [0, 0, -1]\nfor_s = 1\n".repeat(8);
         let added = "[[edit]]\nstep = 5\nset = { 'push.8' = \
                      { point = 'top', force_N = [0, 0, -1], for_s = 1 } }\n";
@@ -485,7 +495,7 @@ mod tests {
     }
 
     #[test]
-    fn a_journal_that_was_changed_by_hand_is_no_panic() {
+    fn redo_does_not_panic_in_a_journal_edited_by_hand() {
         let mut journal = journal("method-2");
         journal.act(5, gravity(3.0)).unwrap();
         journal.act(3, gravity(4.0)).unwrap();
@@ -495,7 +505,7 @@ mod tests {
     }
 
     #[test]
-    fn nudges_of_a_chain_are_taken_back_together() {
+    fn undo_takes_all_nudges_of_a_chain_back() {
         let mut journal = journal("method-2");
         journal.act(5, push(0.5)).unwrap();
         journal.act(10, gravity(1.0)).unwrap();
@@ -513,7 +523,7 @@ mod tests {
     }
 
     #[test]
-    fn edits_of_one_moment_are_one_edit_but_for_those_of_a_file() {
+    fn edits_at_one_step_are_joined_unless_the_file_had_them_apart() {
         let mut journal = journal("method-2");
         journal.act(10, gravity(1.0)).unwrap();
         journal.act(10, gravity(2.0)).unwrap();
@@ -534,7 +544,7 @@ mod tests {
     }
 
     #[test]
-    fn a_push_beside_pushes_that_edits_have_added_takes_no_number_away() {
+    fn a_new_push_keeps_the_numbers_of_pushes_that_edits_added() {
         let mut file = journal("method-2").file();
         let added = "[edit]\npoint = 'top'\nforce_N = [0, 1, 0]\nfor_s = 2"
             .parse::<Table>()
@@ -551,7 +561,7 @@ mod tests {
     }
 
     #[test]
-    fn a_new_run_moves_as_the_old_one_did() {
+    fn a_new_run_begins_with_the_settings_of_the_old_one() {
         let mut journal = journal("wobble-push");
         journal
             .act(40, Act::set("motion.time_step_s", Value::Float(0.05)))
@@ -576,7 +586,7 @@ mod tests {
         assert_eq!(
             (push.from_s, push.for_s),
             (Some(0.0), Some(20.0)),
-            "its seconds are held"
+            "the push keeps its times in seconds"
         );
         let (_, earlier) = journal
             .begun_with(

@@ -1,4 +1,4 @@
-//! The push that is to come: on which point, how hard, which way, how long.
+//! The push that the user prepares before giving it: point, force, direction and duration.
 
 use crate::physics::{State, observables};
 use crate::scenario::file::PushFile;
@@ -8,14 +8,15 @@ use crate::text::number::shortest;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Part of the run that a push lasts where the scenario has none to go by.
+/// Duration of the default push, as a share of the run; for a scenario without pushes of its own.
 const SHARE: f64 = 0.1;
-/// How hard it is then, in weights of the body.
+/// Force of the default push, in weights of the body.
 const WEIGHTS: f64 = 2.0;
-/// A point nearer to the vertical than this part of its distance has no way out.
+/// A point stands on the vertical, where "out" has no direction, if its distance from it is at most this share of its
+/// distance from the pivot.
 const UPRIGHT: f64 = 1e-9;
 
-/// A push before it is given.
+/// A push that has not been given yet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
@@ -24,35 +25,35 @@ pub struct NextPush {
     pub point: String,
     /// Size of the force, N.
     pub size_N: f64,
-    /// Where to.
+    /// Direction of the force.
     pub toward: Toward,
-    /// For how long, s.
+    /// Duration, s.
     pub for_s: f64,
 }
 
-/// Where a push leads to.
+/// Direction of a push.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Toward {
-    /// Along the weight.
+    /// −z, the direction of the weight.
     Down,
-    /// Against it.
+    /// +z.
     Up,
-    /// Away from the vertical through the pivot.
+    /// Horizontally away from the vertical through the pivot.
     Out,
-    /// Towards it.
+    /// Horizontally towards that vertical.
     In,
-    /// Around it, counterclockwise seen from above.
+    /// Horizontally around that vertical, counterclockwise seen from above.
     Around,
-    /// The other way around.
+    /// Horizontally around that vertical, clockwise seen from above.
     Back,
     /// A direction in the world frame.
     Along([f64; 3]),
 }
 
-/// One of its four values.
+/// One of the four values of a [`NextPush`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "they say it")]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum Field {
     Point,
     Size,
@@ -61,10 +62,10 @@ pub enum Field {
 }
 
 impl Field {
-    /// All of them, in the order in which they are listed.
+    /// All four, in the order in which the lab lists them.
     pub const ALL: [Self; 4] = [Self::Point, Self::Size, Self::Toward, Self::Length];
 
-    /// What may be typed for it.
+    /// What the user may type for the field.
     pub fn about(self) -> &'static str {
         match self {
             Self::Point => "the name of a point of the body",
@@ -76,7 +77,7 @@ impl Field {
         }
     }
 
-    /// What it is called, and its unit.
+    /// Label and unit of the field; the unit may be empty.
     pub fn label(self) -> (&'static str, &'static str) {
         match self {
             Self::Point => ("point", ""),
@@ -108,7 +109,7 @@ impl Toward {
             .map(|(name, _)| *name)
     }
 
-    /// As [`typed`](Self::typed) reads it.
+    /// The direction as text that [`typed`](Self::typed) reads back.
     pub fn shown(self) -> String {
         match (self.name(), self) {
             (Some(name), _) => name.to_owned(),
@@ -117,10 +118,10 @@ impl Toward {
         }
     }
 
-    /// A name, or three numbers.
+    /// Reads a direction: a name, or three numbers.
     ///
     /// # Errors
-    /// What it may be, where it is neither.
+    /// What a direction may be, where `text` is none.
     pub fn typed(text: &str) -> Result<Self, String> {
         let text = text.trim().trim_matches(['[', ']']);
         if let Some((_, toward)) = Self::NAMED.iter().find(|(name, _)| *name == text) {
@@ -143,10 +144,10 @@ impl Toward {
         }
     }
 
-    /// The direction in the world frame, of length 1, for a point that stands at `at` (world frame, m).
+    /// The unit vector of the direction, world frame, for a point that stands at `at` (world frame, m).
     ///
     /// # Errors
-    /// Where there is none.
+    /// Where the point stands on the vertical and the direction is relative to it, or where the vector is zero.
     fn direction(self, at: &Vector3<f64>) -> Result<Vector3<f64>, String> {
         let out = Vector3::new(at.x, at.y, 0.0);
         let around = Vector3::new(-at.y, at.x, 0.0);
@@ -169,11 +170,11 @@ impl Toward {
 }
 
 impl NextPush {
-    /// A push as `scenario` has one, or one that its body can be seen to answer.
+    /// The first push of `scenario`; where it has none, a default push that visibly moves its body.
     pub fn of(scenario: &Scenario) -> Self {
         let own = scenario.file.push.first().zip(scenario.pushes.first());
         let Some((file, push)) = own else {
-            return Self::felt(scenario);
+            return Self::default_for(scenario);
         };
         let size = push.force.norm();
         let unit = push.force / size;
@@ -193,11 +194,12 @@ impl NextPush {
                 for_s,
             }
         } else {
-            Self::felt(scenario)
+            Self::default_for(scenario)
         }
     }
 
-    fn felt(scenario: &Scenario) -> Self {
+    /// A push of two weights downwards on the traced point, for a tenth of the run.
+    fn default_for(scenario: &Scenario) -> Self {
         let body = &scenario.body.mechanics;
         let weight = body.mass() * scenario.motion.gravity.abs().max(1.0);
         let length_s = scenario.steps as f64 * scenario.motion.time_step_s;
@@ -217,18 +219,18 @@ impl NextPush {
         }
     }
 
-    /// Keeps it where `scenario` has its point; else another point of the body.
+    /// The same push, on the default point where the body of `scenario` has no point of its name.
     pub fn suited_to(self, scenario: &Scenario) -> Self {
         match scenario.body.point(&self.point) {
             Some(_) => self,
             None => Self {
-                point: Self::felt(scenario).point,
+                point: Self::default_for(scenario).point,
                 ..self
             },
         }
     }
 
-    /// The value of `field`, as it is shown and typed.
+    /// The value of `field` as text that [`typed`](Self::typed) reads back.
     pub fn shown(&self, field: Field) -> String {
         match field {
             Field::Point => self.point.clone(),
@@ -238,22 +240,22 @@ impl NextPush {
         }
     }
 
-    /// With `field` nudged `times` times.
+    /// The push with `field` nudged `times` times, downwards where negative.
     ///
     /// # Errors
-    /// Why it cannot be.
+    /// Why the nudged value makes no push.
     pub fn nudged(&self, field: Field, times: i32, scenario: &Scenario) -> Result<Self, String> {
         let names = scenario.body.names();
         let next = match field {
             Field::Point => Self {
-                point: turned(&names, |name| **name == *self.point, times)
+                point: cycled(&names, |name| **name == *self.point, times)
                     .copied()
                     .unwrap_or_default()
                     .to_owned(),
                 ..self.clone()
             },
             Field::Toward => Self {
-                toward: turned(&Toward::NAMED, |(_, toward)| *toward == self.toward, times)
+                toward: cycled(&Toward::NAMED, |(_, toward)| *toward == self.toward, times)
                     .map_or(self.toward, |(_, toward)| *toward),
                 ..self.clone()
             },
@@ -269,10 +271,10 @@ impl NextPush {
         next.checked()
     }
 
-    /// With the value of `field` that the user typed; steps are of `time_step_s` (s).
+    /// The push with the value of `field` that the user typed. A duration in steps is converted with `time_step_s` (s).
     ///
     /// # Errors
-    /// Why it cannot be.
+    /// Why the text is no value of the field.
     pub fn typed(
         &self,
         field: Field,
@@ -303,13 +305,13 @@ impl NextPush {
         next.checked()
     }
 
-    /// The same, where it is a push.
+    /// Returns the push if its force and duration are positive and finite.
     ///
     /// # Errors
-    /// Why it is none.
+    /// Which of the two is not.
     pub fn checked(self) -> Result<Self, String> {
-        let is_good = |number: f64| number > 0.0 && number.is_finite();
-        match (is_good(self.size_N), is_good(self.for_s)) {
+        let is_valid = |number: f64| number > 0.0 && number.is_finite();
+        match (is_valid(self.size_N), is_valid(self.for_s)) {
             (true, true) => Ok(self),
             (false, _) => {
                 Err("force must be greater than zero: the direction says where to".to_owned())
@@ -318,10 +320,11 @@ impl NextPush {
         }
     }
 
-    /// The push from `state` on, as a run file has it: in seconds, so that it lasts as long at any time step.
+    /// The push as a table of a run file, beginning at the time of `state`. Its times are in seconds, so that an edit of
+    /// the time step does not change its duration.
     ///
     /// # Errors
-    /// Why it cannot be given.
+    /// Where the body has no point of that name, or the direction does not exist at its position.
     pub fn given(&self, scenario: &Scenario, state: &State) -> Result<PushFile, String> {
         let body = &scenario.body;
         let point = body
@@ -340,16 +343,19 @@ impl NextPush {
         })
     }
 
-    /// What it is, for a line that says so.
+    /// The push in words, for a message.
     pub fn in_words(&self) -> String {
         let [point, size, toward, length] = Field::ALL.map(|field| self.shown(field));
         format!("{size} N on {point}, {toward}, for {length} s")
     }
 }
 
-/// The element `times` further on than the one that `is_now`, around the end.
-fn turned<T>(list: &[T], is_now: impl Fn(&T) -> bool, times: i32) -> Option<&T> {
-    let now = list.iter().position(is_now).map_or(-1, |now| now as i64);
+/// The element `times` places after the one that `is_present`; after the last comes the first. `None` for an empty list.
+fn cycled<T>(list: &[T], is_present: impl Fn(&T) -> bool, times: i32) -> Option<&T> {
+    let now = list
+        .iter()
+        .position(is_present)
+        .map_or(-1, |now| now as i64);
     let count = i64::try_from(list.len()).ok().filter(|count| *count > 0)?;
     list.get((now + i64::from(times)).rem_euclid(count) as usize)
 }
@@ -368,16 +374,19 @@ mod tests {
     }
 
     #[test]
-    fn the_first_choice_is_the_scenarios_own_push_or_one_that_is_felt() {
+    fn the_first_suggestion_is_the_scenarios_own_push_or_a_strong_one() {
         let own = NextPush::of(&scenario("wobble-push"));
         assert_eq!(own.in_words(), "100 N on top, down, for 20 s");
-        let felt = NextPush::of(&scenario("method-2"));
-        assert_eq!((felt.point.as_str(), felt.toward), ("top", Toward::Down));
-        assert!(felt.size_N >= 49.0 && felt.for_s > 0.0, "{felt:?}");
+        let default = NextPush::of(&scenario("method-2"));
+        assert_eq!(
+            (default.point.as_str(), default.toward),
+            ("top", Toward::Down)
+        );
+        assert!(default.size_N >= 49.0 && default.for_s > 0.0, "{default:?}");
     }
 
     #[test]
-    fn every_direction_has_length_one_and_leads_where_it_says() {
+    fn every_direction_is_a_unit_vector_as_named() {
         let at = Vector3::new(3.0, 4.0, 1.0);
         for (name, toward) in Toward::NAMED {
             let direction = toward.direction(&at).unwrap();
@@ -406,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shown_can_be_typed_and_what_makes_no_push_is_refused() {
+    fn shown_values_can_be_typed_and_invalid_ones_are_refused() {
         let scenario = scenario("method-2");
         let push = NextPush::of(&scenario);
         for field in Field::ALL {

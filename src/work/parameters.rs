@@ -1,5 +1,5 @@
-//! The values of a scenario one at a time: what the lab lists, nudges and lets the user type. Labels, units, nudges and
-//! defaults are in the one table of [`keys`](crate::scenario::keys).
+//! The values of a scenario, each as a parameter that the lab lists, nudges and lets the user type. The table of
+//! [`keys`](crate::scenario::keys) holds their labels, units, nudges and defaults.
 
 use crate::scenario::dotted::{find, set_key};
 use crate::scenario::file::{BodyFile, ScenarioFile};
@@ -9,34 +9,35 @@ use crate::text::number::shortest;
 use crate::text::printable::brief;
 use toml::{Table, Value};
 
-/// Points and pushes beyond so many are not listed: nobody changes them one at a time.
+/// The most points, and the most pushes, that are listed.
 const MOST_LISTED: usize = 50;
 
-/// One value of a scenario, as it can be changed one at a time.
+/// One value of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// Dotted, as `--set` takes it: `start.momentum_Js.2`, `push.0.force_N.0`.
+    /// Dotted key, as `--set` takes it: `start.momentum_Js.2`, `push.0.force_N.0`.
     pub key: String,
-    /// Its row in the table of keys; of a vector's number, the vector's row.
+    /// Its row in the table of keys; a component of a vector has the vector's row.
     pub spec: &'static Key,
-    /// What it stands with: `scenario`, `body`, `point top`, `start`, `motion`, `push 1`, `view`.
+    /// Heading under which it is listed: `scenario`, `body`, `point top`, `start`, `motion`, `push 1`, `view`.
     pub group: String,
-    /// Short name, not above 12 characters.
+    /// Short name of at most 12 characters.
     pub label: String,
-    /// Its value, or what is assumed where the scenario has none. Numbers are floats, whole numbers integers.
+    /// The value in the file, or the default where the file has none. Numbers are floats, whole numbers integers.
     pub value: Value,
-    /// Whether the scenario has none.
+    /// Whether the file has no value.
     pub is_default: bool,
-    /// The words it may hold, or names of points; else empty.
+    /// The words or point names to choose from; empty where the value is none of these.
     pub choices: Vec<String>,
     kind: Kind,
     lab: InLab,
-    /// What a hundredth is taken of: the value's size, or the norm of its vector.
+    /// Scale of relative nudges: the absolute value, or the norm of the vector that it is a component of.
     size: f64,
 }
 
-/// All values of the scenario file `table`, in the order of the table of keys; a vector gives three, each element of an
-/// array of tables a group (the first 50 of them). `scenario` is what the table makes: it tells the present spin and momentum.
+/// All values of the scenario file `table`, in the order of the table of keys. A vector gives three parameters; each of
+/// the first 50 elements of an array of tables gives a group. `scenario` is the scenario of that file: it provides the spin
+/// or momentum that the file does not contain.
 pub fn parameters(table: &Table, scenario: &Scenario) -> Vec<Parameter> {
     let names = point_names(table);
     let mut list = Vec::with_capacity(64);
@@ -59,7 +60,8 @@ pub fn parameters(table: &Table, scenario: &Scenario) -> Vec<Parameter> {
     list
 }
 
-/// What [`parameters`] lists of `file`, as a table; cheap however many points the body has.
+/// The part of `file` that [`parameters`] lists, as a TOML table. It is quick for bodies of many points too, as it copies
+/// only the first 50 points.
 pub fn table_of(file: &ScenarioFile) -> Table {
     let point = file.body.point.iter().take(MOST_LISTED).cloned().collect();
     let listed = ScenarioFile {
@@ -82,7 +84,7 @@ pub fn table_of(file: &ScenarioFile) -> Table {
     Table::try_from(&listed).unwrap_or_default() // a checked file holds nothing that TOML cannot write
 }
 
-/// [`table_of`] the scenario as its edits have made it by `step`.
+/// As [`table_of`], with the edits of the scenario up to `step`.
 pub fn table_at(scenario: &Scenario, step: u64) -> Table {
     let mut table = table_of(&scenario.file);
     let made = scenario.file.edit.iter().filter(|edit| edit.step <= step);
@@ -92,12 +94,12 @@ pub fn table_at(scenario: &Scenario, step: u64) -> Table {
     table
 }
 
-/// `file` with `value` at `key`, checked as a whole: what `--set key=value` would make of it.
-/// A number of the momentum where a spin is written makes of the spin the present momentum, world frame, first; `steady`
-/// makes of a momentum the present spin.
+/// The checked scenario of `file` with `value` at `key`, as `--set key=value` gives it. Where the file gives a spin and
+/// `key` is a component of the momentum, the spin is first replaced by the momentum (world frame) that it amounts to;
+/// where it gives a momentum and `key` is `steady`, the momentum is replaced by its spin.
 ///
 /// # Errors
-/// What is wrong with it then; [`Problems::in_one_line`] says it in short.
+/// What is wrong with the changed file; [`Problems::in_one_line`] shortens it.
 pub fn changed(file: &ScenarioFile, key: &str, value: Value) -> Result<Scenario, Problems> {
     changed_all(file, &Table::from_iter([(key.to_owned(), value)]))
 }
@@ -114,7 +116,7 @@ pub fn changed_all(file: &ScenarioFile, set: &Table) -> Result<Scenario, Problem
     document.scenario()
 }
 
-/// The array of tables that `key` stands in.
+/// The array of tables to which `key` belongs.
 fn array_of(key: &Key) -> Option<&'static str> {
     key.path.split_once(".*.").map(|(array, _)| array)
 }
@@ -131,7 +133,7 @@ fn point_names(table: &Table) -> Vec<String> {
     names.map(str::to_owned).collect()
 }
 
-/// The rows of one key, at its `place` in `table`: none, one, or the three of a vector.
+/// The parameters of one key, at its `place` in `table`: none, one, or the three components of a vector.
 fn rows(
     key: &'static Key,
     place: &str,
@@ -165,7 +167,7 @@ fn rows(
     }
 }
 
-/// What the start is in words that its file does not use.
+/// The spin or momentum of the start, for a file that gives the start by the other one.
 fn present(key: &Key, scenario: &Scenario) -> Option<Value> {
     let (body, state) = (&scenario.body.mechanics, &scenario.start);
     match key.path {
@@ -176,7 +178,7 @@ fn present(key: &Key, scenario: &Scenario) -> Option<Value> {
     }
 }
 
-/// Whether the key at `place` can be set as the rest of its table stands: of a push, only the way its time is written.
+/// Whether the key at `place` goes with the other keys of its table: a push has its times either in steps or in seconds.
 fn is_offered(place: &str, table: &Table) -> bool {
     let Some((push, name)) = place
         .rsplit_once('.')
@@ -232,7 +234,7 @@ fn float(value: &Value) -> Option<f64> {
     value.as_float().or_else(whole)
 }
 
-/// `value` with numbers as floats where `kind` is no whole number.
+/// `value` as a float where `kind` is a number; whole numbers stay integers.
 fn as_kind(value: Value, kind: Kind) -> Value {
     match (kind, float(&value)) {
         (Kind::Number(_), Some(number)) => Value::Float(number),
@@ -246,7 +248,7 @@ impl Parameter {
         self.lab.unit
     }
 
-    /// The value with all its digits; text without quotes, its line ends as `\n`.
+    /// The value as text: a number with all its digits, text without quotes and with its line ends as `\n`.
     pub fn shown(&self) -> String {
         match &self.value {
             Value::Float(number) => shortest(*number),
@@ -261,12 +263,12 @@ impl Parameter {
     /// The value nudged up `times` times, or down where that is negative.
     ///
     /// # Errors
-    /// Why it cannot be, in words to be read after the label.
+    /// Why it cannot be nudged, as a message that continues the label.
     pub fn nudged(&self, times: i32) -> Result<Value, String> {
         let value = match (&self.value, self.lab.nudge) {
             (_, Nudge::Typed) => return Err("is text: type it".to_owned()),
             (Value::Boolean(flag), Nudge::Turn) => Value::Boolean(*flag ^ (times % 2 != 0)),
-            (_, Nudge::Turn) => Value::String(self.turned(times)?),
+            (_, Nudge::Turn) => Value::String(self.cycled(times)?),
             (Value::Integer(value), _) => Value::Integer(nudge::whole(*value, times)),
             (value, rule) => {
                 let number =
@@ -277,24 +279,24 @@ impl Parameter {
         self.checked(value)
     }
 
-    /// The choice `times` further on.
-    fn turned(&self, times: i32) -> Result<String, String> {
+    /// The choice `times` places after the present one; after the last comes the first.
+    fn cycled(&self, times: i32) -> Result<String, String> {
         let count = self.choices.len() as i64;
         let is_now = |choice: &String| Some(choice.as_str()) == self.value.as_str();
         let now = self.choices.iter().position(is_now).map(|now| now as i64);
         if count == 0 || (count == 1 && now.is_some()) {
             return Err("has no other choice".to_owned());
         }
-        // From what is no choice the way leads to the first one, or backwards to the last.
+        // A value that is no choice is followed by the first choice and preceded by the last.
         let now = now.unwrap_or(if times < 0 { 0 } else { -1 });
         let next = (now + i64::from(times)).rem_euclid(count);
         Ok(self.choices[next as usize].clone())
     }
 
-    /// The value that the user typed: a number, after which its unit may stand, a word, a flag, text.
+    /// The value that the user typed: a number with or without its unit, a word, true or false, or text.
     ///
     /// # Errors
-    /// Why it cannot be, in words to be read after the label.
+    /// Why the text is no value of this key, as a message that continues the label.
     pub fn typed(&self, text: &str) -> Result<Value, String> {
         let value = match self.kind {
             Kind::Number(_) => Value::Float(nudge::typed(text, self.unit())?),
@@ -313,7 +315,7 @@ impl Parameter {
         self.kind.check(&value).map(|()| value)
     }
 
-    /// The three numbers of a vector, each a parameter.
+    /// The three components of a vector, each as a parameter.
     fn components(self) -> Vec<Parameter> {
         let numbers = self
             .value
@@ -333,7 +335,7 @@ impl Parameter {
 }
 
 fn typed_whole(text: &str) -> Result<i64, String> {
-    /// Floats are exact whole numbers up to here.
+    /// Every whole number up to here is exact as a float.
     const EXACT: f64 = 9e15;
     if let Ok(whole) = text.trim().parse() {
         return Ok(whole);
@@ -354,7 +356,7 @@ fn typed_flag(text: &str) -> Result<bool, String> {
     }
 }
 
-/// `text` with its `\n` as line ends.
+/// `text` with each written `\n` replaced by a line end, and each `\\` by a backslash.
 fn unescaped(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut characters = text.chars();

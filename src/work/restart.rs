@@ -1,4 +1,4 @@
-//! A scenario that starts where a run stands: the present state, loads and settings, told as a start of its own.
+//! Makes a scenario whose start is the present state of a run, with the run's present loads and settings.
 
 use crate::physics::{State, rotation};
 use crate::scenario::file::{MotionFile, PushFile, ScenarioFile, StartFile, ViewFile};
@@ -8,15 +8,16 @@ use crate::scenario::{Document, Motion, Push, Pushes, Scenario, Window};
 use crate::text::number;
 use nalgebra::{Matrix3, Vector3};
 
-/// A push that lasts less than this part of a time step from now on is over but for rounding.
+/// A push is over if less than this share of a time step remains of it; the rest is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The scenario that starts with `state`, which the run of `scenario` has at `step`, under the settings and pushes in
-/// force there: an edit made at this very step counts. Pushes keep their times: those over are left out, one under way
-/// is shortened, later ones come earlier; what was moved is told in seconds. Edits still to come are not in it.
+/// The scenario that starts with `state`, the state of the run of `scenario` at `step`. It has the settings and pushes in
+/// force there; edits made at `step` itself are included, later ones are not. Times are counted from the new start: a push
+/// that is over is left out, one in progress is shortened, and a later one is moved. Moved pushes have their times in
+/// seconds.
 ///
 /// # Errors
-/// Where a push that accumulates has begun, or counts the steps of another time step.
+/// Where an accumulating push has already begun, or counts steps of another length than the present time step.
 pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Scenario, Problems> {
     let origin = "the scenario from here";
     let (motion, pushes) = in_force(scenario, step);
@@ -51,7 +52,7 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
             gravity_m_per_s2: Some(motion.gravity),
             scheme: Some(motion.scheme.name.to_owned()),
             time_step_s: motion.time_step_s,
-            steps: as_long(scenario, &motion),
+            steps: steps_of_same_length(scenario, &motion),
         },
         push,
         view: speed.map(|speed| ViewFile {
@@ -64,8 +65,8 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
     Document::from_file(origin, &file)?.scenario()
 }
 
-/// As many steps as the run of `scenario` has seconds, at the time step it has now.
-fn as_long(scenario: &Scenario, motion: &Motion) -> u64 {
+/// The number of steps that make the new run as long, in seconds, as the run of `scenario`.
+fn steps_of_same_length(scenario: &Scenario, motion: &Motion) -> u64 {
     if motion.time_step_s == scenario.motion.time_step_s {
         scenario.steps
     } else {
@@ -76,7 +77,7 @@ fn as_long(scenario: &Scenario, motion: &Motion) -> u64 {
     }
 }
 
-/// Gravity, scheme, time step and pushes of the step after `step`.
+/// Gravity, scheme, time step and pushes in force for the step that follows `step`.
 pub fn in_force(scenario: &Scenario, step: u64) -> (Motion, &Pushes) {
     let made = scenario.edits.partition_point(|edit| edit.step <= step);
     let last = scenario.edits[..made].last();
@@ -85,7 +86,7 @@ pub fn in_force(scenario: &Scenario, step: u64) -> (Motion, &Pushes) {
     })
 }
 
-/// The orientation and the momentum of `state` as a start.
+/// The start table with the orientation and the momentum of `state`.
 fn start(state: &State) -> StartFile {
     let [tilt, turn, roll] = angles_deg(&state.orientation);
     StartFile {
@@ -97,8 +98,9 @@ fn start(state: &State) -> StartFile {
     }
 }
 
-/// Tilt, turn and roll, degrees, of `orientation` = Rz(turn) Rx(tilt) Rz(roll). Near the vertical turn and roll are each
-/// a matter of rounding, but together they are not: the roll is what the other two leave.
+/// Tilt, turn and roll, degrees, of `orientation` = Rz(turn) Rx(tilt) Rz(roll). Near the vertical only the sum (or
+/// difference) of turn and roll is well determined; roll is therefore computed from what tilt and turn leave over, so that
+/// all three together give the orientation back.
 fn angles_deg(orientation: &Matrix3<f64>) -> [f64; 3] {
     let axle = orientation.column(2);
     let tilt = libm::atan2(libm::hypot(axle.x, axle.y), axle.z);
@@ -113,7 +115,7 @@ fn angles_deg(orientation: &Matrix3<f64>) -> [f64; 3] {
     [tilt, turn, roll].map(f64::to_degrees)
 }
 
-/// The moment from which the new scenario counts.
+/// The moment at which the new scenario starts.
 struct Now<'a> {
     scenario: &'a Scenario,
     state: &'a State,
@@ -122,7 +124,7 @@ struct Now<'a> {
 }
 
 impl Now<'_> {
-    /// Push number `index` as it goes on from now; `None` where it is over.
+    /// What remains of `push`, number `index` of the run, from now on; `None` where it is over.
     fn push(&self, index: usize, push: &Push) -> Result<Option<PushFile>, Problem> {
         let file = PushFile {
             point: self.name(push.point).to_owned(),
@@ -134,7 +136,7 @@ impl Now<'_> {
             accumulates: push.accumulates.then_some(true),
         };
         match push.window {
-            Window::Steps { first, count } if push.accumulates || self.moves_nothing() => {
+            Window::Steps { first, count } if push.accumulates || self.may_keep_step_numbers() => {
                 let first = self.first_step(first, push.accumulates).map_err(|rule| {
                     Problem::at(
                         format!("push.{index}"),
@@ -162,12 +164,12 @@ impl Now<'_> {
             .map_or("", |(name, _)| name)
     }
 
-    /// Whether the new scenario counts from the old one's start, in its steps.
-    fn moves_nothing(&self) -> bool {
+    /// Whether the new scenario has the old one's start and time step, so that step numbers mean the same in both.
+    fn may_keep_step_numbers(&self) -> bool {
         self.step == 0 && self.counts_steps()
     }
 
-    /// Whether steps are steps: no edit has changed the time step for which they were written.
+    /// Whether the time step is still the one for which the scenario's pushes give their step numbers.
     fn counts_steps(&self) -> bool {
         let mut made = self
             .scenario
@@ -178,7 +180,7 @@ impl Now<'_> {
         !is_edited && self.scenario.written_for_s == self.motion.time_step_s
     }
 
-    /// The first step of a push that goes on counting steps.
+    /// The first step, counted from now, of a push that keeps its times in steps.
     fn first_step(&self, first: u64, accumulates: bool) -> Result<u64, &'static str> {
         match first.checked_sub(self.step).filter(|&first| first > 0) {
             _ if accumulates && !self.counts_steps() => Err(
@@ -191,7 +193,7 @@ impl Now<'_> {
         }
     }
 
-    /// From when, counted from now, and for how long `window` lasts yet, s; `None` where it is over.
+    /// Beginning of the rest of `window`, counted from now, and its duration, both in s; `None` where it is over.
     fn seconds(&self, window: Window) -> Option<(f64, f64)> {
         let (from, to) = self.span(window);
         let begin = from.max(0.0);
@@ -205,7 +207,7 @@ impl Now<'_> {
         match window {
             Window::Time { from_s, for_s } => (from_s - now_s, from_s + for_s - now_s),
             Window::Steps { first, count } => {
-                // Whole steps first: their difference has no rounding.
+                // Subtract whole numbers of steps before multiplying: that difference is exact.
                 let begin = first as f64 - 1.0;
                 let end = begin + count as f64;
                 if self.counts_steps() {

@@ -1,27 +1,27 @@
-//! The shape in which a journal is read from a session file: the present one, and the one before it.
+//! Reads a journal from a session file, in the present format or in format 1.
 //!
-//! Sessions of form 1 held only the entries in force, each with the entries that it had dropped, and those again with
+//! Format 1 stored only the entries in force; each contained the entries that it had dropped, and these contained
 //! theirs.
 
 use super::{Act, Entry, Journal};
 use crate::scenario::file::ScenarioFile;
 use serde::Deserialize;
 
-/// A journal of either form.
+/// A journal in either format.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Stored {
     base: ScenarioFile,
     #[serde(default)]
     log: Vec<Entry>,
-    /// Form 1: the entries in force.
+    /// Format 1: the entries in force.
     #[serde(default)]
     done: Vec<Nested>,
     #[serde(default)]
     undone: Vec<Nested>,
 }
 
-/// An entry of form 1.
+/// An entry in format 1.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Nested {
@@ -31,7 +31,8 @@ struct Nested {
     from_file: bool,
     #[serde(default)]
     is_chained: bool,
-    /// What came after the first later entry that it dropped. Of this, what has no time went on to hold before it.
+    /// The first entry that it dropped, and all that followed. Descriptions among these stayed in force: the file repeats
+    /// them just before this entry.
     #[serde(default)]
     dropped: Vec<Nested>,
 }
@@ -48,13 +49,16 @@ impl From<Stored> for Journal {
     }
 }
 
-/// What was done, in the order in which it was done: each entry is taken back, the last one first.
+/// All entries in the order in which the user did them, found by undoing one entry after another.
 fn in_order_of_doing(mut done: Vec<Nested>) -> Vec<Entry> {
     let mut log = Vec::new();
     while let Some(mut entry) = done.pop() {
         let dropped = std::mem::take(&mut entry.dropped);
-        let went_on_to_hold = dropped.iter().filter(|entry| entry.has_no_time()).count();
-        done.truncate(done.len().saturating_sub(went_on_to_hold));
+        let repeated = dropped
+            .iter()
+            .filter(|entry| entry.is_description())
+            .count();
+        done.truncate(done.len().saturating_sub(repeated));
         done.extend(dropped);
         log.push(entry.alone());
     }
@@ -63,11 +67,11 @@ fn in_order_of_doing(mut done: Vec<Nested>) -> Vec<Entry> {
 }
 
 impl Nested {
-    fn has_no_time(&self) -> bool {
+    fn is_description(&self) -> bool {
         matches!(self.act, Act::Describe(_))
     }
 
-    /// The entry without what it dropped.
+    /// The entry without the entries that it dropped.
     fn alone(self) -> Entry {
         Entry {
             step: self.step,
@@ -85,7 +89,7 @@ mod tests {
     use proptest::prelude::*;
     use toml::Value;
 
-    /// What a lab of form 1 did with its journal.
+    /// The journal as the lab kept it when it wrote format 1.
     #[derive(Default)]
     struct Before {
         done: Vec<Nested>,
@@ -94,7 +98,7 @@ mod tests {
 
     impl Before {
         fn act(&mut self, step: u64, act: &Act, is_chained: bool) {
-            let is_later = |entry: &Nested| entry.step > step && !entry.has_no_time();
+            let is_later = |entry: &Nested| entry.step > step && !entry.is_description();
             let has_time = !matches!(act, Act::Describe(_));
             let first = self.done.iter().position(is_later).filter(|_| has_time);
             let dropped = self.done.split_off(first.unwrap_or(self.done.len()));
@@ -109,14 +113,14 @@ mod tests {
         }
 
         fn push(&mut self, entry: Nested) {
-            let stay = entry.dropped.iter().filter(|entry| entry.has_no_time());
+            let stay = entry.dropped.iter().filter(|entry| entry.is_description());
             self.done.extend(stay.cloned());
             self.done.push(entry);
         }
 
         fn undo(&mut self) {
             while let Some(entry) = self.done.pop() {
-                let stayed = entry.dropped.iter().filter(|entry| entry.has_no_time());
+                let stayed = entry.dropped.iter().filter(|entry| entry.is_description());
                 self.done.truncate(self.done.len() - stayed.count());
                 self.done.extend(entry.dropped.iter().cloned());
                 let is_chained = entry.is_chained;
@@ -138,7 +142,7 @@ mod tests {
         }
     }
 
-    fn deed(kind: u8, value: u32) -> Act {
+    fn act(kind: u8, value: u32) -> Act {
         match kind {
             0..4 => Act::set("motion.gravity_m_per_s2", Value::Float(value.into())),
             _ => Act::set("title", Value::String(format!("title {value}"))),
@@ -146,9 +150,9 @@ mod tests {
     }
 
     proptest! {
-        /// Kinds 0 to 3 have a time, 4 and 5 have none; 6 takes back, 7 brings again.
+        /// Kinds 0 to 3 are edits, 4 and 5 descriptions, 6 is undo, 7 redo.
         #[test]
-        fn a_journal_of_form_1_is_the_same_journal(
+        fn a_journal_of_format_1_reads_as_the_same_journal(
             ways in prop::collection::vec((0..8u8, 0..100u64, 1..50u32), 1..40)
         ) {
             let file = Document::open("method-2").unwrap().scenario().unwrap().file;
@@ -164,7 +168,7 @@ mod tests {
                         before.redo();
                     }
                     _ => {
-                        let (act, is_chained) = (deed(kind, value), value > 40);
+                        let (act, is_chained) = (act(kind, value), value > 40);
                         let is_first = journal.log.is_empty();
                         prop_assert_eq!(is_first, before.done.is_empty());
                         if is_chained { journal.act_again(step, act.clone()).unwrap() } else { journal.act(step, act.clone()).unwrap() };
@@ -174,7 +178,7 @@ mod tests {
                 let alone = |entries: &[Nested]| -> Vec<Entry> {
                     entries.iter().cloned().map(Nested::alone).collect()
                 };
-                let done: Vec<Entry> = journal.done().into_iter().cloned().collect();
+                let done: Vec<Entry> = journal.in_force().into_iter().cloned().collect();
                 prop_assert_eq!(done, alone(&before.done));
                 let stored = Stored {
                     base: file.clone(),
