@@ -1,7 +1,7 @@
-//! What is to be done before the terminal is given back, whoever it is that ends the lab: its own loop, a signal, a
-//! panic.
+//! Hooks that run before the terminal is given back, whether the lab's own loop, a signal or a panic ends the lab.
 //!
-//! Whoever has something to bring home registers a [`hook`]; [`terminal`](crate::tui::terminal) calls them all.
+//! A part that has something to save or to clean up registers a [`hook`]; [`terminal`](crate::tui::terminal) runs all
+//! hooks.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -9,19 +9,19 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::thread;
 use std::time::Duration;
 
-/// For what the terminal is given back.
+/// Why the terminal is given back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Farewell {
+pub enum Release {
     /// The process ends.
-    End,
-    /// The process stops, and may go on later or be killed.
-    Stop,
+    Exit,
+    /// The shell suspends the process, which may be resumed or killed later.
+    Suspend,
 }
 
-/// How long all hooks together may hold up the end.
+/// How long all hooks together may delay the end of the process.
 const PATIENCE: Duration = Duration::from_millis(600);
 
-type Hook = Arc<dyn Fn(Farewell) + Send + Sync>;
+type Hook = Arc<dyn Fn(Release) + Send + Sync>;
 
 static REGISTRY: Registry = Registry::new();
 
@@ -30,22 +30,22 @@ struct Registry {
     next: AtomicU64,
 }
 
-/// A hook is called as long as this lives.
-#[must_use = "dropped, it takes its hook away"]
+/// A registered hook. Dropping this value removes the hook.
+#[must_use = "dropping this removes the hook"]
 pub struct Registered {
     id: u64,
     registry: &'static Registry,
 }
 
-/// Has `hook` called before the terminal is given back, on a thread of its own, perhaps more than once and perhaps
-/// while the lab goes on. It should take no longer than half a second.
-pub fn hook(hook: impl Fn(Farewell) + Send + Sync + 'static) -> Registered {
+/// Registers `hook`, which is called on a thread of its own before the terminal is given back. It may be called more than
+/// once, and while the lab is still running. It should take no longer than half a second.
+pub fn hook(hook: impl Fn(Release) + Send + Sync + 'static) -> Registered {
     REGISTRY.add(Arc::new(hook))
 }
 
-/// Calls every hook and waits for them, but not for ever: at an end nothing may hang.
-pub fn say(farewell: Farewell) {
-    REGISTRY.say(farewell, PATIENCE);
+/// Calls every hook and waits until all have returned, but at most 0.6 s: a hook must not keep the process from ending.
+pub fn run_hooks(release: Release) {
+    REGISTRY.run_hooks(release, PATIENCE);
 }
 
 impl Registry {
@@ -66,31 +66,29 @@ impl Registry {
         Registered { id, registry: self }
     }
 
-    /// Each hook has a thread: one that hangs or panics takes nothing from the others.
-    fn say(&self, farewell: Farewell, patience: Duration) {
+    /// Runs each hook on its own thread, so that one that hangs or panics does not affect the others.
+    fn run_hooks(&self, release: Release, patience: Duration) {
         let hooks = self.hooks().clone();
         let (done, all_done) = mpsc::channel::<()>();
         for (_, hook) in hooks {
             let done = done.clone();
-            let same = Arc::clone(&hook);
-            let aside = move || {
-                call(&same, farewell);
+            let threads_hook = Arc::clone(&hook);
+            let run = move || {
+                call(&threads_hook, release);
                 drop(done);
             };
-            let spawned = thread::Builder::new()
-                .name("farewell".to_owned())
-                .spawn(aside);
+            let spawned = thread::Builder::new().name("at exit".to_owned()).spawn(run);
             if spawned.is_err() {
-                call(&hook, farewell); // no thread is to be had
+                call(&hook, release); // the system gives no thread: run it here
             }
         }
         drop(done);
-        let _ = all_done.recv_timeout(patience); // nobody sends: it ends when the last sender is gone
+        let _ = all_done.recv_timeout(patience); // nothing is sent: receiving ends when the last sender is dropped
     }
 }
 
-fn call(hook: &Hook, farewell: Farewell) {
-    let _ = catch_unwind(AssertUnwindSafe(|| hook(farewell)));
+fn call(hook: &Hook, release: Release) {
+    let _ = catch_unwind(AssertUnwindSafe(|| hook(release)));
 }
 
 impl Drop for Registered {
@@ -109,25 +107,25 @@ mod tests {
     }
 
     #[test]
-    fn every_hook_that_is_registered_is_called_and_no_other() {
+    fn exactly_the_registered_hooks_are_called() {
         let (registry, count) = (registry(), Arc::new(AtomicUsize::new(0)));
         let counted = || {
             let count = Arc::clone(&count);
-            registry.add(Arc::new(move |farewell| {
-                assert_eq!(farewell, Farewell::Stop);
+            registry.add(Arc::new(move |release| {
+                assert_eq!(release, Release::Suspend);
                 count.fetch_add(1, Ordering::SeqCst);
             }))
         };
         let (_one, two, _three) = (counted(), counted(), counted());
-        registry.say(Farewell::Stop, Duration::from_secs(20));
+        registry.run_hooks(Release::Suspend, Duration::from_secs(20));
         assert_eq!(count.load(Ordering::SeqCst), 3);
         drop(two);
-        registry.say(Farewell::Stop, Duration::from_secs(20));
+        registry.run_hooks(Release::Suspend, Duration::from_secs(20));
         assert_eq!(count.load(Ordering::SeqCst), 5);
     }
 
     #[test]
-    fn a_hook_that_hangs_or_panics_takes_nothing_from_the_others() {
+    fn a_hook_that_hangs_or_panics_does_not_affect_the_others() {
         let (registry, count) = (registry(), Arc::new(AtomicUsize::new(0)));
         let _hangs = registry.add(Arc::new(|_| {
             loop {
@@ -139,7 +137,7 @@ mod tests {
         let _counts = registry.add(Arc::new(move |_| {
             counted.fetch_add(1, Ordering::SeqCst);
         }));
-        registry.say(Farewell::End, Duration::from_secs(1));
+        registry.run_hooks(Release::Exit, Duration::from_secs(1));
         assert_eq!(count.load(Ordering::SeqCst), 1);
     }
 }

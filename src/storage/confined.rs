@@ -1,23 +1,23 @@
-//! The one folder in which a lab reads and writes, where the command line names one: for a login that several people
-//! share, and that may do nothing but this.
+//! The only folder in which a lab may read and write, if the command line names one with `--folder`. It is meant for a
+//! login that several people share and that may run nothing but the lab.
 
 use crate::text::printable::{Shown, printable};
 use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-/// The folder in a confined lab's folder in which its sessions are kept.
+/// Subfolder for the sessions of a confined lab.
 const SESSIONS: &str = ".gyrolab";
 
-/// A folder that is not left, whatever is typed.
+/// A folder that the lab's reads and writes never leave.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Confined {
-    /// Its full name, without links.
+    /// Its absolute path, without symbolic links.
     root: PathBuf,
 }
 
 impl Confined {
-    /// Makes `folder` the present folder of this process.
+    /// Confines the lab to `folder` and makes it the working directory of this process.
     ///
     /// # Errors
     /// When there is no such folder, or it cannot be entered.
@@ -27,7 +27,7 @@ impl Confined {
         Ok(confined)
     }
 
-    /// Confined to `folder`, which has to be the present folder wherever a path is checked.
+    /// Confines the lab to `folder`, which must be the working directory whenever a path is checked.
     ///
     /// # Errors
     /// When there is no such folder.
@@ -39,10 +39,10 @@ impl Confined {
         Ok(Self { root })
     }
 
-    /// Where sessions are kept.
+    /// The folder for sessions; it may not exist yet.
     ///
     /// # Errors
-    /// When a link or a file is in the way.
+    /// When a link or a file has its name.
     pub fn sessions(&self) -> Result<PathBuf, String> {
         let folder = self.root.join(SESSIONS);
         match fs::symlink_metadata(&folder) {
@@ -54,19 +54,20 @@ impl Confined {
         }
     }
 
-    /// Whether the file `path` is in the folder, or would be: a name relative to it, that no link leads out of it.
+    /// Checks that the file `path`, existing or not, lies in the folder: the path is relative, has no `..`, and no symbolic
+    /// link in it leads out of the folder.
     ///
     /// # Errors
-    /// Why it may be neither read nor written.
+    /// Why the lab may neither read nor write the file.
     pub fn check(&self, path: &Path) -> Result<(), String> {
-        let mut so_far = self.root.clone();
+        let mut full = self.root.clone();
         for component in path.components() {
             match component {
                 Component::CurDir => {}
                 Component::Normal(name) if name == "-" => {
                     return Err("- is no name for a file here".to_owned());
                 }
-                Component::Normal(name) => so_far.push(name),
+                Component::Normal(name) => full.push(name),
                 Component::ParentDir | Component::RootDir | Component::Prefix(_) => {
                     return Err(
                         "this lab stays in its folder: a name must not begin with / or contain .."
@@ -75,18 +76,18 @@ impl Confined {
                 }
             }
         }
-        self.check_full(&so_far)?;
-        match fs::symlink_metadata(&so_far) {
+        self.check_full(&full)?;
+        match fs::symlink_metadata(&full) {
             Ok(there) if there.is_symlink() => {
-                self.check_full(&fs::canonicalize(&so_far).map_err(|_| leads_out(&so_far))?)
+                self.check_full(&fs::canonicalize(&full).map_err(|_| leads_out(&full))?)
             }
             _ => Ok(()),
         }?;
-        let folder = so_far.parent().unwrap_or(&self.root);
+        let folder = full.parent().unwrap_or(&self.root);
         if let Ok(folder) = fs::canonicalize(folder) {
             self.check_full(&folder)?;
         }
-        match fs::metadata(&so_far) {
+        match fs::metadata(&full) {
             Ok(there) if !there.is_file() && !there.is_dir() => {
                 Err("this lab reads and writes regular files alone".to_owned())
             }
@@ -94,7 +95,7 @@ impl Confined {
         }
     }
 
-    /// The same of a full path that no link is in.
+    /// Checks an absolute path, without following links in it.
     fn check_full(&self, path: &Path) -> Result<(), String> {
         let inside = path.strip_prefix(&self.root).map_err(|_| leads_out(path))?;
         let is_hidden = |part: Component<'_>| part.as_os_str().as_encoded_bytes().starts_with(b".");

@@ -1,6 +1,6 @@
-//! A run on its way into a CSV file, in the background; and, before that, what it will come to.
+//! Exports a run to a CSV file in the background, and estimates the file's size beforehand.
 
-use super::at_exit::{self, Farewell, Registered};
+use super::at_exit::{self, Registered, Release};
 use crate::export::destination::{Destination, DestinationError};
 use crate::export::stream::{self, Ended};
 use crate::export::{COLUMNS, CsvWriter};
@@ -17,10 +17,10 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// How long the end of the process waits for an export to clear its temporary file away.
+/// How long the end of the process waits for an export to remove its temporary file.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// An export under way, or done. Dropped, it is cancelled, and nothing is left of it unless it was done.
+/// An export in progress, or a finished one. Dropping it cancels an export in progress and removes its temporary file.
 pub struct Exporting {
     path: PathBuf,
     shared: Arc<Shared>,
@@ -31,13 +31,13 @@ pub struct Exporting {
 /// What an export has written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
-    /// The file's full name.
+    /// Absolute path of the file.
     pub path: PathBuf,
-    /// How many rows it has.
+    /// Number of rows.
     pub rows: u64,
-    /// How long it is.
+    /// Size of the file.
     pub bytes: u64,
-    /// Where the numbers stopped being finite, if they did: the rows before that have been written.
+    /// Where the run's numbers stopped being finite, if they did. The file has the rows before that.
     pub not_finite: Option<NotFinite>,
 }
 
@@ -56,12 +56,12 @@ struct Job {
 }
 
 impl Exporting {
-    /// Begins to write the run of `scenario`, from step 0 to its last, into the file `path`: the bytes that
-    /// `gyrolab run -o` writes, rows 0, `every`, twice `every` and so on, and the last. The file appears when it is whole.
+    /// Starts writing the run of `scenario`, from step 0 to its last step, to the file `path`. It writes the same bytes as
+    /// `gyrolab run -o`, with rows 0, `every`, twice `every` and so on, and the last. The file appears once it is complete.
     ///
     /// # Errors
-    /// [`Exists`](DestinationError::Exists) when there is such a file and it is not to be replaced; and whatever else
-    /// makes it impossible to begin.
+    /// [`Exists`](DestinationError::Exists) when there is such a file and `replace` is false; any other error that opening
+    /// the file or starting the thread gives.
     pub fn begin(
         scenario: Arc<Scenario>,
         path: &Path,
@@ -100,26 +100,27 @@ impl Exporting {
             path,
             shared,
             worker: Some(worker),
-            _at_end: at_exit::hook(move |farewell| at_end.part(farewell)),
+            _at_end: at_exit::hook(move |release| at_end.prepare_for(release)),
         })
     }
 
-    /// The full name that the file will have.
+    /// The absolute path that the finished file will have.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The step it has come to, and the one at which it ends.
+    /// The step that the export has reached, and the run's last step.
     pub fn progress(&self) -> (u64, u64) {
         (self.shared.step.load(Ordering::Relaxed), self.shared.steps)
     }
 
-    /// Has it stop, and leave nothing behind; the outcome says so in a moment.
+    /// Asks the export to stop and to remove its temporary file; [`outcome`](Self::outcome) tells when it has.
     pub fn cancel(&self) {
         self.shared.cancel();
     }
 
-    /// What has become of it, once it is done and once only: what was written, or why nothing was.
+    /// Returns what was written, or why nothing was. `None` while the export is in progress, and after the result has
+    /// been returned once.
     pub fn outcome(&mut self) -> Option<Result<Written, String>> {
         let worker = self.worker.take_if(|worker| worker.is_finished())?;
         let broken = || Err("the export broke off, and nothing was written".to_owned());
@@ -145,9 +146,10 @@ impl Shared {
         self.is_cancelled.load(Ordering::SeqCst)
     }
 
-    /// At an end, waits until the temporary file has gone; a process that only stops goes on with it later.
-    fn part(&self, farewell: Farewell) {
-        if farewell == Farewell::Stop {
+    /// Before the process ends, cancels the export and waits until its temporary file is removed. A suspended process
+    /// continues its export when it is resumed.
+    fn prepare_for(&self, release: Release) {
+        if release == Release::Suspend {
             return;
         }
         self.cancel();
@@ -202,20 +204,20 @@ fn refused(path: &Path, error: io::Error) -> DestinationError {
     }
 }
 
-/// What an export would come to.
+/// The expected size of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Estimate {
-    /// How many rows; fewer only where the numbers stop being finite.
+    /// Number of rows. The export has fewer only if the numbers stop being finite.
     pub rows: u64,
-    /// How many bytes, within a few percent.
+    /// Number of bytes, within a few percent.
     pub bytes: u64,
 }
 
-/// What the export of `scenario` from step 0 to its last, a row `every` so many steps, would come to, in a few
-/// milliseconds: from a few rows of its beginning, with the steps and times of all of it.
+/// Estimates the size of the export of `scenario` with a row `every` so many steps. It takes a few milliseconds: it writes
+/// 64 rows with the numbers of the run's beginning and with steps and times spread over the whole run.
 pub fn estimate(scenario: &Arc<Scenario>, every: NonZeroU64) -> Estimate {
     let rows = rows(scenario.steps, every.get());
-    let text = few_rows(scenario, every.get()).unwrap_or_default(); // memory takes all that is written
+    let text = sample_rows(scenario, every.get()).unwrap_or_default(); // writing to memory does not fail
     let text = String::from_utf8_lossy(&text);
     let lines = text
         .lines()
@@ -230,16 +232,16 @@ pub fn estimate(scenario: &Arc<Scenario>, every: NonZeroU64) -> Estimate {
     }
 }
 
-/// The rows of a run that ends at the step `last`: 0, `every`, twice `every` and so on, and the last.
+/// The number of rows of a run that ends at step `last`: rows 0, `every`, twice `every` and so on, and the last.
 fn rows(last: u64, every: u64) -> u64 {
     last / every + 1 + u64::from(!last.is_multiple_of(every))
 }
 
-/// The CSV of a few rows: their numbers are those of the run's beginning, their steps and times are from all over it.
-fn few_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
+/// A CSV of 64 rows that have the numbers of the run's beginning, and steps and times spread over the whole run.
+fn sample_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
     const ROWS: u64 = 64;
     let points = scenario.body.mechanics.points().len() as u64;
-    let apart = ((1 << 15) / points).clamp(4, 32); // a larger body takes longer for a step
+    let apart = ((1 << 15) / points).clamp(4, 32); // steps between rows; a step of a larger body takes longer
     let apart = apart.min(scenario.steps / ROWS).max(1);
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut csv = CsvWriter::new(Vec::new(), scenario)?;
@@ -251,28 +253,28 @@ fn few_rows(scenario: &Arc<Scenario>, every: u64) -> io::Result<Vec<u8>> {
             time_s: Clock::at(scenario, step).time_s(step),
             ..simulation.sample()
         })?;
-        let _ = simulation.step_to(((row + 1) * apart).min(scenario.steps)); // it stays where the numbers end
+        let _ = simulation.step_to(((row + 1) * apart).min(scenario.steps)); // where the numbers stop being finite it repeats the last state
     }
     csv.finish()
 }
 
-/// What the user types at home to fetch the file `path` from this machine, or why no such line can be given: the name of
-/// the file, the user or the machine cannot be typed.
+/// The `scp` command that the user types on their own machine to fetch the file `path` from this one. Where the name of the
+/// file, the user or the machine cannot be typed in a shell, a message that says so.
 pub fn scp_line(path: &Path) -> String {
     let user = ["USER", "LOGNAME"]
         .into_iter()
         .find_map(std::env::var_os)
         .unwrap_or_default();
-    // "client its-port server our-port": what ssh says of the line.
-    let line = std::env::var("SSH_CONNECTION").unwrap_or_default();
-    let port = line.split(' ').nth(3).unwrap_or_default();
+    // ssh sets it to "CLIENT CLIENT_PORT SERVER SERVER_PORT".
+    let connection = std::env::var("SSH_CONNECTION").unwrap_or_default();
+    let port = connection.split(' ').nth(3).unwrap_or_default();
     let made = scp_line_from(port, &user, &gethostname::gethostname(), path.as_os_str());
     made.unwrap_or_else(|what| {
         format!("no scp line: {what} holds characters that cannot be typed in a shell")
     })
 }
 
-/// The line, or what of it cannot be typed. An empty `user` is left out.
+/// The command, or which part of it cannot be typed. An empty `user` is left out.
 fn scp_line_from(
     port: &str,
     user: &OsStr,
@@ -295,7 +297,7 @@ fn scp_line_from(
     Ok(format!("scp {port}{quoted} ."))
 }
 
-/// `text` as the name of a user or a machine: scp takes it neither for an option nor for a path.
+/// `text` if it is a name of a user or a machine that scp does not mistake for an option or a path.
 fn name(text: &OsStr) -> Option<&str> {
     let is_plain = |c: char| c.is_alphanumeric() || "._-@+%\\$".contains(c);
     text.to_str()
@@ -307,7 +309,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_are_counted_as_they_are_written() {
+    fn the_row_count_is_the_number_of_rows_written() {
         for (last, every, count) in [(0, 1, 1), (10, 1, 11), (10, 5, 3), (10, 7, 3), (10, 20, 2)] {
             assert_eq!(rows(last, every), count, "{last} {every}");
         }
@@ -336,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn where_no_scp_line_can_be_pasted_there_is_none() {
+    fn names_that_cannot_be_typed_give_no_scp_line() {
         for (user, host, path) in [
             ("ada", "lab", "/tmp/a\u{1b}]0;x\u{7}.csv"),
             ("ada", "lab", "/tmp/a\nb.csv"),

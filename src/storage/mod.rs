@@ -1,5 +1,5 @@
-//! What outlasts the screen: the session that can be come back to, exports, and the hooks that bring both home
-//! whatever ends the process.
+//! What the lab keeps on the disk: [`session`]s that can be resumed and [`exporting`] in the background. [`at_exit`] holds
+//! the hooks that save or clean up both however the process ends; [`confined`] restricts paths to one folder.
 
 pub mod at_exit;
 pub mod confined;

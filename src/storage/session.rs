@@ -1,15 +1,15 @@
-//! What the lab would need to come back to where it was, kept on the disk while it runs and at most a second behind,
-//! whatever ends the process.
+//! A session: what the lab needs to resume where it was. It is saved to the disk while the lab runs, at most a second late,
+//! so that it survives whatever ends the process.
 //!
 //! ```text
-//! loop ─note→ Shared (what is to be kept) ←waits─ thread ─→ Slot: the files of one session
-//!                └─ flush: at an end, has the thread write at once
+//! loop ─note→ Shared (the content to save) ←waits─ thread ─save→ Slot: the files of one session
+//!                └─ flush: before the process ends, makes the thread save at once
 //! ```
 //!
-//! The content is two texts that mean nothing here: the work, which changes seldom and may be long, and the place in
-//! it, which changes all the time.
+//! The content is two texts, which this module does not interpret: the work, which changes seldom and may be long, and the
+//! place in it, which changes all the time.
 
-mod form;
+mod format;
 mod own;
 mod slot;
 mod writer;
@@ -30,60 +30,61 @@ use writer::Shared;
 /// How long a flush may hold up the end of the process.
 const PATIENCE: Duration = Duration::from_millis(400);
 
-/// The session of this process: no other one takes it while this lives. Dropped, it is flushed and free.
+/// The session of this process. No other process can take it while this value lives; dropping it saves the session and
+/// frees it.
 pub struct Session {
     name: String,
     shared: Arc<Shared>,
-    /// It gives back what it wrote to, unless it wrote nothing.
+    /// The saving thread. It returns the slot, or `None` if it never saved anything.
     writer: Option<JoinHandle<Option<Slot>>>,
     _at_end: Registered,
 }
 
-/// What was found of earlier sessions.
+/// The result of looking for a session to resume.
 #[derive(Debug)]
 pub struct Found<T> {
-    /// The newest one that is not in use and can be read.
+    /// The newest session that is not in use and can be read.
     pub resumed: Option<Resumed<T>>,
-    /// What could not be read on the way to it, kept under other names.
+    /// Newer files that could not be read; they have been renamed.
     pub kept_aside: Vec<KeptAside>,
-    /// What is not the user's own, or cannot be opened: it is as it was.
+    /// Newer files that belong to another user or cannot be opened; they are unchanged.
     pub left_alone: Vec<KeptAside>,
-    /// The processes that have the newer ones, as far as they are known.
+    /// Process numbers of the processes that use newer sessions, as far as they are known.
     pub in_use_by: Vec<u32>,
 }
 
-/// An earlier session, gone on with.
+/// An earlier session that this process has resumed.
 #[derive(Debug)]
 pub struct Resumed<T> {
-    /// Ours now.
+    /// The session, now held by this process.
     pub session: Session,
-    /// What was read from it.
+    /// What the caller's `read` made of its content.
     pub what: T,
 }
 
-/// A session, as it is listed.
+/// A session in a listing.
 #[derive(Debug)]
 pub struct Listed {
-    /// What it is called.
+    /// Name of the session.
     pub name: String,
-    /// When it was written last.
+    /// When it was saved last.
     pub written: SystemTime,
-    /// Whether a living process has it.
+    /// Whether a running process holds it.
     pub is_in_use: bool,
-    /// The number of that process, where it is known.
+    /// The number of that process, if known.
     pub owner: Option<u32>,
     /// What it holds, or why it cannot be read.
     pub content: Result<Content, String>,
 }
 
-/// There is no home for sessions.
+/// The user has no home folder in which sessions could be kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "sessions cannot be kept: there is no home folder; set HOME or XDG_STATE_HOME to the full path of a folder"
 )]
 pub struct NoHome;
 
-/// Where sessions are kept: `$XDG_STATE_HOME/gyrolab`, by default `~/.local/state/gyrolab`.
+/// The folder for sessions: `$XDG_STATE_HOME/gyrolab`, by default `~/.local/state/gyrolab`.
 ///
 /// # Errors
 /// When the user has no home.
@@ -95,20 +96,20 @@ pub fn folder() -> Result<PathBuf, NoHome> {
         .ok_or(NoHome)
 }
 
-/// Takes up the newest session in `folder` that no living process has and that `read` accepts. One that cannot be read,
-/// or that `read` refuses, is put aside under another name and told of.
+/// Resumes the newest session in `folder` that no running process holds and that `read` accepts. A session that cannot be
+/// read, or that `read` refuses, is renamed and reported in [`Found::kept_aside`].
 ///
 /// # Errors
-/// When `folder` cannot be looked into, or there is no thread to be had; that there is none yet is no error.
+/// When `folder` cannot be listed, or the system gives no thread. A `folder` that does not exist yet is no error.
 pub fn resume<T>(
     folder: &Path,
     read: impl FnMut(&Content) -> Result<T, String>,
 ) -> io::Result<Found<T>> {
-    let _door = slot::door(folder);
+    let _lock = slot::lock_folder(folder);
     resume_one_of(folder, &earlier(folder)?, read)
 }
 
-/// Takes up the session called `name` in `folder`, as [`resume`] does with the newest.
+/// Resumes the session called `name` in `folder`, as [`resume`] does with the newest.
 ///
 /// # Errors
 /// As [`resume`]; and when there is no session of that name.
@@ -117,7 +118,7 @@ pub fn resume_named<T>(
     name: &str,
     read: impl FnMut(&Content) -> Result<T, String>,
 ) -> io::Result<Found<T>> {
-    let _door = slot::door(folder);
+    let _lock = slot::lock_folder(folder);
     let named: Vec<_> = earlier(folder)?
         .into_iter()
         .filter(|id| id == name)
@@ -143,7 +144,7 @@ fn resume_one_of<T>(
         in_use_by: Vec::new(),
     };
     for id in ids {
-        let taken = slot::is_own(folder, id).and_then(|()| Slot::take(folder, id));
+        let taken = slot::check_own(folder, id).and_then(|()| Slot::take(folder, id));
         let mut slot = match taken {
             Ok(Some(slot)) => slot,
             Ok(None) => {
@@ -163,7 +164,7 @@ fn resume_one_of<T>(
         });
         match what {
             Ok(what) => {
-                let session = Session::keep(slot)?;
+                let session = Session::start(slot)?;
                 found.resumed = Some(Resumed { session, what });
                 break;
             }
@@ -173,14 +174,14 @@ fn resume_one_of<T>(
     Ok(found)
 }
 
-/// The user's own sessions in `folder`, the one written last first. Nothing is changed.
+/// Lists the user's own sessions in `folder`, the one saved last first. It changes nothing.
 ///
 /// # Errors
-/// When `folder` cannot be looked into; that there is none yet is no error.
+/// When `folder` cannot be listed. A `folder` that does not exist yet is no error.
 pub fn list(folder: &Path) -> io::Result<Vec<Listed>> {
     let mut ids = earlier(folder)?;
-    ids.retain(|id| slot::is_own(folder, id).is_ok());
-    let _door = (!ids.is_empty()).then(|| slot::door(folder));
+    ids.retain(|id| slot::check_own(folder, id).is_ok());
+    let _lock = (!ids.is_empty()).then(|| slot::lock_folder(folder));
     let listed = ids.into_iter().map(|name| {
         let is_in_use = slot::is_in_use(folder, &name);
         Listed {
@@ -194,6 +195,7 @@ pub fn list(folder: &Path) -> io::Result<Vec<Listed>> {
     Ok(listed.collect())
 }
 
+/// The IDs of all sessions in `folder`, the one saved last first; none where there is no such folder.
 fn earlier(folder: &Path) -> io::Result<Vec<String>> {
     match slot::sessions(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
@@ -206,23 +208,24 @@ fn earlier(folder: &Path) -> io::Result<Vec<String>> {
 }
 
 impl Session {
-    /// Begins a session in `folder`, which is made if there is none; the oldest that are in no use are cleared away.
-    /// Nothing is kept before the first [`note`](Self::note).
+    /// Begins a new session in `folder`, which is created if it does not exist, and removes the oldest unused sessions.
+    /// Nothing is saved before the first [`note`](Self::note).
     ///
     /// # Errors
-    /// When nothing can be written there.
+    /// When the folder cannot be written to.
     pub fn begin(folder: &Path) -> io::Result<Self> {
         slot::make_folder(folder)?;
-        let _door = slot::door(folder);
+        let _lock = slot::lock_folder(folder);
         slot::prune(folder);
         let slot = Slot::new(folder).map_err(|error| {
             let text = format!("sessions cannot be kept in {}: {error}", Shown(folder));
             io::Error::new(error.kind(), text)
         })?;
-        Self::keep(slot)
+        Self::start(slot)
     }
 
-    fn keep(slot: Slot) -> io::Result<Self> {
+    /// The session of `slot`: starts its saving thread and registers its hook.
+    fn start(slot: Slot) -> io::Result<Self> {
         let name = slot.id().to_owned();
         let shared = Arc::new(Shared::default());
         let (ours, at_end) = (Arc::clone(&shared), Arc::clone(&shared));
@@ -239,38 +242,39 @@ impl Session {
         })
     }
 
-    /// Has `content` kept in place of what was noted before. It writes nothing itself, and may be called in every round
-    /// of the loop.
+    /// Makes `content` the content to save. It only wakes the saving thread, and may be called in every round of the
+    /// loop.
     pub fn note(&self, content: Content) {
         self.shared.note(content);
     }
 
-    /// What the session is called.
+    /// Name of the session.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// From now on a work is written only if `check` accepts it, but for one that has to be written at once.
+    /// From now on a changed work is saved only if `check` accepts it. A [`flush`](Self::flush) saves without checking.
     pub fn check_with(&self, check: Check) {
         self.shared.state().check = Some(check);
     }
 
-    /// Writes at once what is not written yet, or gives up after half a second, so that it may be called from a signal's
-    /// thread and from a panic; every farewell calls it by itself. Gives whether it was tried in that time.
+    /// Saves at once, and gives up after 0.4 s so that a signal handler's thread and a panic may call it; the session's
+    /// exit hook calls it too. Returns whether saving was attempted in that time; [`trouble`](Self::trouble) tells whether
+    /// it failed.
     pub fn flush(&self) -> bool {
         self.shared.flush(PATIENCE)
     }
 
-    /// Why the session cannot be kept, as long as that is so; it is tried again all the while.
+    /// Why the last attempt to save failed; `None` if it succeeded. The thread tries again every half second.
     pub fn trouble(&self) -> Option<String> {
         self.shared.state().trouble.clone()
     }
 
-    /// Ends the session, and gives what can be come back to: what the disk holds, if that is what was noted last. It
-    /// waits for the disk at most for `patience`.
+    /// Saves and ends the session, and returns its content as read back from the disk. It waits at most `patience` for the
+    /// disk to save.
     ///
     /// # Errors
-    /// Why there is nothing to come back to, or not to what was noted last.
+    /// Why the disk does not hold the content that was noted last.
     pub fn close(mut self, patience: Duration) -> Result<Content, String> {
         if !self.shared.flush(patience) {
             return Err("the session is not kept: the disk takes too long".to_owned());
@@ -291,7 +295,7 @@ impl Session {
         }
     }
 
-    /// Has the thread end, and waits for it.
+    /// Ends the thread and waits for it; returns its slot, or `None` if nothing was ever saved.
     fn end(&mut self) -> Option<Slot> {
         self.shared.state().is_closing = true;
         self.shared.changed.notify_all();
@@ -306,7 +310,7 @@ impl Drop for Session {
         }
         match self.shared.flush(PATIENCE) {
             true => drop(self.end()),
-            // A thread that hangs in a dead disk is left to itself.
+            // Do not wait for a thread that hangs in a write to a dead disk.
             false => self.shared.state().is_closing = true,
         }
     }

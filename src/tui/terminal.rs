@@ -5,7 +5,7 @@
 //! The one room that knows crossterm, which draws; what is typed is read by [`keyboard`]. Nothing here waits for an answer from the terminal: over slow lines, and in
 //! bare ptys, there may be none.
 
-use crate::storage::at_exit::{self, Farewell};
+use crate::storage::at_exit::{self, Release};
 use crate::tui::decoder::Typed;
 use crate::tui::keyboard::{self, Keyboard};
 use crate::tui::keymap::Key;
@@ -140,7 +140,7 @@ impl Screen {
     /// # Errors
     /// When the terminal cannot be taken over again.
     pub fn suspend(&mut self) -> io::Result<()> {
-        at_exit::say(Farewell::Stop);
+        at_exit::run_hooks(Release::Suspend);
         give_back();
         signal_hook::low_level::emulate_default_handler(SIGTSTP)?;
         RESUMED.store(false, Ordering::Relaxed);
@@ -211,7 +211,7 @@ fn take_over() -> io::Result<()> {
 /// The one way out for every end there is: what others have to bring home first, then the terminal, then what
 /// could not be said while it was ours.
 pub fn leave() {
-    at_exit::say(Farewell::End);
+    at_exit::run_hooks(Release::Exit);
     give_back();
     tell_panics();
 }
@@ -294,7 +294,7 @@ fn heed(signal: i32) {
         SIGCONT => RESUMED.store(true, Ordering::Relaxed),
         SIGXFSZ => {} // a file past `ulimit -f`: the write fails then, like one to a full disk
         end => {
-            at_exit::say(Farewell::End);
+            at_exit::run_hooks(Release::Exit);
             ENDING.store(true, Ordering::SeqCst);
             let _pen = take_pen();
             leave_in_time();

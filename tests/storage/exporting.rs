@@ -8,7 +8,7 @@ use gyrolab::export::stream;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
 use gyrolab::scenario::presets::PRESETS;
-use gyrolab::storage::at_exit::{self, Farewell};
+use gyrolab::storage::at_exit::{self, Release};
 use gyrolab::storage::exporting::{Exporting, Written, estimate};
 use std::fs;
 use std::num::NonZeroU64;
@@ -228,7 +228,7 @@ fn child() {
     let folder = Path::new(&folder);
     let exporting = Exporting::begin(endless(), &folder.join("run.csv"), every(1000), false);
     let mut exporting = exporting.unwrap();
-    at_exit::say(Farewell::Stop);
+    at_exit::run_hooks(Release::Suspend);
     let (step, _) = exporting.progress();
     while exporting.progress().0 == step {
         assert!(exporting.outcome().is_none(), "it does not go on");
@@ -236,7 +236,7 @@ fn child() {
     }
     assert!(exporting.outcome().is_none());
     assert_eq!(names(folder).len(), 1, "the temporary file");
-    at_exit::say(Farewell::End);
+    at_exit::run_hooks(Release::Exit);
     std::process::exit(42); // nothing is dropped
 }
 

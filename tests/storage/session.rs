@@ -1,6 +1,6 @@
 //! Sessions on the disk, across processes that live, quit and are killed.
 
-use gyrolab::storage::at_exit::{self, Farewell};
+use gyrolab::storage::at_exit::{self, Release};
 use gyrolab::storage::session::{Content, Found, Session, list, resume, resume_named};
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -528,7 +528,7 @@ fn child() {
     println!("\nbegins at {was}");
     for line in std::io::stdin().lines().map(Result::unwrap) {
         if line == END {
-            at_exit::say(Farewell::End);
+            at_exit::run_hooks(Release::Exit);
             std::process::exit(0); // nothing is dropped
         }
         session.note(content("run", &line));

@@ -1,5 +1,6 @@
-//! Opening, reading and writing the files of a folder that others may be able to write to: no symbolic link is followed, nothing is waited
-//! for, and only a regular file counts that is the user's own and has no other name.
+//! Opens, reads and writes the user's own files in a folder to which other users may be able to write. It follows no
+//! symbolic link, never waits for a FIFO, and accepts only regular files that belong to the user and have no second hard
+//! link.
 
 use rustix::fs::OFlags;
 use rustix::io::Errno;
@@ -8,31 +9,31 @@ use std::io::{self, Read, Seek, Write};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::Path;
 
-/// Opens `path` as `options` say, if what is there is the user's own file.
+/// Opens the file at `path` with `options`, if it is the user's own.
 ///
 /// # Errors
-/// When it cannot be opened, or belongs to another, or is no regular file.
+/// When it cannot be opened, belongs to another user, is not a regular file, or has a second hard link.
 pub(super) fn open(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
     let flags = OFlags::NOFOLLOW | OFlags::NONBLOCK;
     let file = options
         .custom_flags(flags.bits() as i32)
         .open(path)
-        .map_err(in_words)?;
+        .map_err(explained)?;
     check(&file.metadata()?)?;
     Ok(file)
 }
 
-/// What is at `path` itself, if it is the user's own: a link is not followed.
+/// The metadata of `path`, if it is the user's own; a symbolic link is not followed.
 ///
 /// # Errors
-/// When there is nothing, or it belongs to another.
-pub(super) fn look(path: &Path) -> io::Result<Metadata> {
+/// When there is nothing at `path`, or it belongs to another user.
+pub(super) fn metadata(path: &Path) -> io::Result<Metadata> {
     let there = fs::symlink_metadata(path)?;
     check_owner(&there)?;
     Ok(there)
 }
 
-/// Whether files may be kept in the folder `path`: another user's link to one is not followed.
+/// Checks that files may be kept in the folder `path`: it must not be another user's symbolic link.
 ///
 /// # Errors
 /// When it is such a link.
@@ -43,29 +44,30 @@ pub(super) fn check_folder(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Whether there is anything at `path`, be it a link that leads nowhere.
-pub(super) fn is_there(path: &Path) -> bool {
+/// Whether there is anything at `path`; a symbolic link to nothing counts too.
+pub(super) fn exists(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
 }
 
-/// Gives the file at `path` these `parts`: under another name first, so that it is always whole.
+/// Replaces the file at `path` by one that contains `parts`. It writes a temporary file and renames it, so that a file at
+/// `path` is always complete.
 ///
 /// # Errors
-/// When they cannot be written; what was there before is still there.
+/// When the new file cannot be written; the old one is then unchanged.
 pub(super) fn replace(path: &Path, parts: &[&str]) -> io::Result<()> {
     let mut temporary = path.as_os_str().to_owned();
     temporary.push(".new");
     let temporary = Path::new(&temporary);
     let written = write(temporary, parts).and_then(|()| fs::rename(temporary, path));
     if written.is_err() {
-        let _ = fs::remove_file(temporary); // on a full disk it would be in the way
+        let _ = fs::remove_file(temporary); // a partial file would take space on a full disk
     }
     written
 }
 
-/// Writes a new file, and reads it back: what the disk does not give again has not been written.
+/// Writes a new file, and reads it back to check that the disk has it.
 fn write(path: &Path, parts: &[&str]) -> io::Result<()> {
-    let _ = fs::remove_file(path); // a process that was killed has left it
+    let _ = fs::remove_file(path); // left by a process that was killed
     let mut options = OpenOptions::new();
     options.read(true).write(true).create_new(true).mode(0o600);
     let mut file = open(path, &mut options)?;
@@ -84,10 +86,10 @@ fn write(path: &Path, parts: &[&str]) -> io::Result<()> {
     }
 }
 
-/// The text of the file at `path`.
+/// Reads the text of the file at `path`.
 ///
 /// # Errors
-/// Why it cannot be had.
+/// Why it cannot be read.
 pub(super) fn read(path: &Path) -> Result<String, String> {
     let mut text = String::new();
     let read = open(path, OpenOptions::new().read(true))
@@ -125,7 +127,8 @@ fn refused(reason: &str) -> io::Error {
     io::Error::new(io::ErrorKind::PermissionDenied, reason)
 }
 
-fn in_words(error: io::Error) -> io::Error {
+/// `error` with a reason in words where the system's own message would not say what is at the path.
+fn explained(error: io::Error) -> io::Error {
     match error.raw_os_error().map(Errno::from_raw_os_error) {
         Some(Errno::LOOP) => refused("it is a symbolic link"),
         Some(Errno::NXIO | Errno::ISDIR) => refused("it is not a file"),

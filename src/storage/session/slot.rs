@@ -1,18 +1,19 @@
-//! The files of the sessions in their folder, and which of them are ours.
+//! The files of the sessions in their folder, and the locks that say which process holds which session.
 //!
 //! ```text
-//! ID.lock    held by the process whose session it is; kill -9 frees it
+//! ID.lock    locked by the process that holds the session; kill -9 unlocks it
 //! ID.work    revision n, the work, and the place as it was then
 //! ID.place   revision n, the place: it belongs to the work of that revision and to no other
-//! ID.work.damaged, ID.place.damaged     what could not be read, kept
-//! lock       held for a moment while sessions are chosen or cleared away
+//! ID.work.damaged, ID.place.damaged     files that could not be read
+//! lock       locked for a moment while a process chooses or removes sessions
 //! ```
 //!
-//! A file is written under another name and then renamed, so that it is always whole. Nothing is synced to the disk:
-//! it is processes that die here, not machines, and the system keeps what a dead process has written. The ID is a number,
-//! the one after the largest that is there; older versions had longer ones, with hyphens.
+//! A file is written under a temporary name and then renamed, so that it is always complete. Nothing is synced to the disk:
+//! sessions must survive the death of the process, not of the machine, and the system keeps what a dead process has
+//! written. The ID of a new session is one more than the largest number in the folder; older versions had longer IDs with
+//! hyphens.
 
-use super::{form, own};
+use super::{format, own};
 use crate::text::printable::Shown;
 use signal_hook::consts::SIGXFSZ;
 use std::fs::{self, DirBuilder, File, OpenOptions, TryLockError};
@@ -23,40 +24,40 @@ use std::sync::{Arc, Once};
 use std::thread;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-/// How many sessions that are not in use are kept.
+/// The most unused sessions that are kept.
 const MOST_KEPT: usize = 20;
-/// How long another process may be busy choosing.
+/// How long to wait for the folder's lock.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// What is kept of the lab.
+/// The content of a session, as two texts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Content {
-    /// The run and its journal, or whatever changes seldom: it is written only when it is another.
+    /// What changes seldom, such as the runs and their journals. It may be long and is written only when it has changed.
     pub work: Arc<str>,
-    /// Where in it the lab stands: short.
+    /// What changes all the time, such as the step at which the lab stands. It is short.
     pub place: String,
 }
 
-/// Says whether a content can be read back as what it was kept of; else why not.
+/// Checks whether a content can be read back as what was saved; else says why not.
 pub type Check = fn(&Content) -> Result<(), String>;
 
-/// A session's files: ours as long as this lives.
+/// The files of one session, locked by this process as long as this value lives.
 pub(super) struct Slot {
     folder: PathBuf,
     id: String,
     lock: Lock,
-    /// Of the work that is on the disk.
+    /// Revision of the work on the disk.
     revision: u64,
     written: Option<Content>,
 }
 
-/// What the files of a session hold.
+/// What was read from the files of a session.
 pub(super) struct Stored {
-    /// The work, and the place in it.
+    /// The work and the place.
     pub content: Content,
-    /// Of the work.
+    /// Revision of the work.
     pub revision: u64,
-    /// Why the place written last could not be read: the content has an earlier one.
+    /// Why the place file could not be read, if so; the content then has the older place from the work file.
     pub damage: Option<String>,
 }
 
@@ -64,22 +65,23 @@ pub(super) struct Stored {
 pub(super) struct Lock(File);
 
 impl Drop for Lock {
-    /// Closing the file alone would leave it locked for as long as a process that is just being started has it too.
+    /// Unlocks explicitly: closing alone keeps the lock while a child process that is just being started still has the
+    /// file open.
     fn drop(&mut self) {
         let _ = self.0.unlock();
     }
 }
 
-/// Something that could not be read: where it is now, and why.
+/// A file that could not be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KeptAside {
-    /// Where it has been put.
+    /// Its present path: a new name if it was renamed.
     pub path: PathBuf,
-    /// What is wrong with it.
+    /// Why it could not be read.
     pub reason: String,
 }
 
-/// Makes the folder if there is none, for the user's eyes only.
+/// Creates the folder if it does not exist, accessible to the user alone.
 pub(super) fn make_folder(folder: &Path) -> io::Result<()> {
     DirBuilder::new()
         .recursive(true)
@@ -92,9 +94,10 @@ pub(super) fn make_folder(folder: &Path) -> io::Result<()> {
         })
 }
 
-/// Has other processes wait that would choose a session or clear some away, but not for long: one of them may have been
-/// stopped on the way. The locks of the sessions hold without it; it only lets nobody take a passing look for use.
-pub(super) fn door(folder: &Path) -> Option<Lock> {
+/// Locks the folder, so that other processes wait before they choose or remove sessions. `None` if another process keeps
+/// the lock longer than 0.2 s: it may have been suspended. Sessions are protected by their own locks; this lock only keeps
+/// a process that briefly locks a session to look at it from being mistaken for its user.
+pub(super) fn lock_folder(folder: &Path) -> Option<Lock> {
     let begin = Instant::now();
     loop {
         match take(&folder.join("lock")) {
@@ -135,27 +138,27 @@ pub(super) fn written_at(folder: &Path, id: &str) -> SystemTime {
     times.max().unwrap_or(UNIX_EPOCH)
 }
 
-/// Whether the session `id` is the user's own.
+/// Checks that the session `id` is the user's own.
 ///
 /// # Errors
-/// When it belongs to another.
-pub(super) fn is_own(folder: &Path, id: &str) -> io::Result<()> {
-    own::look(&file(folder, id, "work")).map(drop)
+/// When it belongs to another user.
+pub(super) fn check_own(folder: &Path, id: &str) -> io::Result<()> {
+    own::metadata(&file(folder, id, "work")).map(drop)
 }
 
-/// Whether a living process has the session `id`.
+/// Whether a running process holds the session `id`.
 pub(super) fn is_in_use(folder: &Path, id: &str) -> bool {
     let lock = own::open(&file(folder, id, "lock"), OpenOptions::new().read(true));
     lock.is_ok_and(|lock| matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
-/// What the session `id` holds, whoever has it; and why the place in it had to be left out, if it had to be.
+/// Reads the session `id`, whether or not a process holds it.
 ///
 /// # Errors
-/// Why it cannot be read.
+/// Why the work file cannot be read.
 pub(super) fn stored(folder: &Path, id: &str) -> Result<Stored, String> {
     let text = own::read(&file(folder, id, "work"))?;
-    let (revision, carried, work) = form::parse_work(&text)
+    let (revision, carried, work) = format::parse_work(&text)
         .ok_or("it has been cut off or changed, or another version of gyrolab wrote it")?;
     let (place, damage) = match stored_place(folder, id, revision) {
         Ok(place) => (place, None),
@@ -175,11 +178,11 @@ pub(super) fn stored(folder: &Path, id: &str) -> Result<Stored, String> {
 /// The place written last, if it belongs to the work of that `revision`.
 fn stored_place(folder: &Path, id: &str, revision: u64) -> Result<Option<String>, String> {
     let path = file(folder, id, "place");
-    if !own::is_there(&path) {
+    if !own::exists(&path) {
         return Ok(None);
     }
     let text = own::read(&path)?;
-    let (of, place) = form::parse_place(&text).ok_or("it has been cut off or changed")?;
+    let (of, place) = format::parse_place(&text).ok_or("it has been cut off or changed")?;
     Ok((of == revision).then(|| place.to_owned()))
 }
 
@@ -187,16 +190,16 @@ fn file(folder: &Path, id: &str, kind: &str) -> PathBuf {
     folder.join(format!("{id}.{kind}"))
 }
 
-/// Clears away all but the newest sessions, and what sessions without any work have left behind. What cannot be
-/// cleared away stays.
+/// Removes all but the newest unused sessions, and lock files of sessions without a work file. What cannot be removed
+/// stays.
 pub(super) fn prune(folder: &Path) {
     let old = sessions(folder).unwrap_or_default();
-    let own = old.iter().filter(|id| is_own(folder, id).is_ok());
+    let own = old.iter().filter(|id| check_own(folder, id).is_ok());
     let free = own.filter_map(|id| Slot::take(folder, id).ok()?);
     free.skip(MOST_KEPT).for_each(Slot::remove);
     for name in names(folder).unwrap_or_default() {
         if let Some(id) = name.strip_suffix(".lock")
-            && !own::is_there(&file(folder, id, "work"))
+            && !own::exists(&file(folder, id, "work"))
             && let Ok(Some(slot)) = Slot::take(folder, id)
         {
             slot.remove();
@@ -204,40 +207,41 @@ pub(super) fn prune(folder: &Path) {
     }
 }
 
-/// A write past `ulimit -f` is an error from now on, like one to a full disk, and not the end of the process.
-fn outlive_the_file_limit() {
+/// Handles SIGXFSZ, so that a write past `ulimit -f` fails, like one to a full disk, instead of ending the process.
+fn handle_file_size_signal() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
         let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
     });
 }
 
-/// The lock at `path`, or `None` where a living process has it. Where the file system knows no locks it counts as free.
+/// Locks the file at `path`; `None` if a running process holds the lock. On a file system without locks it always succeeds.
 fn take(path: &Path) -> io::Result<Option<Lock>> {
-    outlive_the_file_limit();
+    handle_file_size_signal();
     let mut options = OpenOptions::new();
     options.write(true).create(true).truncate(false).mode(0o600);
     let mut lock = own::open(path, &mut options)?;
     match lock.try_lock() {
         Err(TryLockError::WouldBlock) => Ok(None),
-        // Its last owner may have removed it between the two calls: then it is a lock to nothing.
+        // The last owner may have removed the file between opening and locking; the lock then protects nothing.
         Ok(()) | Err(TryLockError::Error(_)) => {
-            // For who finds it in use; where that cannot be written nobody is told.
+            // The process number serves messages of other processes; the lock holds without it.
             let _ = lock
                 .set_len(0)
                 .and_then(|()| write!(lock, "{}", std::process::id()));
             let lock = Lock(lock);
-            Ok(is_at(&lock.0, path).then_some(lock))
+            Ok(is_same_file(&lock.0, path).then_some(lock))
         }
     }
 }
 
-/// The number of the process that has the session `id`, as far as it can be told.
+/// The number of the process that holds, or last held, the session `id`; `None` where its lock file does not tell.
 pub(super) fn owner(folder: &Path, id: &str) -> Option<u32> {
     own::read(&file(folder, id, "lock")).ok()?.parse().ok()
 }
 
-fn is_at(file: &File, path: &Path) -> bool {
+/// Whether the file at `path` is still `file`.
+fn is_same_file(file: &File, path: &Path) -> bool {
     let identity = |of: fs::Metadata| (of.dev(), of.ino());
     match (file.metadata(), fs::symlink_metadata(path)) {
         (Ok(ours), Ok(there)) => identity(ours) == identity(there),
@@ -246,7 +250,7 @@ fn is_at(file: &File, path: &Path) -> bool {
 }
 
 impl Slot {
-    /// A session that is not there yet.
+    /// A new session with an unused ID.
     pub(super) fn new(folder: &Path) -> io::Result<Self> {
         let number = |name: &String| name.split('.').next()?.parse::<u32>().ok();
         let largest = names(folder)?.iter().filter_map(number).max();
@@ -254,10 +258,10 @@ impl Slot {
         loop {
             number = number.wrapping_add(1);
             let id = number.to_string();
-            let is_new = || !own::is_there(&file(folder, &id, "work"));
-            // Another process may have begun it, or even ended it, between two of these calls.
+            let is_new = || !own::exists(&file(folder, &id, "work"));
+            // Another process may have begun, or even ended, a session of this ID between two of these calls.
             if is_new()
-                && !own::is_there(&file(folder, &id, "lock"))
+                && !own::exists(&file(folder, &id, "lock"))
                 && let Some(slot) = Self::take(folder, &id)?
                 && is_new()
             {
@@ -266,7 +270,7 @@ impl Slot {
         }
     }
 
-    /// The session `id`, or `None` where a living process has it.
+    /// Locks the session `id`; `None` if a running process holds it.
     pub(super) fn take(folder: &Path, id: &str) -> io::Result<Option<Self>> {
         let lock = take(&file(folder, id, "lock"))?;
         Ok(lock.map(|lock| Self {
@@ -282,17 +286,17 @@ impl Slot {
         file(&self.folder, &self.id, kind)
     }
 
-    /// What the session is called.
+    /// Name of the session.
     pub(super) fn id(&self) -> &str {
         &self.id
     }
 
-    /// Writes what has changed since it was written last, a work only if `check` accepts it. When that fails, what was
-    /// there before is still there.
+    /// Writes the work or the place, whichever has changed; a work only if `check` accepts the content. If writing fails,
+    /// the old files are unchanged.
     pub(super) fn save(&mut self, content: &Content, check: Option<Check>) -> io::Result<()> {
         match self.save_changes(content, check) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                self.make_again()?;
+                self.create_again()?;
                 self.save_changes(content, check)?;
             }
             saved => saved?,
@@ -303,7 +307,9 @@ impl Slot {
 
     fn save_changes(&mut self, content: &Content, check: Option<Check>) -> io::Result<()> {
         match &self.written {
-            Some(written) if same(&written.work, &content.work) => self.save_place(&content.place),
+            Some(written) if is_same(&written.work, &content.work) => {
+                self.save_place(&content.place)
+            }
             _ => {
                 check.map_or(Ok(()), |check| check(content).map_err(io::Error::other))?;
                 self.save_work(content)
@@ -311,8 +317,8 @@ impl Slot {
         }
     }
 
-    /// Somebody has cleared the folder away: all of it is to be written anew.
-    fn make_again(&mut self) -> io::Result<()> {
+    /// Creates the folder and the lock again after somebody has removed the folder; everything is then written anew.
+    fn create_again(&mut self) -> io::Result<()> {
         make_folder(&self.folder)?;
         if let Some(lock) = take(&self.file("lock"))? {
             self.lock = lock;
@@ -324,18 +330,21 @@ impl Slot {
     fn save_work(&mut self, content: &Content) -> io::Result<()> {
         let (place, work) = (&content.place, &content.work);
         let revision = self.revision + 1;
-        let head = form::head_of_work(revision, place, work);
+        let head = format::head_of_work(revision, place, work);
         own::replace(&self.file("work"), &[&head, place, work])?;
         self.revision = revision;
         Ok(())
     }
 
     fn save_place(&mut self, place: &str) -> io::Result<()> {
-        let head = form::head_of_place(self.revision, place);
+        let head = format::head_of_place(self.revision, place);
         own::replace(&self.file("place"), &[&head, place])
     }
 
-    /// Reads the session, and what of it had to be put aside; or says why it cannot be read.
+    /// Reads the session. A place file that cannot be read is renamed and returned too.
+    ///
+    /// # Errors
+    /// Why the work file cannot be read.
     pub(super) fn load(&mut self) -> Result<(Content, Option<KeptAside>), String> {
         let stored = stored(&self.folder, &self.id)?;
         let aside = stored.damage.map(|reason| self.put_aside("place", reason));
@@ -344,27 +353,28 @@ impl Slot {
         Ok((stored.content, aside))
     }
 
-    /// What is on the disk.
+    /// Reads the content from the disk, without renaming anything.
     ///
     /// # Errors
-    /// Why it cannot be read.
+    /// Why the work or the place cannot be read.
     pub(super) fn read_back(&self) -> Result<Content, String> {
         let stored = stored(&self.folder, &self.id)?;
         stored.damage.map_or(Ok(stored.content), Err)
     }
 
-    /// Gives the session's files other names, so that they are neither read again nor lost.
+    /// Renames the session's files, so that they are neither read again nor lost, and removes the rest of the session.
     pub(super) fn put_all_aside(self, reason: String) -> KeptAside {
-        if own::is_there(&self.file("place")) {
+        if own::exists(&self.file("place")) {
             let _ = self.put_aside("place", String::new());
         }
         let aside = self.put_aside("work", reason);
-        if !own::is_there(&self.file("work")) {
+        if !own::exists(&self.file("work")) {
             self.remove();
         }
         aside
     }
 
+    /// Renames one file of the session; the new name ends in `.damaged` or `.damaged-N`.
     fn put_aside(&self, kind: &str, reason: String) -> KeptAside {
         let from = self.file(kind);
         let free = (1_u32..)
@@ -372,7 +382,7 @@ impl Slot {
                 1 => self.file(&format!("{kind}.damaged")),
                 n => self.file(&format!("{kind}.damaged-{n}")),
             })
-            .find(|path| !own::is_there(path));
+            .find(|path| !own::exists(path));
         match free.map(|to| fs::rename(&from, &to).map(|()| to)) {
             Some(Ok(path)) => KeptAside { path, reason },
             Some(Err(error)) => KeptAside {
@@ -383,7 +393,7 @@ impl Slot {
         }
     }
 
-    /// Removes the session. The lock goes last: until then the session is ours.
+    /// Removes the session's files, the lock file last: until then no other process can take the session.
     pub(super) fn remove(self) {
         ["work.new", "place.new", "place", "work", "lock"]
             .into_iter()
@@ -393,13 +403,13 @@ impl Slot {
         drop(self.lock);
     }
 
-    /// Whether there is nothing to come back to.
+    /// Whether the session has never been saved.
     pub(super) fn is_empty(&self) -> bool {
         self.written.is_none() && self.revision == 0
     }
 }
 
-/// The pointer tells at once in nearly every case; the text where the same work has been written down anew.
-fn same(one: &Arc<str>, other: &Arc<str>) -> bool {
+/// Whether two works are equal. Comparing the pointers settles nearly every case without comparing the texts.
+fn is_same(one: &Arc<str>, other: &Arc<str>) -> bool {
     Arc::ptr_eq(one, other) || one == other
 }

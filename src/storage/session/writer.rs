@@ -1,4 +1,4 @@
-//! What a session's loop, its writing thread and whoever flushes it have between them.
+//! The state that a session's loop, its saving thread and its flush share.
 
 use super::slot::{Check, Content, Slot};
 use std::io;
@@ -6,27 +6,28 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Between two writes, so that a run that plays does not keep the disk busy.
+/// Least time between two saves, so that a running run does not keep the disk busy.
 const PERIOD: Duration = Duration::from_millis(500);
 
-/// What the loop, the thread and the flush have between them.
+/// The state that the loop, the saving thread and the flush share.
 #[derive(Default)]
 pub(super) struct Shared {
     state: Mutex<State>,
     pub(super) changed: Condvar,
 }
 
-/// What is to be written, and what has become of it.
+/// The content to save, and what has been saved.
 #[derive(Default)]
 pub(super) struct State {
     pub(super) noted: Option<Content>,
-    /// How many contents have been noted, and which of them is on the disk.
+    /// How many contents have been noted; it numbers the notes.
     notes: u64,
+    /// The number of the note that is on the disk.
     written: u64,
-    /// Somebody waits for the note of that number.
+    /// The number of the note for which a flush is waiting.
     hurry: Option<u64>,
     pub(super) is_closing: bool,
-    /// Why it cannot be kept.
+    /// Why the last attempt to save failed.
     pub(super) trouble: Option<String>,
     pub(super) check: Option<Check>,
 }
@@ -53,7 +54,7 @@ impl Shared {
         }
     }
 
-    /// Whether what was noted has been tried to be written in time.
+    /// Makes the thread save at once, and waits for it at most `patience`. Returns whether it tried in that time.
     pub(super) fn flush(&self, patience: Duration) -> bool {
         let end = Instant::now() + patience;
         let Some(mut state) = self.state_by(end) else {
@@ -71,7 +72,7 @@ impl Shared {
         true
     }
 
-    /// The state, unless the thread that panicked has it in its hands.
+    /// The state, or `None` if it stays locked until `end`: the thread that panicked may hold the lock itself.
     fn state_by(&self, end: Instant) -> Option<MutexGuard<'_, State>> {
         loop {
             match self.state.try_lock() {
@@ -88,12 +89,12 @@ impl Shared {
         woken.unwrap_or_else(PoisonError::into_inner).0
     }
 
-    /// The thread's work: it ends when the session is closed.
+    /// The body of the saving thread. It returns when the session is closed, with the slot if anything was ever saved.
     pub(super) fn keep_writing(&self, mut slot: Slot) -> Option<Slot> {
         let mut not_before = Instant::now();
         while let Some(due) = self.next(not_before) {
             let result = slot.save(&due.content, due.check);
-            self.tell(due.note, result);
+            self.record(due.note, result);
             not_before = Instant::now() + PERIOD;
         }
         if slot.is_empty() {
@@ -103,13 +104,14 @@ impl Shared {
         Some(slot)
     }
 
-    /// Waits until there is something to write and time to do so.
+    /// Waits until there is something to save and `not_before` has passed, or a flush is waiting. `None` when the session
+    /// is closed.
     fn next(&self, not_before: Instant) -> Option<Due> {
         const FOR_EVER: Duration = Duration::from_secs(3600);
         let mut state = self.state();
         while !state.is_closing {
             let to_go = not_before.saturating_duration_since(Instant::now());
-            // Asked to hurry it writes the same once more: the session that was left last is to be the newest.
+            // A flush saves even unchanged content, so that the session left last has the newest file.
             let is_due = state.written < state.notes || state.hurry.is_some();
             match state.noted.as_ref().filter(|_| is_due) {
                 Some(content) if state.hurry.is_some() || to_go.is_zero() => {
@@ -131,7 +133,8 @@ impl Shared {
         None
     }
 
-    fn tell(&self, note: u64, result: io::Result<()>) {
+    /// Records the `result` of saving the note of that number, and wakes the flush that waited for it.
+    fn record(&self, note: u64, result: io::Result<()>) {
         let mut state = self.state();
         let is_enough = state.hurry.is_some_and(|wanted| note >= wanted);
         match result {
@@ -148,7 +151,7 @@ impl Shared {
     }
 }
 
-/// What is to be written now.
+/// A content to save now.
 struct Due {
     content: Content,
     note: u64,

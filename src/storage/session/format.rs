@@ -1,4 +1,4 @@
-//! The text of a session's two files: a head of lines, and what is kept.
+//! The text format of a session's two files: header lines, then the content.
 //!
 //! ```text
 //! gyrolab session 2            gyrolab place 2
@@ -9,33 +9,34 @@
 //! PLACE WORK
 //! ```
 //!
-//! The sum is a CRC-32 of everything but its own line, so that no changed bit is taken for what was written. Form 1 had
-//! no sum; it is read, and no longer written.
+//! The sum is a CRC-32 of everything but its own line; it detects changed bits. Format 1 had no sum; it is still read, but
+//! no longer written.
 
 const WORK: &str = "gyrolab session ";
 const PLACE: &str = "gyrolab place ";
-const PRESENT_FORM: &str = "2";
-const FORM_WITHOUT_SUM: &str = "1";
+const PRESENT_FORMAT: &str = "2";
+const FORMAT_WITHOUT_SUM: &str = "1";
 
-/// The head of the file of the work.
+/// The header of the work file.
 pub(super) fn head_of_work(revision: u64, place: &str, work: &str) -> String {
     let head = format!(
-        "{WORK}{PRESENT_FORM}\nrevision {revision}\nplace {}\nwork {}\n",
+        "{WORK}{PRESENT_FORMAT}\nrevision {revision}\nplace {}\nwork {}\n",
         place.len(),
         work.len()
     );
     summed(head, &[place, work])
 }
 
-/// The head of the file of the place.
+/// The header of the place file.
 pub(super) fn head_of_place(revision: u64, place: &str) -> String {
     let head = format!(
-        "{PLACE}{PRESENT_FORM}\nrevision {revision}\nplace {}\n",
+        "{PLACE}{PRESENT_FORMAT}\nrevision {revision}\nplace {}\n",
         place.len()
     );
     summed(head, &[place])
 }
 
+/// `head` with the line of the sum over it and the `rest` of the file.
 fn summed(head: String, rest: &[&str]) -> String {
     let line = sum_line(&head, rest);
     head + &line
@@ -48,7 +49,7 @@ fn sum_line(head: &str, rest: &[&str]) -> String {
     format!("sum {:08x}\n", sum.finalize())
 }
 
-/// Revision, place and work of the file of the work, if it is whole.
+/// Revision, place and work from the text of a work file; `None` if it is incomplete or damaged.
 pub(super) fn parse_work(text: &str) -> Option<(u64, &str, &str)> {
     let (form, rest) = text.strip_prefix(WORK)?.split_once('\n')?;
     let (revision, rest) = number("revision ", rest)?;
@@ -59,7 +60,7 @@ pub(super) fn parse_work(text: &str) -> Option<(u64, &str, &str)> {
     (rest.len() as u64 == work).then_some((revision, place, rest))
 }
 
-/// Revision and place of the file of the place, if it is whole.
+/// Revision and place from the text of a place file; `None` if it is incomplete or damaged.
 pub(super) fn parse_place(text: &str) -> Option<(u64, &str)> {
     let (form, rest) = text.strip_prefix(PLACE)?.split_once('\n')?;
     let (revision, rest) = number("revision ", rest)?;
@@ -68,11 +69,12 @@ pub(super) fn parse_place(text: &str) -> Option<(u64, &str)> {
     (rest.len() as u64 == place).then_some((revision, rest))
 }
 
-/// What follows the line with the sum, if that is the sum of the rest of `text`; `rest` is its end from that line on.
+/// The content after the line with the sum, if the sum is right. `text` is the whole file, `rest` its end from that line
+/// on.
 fn after_sum<'a>(form: &str, text: &'a str, rest: &'a str) -> Option<&'a str> {
     match form {
-        FORM_WITHOUT_SUM => Some(rest),
-        PRESENT_FORM => {
+        FORMAT_WITHOUT_SUM => Some(rest),
+        PRESENT_FORMAT => {
             let head = &text[..text.len() - rest.len()];
             let (_, content) = rest.split_once('\n')?;
             let line = &rest[..rest.len() - content.len()];
@@ -82,7 +84,7 @@ fn after_sum<'a>(form: &str, text: &'a str, rest: &'a str) -> Option<&'a str> {
     }
 }
 
-/// The number on a line of its own after `name`, and what follows that line.
+/// The number in a line `name` NUMBER at the beginning of `text`, and the text after that line.
 fn number<'a>(name: &str, text: &'a str) -> Option<(u64, &'a str)> {
     let (line, rest) = text.split_once('\n')?;
     Some((line.strip_prefix(name)?.parse().ok()?, rest))
@@ -92,9 +94,9 @@ fn number<'a>(name: &str, text: &'a str) -> Option<(u64, &'a str)> {
 mod tests {
     use super::*;
 
-    /// Every other value of every byte of `text` is refused by `is_read`.
+    /// Asserts that `is_read` refuses `text` with any one byte changed or with its end cut off.
     #[track_caller]
-    fn no_change_is_read(text: &str, is_read: impl Fn(&str) -> bool) {
+    fn assert_changes_are_refused(text: &str, is_read: impl Fn(&str) -> bool) {
         assert!(is_read(text));
         for at in 0..text.len() {
             for byte in 0..=u8::MAX {
@@ -113,18 +115,18 @@ mod tests {
     }
 
     #[test]
-    fn no_changed_byte_is_taken_for_what_was_written() {
+    fn a_changed_byte_is_detected() {
         let (place, work) = ("step = 12\n", "title = \"Größe\"\nform = 2\n");
         let text = head_of_work(12, place, work) + place + work;
         assert_eq!(parse_work(&text), Some((12, place, work)));
-        no_change_is_read(&text, |text| parse_work(text).is_some());
+        assert_changes_are_refused(&text, |text| parse_work(text).is_some());
         let text = head_of_place(12, place) + place;
         assert_eq!(parse_place(&text), Some((12, place)));
-        no_change_is_read(&text, |text| parse_place(text).is_some());
+        assert_changes_are_refused(&text, |text| parse_place(text).is_some());
     }
 
     #[test]
-    fn what_was_kept_without_a_sum_is_read() {
+    fn format_1_without_a_sum_is_read() {
         let text = "gyrolab session 1\nrevision 3\nplace 2\nwork 4\nherework";
         assert_eq!(parse_work(text), None);
         let text = "gyrolab session 1\nrevision 3\nplace 4\nwork 4\nherework";
