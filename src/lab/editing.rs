@@ -228,7 +228,7 @@ impl Lab {
         }
         match act {
             Act::Describe(_) => self.player.playback.describe_as(&scenario),
-            Act::Edit(_) | Act::Push(_) => self.player.playback.turn_at(step, &scenario),
+            Act::Edit(_) | Act::Push(_) => self.player.playback.continue_at(step, &scenario),
         }
         self.player.playback.set_end(self.history.present().end_s);
         self.is_another();

@@ -117,7 +117,7 @@ impl Player {
             self.playback.follow_exact(clock);
             is_new = true;
         }
-        is_new |= self.advisor.as_mut().is_some_and(Advisor::has_news);
+        is_new |= self.advisor.as_mut().is_some_and(Advisor::take_news);
         (halt, is_new)
     }
 

@@ -111,7 +111,7 @@ impl Lab {
     fn came_to(&self, under_way: UnderWay, halt: Option<Halt>) -> Result<bool, String> {
         let is_on = match under_way {
             UnderWay::Going => self.player.playback.steps_to_go().is_some(),
-            UnderWay::Playing => self.player.playback.is_on_its_way(),
+            UnderWay::Playing => self.player.playback.is_running_until(),
             UnderWay::Waiting(until) => return Ok(self.now >= until),
             UnderWay::Exporting => return Ok(!self.is_exporting()),
         };

@@ -1,4 +1,4 @@
-//! What would mend a run that is not to be believed: found by trial in the background, for it may take a second.
+//! Searches for a change that makes an unreliable run reliable, by trial runs in the background: it may take a second.
 
 use crate::analysis::health::{Advice, advise};
 use crate::scenario::Scenario;
@@ -6,37 +6,37 @@ use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::Duration;
 
-/// How long a question waits: while a value is nudged by a key held down, each is dropped for the next, unanswered.
-const PATIENCE: Duration = Duration::from_millis(200);
+/// Delay before a search begins. A held key nudges a value many times a second; each search is then dropped before it begins.
+const DELAY: Duration = Duration::from_millis(200);
 
-/// A question under way, or answered. Dropped, nobody hears the answer.
+/// A search for advice, in progress or finished. Dropping it discards the answer.
 pub struct Advisor {
     answer: Arc<OnceLock<Advice>>,
-    is_heard: bool,
+    is_reported: bool,
 }
 
 impl Advisor {
-    /// Asks what would mend `scenario`.
+    /// Starts the search for advice on `scenario`.
     pub fn ask(scenario: Arc<Scenario>) -> Self {
         let answer = Arc::new(OnceLock::new());
-        let told = Arc::downgrade(&answer);
+        let asker = Arc::downgrade(&answer);
         let search = move || {
-            thread::sleep(PATIENCE);
-            if told.strong_count() == 0 {
+            thread::sleep(DELAY);
+            if asker.strong_count() == 0 {
                 return;
             }
             let advice = advise(&scenario);
-            if let Some(told) = told.upgrade() {
-                let _ = told.set(advice); // the first answer, so it is taken
+            if let Some(answer) = asker.upgrade() {
+                let _ = answer.set(advice); // it is set only here, so this succeeds
             }
         };
-        // Where there is no thread to be had, there is no advice.
+        // If the system gives no thread, there is no advice.
         let _ = thread::Builder::new()
             .name("advice".to_owned())
             .spawn(search);
         Self {
             answer,
-            is_heard: false,
+            is_reported: false,
         }
     }
 
@@ -45,10 +45,10 @@ impl Advisor {
         self.answer.get()
     }
 
-    /// Whether the answer has come since this was asked last.
-    pub fn has_news(&mut self) -> bool {
-        let is_news = !self.is_heard && self.answer.get().is_some();
-        self.is_heard |= is_news;
+    /// Returns true once: at the first call after the answer has come.
+    pub fn take_news(&mut self) -> bool {
+        let is_news = !self.is_reported && self.answer.get().is_some();
+        self.is_reported |= is_news;
         is_news
     }
 }

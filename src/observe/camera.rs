@@ -1,8 +1,8 @@
-//! From the world to a picture of it: a parallel projection from a direction that the user turns.
+//! The parallel projection of the world onto a picture, along a direction that the user turns.
 
 use nalgebra::Vector3;
 
-/// From where the scene is looked at.
+/// The direction from which the picture shows the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Angle about +z from −y, degrees: at 0 the picture's right is +x and its depth +y.
@@ -21,7 +21,7 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// Turns the eye, degrees.
+    /// Turns the viewing direction by these angles, degrees; the pitch stays within −90 to 90.
     pub fn turn(&mut self, yaw_deg: f64, pitch_deg: f64) {
         self.yaw_deg = (self.yaw_deg + yaw_deg).rem_euclid(360.0);
         self.pitch_deg = (self.pitch_deg + pitch_deg).clamp(-90.0, 90.0);

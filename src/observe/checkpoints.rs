@@ -1,26 +1,28 @@
-//! States of a run that are kept on the way, so that any earlier step is a few steps away.
+//! Stored states of a run, from which any earlier step is computed again in a few steps.
 //!
-//! They stand at even distances from the start. When there are too many every second one goes, so that a run of any
-//! length has enough of them in bounded memory.
+//! They are equally spaced from the start. When there are too many, every second one is dropped and the spacing doubles,
+//! so that memory is bounded however long the run is.
 
 use crate::analysis::Monitor;
 use crate::run::Simulation;
 
 /// Steps between two checkpoints at first.
 const SPACING: u64 = 256;
-/// Memory for all of them, bytes, and what one takes: so much for each point, and the rest.
+/// Memory for all checkpoints, bytes.
 const MEMORY: usize = 24 << 20;
-const OF_A_POINT: usize = 64;
-const OF_THE_REST: usize = 9 << 10;
-/// However large the body, so many are kept.
+/// Memory of one checkpoint for each point of the body, bytes.
+const PER_POINT: usize = 64;
+/// Memory of one checkpoint besides its points, bytes.
+const PER_CHECKPOINT: usize = 9 << 10;
+/// Least number of checkpoints, however large the body.
 const FEWEST: usize = 8;
 
-/// A run as it stood at one step, with what had been measured on it.
+/// A run at one step, with the measurements up to there.
 #[derive(Clone)]
 pub struct Checkpoint {
     /// The run.
     pub simulation: Simulation,
-    /// What followed it.
+    /// The measurements on its steps.
     pub monitor: Monitor,
 }
 
@@ -50,11 +52,11 @@ impl Checkpoints {
             },
             later: Vec::new(),
             spacing: SPACING,
-            most: (MEMORY / (OF_THE_REST + OF_A_POINT * points)).max(FEWEST),
+            most: (MEMORY / (PER_CHECKPOINT + PER_POINT * points)).max(FEWEST),
         }
     }
 
-    /// Keeps the run as it stands, if it is time to; to be shown every step.
+    /// Stores the run's present state if its step is a multiple of the spacing. To be called after every step.
     #[inline]
     pub fn offer(&mut self, simulation: &Simulation, monitor: &Monitor) {
         if simulation.step_number().is_multiple_of(self.spacing) {
@@ -65,7 +67,7 @@ impl Checkpoints {
     fn keep(&mut self, simulation: &Simulation, monitor: &Monitor) {
         let step = simulation.step_number();
         if self.later.last().is_some_and(|last| last.step() >= step) || step == 0 {
-            return; // it has been here before
+            return; // this step is stored already
         }
         self.later.push(Checkpoint {
             simulation: simulation.clone(),
@@ -79,7 +81,7 @@ impl Checkpoints {
         }
     }
 
-    /// The last one that does not stand later than `step`.
+    /// The last checkpoint at `step` or earlier.
     pub fn before(&self, step: u64) -> &Checkpoint {
         let earlier = self
             .later
@@ -89,7 +91,7 @@ impl Checkpoints {
             .map_or(&self.start, |last| &self.later[last])
     }
 
-    /// Forgets those that stand later than `step`: from there on the run goes another way.
+    /// Drops the checkpoints later than `step`, because the run changes from there on.
     pub fn cut_back(&mut self, step: u64) {
         let earlier = self
             .later

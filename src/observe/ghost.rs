@@ -1,11 +1,11 @@
-//! The run before a restart by an edit, as far as the pictures go: what did the edit change?
+//! The pictures of the previous run, kept when an edit restarts the run, so that both can be compared.
 
 use super::live::LiveRun;
 use super::marks::Marks;
 use super::path::Path;
 use super::recording::Recording;
 
-/// What is kept of a run that is over.
+/// The pictures of the previous run.
 #[derive(Clone, Debug)]
 pub struct Ghost {
     recording: Recording,
@@ -14,7 +14,7 @@ pub struct Ghost {
 }
 
 impl Ghost {
-    /// What `run` has left behind, as far as it has been.
+    /// The pictures of `run`, up to the furthest step that it has reached.
     pub fn of(run: &LiveRun) -> Self {
         let (recording, path) = run.pictures();
         Self {
@@ -24,7 +24,7 @@ impl Ghost {
         }
     }
 
-    /// How far it has come, s.
+    /// The time that the run had reached, s.
     pub fn end_s(&self) -> f64 {
         self.recording.whole().map_or(0.0, |whole| whole.end_s)
     }
@@ -39,7 +39,7 @@ impl Ghost {
         &self.path
     }
 
-    /// What was done to it.
+    /// Its pushes and edits.
     pub fn marks(&self) -> &Marks {
         &self.marks
     }

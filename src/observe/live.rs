@@ -1,8 +1,8 @@
-//! A run as it is watched: the simulation, and what is kept of it for the pictures.
+//! A run that is being watched: the simulation, and the data of its pictures.
 //!
-//! Where it has been it can go back to, and forward again: to the last [checkpoint](Checkpoints) before that step, and
-//! from there step by step, with the same bits as the first time. What the pictures need of the steps that lie ahead of
-//! it then is kept apart.
+//! It can return to any step that it has reached before: it loads the last [checkpoint](Checkpoints) before that step and
+//! steps on from there, with the same bits as the first time. The pictures of the steps that then lie ahead are stored
+//! separately.
 
 use super::checkpoints::Checkpoints;
 use super::overlay::Overlay;
@@ -15,13 +15,13 @@ use nalgebra::Vector3;
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-/// Between two looks at the clock a body of one point takes this many steps; one of n points an n-th of it.
+/// Steps between two readings of the clock for a body of one point; a body of n points takes 1/n of that.
 const STEPS_PER_LOOK: usize = 4096;
 
-/// Parts of a time step smaller than this are rounding, not time.
+/// A remaining time below this share of a time step is rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// A run under observation.
+/// A run that is being watched.
 pub struct LiveRun {
     simulation: Simulation,
     monitor: Monitor,
@@ -30,7 +30,7 @@ pub struct LiveRun {
     now: Moment,
     recording: Recording,
     path: Path,
-    /// The step that the path has been followed to: beyond now while the run is on its way back there.
+    /// The last step in the path. It is later than the present step while the run is still stepping towards it.
     followed_to: u64,
     ahead: Option<Ahead>,
     overlay: Option<Overlay>,
@@ -43,25 +43,25 @@ struct Ahead {
     path: Path,
 }
 
-/// How playing on came to its end.
+/// The result of playing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Played {
     /// Simulated time that passed, s.
     pub stepped_s: f64,
-    /// Why it ended.
+    /// Why playing ended.
     pub end: PlayEnd,
 }
 
-/// Why playing on ended.
+/// Why playing ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlayEnd {
-    /// All the time that was allowed is stepped.
+    /// The run has stepped all the simulated time that it was given.
     InTime,
-    /// There was no more time to compute.
+    /// The time for computing was used up.
     CutShort,
-    /// It stands at the step at which it was to stop.
+    /// The run stands at its stop.
     AtStop,
-    /// What it was to play to has come true.
+    /// The condition to which it was played holds.
     Fulfilled,
     /// The numbers are no longer finite.
     NotFinite(NotFinite),
@@ -91,10 +91,10 @@ impl LiveRun {
         run
     }
 
-    /// Takes it one time step further.
+    /// Takes one time step.
     ///
     /// # Errors
-    /// When the numbers stop being finite; it then stays where it is.
+    /// When the numbers stop being finite; the run then stays at the step before.
     pub fn step(&mut self) -> Result<(), NotFinite> {
         self.simulation.step()?;
         self.monitor.follow(&self.simulation);
@@ -104,7 +104,7 @@ impl LiveRun {
         Ok(())
     }
 
-    /// Keeps for the pictures where it stands, as far as they have not been here.
+    /// Adds the present moment to the recording and the path, unless they have it already.
     fn keep(&mut self) {
         let step = self.simulation.step_number();
         if step >= self.recording.moments() {
@@ -123,20 +123,20 @@ impl LiveRun {
         }
     }
 
-    /// The furthest step it has been at.
+    /// The furthest step that the run has reached.
     pub fn furthest(&self) -> u64 {
         let ahead = self.ahead.as_ref().map_or(0, |ahead| ahead.step);
         ahead.max(self.followed_to)
     }
 
-    /// Where it has set out for, if it is not there yet: [`step`](Self::step) leads there.
+    /// The step for which it has set out, if it has not arrived. Calling [`step`](Self::step) repeatedly leads there.
     pub fn destination(&self) -> Option<u64> {
         let step = self.simulation.step_number();
         (step < self.followed_to).then_some(self.followed_to)
     }
 
-    /// Sets out for `step`, or for the furthest it has been at: it stands then there or at an earlier step, and has a
-    /// [`destination`](Self::destination).
+    /// Sets out for `step`, or for the furthest step that it has reached if that is earlier. It then stands at that step, or
+    /// at an earlier one with the step as its [`destination`](Self::destination).
     pub fn set_out_for(&mut self, step: u64) {
         self.stay();
         let here = self.simulation.step_number();
@@ -165,7 +165,8 @@ impl LiveRun {
         self.keep();
     }
 
-    /// Cuts the recording back to where it can be filled from again, and so that it is not coarse in the end.
+    /// Cuts the recording back to at most `moments`, and so far that filling it again makes it fine enough. Returns how
+    /// many moments it keeps.
     fn cut_back_recording(&mut self, moments: u64) -> u64 {
         let kept = self.recording.cut_back(moments);
         match self.recording.coarse_since() {
@@ -174,7 +175,8 @@ impl LiveRun {
         }
     }
 
-    /// Stands at the latest step not beyond `latest` that is at hand: `here`, or a checkpoint.
+    /// Puts the run at the latest stored state that is not later than `latest`: a checkpoint, or the present one, which is
+    /// at step `here`.
     fn stand_before(&mut self, latest: u64, here: u64) {
         let checkpoint = self.checkpoints.before(latest);
         if (checkpoint.step()..=latest).contains(&here) && !self.simulation.has_ended() {
@@ -187,6 +189,7 @@ impl LiveRun {
         self.adopt(&scenario);
     }
 
+    /// Makes `scenario` the one that the simulation and its measurements follow from the present step on.
     fn adopt(&mut self, scenario: &Arc<Scenario>) {
         if !Arc::ptr_eq(self.simulation.scenario(), scenario) {
             self.simulation.go_on_in(Arc::clone(scenario));
@@ -194,8 +197,8 @@ impl LiveRun {
         }
     }
 
-    /// Stays where it stands, wherever it has set out for. The steps that it has not come to again are missing in the
-    /// recording.
+    /// Cancels its way to the destination and stays at the present step. Where the recording lacks steps, it is filled with
+    /// the present moment.
     pub fn stay(&mut self) {
         if self.destination().is_none() {
             return;
@@ -209,8 +212,8 @@ impl LiveRun {
         }
     }
 
-    /// Goes on in `scenario`, which has the same past up to here and to where it has set out for. What lay ahead is no
-    /// longer where it leads.
+    /// Continues with `scenario`, which has the same motion up to the present step and up to the destination. The pictures
+    /// of later steps are dropped.
     pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
         self.ahead = None;
         self.checkpoints.cut_back(self.followed_to);
@@ -225,13 +228,13 @@ impl LiveRun {
         }
     }
 
-    /// Is called and looked at otherwise: `scenario` leads to the same numbers at every step.
+    /// Replaces the scenario by one that leads to the same numbers at every step: another title, length or `[view]`.
     pub fn describe_as(&mut self, scenario: &Arc<Scenario>) {
         self.adopt(scenario);
     }
 
-    /// Plays on for `time_s` simulated seconds (whole steps of them), no further than the step `stop` or one of which
-    /// `is_fulfilled` is true, until `enough` says that there is no more time for it.
+    /// Plays for `time_s` simulated seconds, in whole steps. It ends earlier at the step `stop`, at a step where
+    /// `is_fulfilled` returns true, or when `enough` returns true because the time for computing is used up.
     pub fn play(
         &mut self,
         time_s: f64,
@@ -275,7 +278,7 @@ impl LiveRun {
         self.overlay = shown.then(|| Overlay::new(self.simulation.scenario()));
     }
 
-    /// Lets the exact motion come after the run until `enough` says that there is no more time for it.
+    /// Advances the exact motion to the run's time, or until `enough` returns true.
     pub fn follow_exact(&mut self, enough: impl FnMut() -> bool) {
         if let Some(overlay) = &mut self.overlay {
             overlay.follow(self.now.time_s, enough);
@@ -287,14 +290,14 @@ impl LiveRun {
         self.overlay.as_ref()
     }
 
-    /// Whether the exact motion is shown and has not come as far as the run.
+    /// Whether the exact motion is shown and its time is earlier than the run's.
     pub fn overlay_is_behind(&self) -> bool {
         self.overlay
             .as_ref()
             .is_some_and(|overlay| overlay.now().time_s < self.now.time_s)
     }
 
-    /// How far its numbers can be trusted where it stands.
+    /// How reliable the run's numbers are at the present step.
     pub fn health(&mut self) -> Health {
         self.monitor.health(&self.simulation)
     }

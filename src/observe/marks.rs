@@ -1,15 +1,16 @@
-//! What was done to a run and when: the pushes that act on it, and the edits made during it.
+//! The times at which pushes act on a run, and at which it was edited.
 
 use crate::run::Clock;
 use crate::run::pushes::acts_s;
 use crate::scenario::{Push, Scenario};
 
-/// Times at which something is done to a run, in their order.
+/// Times of pushes and edits, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Marks {
-    /// From when to when some push acts, s. Stretches do not touch; the last may be without an end.
+    /// Beginning and end of each interval in which at least one push acts, s. Intervals do not touch; the last end may be
+    /// infinite.
     pub pushes: Vec<(f64, f64)>,
-    /// When an edit was made, s.
+    /// Times at which the run was edited, s.
     pub edits: Vec<f64>,
 }
 
@@ -18,7 +19,7 @@ impl Marks {
     pub fn of(scenario: &Scenario) -> Self {
         let mut edits = Vec::new();
         let mut stretches = Vec::new();
-        // Each push with the time from which on it is as it is, s.
+        // Each push with the time of its last edit, s.
         let mut pushes: Vec<_> = scenario.pushes.iter().map(|push| (0.0, push)).collect();
         for (time_s, edit) in Clock::edits(scenario) {
             if edits.last() != Some(&time_s) {
@@ -44,14 +45,14 @@ impl Marks {
     }
 }
 
-/// From when to when `push` of `scenario` acts inside `era`, s.
-fn between(push: &Push, scenario: &Scenario, era: (f64, f64)) -> Option<(f64, f64)> {
+/// The part of `interval` (s) in which `push` of `scenario` acts.
+fn between(push: &Push, scenario: &Scenario, interval: (f64, f64)) -> Option<(f64, f64)> {
     let (begin, end) = acts_s(push, scenario);
-    let (begin, end) = (begin.max(era.0), end.min(era.1));
+    let (begin, end) = (begin.max(interval.0), end.min(interval.1));
     (begin < end && push.force.norm() > 0.0).then_some((begin, end))
 }
 
-/// `stretches` in order, those that touch made one.
+/// `stretches` sorted, with those that touch joined.
 fn joined(mut stretches: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     stretches.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut joined: Vec<(f64, f64)> = Vec::with_capacity(stretches.len());

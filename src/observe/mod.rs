@@ -1,12 +1,12 @@
-//! A run as it is watched: played at its pace, gone back into, read off, and what is kept of it for the pictures.
+//! A run that is being watched: its playback, its earlier steps, its numbers, and the data of its pictures.
 //!
-//! - [`live`] plays a run, [`checkpoints`] lead back into it; [`recording`] and [`path`] keep what the pictures need of
-//!   it, [`overlay`] the exact motion beside it.
-//! - [`sweep`] and [`camera`] are the geometry of the pictures, for a screen and for a figure alike: what happens in
-//!   each column of a window of time, and where a point in space stands in a plane picture.
-//! - [`pace`] says how fast it is played, [`playback`] plays it as far as its next stop.
-//! - [`reading`] reads numbers off it, [`advisor`] finds what would mend them.
-//! - [`marks`] are the times at which something is done to a run, [`ghost`] what is kept of the run before.
+//! - [`live`] plays a run, and returns to earlier steps by [`checkpoints`]; [`recording`] and [`path`] store the data of
+//!   its pictures, [`overlay`] the exact motion beside it.
+//! - [`sweep`] and [`camera`] are the geometry of the pictures, for a screen and for a figure alike: the range of a curve
+//!   in each column of a window of time, and the position of a point in space in a plane picture.
+//! - [`pace`] is the playback speed; [`playback`] plays the run at it until the next stop.
+//! - [`reading`] holds the numbers on the screen; [`advisor`] searches for a setting that makes them reliable.
+//! - [`marks`] are the times of pushes and edits; [`ghost`] is the picture of the previous run.
 
 pub mod advisor;
 pub mod camera;

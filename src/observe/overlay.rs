@@ -1,4 +1,4 @@
-//! The exact motion beside the run: followed in time, and recorded as the run is.
+//! The exact motion beside the run, computed up to the run's time and recorded like the run.
 
 use super::path::Path;
 use super::recording::{Moment, Recording};
@@ -7,24 +7,24 @@ use crate::scenario::Scenario;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// Looks that may be due at once; of a run that is further ahead every second, third, ... step is looked at, so that the
-/// exact motion comes after it within a frame.
-const MOST_DUE: f64 = 20_000.0;
+/// The most samples of the exact motion that one call of [`follow`](Overlay::follow) computes. If the run is further
+/// ahead, only every second, third, ... step is sampled.
+const MOST_SAMPLES: f64 = 20_000.0;
 
 /// The exact motion from the start to (almost) now.
 pub struct Overlay {
     truth: Truth,
     traced: Vector3<f64>,
-    /// Time between two looks at it where there is time for all, s.
+    /// Least time between two samples, s.
     time_step_s: f64,
-    looks: u64,
+    samples: u64,
     now: Moment,
     recording: Recording,
     path: Path,
 }
 
 impl Overlay {
-    /// The exact motion of `scenario`, to be looked at once a time step.
+    /// The exact motion of `scenario`, to be sampled once a time step.
     pub fn new(scenario: &Arc<Scenario>) -> Self {
         let traced = scenario.body.mechanics.points()[scenario.trace].at;
         let now = Moment::new(&scenario.start, &traced);
@@ -32,34 +32,34 @@ impl Overlay {
             truth: Truth::new(Arc::clone(scenario)),
             traced,
             time_step_s: scenario.motion.time_step_s,
-            looks: 0,
+            samples: 0,
             now,
             recording: Recording::default(),
             path: Path::new(traced.norm()),
         };
-        overlay.look(now);
+        overlay.record(now);
         overlay
     }
 
-    /// Goes on as the exact motion of `scenario`, whose past is the same up to where it stands.
+    /// Continues as the exact motion of `scenario`, which has the same motion up to the present time.
     pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
         self.truth.go_on_in(scenario);
     }
 
-    /// Follows it to `time_s` (s), look by look, until `enough` says that there is no more time for it.
+    /// Computes the exact motion up to `time_s` (s), or until `enough` returns true.
     pub fn follow(&mut self, time_s: f64, mut enough: impl FnMut() -> bool) {
         let due = (time_s - self.now.time_s) / self.time_step_s;
-        let spacing_s = self.time_step_s * (due / MOST_DUE).ceil().max(1.0);
+        let spacing_s = self.time_step_s * (due / MOST_SAMPLES).ceil().max(1.0);
         while self.now.time_s < time_s {
             let next = self.now.time_s + spacing_s;
-            // The last look falls on the run's own time, whatever the rounding of the sums on the way.
+            // The last sample is at exactly the run's time, without the rounding of the summed spacings.
             let next = if next > time_s - 0.5 * self.time_step_s {
                 time_s
             } else {
                 next
             };
             let state = self.truth.state_at(next);
-            self.look(Moment {
+            self.record(Moment {
                 time_s: next,
                 ..Moment::new(&state, &self.traced)
             });
@@ -69,10 +69,10 @@ impl Overlay {
         }
     }
 
-    fn look(&mut self, moment: Moment) {
+    fn record(&mut self, moment: Moment) {
         self.recording.push(&moment);
-        self.path.follow(self.looks, &moment.position);
-        self.looks += 1;
+        self.path.follow(self.samples, &moment.position);
+        self.samples += 1;
         self.now = moment;
     }
 

@@ -1,13 +1,13 @@
-//! How fast the run is played: simulated time for wall time, apart from the time step.
+//! Playback speed: how much simulated time passes per wall time, whatever the time step.
 
 use crate::text::ladder::rung;
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
-/// A frame that lasted longer than this (a suspended program, a slow line) is not caught up with.
+/// A frame counts as no longer than this: after a suspension or on a slow line the run does not catch up.
 const LONGEST_FRAME: Duration = Duration::from_millis(250);
 
-/// Rungs of the ladder that are speeds to choose from, simulated seconds a second: 1e-4 to 5e5.
+/// Rungs of the 1-2-5 ladder that are playback speeds: 1e-4 to 5e5 simulated seconds a second.
 const SPEEDS: RangeInclusive<i64> = -12..=17;
 
 /// Playback speed.
@@ -15,26 +15,26 @@ const SPEEDS: RangeInclusive<i64> = -12..=17;
 pub enum Speed {
     /// Simulated seconds a second.
     Times(f64),
-    /// As fast as the machine goes.
+    /// As fast as the machine computes.
     Top,
 }
 
 impl Speed {
-    /// The speed so many `notches` up the ladder, or down.
+    /// The speed `notches` rungs up the ladder, or down where negative.
     pub fn shifted(self, notches: i32) -> Self {
         let next = if notches > 0 { faster } else { slower };
         (0..notches.unsigned_abs()).fold(self, |speed, _| next(speed))
     }
 }
 
-/// Whether the run goes on, how fast, and how much simulated time it is owed.
+/// Whether the run goes on, how fast, and how much simulated time is due.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pace {
     speed: Speed,
     running: bool,
-    /// Simulated time that has been earned and not been stepped yet, s.
+    /// Simulated time that is due and has not been stepped yet, s.
     owed_s: f64,
-    /// Simulated seconds a second as they really were of late.
+    /// Recent speed as measured, simulated seconds a second.
     achieved: f64,
 }
 
@@ -49,7 +49,7 @@ impl Pace {
         }
     }
 
-    /// Sets the speed, if it is one.
+    /// Sets the speed; a speed that is not positive and finite is ignored.
     pub fn set_speed(&mut self, speed: Speed) {
         match speed {
             Speed::Times(times) if !(times > 0.0 && times.is_finite()) => return,
@@ -66,12 +66,12 @@ impl Pace {
         self.speed
     }
 
-    /// Simulated seconds a second as they really were of late.
+    /// Recent speed as measured, simulated seconds a second.
     pub fn achieved(&self) -> f64 {
         self.achieved
     }
 
-    /// Whether the machine cannot keep up with the speed that is set.
+    /// Whether the machine is too slow for the speed that is set: it reaches less than 80 % of it.
     pub fn falls_behind(&self) -> bool {
         matches!(self.speed, Speed::Times(speed) if self.running && self.achieved < 0.8 * speed)
     }
@@ -90,7 +90,7 @@ impl Pace {
         }
     }
 
-    /// Lets `wall` pass; gives how much simulated time may be stepped now, s.
+    /// Adds the simulated time for `wall`; returns all simulated time that is now due, s.
     pub fn earn(&mut self, wall: Duration) -> f64 {
         let wall = wall.min(LONGEST_FRAME).as_secs_f64();
         self.owed_s = match (self.running, self.speed) {
@@ -101,8 +101,8 @@ impl Pace {
         self.owed_s
     }
 
-    /// Accounts for `stepped_s` simulated seconds, stepped within `wall`. `cut_short` says that there was no time for
-    /// more: what is still owed is then forgiven, for the machine would never catch up.
+    /// Subtracts `stepped_s` simulated seconds, which were stepped within `wall`. If `cut_short`, the time for computing was
+    /// used up; the rest that is due is then dropped, because the machine would never catch up.
     pub fn spend(&mut self, stepped_s: f64, wall: Duration, cut_short: bool) {
         self.owed_s = if cut_short {
             0.0

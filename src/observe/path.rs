@@ -1,14 +1,15 @@
-//! The path of the traced point seen from above, whole, in bounded memory.
+//! The whole path of the traced point seen from above, in bounded memory.
 //!
-//! A square raster about the pivot that remembers at which step each of its cells was first visited. It begins small
-//! and doubles when the path leaves it, so that the path of a nearly upright top is as fine as that of a falling one.
+//! It is a square raster about the pivot that stores for each cell the step of its first visit. It begins small and doubles
+//! its width when the path leaves it, so that the path of a nearly upright top is as fine as that of a falling one.
 
 use nalgebra::Vector3;
 
 /// Cells along one side; a power of two, so that the raster can be halved about its middle.
 const SIDE: usize = 512;
 const NEVER: u64 = u64::MAX;
-/// Cells that are drawn as a line between two positions: longer leaps are left open, since nobody knows the way.
+/// The longest distance between two positions, in cells, that is drawn as a line. A longer one is left open, because the
+/// motion in between is unknown.
 const LONGEST_LINE: f64 = 24.0;
 
 /// The path from above; lengths in m, world frame.
@@ -75,8 +76,8 @@ impl Path {
         ((share * SIDE as f64) as usize).min(SIDE - 1)
     }
 
-    /// Forgets the cells that were first visited after `step`. The raster keeps its width, and the radius is known to a
-    /// cell. Where the point [stands](Self::stand_at) then is to be said before it goes on.
+    /// Clears the cells that were first visited after `step`. The raster keeps its width; the radius is then exact to a
+    /// cell. Call [`stand_at`](Self::stand_at) before following the point further.
     pub fn cut_back(&mut self, step: u64) {
         // Cells stand in the order of their first visit.
         let kept = self
@@ -91,12 +92,12 @@ impl Path {
             .fold(0.0, f64::max);
     }
 
-    /// Goes on from `position`.
+    /// Sets the position from which the path continues.
     pub fn stand_at(&mut self, position: &Vector3<f64>) {
         self.last = Some((position.x, position.y));
     }
 
-    /// Twice the width: four cells become one.
+    /// Doubles the width of the raster: four cells become one.
     fn double(&mut self) {
         let old = std::mem::replace(&mut self.first_visit, vec![NEVER; SIDE * SIDE]);
         let cells = std::mem::take(&mut self.visited);

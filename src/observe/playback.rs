@@ -1,4 +1,4 @@
-//! A run being played: at its pace, as far as its next stop.
+//! Plays a run at its pace up to its next stop.
 
 use super::live::{LiveRun, PlayEnd, Played};
 use super::pace::{Pace, Speed};
@@ -8,51 +8,51 @@ use crate::scenario::{Scenario, keys};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Longest stretch of stepping between two looks at the keyboard: a key pressed at its beginning is answered after the
-/// stretch that follows.
+/// The longest time of stepping between two readings of the keyboard.
 const STEPPING: Duration = Duration::from_millis(12);
-/// The exact motion's share of that, and of a frame of 15 a second: a tenth.
+/// Computing time for the exact motion in each round of the loop while the run steps flat out: a tenth of that time.
 const FOLLOWING_FLAT_OUT: Duration = Duration::from_micros(1200);
+/// The same otherwise: a tenth of a frame at 15 frames a second.
 const FOLLOWING: Duration = Duration::from_millis(6);
-/// What may be stepped at once, before the next picture, on the way to a step where the run has been before: points,
-/// and so many more for what a step costs beside them, times steps. It takes about 0.2 s.
-const AT_ONCE: u64 = 100_000_000;
-const BESIDE_POINTS: u64 = 60;
-/// The same for steps that are asked for: before the next key, so that keys that come together count one by one. It
-/// takes a few milliseconds.
-const BEFORE_THE_NEXT_KEY: u64 = 1_000_000;
-/// How many steps are played until a condition holds, before that is given up.
+/// The greatest [cost](Playback::cost) of returning to a step within one frame; it takes about 0.2 s.
+const MOST_COST_PER_FRAME: u64 = 100_000_000;
+/// Cost of a step besides its points, in points.
+const COST_OF_A_STEP: u64 = 60;
+/// The greatest cost of steps that are taken before the next key is read, so that keys that arrive together act one by
+/// one; it takes a few milliseconds.
+const MOST_COST_PER_KEY: u64 = 1_000_000;
+/// The number of steps after which playing until a condition holds is given up.
 const MOST_UNTIL: u64 = 10_000_000;
 
-/// Whether a run stands where it was to be played to.
+/// A condition on a run, until which it is played.
 pub type Condition = Box<dyn Fn(&LiveRun) -> bool>;
 
-/// Why a run has stopped by itself.
+/// Why the playback has stopped by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Halt {
-    /// The condition that it was played to holds.
+    /// The condition of [`run_until`](Playback::run_until) holds.
     Fulfilled,
-    /// The condition that it was played to did not hold on any of so many steps.
+    /// That condition did not hold on any of so many steps.
     NotFulfilled(u64),
-    /// It stands at the scenario's last step; it can go on.
+    /// The run stands at the scenario's last step; it can be played further.
     EndOfRun,
-    /// The steps that were asked for are taken.
+    /// All requested steps are taken.
     StepsTaken,
     /// The numbers would stop being finite.
     NotFinite(NotFinite),
 }
 
-/// A run, its pace, and where it is to stop.
+/// A run, its pace, and the step at which it stops.
 pub struct Playback {
     run: LiveRun,
     pace: Pace,
-    /// The step at which it stops by itself: the scenario's end at first, or where steps that were asked for lead.
+    /// The step at which it stops by itself: the scenario's last step, or the last of the requested steps.
     stop: u64,
-    /// Whether it is on its way to `stop` as fast as it can.
+    /// Whether it steps towards `stop` as fast as it can, whatever its pace.
     hurries: bool,
-    /// When the scenario's run is over, s.
+    /// Time at which the scenario's run ends, s.
     end_s: f64,
-    /// What it is played to, at its pace, if it is on its way there.
+    /// The condition until which it is played, if there is one.
     until: Option<Condition>,
 }
 
@@ -72,7 +72,7 @@ impl Playback {
         }
     }
 
-    /// The run is over at `end_s` (s), however many steps that is.
+    /// Sets the time at which the scenario's run ends, s.
     pub fn set_end(&mut self, end_s: f64) {
         self.end_s = end_s;
         if !self.hurries && self.until.is_none() {
@@ -80,12 +80,12 @@ impl Playback {
         }
     }
 
-    /// The step at which the run is over.
+    /// The step at which the scenario's run ends.
     pub fn end_step(&self) -> u64 {
         Simulation::step_at(self.run.scenario(), self.end_s)
     }
 
-    /// Takes the run to `step` at once.
+    /// Steps the run to `step` before returning.
     ///
     /// # Errors
     /// When the numbers stop being finite on the way.
@@ -97,14 +97,15 @@ impl Playback {
         Ok(())
     }
 
-    /// Back to step 0; speed, running or not, and the exact motion's being shown stay as they are.
+    /// Returns to step 0. The speed, whether the run goes on, and whether the exact motion is shown stay as they are.
     pub fn restart(&mut self) {
         let running = self.pace.is_running();
         self.go_to(0);
         self.set_running(running);
     }
 
-    /// Begins the run of another `scenario`; speed, running or not, and the exact motion's being shown stay as they are.
+    /// Begins the run of another `scenario`. The speed, whether the run goes on, and whether the exact motion is shown stay
+    /// as they are.
     pub fn begin(&mut self, scenario: Arc<Scenario>) {
         let shows_exact = self.run.overlay().is_some();
         self.end_s = Clock::end_s(&scenario);
@@ -115,23 +116,23 @@ impl Playback {
         self.stop = self.next_stop();
     }
 
-    /// Goes to `step` and stops there: where the run has been before at once, unless the body is large; beyond, as fast
-    /// as it can.
+    /// Goes to `step` and stops there. A step that the run has reached before is usually shown at once; a later step, or a
+    /// long way with a large body, takes several frames.
     pub fn go_to(&mut self, step: u64) {
         self.set_running(false);
         self.run.set_out_for(step);
         self.go_on_to(step);
     }
 
-    /// Goes on in `scenario`, which has the same past up to `step`, and stops there.
-    pub fn turn_at(&mut self, step: u64, scenario: &Arc<Scenario>) {
+    /// Goes to `step`, continues with `scenario`, which has the same motion up to there, and stops.
+    pub fn continue_at(&mut self, step: u64, scenario: &Arc<Scenario>) {
         self.set_running(false);
         self.run.set_out_for(step);
         self.run.go_on_in(scenario);
         self.go_on_to(step);
     }
 
-    /// On to where it has set out for, and from there to `step`, where it has not been.
+    /// Goes to the run's destination and then, as fast as it can, on to `step`.
     fn go_on_to(&mut self, step: u64) {
         self.arrive();
         if step > self.run.furthest() {
@@ -139,7 +140,7 @@ impl Playback {
         }
     }
 
-    /// Goes on in `scenario` from here, running or not as it was.
+    /// Continues with `scenario` from the present step; whether the run goes on stays as it is.
     pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
         let running = self.pace.is_running();
         self.set_running(running);
@@ -150,7 +151,7 @@ impl Playback {
         }
     }
 
-    /// Shows `scenario`, which leads to the same numbers.
+    /// Replaces the scenario by one that leads to the same numbers.
     pub fn describe_as(&mut self, scenario: &Arc<Scenario>) {
         self.run.describe_as(scenario);
         if !self.hurries && self.until.is_none() {
@@ -158,9 +159,9 @@ impl Playback {
         }
     }
 
-    /// Takes the run to where it has set out for: at once, or as fast as it can where that takes longer.
+    /// Steps the run to its destination, either before returning or, if that takes too long, over the next frames.
     fn arrive(&mut self) {
-        let is_near = |to: u64| self.cost(to - self.step_number()) <= AT_ONCE;
+        let is_near = |to: u64| self.cost(to - self.step_number()) <= MOST_COST_PER_FRAME;
         if self.run.destination().is_some_and(is_near) {
             while self.run.destination().is_some() && self.run.step().is_ok() {}
         }
@@ -168,14 +169,14 @@ impl Playback {
         self.hurries = self.run.destination().is_some();
     }
 
-    /// What `steps` cost, in points times steps.
+    /// The cost of `steps`: their number times that of the body's points, and a constant share.
     fn cost(&self, steps: u64) -> u64 {
         let points = self.run.scenario().body.mechanics.points().len() as u64;
-        steps.saturating_mul(points + BESIDE_POINTS)
+        steps.saturating_mul(points + COST_OF_A_STEP)
     }
 
-    /// Plays what `wall` has earned since `now` (as `clock` tells it), as far as there is time for it. Gives why it
-    /// stopped, if it did.
+    /// Plays the simulated time that is due after `wall` of wall time, but steps no longer than 12 ms after `now`, as
+    /// `clock` tells it. Returns why the playback stopped, if it did.
     pub fn advance(
         &mut self,
         now: Duration,
@@ -194,8 +195,8 @@ impl Playback {
         self.play(owed_s, wall, || clock() >= deadline)
     }
 
-    /// Takes the run to where it is on its way to, however long that takes: to a step, or until a condition holds. Gives
-    /// why it stopped, if it was on its way at all.
+    /// Plays to the requested step, or until the condition holds, however long that takes. Returns why the playback
+    /// stopped; `None` if nothing was requested.
     pub fn finish(&mut self) -> Option<Halt> {
         if self.hurries || self.until.is_some() {
             self.play(f64::INFINITY, Duration::ZERO, || false)
@@ -204,7 +205,7 @@ impl Playback {
         }
     }
 
-    /// Plays what is `owed_s`, as far as there is time for it. Gives why it stopped, if it did.
+    /// Plays `owed_s` of simulated time, or until `enough` returns true. Returns why the playback stopped, if it did.
     fn play(&mut self, owed_s: f64, wall: Duration, enough: impl FnMut() -> bool) -> Option<Halt> {
         let until = self.until.as_ref();
         let is_fulfilled = |run: &LiveRun| until.is_some_and(|until| until(run));
@@ -223,8 +224,8 @@ impl Playback {
         Some(halt)
     }
 
-    /// Plays on at its pace until `condition` holds, past the end of the scenario's run too, and stops there; gives
-    /// whether it has to: where it stands it may hold already. It is given up after ten million steps.
+    /// Starts playing at its pace until `condition` holds; then it stops. It does not stop at the end of the scenario's
+    /// run, and gives up after ten million steps. Returns false, and does not start, if the condition holds already.
     pub fn run_until(&mut self, condition: Condition) -> bool {
         self.set_running(false);
         if condition(&self.run) {
@@ -236,12 +237,12 @@ impl Playback {
         true
     }
 
-    /// Whether it is on its way to where a condition holds.
-    pub fn is_on_its_way(&self) -> bool {
+    /// Whether it plays until a condition holds.
+    pub fn is_running_until(&self) -> bool {
         self.until.is_some()
     }
 
-    /// Lets the exact motion come after the run, where it is shown, for its share of the time.
+    /// Advances the exact motion towards the run's time, if it is shown, for at most its share of the computing time.
     pub fn follow_exact(&mut self, clock: &mut dyn FnMut() -> Duration) {
         let share = if self.is_flat_out() {
             FOLLOWING_FLAT_OUT
@@ -252,7 +253,7 @@ impl Playback {
         self.run.follow_exact(|| clock() >= deadline);
     }
 
-    /// The end of the scenario's run, once it is passed none.
+    /// The last step of the scenario's run; once the run has reached it, there is no further stop.
     fn next_stop(&self) -> u64 {
         let end = self.end_step();
         if self.step_number() < end {
@@ -262,7 +263,7 @@ impl Playback {
         }
     }
 
-    /// Goes on, or stops where it is.
+    /// Lets the run go on or stops it, and cancels any requested steps or condition.
     pub fn set_running(&mut self, running: bool) {
         if self.hurries || self.until.is_some() {
             self.run.stay();
@@ -273,20 +274,21 @@ impl Playback {
         self.pace.set_running(running);
     }
 
-    /// Takes `steps` time steps as fast as it can, a few of them at once, and stops.
+    /// Takes `steps` time steps as fast as it can and stops. A few steps are taken before returning, many over the next
+    /// frames.
     pub fn take_steps(&mut self, steps: u64) {
         self.set_running(false);
         self.stop = self.step_number().saturating_add(steps);
-        if self.cost(steps) <= BEFORE_THE_NEXT_KEY {
+        if self.cost(steps) <= MOST_COST_PER_KEY {
             while self.step_number() < self.stop && self.run.step().is_ok() {}
         }
-        self.hurries = self.step_number() < self.stop; // a step that fails does so again, and is told of
+        self.hurries = self.step_number() < self.stop; // a failed step is tried again by advance(), which reports it
         if !self.hurries {
             self.stop = self.next_stop();
         }
     }
 
-    /// How many of the steps that were asked for are still to be taken, if it is on its way through them.
+    /// The number of requested steps still to be taken; `None` if none are in progress.
     pub fn steps_to_go(&self) -> Option<u64> {
         self.hurries
             .then(|| self.stop.saturating_sub(self.step_number()))
@@ -327,12 +329,12 @@ impl Playback {
         self.pace.is_running()
     }
 
-    /// Whether time changes anything: the run goes on, or something is being computed.
+    /// Whether the picture changes with time: the run goes on, or something is being computed.
     pub fn is_busy(&self) -> bool {
         self.pace.is_running() || self.hurries || self.run.overlay_is_behind()
     }
 
-    /// Whether it uses all the time there is, rather than moments that one can wait for.
+    /// Whether it computes without pause, so that the loop should not wait for the next frame.
     pub fn is_flat_out(&self) -> bool {
         let catches_up = !self.pace.is_running() && self.run.overlay_is_behind();
         self.hurries || catches_up || (self.pace.is_running() && self.pace.speed() == Speed::Top)

@@ -1,5 +1,5 @@
-//! The numbers on the screen, read off a few times a second: digits that change in every frame can be read by nobody,
-//! and a slow line has better things to carry.
+//! The numbers on the screen. They are updated only four times a second: nobody can read digits that change in every frame,
+//! and sending them would load a slow line.
 
 use super::live::LiveRun;
 use super::pace::{Pace, Speed};
@@ -7,16 +7,16 @@ use crate::analysis::{Measured, Readouts};
 use crate::text::number::{exponent, fixed, shortest};
 use std::time::Duration;
 
-/// Time between two readings while the run goes on.
+/// Time between two updates while the run goes on.
 pub const EVERY: Duration = Duration::from_millis(250);
 
-/// A precession without nutations counts as measured from this relative uncertainty on.
+/// A precession measured without whole nutations is shown once its relative uncertainty is at most this.
 const SETTLED: f64 = 0.05;
 
-/// One reading: the numbers, and what is the lab's alone.
+/// The numbers shown at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// The run's numbers, by the one table.
+    /// The run's numbers, as the table of readouts has them.
     pub readouts: Readouts,
     /// Whether the run goes on, and how fast.
     pub pace: String,
@@ -31,7 +31,7 @@ impl Reading {
         }
     }
 
-    /// Precession as it was measured so far, degrees a second, once it says something.
+    /// Measured precession, degrees a second; `None` until its uncertainty is small enough.
     pub fn precession_deg_per_s(&self) -> Option<f64> {
         self.readouts
             .precession
@@ -40,8 +40,8 @@ impl Reading {
     }
 }
 
-/// Whether `measured` says something: known to a half from whole nutations, or settled without any. An axle that passes
-/// through the vertical has nutations and no azimuth to speak of.
+/// Whether the uncertainty is small enough to show the value: at most half of it where whole nutations were measured, else
+/// at most [`SETTLED`] of it. (An axle that passes through the vertical has nutations but no well-defined azimuth.)
 fn is_settled(measured: &Measured) -> bool {
     let within = if measured.nutations > 0 { 0.5 } else { SETTLED };
     measured.uncertainty <= within * measured.value.abs()
@@ -59,7 +59,7 @@ fn pace_in_words(pace: &Pace) -> String {
     }
 }
 
-/// `number` without the digits that only flicker.
+/// `number` rounded to two significant digits, since further digits change all the time.
 fn two_digits(number: f64) -> f64 {
     if !(number > 0.0 && number.is_finite()) {
         return 0.0;
@@ -68,7 +68,7 @@ fn two_digits(number: f64) -> f64 {
     (number / unit).round() * unit
 }
 
-/// As few digits as say it: 20, 0.002, 5e5.
+/// The speed in few characters: 20, 0.002, 5e5.
 fn short(speed: f64) -> String {
     match speed {
         n if n >= 1e5 => exponent(n, 0),

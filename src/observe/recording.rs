@@ -1,25 +1,24 @@
-//! What the traces are drawn from: every step's extremes, however long the run, in bounded memory.
+//! The data of the traces: the extremes of every curve over all steps, in bounded memory however long the run is.
 //!
-//! Blocks of one step, of two, of four and so on. Two full blocks of one size make one of the next, so that no step's
-//! minimum or maximum is ever lost to the picture. Of the sizes that still reach back to the start there are up to
-//! 16 384 blocks, of the smaller ones the newest 2048: any stretch of the run up to now is covered by a
-//! thousand blocks or more.
+//! They are stored in blocks of one step, of two, of four and so on. Two blocks of one size make one of the next, so that
+//! every step's value is within the extremes of some block. A size that still reaches back to the start has up to 16 384
+//! blocks, a smaller one the newest 2048; any stretch of the run up to now is covered by a thousand blocks or more.
 //!
 //! A recording can be [cut back](Recording::cut_back) to an earlier moment. Its blocks there are coarser than they were
-//! when that moment was the newest; [`coarse_since`](Recording::coarse_since) says from where on it wants to be filled
-//! anew.
+//! when that moment was the newest; [`coarse_since`](Recording::coarse_since) tells from which moment on it should be
+//! recorded again.
 
 use crate::physics::State;
 use nalgebra::Vector3;
 use std::collections::VecDeque;
 
-/// How many blocks of one size are kept as long as they reach back to the start.
+/// The most blocks of one size that reach back to the start.
 const WHOLE: usize = 16_384;
-/// How many are kept once they do not.
+/// How many blocks of one size are kept once there are more than that.
 const RECENT: usize = 2048;
-/// No more blocks than this, but for twice as many, are given for one stretch.
+/// A stretch is given as at most twice this many blocks of one size.
 const FINEST: usize = 2048;
-/// A stretch of fewer blocks than this, and of more steps than blocks, is coarse.
+/// A stretch is coarse if it has fewer blocks than this, each of more than one step.
 const COARSE: u64 = 256;
 
 /// The curves that are recorded.
@@ -60,7 +59,7 @@ impl Curve {
     }
 }
 
-/// Where the body is at one moment, as far as the pictures go.
+/// The values of one moment that the pictures need.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// Time, s.
@@ -72,7 +71,7 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// Reads `state`, whose traced point stands at `traced` (body frame, m).
+    /// The values of `state`; the traced point is at `traced` (body frame, m).
     pub fn new(state: &State, traced: &Vector3<f64>) -> Self {
         Self {
             time_s: state.time_s,
@@ -81,15 +80,15 @@ impl Moment {
         }
     }
 
-    /// What is kept of each curve: of the tilt its cosine, which costs no arc at every step, with the sign that makes it
-    /// grow with the tilt.
+    /// The stored value of each curve. For the tilt it is the negative cosine: it grows with the tilt, and saves computing
+    /// an arc cosine at every step.
     fn values(&self) -> [f64; 4] {
         let at = &self.position;
         [at.x, at.y, at.z, -self.axle_height]
     }
 }
 
-/// The smallest and largest value on a stretch.
+/// The smallest and largest value of a stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// Smallest.
@@ -123,7 +122,7 @@ pub struct Block {
     pub begin_s: f64,
     /// Time of its last moment, s.
     pub end_s: f64,
-    /// Extremes of what is kept of each curve.
+    /// Extremes of the stored value of each curve.
     extents: [Extent; 4],
     /// The traced point at its last moment, world frame, m.
     pub end: Vector3<f64>,
@@ -161,17 +160,17 @@ impl Block {
     }
 }
 
-/// The tilt of an axle, degrees, from the height of its direction with the sign changed. Near the vertical it is known to
-/// a millionth of a degree: for a picture, not for a number.
-fn tilt_deg(sunk: f64) -> f64 {
-    libm::acos((-sunk).clamp(-1.0, 1.0)).to_degrees()
+/// The tilt of an axle, degrees, from the negative cosine of the tilt. Near the vertical it is accurate to a millionth of a
+/// degree, which is enough for a picture but not for a printed number.
+fn tilt_deg(negative_cosine: f64) -> f64 {
+    libm::acos((-negative_cosine).clamp(-1.0, 1.0)).to_degrees()
 }
 
-/// All blocks of one size: each follows the one before it without a gap.
+/// The blocks of one size, in order and without gaps.
 #[derive(Clone, Debug, Default)]
 struct Level {
     blocks: VecDeque<Block>,
-    /// How many blocks of this size came before the first one that is kept.
+    /// How many older blocks of this size have been dropped.
     dropped: u64,
 }
 
@@ -181,14 +180,14 @@ impl Level {
         self.dropped + self.blocks.len() as u64
     }
 
-    /// The first half of the block of the next size, where there is no second half yet.
+    /// The newest block, if it is the first half of a block of the next size and still lacks the second half.
     fn waiting(&self) -> Option<&Block> {
         self.blocks
             .back()
             .filter(|_| !self.count().is_multiple_of(2))
     }
 
-    /// Takes `block`; gives a block of the next size where it completes one.
+    /// Appends `block`; returns a block of the next size if this completes one.
     fn push(&mut self, block: Block) -> Option<Block> {
         let pair = self.waiting().map(|first| first.and(&block));
         let most = if self.dropped == 0 { WHOLE } else { RECENT };
@@ -201,7 +200,7 @@ impl Level {
         pair
     }
 
-    /// Whether it can be cut back to `count` blocks: the one that then waits for its second half must be there.
+    /// Whether it can be cut back to `count` blocks: if the last of them is a first half, it must not have been dropped.
     fn can_be_cut_to(&self, count: u64) -> bool {
         count.is_multiple_of(2) || count > self.dropped
     }
@@ -216,7 +215,7 @@ impl Level {
         self.dropped == 0
     }
 
-    /// The place among those kept of the first block that ends at `time_s` or later.
+    /// The index of the first stored block that ends at `time_s` or later.
     fn first_since(&self, time_s: f64) -> usize {
         self.blocks.partition_point(|block| block.end_s < time_s)
     }
@@ -236,7 +235,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Takes the next moment.
+    /// Appends the next moment.
     pub fn push(&mut self, moment: &Moment) {
         let block = Block::of(moment);
         self.whole = Some(self.whole.map_or(block, |whole| whole.and(&block)));
@@ -252,13 +251,13 @@ impl Recording {
         }
     }
 
-    /// How many moments it has taken.
+    /// The number of recorded moments.
     pub fn moments(&self) -> u64 {
         self.moments
     }
 
-    /// Goes back to where it had taken `moments` of them, or to a little earlier: where blocks that small are no longer
-    /// kept. Gives how many it has then; those that are missing are to be pushed again.
+    /// Removes all moments after the first `moments`, and a few more where the small blocks that are needed there have
+    /// been dropped. Returns how many remain; the caller pushes the missing ones again.
     pub fn cut_back(&mut self, moments: u64) -> u64 {
         let wanted = self.moments.min(moments);
         let sizes = self.levels.iter().enumerate().rev();
@@ -276,7 +275,7 @@ impl Recording {
         self.moments
     }
 
-    /// The moment from which on it should be filled anew, if the blocks up to now are coarse for some stretch.
+    /// The moment from which on the run should be recorded again, if some stretch up to now is coarse.
     pub fn coarse_since(&self) -> Option<u64> {
         let lengths = (0..u64::BITS).map(|power| 1 << power);
         let shorter = lengths.take_while(|&length| length < self.moments);
@@ -293,14 +292,13 @@ impl Recording {
         coarse.last().map(|length| self.moments - length)
     }
 
-    /// The whole of it as one block; `None` while nothing is recorded.
+    /// The whole recording as one block; `None` while nothing is recorded.
     pub fn whole(&self) -> Option<&Block> {
         self.whole.as_ref()
     }
 
-    /// Blocks in order of time that cover everything from `since_s` (s) to now, as fine as they are kept and need be.
-    ///
-    /// A block size that reaches back so far may not have completed its newest block: smaller ones follow it.
+    /// Blocks in order of time that cover everything from `since_s` (s) to now: those of the smallest size that reaches
+    /// back so far and has not too many, followed by smaller ones for the newest moments.
     pub fn since(&self, since_s: f64) -> impl Iterator<Item = &Block> {
         let suits = |level: &Level| {
             level.reaches(since_s) && level.blocks.len() - level.first_since(since_s) <= 2 * FINEST
@@ -360,7 +358,7 @@ mod tests {
         }
     }
 
-    /// Every moment up to the newest in exactly one block, in order, from `since` on.
+    /// Checks that from `since` on every moment is in exactly one block, and that the blocks are in order.
     fn covers(recording: &Recording, since: f64) -> Result<(), TestCaseError> {
         let blocks: Vec<_> = recording.since(since).collect();
         prop_assert!(blocks[0].begin_s <= since);

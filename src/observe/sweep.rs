@@ -1,14 +1,14 @@
-//! The geometry of an oscilloscope's sweep: the pen moves to the right and the picture stays.
+//! The geometry of an oscilloscope's sweep: the pen moves to the right over a picture that does not scroll.
 //!
-//! Right of the pen, behind a gap, the sweep before is still to be seen. Only the pen's column changes from frame to
-//! frame, which a slow line can carry where a scrolling window is too much for it.
+//! To the right of the pen, after a gap, the previous sweep is still shown. Only the columns at the pen change from frame
+//! to frame; a slow line can transmit these, but not a scrolling picture.
 
 use super::recording::{Block, Curve, Extent, Recording};
 
-/// Parts of a column smaller than this are rounding, not time.
+/// A part of a column below this share is rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// The longest window, s: far enough from the end of the range of numbers to be added to a time.
+/// The longest window, s: small enough that adding it to a time does not overflow.
 const LONGEST_S: f64 = f64::MAX / 4.0;
 
 /// A window of time on a number of columns.
@@ -52,7 +52,7 @@ impl Sweep {
         (self.now_s - self.window_s).max(0.0)
     }
 
-    /// The column of `time_s`, within the present sweep or the one before.
+    /// The column of `time_s`, which lies within the present sweep or the previous one.
     fn column(&self, time_s: f64) -> usize {
         let passed = time_s - self.begin_s;
         let passed = if passed < 0.0 {
@@ -64,12 +64,12 @@ impl Sweep {
         column.min(self.columns.saturating_sub(1))
     }
 
-    /// Whether the sweep before is still shown at `column`.
+    /// Whether the previous sweep is still shown at `column`.
     fn keeps(&self, column: usize) -> bool {
         column > self.pen() + self.gap
     }
 
-    /// The first and the last column of `block`, `None` where the pen has been since.
+    /// The first and the last column of `block`; `None` where the present sweep has overwritten all of them.
     fn place(&self, block: &Block) -> Option<(usize, usize)> {
         let present = block.end_s >= self.begin_s;
         let begin_s = if present {
@@ -93,7 +93,7 @@ impl Sweep {
         columns
     }
 
-    /// The columns of what of `begin_s` to `end_s` lies between `low_s` and `high_s`, which are of one sweep.
+    /// The columns of the part of `begin_s` to `end_s` between `low_s` and `high_s`, which lie within one sweep.
     fn clipped(&self, begin_s: f64, end_s: f64, low_s: f64, high_s: f64) -> Vec<usize> {
         let (begin_s, end_s) = (begin_s.max(low_s), end_s.min(high_s));
         if low_s < 0.0 || begin_s >= end_s {
@@ -101,7 +101,7 @@ impl Sweep {
         }
         let share = |time_s: f64| (time_s - low_s) / self.window_s * self.columns as f64;
         let first = ((share(begin_s) + ROUNDING) as usize).min(self.columns.saturating_sub(1));
-        // What ends where a column begins has no part in it; however short, it has its own.
+        // A stretch that ends where a column begins does not include that column; every stretch has at least one column.
         let end = ((share(end_s) - ROUNDING).ceil() as usize).max(first + 1);
         (first..end.min(self.columns)).collect()
     }
@@ -114,8 +114,8 @@ impl Sweep {
         (present || before).then_some(column)
     }
 
-    /// What `curve` of a run that is over does in each column of the present window, the pen wherever it is: ahead of
-    /// the pen too, and nowhere after the run's own end.
+    /// The extremes of `curve` in each column of the present window, for a run that is over: they are given to the right of
+    /// the pen too, and `None` after the end of that run. As in [`extents`](Self::extents), nothing is joined across `cuts`.
     pub fn extents_of_window(
         &self,
         recording: &Recording,
@@ -134,14 +134,14 @@ impl Sweep {
         pen.columns
     }
 
-    /// The column of `time_s` (s) if the present sweep's window had no end.
+    /// The column of `time_s` (s), also for times after the end of the present window.
     fn ahead(&self, time_s: f64) -> usize {
         let column = (time_s - self.begin_s) / self.window_s * self.columns as f64;
         (column as usize).min(usize::MAX / 2)
     }
 
-    /// What `curve` does in each column: the extremes of every step in it, and of the straight way to the next, but
-    /// not across the times of `cuts` (s).
+    /// The extremes of `curve` in each column: of all steps in it, and of the straight lines to the steps before and after.
+    /// No line crosses a time of `cuts` (s).
     pub fn extents(
         &self,
         recording: &Recording,
@@ -159,12 +159,12 @@ impl Sweep {
     }
 }
 
-/// What draws a curve from block to block.
+/// Draws a curve block by block.
 struct Pen<'a> {
     columns: Vec<Option<Extent>>,
     curve: Curve,
     cuts: &'a [f64],
-    /// The end of the block before, s, its last column and what the curve did in it.
+    /// Of the previous block: its end, s, its last column and its extremes.
     before: Option<(f64, usize, Extent)>,
 }
 
@@ -178,7 +178,7 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// Draws `block` from column `first` to `last`, of which those beyond the right edge are not there.
+    /// Draws `block` from column `first` to `last`; columns beyond the right edge are left out.
     fn draw(&mut self, block: &Block, first: usize, last: usize) {
         let extent = block.extent(self.curve);
         if let Some((end_s, column, from)) = self.before
@@ -193,25 +193,25 @@ impl<'a> Pen<'a> {
         self.before = Some((block.end_s, last, extent));
     }
 
-    /// The next block is not joined to those before.
+    /// Starts a new line: the next block is not joined to the previous one.
     fn lift(&mut self) {
         self.before = None;
     }
 
-    /// Whether something was changed at `from_s` or later, and before `to_s`.
+    /// Whether there is a cut at `from_s` or later and before `to_s`.
     fn is_cut(&self, from_s: f64, to_s: f64) -> bool {
         let next = self.cuts.partition_point(|&cut| cut < from_s);
         self.cuts.get(next).is_some_and(|&cut| cut < to_s)
     }
 }
 
-/// The straight way from one block to the next, over the columns between them and half of it in each of their own; it
-/// may lead beyond the right edge.
+/// Draws the straight line from one block to the next: over the columns between them, and half a column in each of the
+/// blocks' own. It may lead beyond the right edge.
 fn join(columns: &mut [Option<Extent>], from: (usize, Extent), to: (usize, Extent)) {
     let ((begin, from), (end, to)) = (from, to);
     let (leave, arrive) = nearest(from, to);
     if !(leave.is_finite() && arrive.is_finite()) {
-        return; // the exact motion may leave the range of numbers where the run does not
+        return; // the exact motion may overflow where the run does not
     }
     let length = (end - begin) as f64;
     let (low, high) = (leave.min(arrive), leave.max(arrive));
@@ -224,7 +224,7 @@ fn join(columns: &mut [Option<Extent>], from: (usize, Extent), to: (usize, Exten
     }
 }
 
-/// The two values, one of each extent, that are nearest to each other.
+/// The pair of values, one from each extent, with the smallest distance.
 fn nearest(from: Extent, to: Extent) -> (f64, f64) {
     if from.max < to.min {
         (from.max, to.min)
