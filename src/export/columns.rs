@@ -1,4 +1,4 @@
-//! The one table of columns: every number of a [`Sample`] under the name by which it leaves the program.
+//! The table of CSV columns: every number of a [`Sample`] with its column name.
 
 use crate::run::Sample;
 use serde::ser::{Serialize, SerializeTuple, Serializer};
@@ -13,7 +13,7 @@ pub struct Column {
     value: fn(&Sample) -> Value,
 }
 
-/// A number as it is written: counts without a point, all else so that it reads back to the same f64.
+/// A number as it is written: a count without a decimal point, any other number so that it reads back as the same f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
     /// A count.
@@ -24,7 +24,7 @@ pub enum Value {
 
 use Value::{Number, Whole};
 
-/// Makes of one list the table, for whoever asks by name, and the row, written without asking.
+/// Generates from one list both the table, for access by name, and the serializer of a row, which needs no look-up.
 macro_rules! columns {
     ($($name:literal, $about:literal, $kind:ident($sample:ident $(. $field:ident)+);)*) => {
         /// Every column, in the order of the CSV.
@@ -73,7 +73,7 @@ impl Column {
         COLUMNS.iter().find(|column| column.name == name)
     }
 
-    /// What `sample` has in this column.
+    /// The value of `sample` in this column.
     pub fn value(&self, sample: &Sample) -> Value {
         (self.value)(sample)
     }

@@ -1,5 +1,5 @@
-//! A run as CSV: the run file in `# ` lines, one header line, then rows as they come. Nothing is kept, so that memory
-//! does not grow with the run.
+//! A run as CSV: the run file in `# ` lines, one header line, then the rows. Each row is written when it is added, so that
+//! memory does not grow with the run.
 
 use super::columns::{COLUMNS, Row};
 use crate::run::Sample;
@@ -35,10 +35,10 @@ impl<W: Write> CsvWriter<W> {
         self.rows.serialize(Row(sample)).map_err(plain)
     }
 
-    /// Writes what is still held back, and gives the place it was written to.
+    /// Writes what is still buffered, and returns the output.
     ///
     /// # Errors
-    /// When that cannot be written.
+    /// When the output cannot be written.
     pub fn finish(mut self) -> io::Result<W> {
         self.rows.flush()?;
         self.rows
@@ -47,7 +47,7 @@ impl<W: Write> CsvWriter<W> {
     }
 }
 
-/// The system's own error: csv's conversion wraps it, and a closed pipe could no longer be told from a full disk.
+/// The system's error without csv's wrapping, which would hide its kind: a closed pipe is handled unlike a full disk.
 fn plain(error: csv::Error) -> io::Error {
     match error.into_kind() {
         csv::ErrorKind::Io(error) => error,
@@ -55,7 +55,7 @@ fn plain(error: csv::Error) -> io::Error {
     }
 }
 
-/// `text` with "# " before every line, as it stands above the rows.
+/// `text` with "# " before every line, as the run file is written above the rows.
 pub fn commented(text: &str) -> String {
     text.lines().flat_map(|line| ["# ", line, "\n"]).collect()
 }

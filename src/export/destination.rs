@@ -1,4 +1,4 @@
-//! Where an export goes: a file that appears whole or not at all, or a stream.
+//! The output of an export: a file that appears only once it is complete, or a stream.
 
 use crate::text::printable::Shown;
 use std::fs::{self, File, OpenOptions};
@@ -7,56 +7,56 @@ use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// A place that is being written to.
+/// An output that is being written.
 #[derive(Debug)]
 pub enum Destination {
     /// Standard output.
     Stdout(io::Stdout),
-    /// A device, FIFO or socket: written as it comes.
+    /// A device, FIFO or socket, which is written to directly.
     Stream(File),
-    /// A regular file, under a temporary name beside its place until it is whole.
+    /// A regular file, which has a temporary name in the same folder until it is complete.
     File {
-        /// What has been written so far.
+        /// The temporary file.
         temporary: NamedTempFile,
-        /// The name it will have.
+        /// The path that the complete file will have.
         path: PathBuf,
-        /// Whether a file of that name may be replaced.
+        /// Whether an existing file of that name may be replaced.
         replace: bool,
     },
 }
 
-/// Why a place cannot be written to.
+/// Why an output cannot be opened or written.
 #[derive(Debug, thiserror::Error)]
 pub enum DestinationError {
-    /// There is such a file, and it was not said that it may go.
+    /// The file exists and may not be replaced.
     #[error("{} exists; --force replaces it", Shown(.0))]
     Exists(PathBuf),
-    /// The name is that of a folder.
+    /// The path is a folder.
     #[error("{} is a folder: name a file in it", Shown(.0))]
     Folder(PathBuf),
-    /// It is a device, a FIFO or a socket, where a file is wanted.
+    /// The path is a device, a FIFO or a socket, where only a regular file is allowed.
     #[error("cannot write {}: it is not a regular file, and could take no bytes for as long as it likes; gyrolab run -o writes to such", Shown(.0))]
     NotAFile(PathBuf),
-    /// There is no folder to put the file in.
+    /// The file's folder does not exist.
     #[error("cannot write {}: there is no folder {}", Shown(path), Shown(folder))]
     NoFolder {
-        /// The place.
+        /// The path of the file.
         path: PathBuf,
-        /// The folder that is not there.
+        /// The missing folder.
         folder: PathBuf,
     },
-    /// The system refused.
+    /// The system reported an error.
     #[error("cannot write {}: {error}", Shown(path))]
     Refused {
-        /// The place.
+        /// The path of the output.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         error: io::Error,
     },
 }
 
 impl DestinationError {
-    /// What is wrong, without the remedy that only the command line has.
+    /// The message without the advice that applies to the command line only.
     pub fn fact(&self) -> String {
         match self {
             Self::Exists(path) => format!("{} exists", Shown(path)),
@@ -66,12 +66,12 @@ impl DestinationError {
 }
 
 impl Destination {
-    /// Opens `path` for writing, before the long run begins; `-` is standard output. A device, a FIFO, and what the
-    /// process was given open, such as `/dev/stdout`, are written as they are. An existing regular file is replaced
-    /// only if `replace`, and only by a whole one.
+    /// Opens `path` for writing; `-` is standard output. Devices, FIFOs and open file descriptors such as `/dev/stdout` are
+    /// written to directly. An existing regular file is replaced only if `replace` is true, and only by a complete file.
+    /// Call it before a long run, so that errors are reported early.
     ///
     /// # Errors
-    /// When it exists and is not to be replaced, is a folder, or the system refuses.
+    /// When the file exists and `replace` is false, when `path` is a folder, or when the system reports an error.
     pub fn open(path: &Path, replace: bool) -> Result<Self, DestinationError> {
         if Self::is_for_stdout(path) {
             return Ok(Self::Stdout(io::stdout()));
@@ -79,7 +79,7 @@ impl Destination {
         let mut options = OpenOptions::new();
         let is_stream = match (descriptor(path), fs::metadata(path)) {
             (Some(_), _) => {
-                options.append(true); // what has been written to it stays
+                options.append(true); // do not overwrite earlier output
                 true
             }
             (None, Ok(there)) => !there.is_file() && !there.is_dir(),
@@ -97,11 +97,12 @@ impl Destination {
             })
     }
 
-    /// The same for a regular file alone, for where nothing may wait and stdout is not to be written to; `-` is a name
-    /// like others.
+    /// As [`open`](Self::open), but for regular files only: for a caller that must neither wait for a reader nor write to
+    /// standard output. `-` is an ordinary file name.
     ///
     /// # Errors
-    /// When it exists and is not to be replaced, is anything but a regular file, or the system refuses.
+    /// When the file exists and `replace` is false, when `path` is anything but a regular file, or when the system reports
+    /// an error.
     pub fn open_file(path: &Path, replace: bool) -> Result<Self, DestinationError> {
         let refused = |error| DestinationError::Refused {
             path: path.to_owned(),
@@ -113,7 +114,7 @@ impl Destination {
             Ok(there) if !there.is_file() => Err(DestinationError::NotAFile(path.to_owned())),
             _ if descriptor(path).is_some() => Err(DestinationError::NotAFile(path.to_owned())),
             Ok(_) if !replace => Err(DestinationError::Exists(path.to_owned())),
-            // A link stays a link: the file it leads to is replaced.
+            // A symbolic link is kept: the file to which it leads is replaced.
             Ok(_) => {
                 let target = fs::canonicalize(path).map_err(refused)?;
                 Self::file(target, replace).map_err(refused)
@@ -148,7 +149,7 @@ impl Destination {
             .tempfile_in(folder_of(&path))
             .map_err(|error| plain(&error))?;
         if let Ok(there) = fs::metadata(&path) {
-            keep_rights(temporary.as_file(), &there)?;
+            copy_permissions(temporary.as_file(), &there)?;
         }
         Ok(Self::File {
             temporary,
@@ -157,10 +158,10 @@ impl Destination {
         })
     }
 
-    /// How long a file has become so far, bytes; 0 for a stream.
+    /// The present size of the file, bytes; 0 for a stream.
     ///
     /// # Errors
-    /// When the system does not tell.
+    /// When the system does not report the size.
     pub fn bytes(&self) -> io::Result<u64> {
         match self {
             Self::File { temporary, .. } => Ok(temporary.as_file().metadata()?.len()),
@@ -168,10 +169,10 @@ impl Destination {
         }
     }
 
-    /// Gives what has been written its name.
+    /// Flushes the output and gives a temporary file its final name.
     ///
     /// # Errors
-    /// When the system refuses, or a file of that name has come up meanwhile and is not to be replaced.
+    /// When the system reports an error, or when a file of that name has been created meanwhile and may not be replaced.
     pub fn keep(mut self) -> Result<(), DestinationError> {
         let flushed = self.flush();
         match self {
@@ -211,23 +212,23 @@ impl Destination {
     }
 }
 
-/// Gives the new `file` the rights of the one that it replaces and that was `there`, whatever the umask. Set-user-ID
-/// and its like are never passed on; of a file that belongs to another user nothing is.
-fn keep_rights(file: &File, there: &fs::Metadata) -> io::Result<()> {
+/// Gives the new `file` the permissions and group of the file that it replaces (`there`), whatever the umask. The set-ID
+/// and sticky bits are never copied, and nothing is copied from a file of another user.
+fn copy_permissions(file: &File, there: &fs::Metadata) -> io::Result<()> {
     let new = file.metadata()?;
     if new.uid() != there.uid() {
         return Ok(());
     }
     let mut mode = there.mode() & 0o777;
     if new.gid() != there.gid() && fchown(file, None, Some(there.gid())).is_err() {
-        // The new file's group is another one: it may do no more than others may.
+        // The new file has another group, which gets the permissions of others.
         let of_others = (mode & 0o007) << 3;
         mode = mode & 0o707 | mode & of_others;
     }
     file.set_permissions(fs::Permissions::from_mode(mode))
 }
 
-/// The number of the open file that `path` names, by itself or through links, as `/dev/stdout` and `/dev/fd/3` do.
+/// The file descriptor that `path` names, directly or through links, as `/dev/stdout` and `/dev/fd/3` do.
 fn descriptor(path: &Path) -> Option<u32> {
     const MOST_LINKS: usize = 40;
     let own = fs::canonicalize("/proc/self/fd").ok();
@@ -256,12 +257,12 @@ fn folder_of(path: &Path) -> &Path {
         .unwrap_or(Path::new("."))
 }
 
-/// The rights of a new file are those the user's umask leaves.
+/// The permissions of a new file, before the umask.
 fn new_permissions() -> fs::Permissions {
     fs::Permissions::from_mode(0o666)
 }
 
-/// The system's words without the temporary name, which means nothing to the user.
+/// The system's error without the temporary file name, which means nothing to the user.
 fn plain(error: &io::Error) -> io::Error {
     let text = error.to_string();
     let words = text.split(" at path ").next().unwrap_or(&text);

@@ -1,5 +1,5 @@
-//! What leaves the program: [`columns`] names the numbers, [`mod@csv`] writes them, [`stream`] plays a run into it, [`summary`] says how a
-//! run ended, and [`destination`] is where they are written, whole or not at all.
+//! Output of the program: [`columns`] is the table of CSV columns, [`mod@csv`] writes rows, [`stream`] plays a run and
+//! writes its rows, [`summary`] describes how a run ended, and [`destination`] is the file or stream that is written.
 
 pub mod columns;
 pub mod csv;

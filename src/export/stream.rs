@@ -1,4 +1,4 @@
-//! A run played forward to its end, its rows written as they come.
+//! Plays a run to its end and writes its rows as it goes.
 
 use super::CsvWriter;
 use crate::run::{NotFinite, Sample, Simulation};
@@ -6,16 +6,16 @@ use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-/// Between two looks at the clock and the signals a body of one point takes this many steps; one of n points an n-th
-/// of it, within reason.
+/// Steps per block times points of the body; the number of steps is then limited to 16 to 4096. The clock and the watcher
+/// are asked once per block.
 const BLOCK: usize = 1 << 18;
 
-/// How far a stream has come.
+/// The progress of a stream.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
-    /// The step it stands at.
+    /// The present step.
     pub step: u64,
-    /// The step at which it ends.
+    /// The last step.
     pub steps: u64,
     /// Time spent on stepping alone.
     pub stepping: Duration,
@@ -24,18 +24,18 @@ pub struct Progress {
 /// How a stream ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
-    /// At its last step.
+    /// It reached its last step.
     Done,
-    /// Because the watcher said so.
+    /// The watcher stopped it.
     Stopped,
-    /// At numbers that are not finite; the rows before them are written.
+    /// The numbers stopped being finite; the rows before that are written.
     NotFinite(NotFinite),
 }
 
-/// Plays `simulation` on to the step `steps`, writing row 0 and every `every`-th row and the last one to `csv` if
-/// there is one. `each` is shown every step, and `watch` is asked after each block of steps whether to go on.
+/// Plays `simulation` to the step `steps` and writes the present row, every `every`-th row and the last one to `csv`, if
+/// given. It calls `each` after every step, and `watch` after each block of steps; `watch` may stop it.
 ///
-/// Gives how it ended and the time spent on stepping alone.
+/// Returns how the stream ended, and the time spent on stepping alone.
 ///
 /// # Errors
 /// When a row cannot be written.
@@ -70,7 +70,7 @@ pub fn play<W: Write>(
         }
         ended = match result {
             Err(error) => {
-                keep_last(simulation, every, rows.last(), csv.as_deref_mut())?;
+                write_last(simulation, every, rows.last(), csv.as_deref_mut())?;
                 Some(Ended::NotFinite(error))
             }
             Ok(()) if simulation.step_number() >= steps => Some(Ended::Done),
@@ -102,8 +102,8 @@ fn take_block(
     Ok(())
 }
 
-/// The step before the numbers broke is the run's last: it has its row even where `every` would pass it over.
-fn keep_last<W: Write>(
+/// Writes the row of the last finite step, unless it is written already: it is the run's last row, whatever `every` is.
+fn write_last<W: Write>(
     simulation: &Simulation,
     every: u64,
     written: Option<&Sample>,

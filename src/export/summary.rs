@@ -1,4 +1,4 @@
-//! How a run ended, as text for a reader and as JSON for a program.
+//! The summary of a finished run, as text for a reader and as JSON for a program.
 
 use crate::analysis::theory::{Axis, Theory};
 use crate::analysis::{Measured, Readouts, remarks};
@@ -7,22 +7,22 @@ use serde::Serialize;
 use std::fmt;
 use std::time::Duration;
 
-/// The end of a run; as JSON it is the table of [readouts](crate::analysis::readouts).
+/// The summary of a finished run. As JSON it is the table of [readouts](crate::analysis::readouts).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct Summary {
     readouts: Readouts,
 }
 
-/// What is measured beside what theory says of it.
-struct Beside {
+/// A measured value and the theoretical one.
+struct Comparison {
     unit: &'static str,
     measured: Option<Measured>,
     predicted: Option<f64>,
 }
 
 impl Summary {
-    /// The summary of a run that stands as `readouts` say, after stepping for `wall`.
+    /// The summary of a run that has `readouts` at its end and spent the time `wall` on stepping.
     pub fn new(readouts: Readouts, wall: Duration) -> Self {
         Self {
             readouts: Readouts {
@@ -67,12 +67,12 @@ impl Summary {
 
     fn write_rates(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let readouts = &self.readouts;
-        let precession = Beside {
+        let precession = Comparison {
             unit: "rad/s",
             measured: readouts.precession,
             predicted: readouts.theory.and_then(|theory| theory.precession),
         };
-        let nutation = Beside {
+        let nutation = Comparison {
             unit: "s",
             measured: readouts.nutation,
             predicted: readouts.theory.and_then(|theory| theory.nutation_period_s),
@@ -146,8 +146,8 @@ impl Summary {
     }
 }
 
-impl Beside {
-    /// "0.886033 rad/s by theory, 0.886033 +- 2.4e-9 rad/s measured"; where theory speaks of another axis than +z, which.
+impl Comparison {
+    /// "0.886033 rad/s by theory, 0.886033 +- 2.4e-9 rad/s measured", with the axis where theory refers to another than +z.
     fn in_words(&self, readouts: &Readouts) -> String {
         let unit = self.unit;
         let axis = readouts
@@ -176,7 +176,7 @@ impl Beside {
     }
 }
 
-/// Which axis is meant, where it is another than +z.
+/// " about AXIS" where the axis is another than +z, else empty.
 fn about(axis: &Axis) -> String {
     match axis {
         Axis::Z => String::new(),
