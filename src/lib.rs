@@ -4,22 +4,21 @@
 //! inertia from the points, Ω = I⁻¹L, a rotation matrix, a torque from gravity, L updated, again. gyrolab runs
 //! that scheme to the letter beside better ones, exports any run as CSV, and says what the time step did to it.
 //!
-//! The rooms, in the order in which data flows through them:
+//! The modules; each uses only modules listed before it:
 //!
-//! - [`text`](mod@text): numbers and words as people read them, with nothing in them that steers a terminal; every room
-//!   writes with it.
-//! - [`physics`]: body, state, loads, schemes, observables. It knows no file, no clock on the wall, no terminal.
+//! - [`text`](mod@text): numbers and words as people read them, without control characters that a terminal would obey.
+//! - [`physics`]: body, state, loads, schemes, observables. It uses no file, no wall clock and no terminal.
 //! - [`scenario`]: a TOML file becomes a checked [`Scenario`](scenario::Scenario); every refusal names file,
 //!   line, key, value and rule. The shipped presets live here too.
-//! - [`run`]: a scenario and its journal of edits, played forward step by step. It is the one road forward in time.
-//! - [`work`]: what a user makes of a scenario: changed values, pushes, the journal of both, undo.
-//! - [`analysis`]: what a run's numbers are worth: theory, measurement, health, comparisons.
-//! - [`export`]: what leaves the program: columns, CSV, summaries, and the files they are written to.
-//! - [`observe`]: a run as it is watched: played at its pace, gone back into, and what the pictures need of it.
-//! - [`storage`]: what outlasts the screen: sessions, and exports in the background.
-//! - [`lab`]: what the user is working on, and everything that can be done to it.
-//! - [`tui`]: the terminal: keys that lead to actions, and the panes that draw the lab.
-//! - [`cli`]: the commands, and what each does with the rooms above.
+//! - [`run`]: steps a scenario and its edits forward in time. No other module does.
+//! - [`work`]: what the user changes in a scenario: values, pushes, the journal of both, undo; conditions over a run.
+//! - [`analysis`]: how reliable a run's numbers are: theory, measurement, health, comparisons.
+//! - [`observe`]: a run that is being watched: its playback, its earlier steps, and the data of its pictures.
+//! - [`export`]: output of the program: columns, CSV, summaries, and the files they are written to.
+//! - [`storage`]: what the lab keeps on the disk: sessions, exports in the background, the folder it is confined to.
+//! - [`lab`]: the lab without a terminal: its state, and the commands that change it.
+//! - [`tui`]: the terminal: keys that lead to commands, the panes that draw the lab, and the loop.
+//! - [`cli`]: the commands of the command line.
 //!
 //! Frames: *world* has its origin at the pivot and +z up; *body* is fixed in the body and equals the world frame
 //! in the upright pose. Units are SI throughout: metres, kilograms, seconds, newtons, J s; angles are radians
