@@ -1,4 +1,4 @@
-//! The loop: events to actions, time to steps, and a frame where something has changed.
+//! The main loop: it carries out what keys mean, advances the run with time, and draws a frame when something has changed.
 
 use crate::lab::{Lab, Request};
 use crate::storage::session::Session;
@@ -10,15 +10,16 @@ use std::io;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-/// How long to sleep where nothing moves and nothing is due.
+/// Longest wait for events while nothing changes.
 const IDLE: Duration = Duration::from_millis(500);
-/// The same while an export is under way in the background, or a file is being read for the browser.
+/// The same while an export is in progress in the background, or a file is being read for the browser.
 const ATTENTIVE: Duration = Duration::from_millis(100);
 
-/// Runs `lab` on the terminal at up to `frames` a second, until the user leaves; `session` keeps it, where there is one.
+/// Runs `lab` on the terminal at up to `frames` frames a second until the user leaves. It saves the lab in `session`, if
+/// given.
 ///
 /// # Errors
-/// When there is no terminal, or it is gone; it has been given back then as far as that can be.
+/// When there is no terminal, or it has been closed. The terminal has then been given back, if that was possible.
 pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<()> {
     let mut screen = Screen::enter()?;
     let frame = Duration::from_secs(1) / frames.max(1);
@@ -42,7 +43,7 @@ pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<
         }
         keep(lab, session);
         let now = begin.elapsed();
-        // An action is answered at once, whenever the next frame would be.
+        // The answer to a key is drawn at once, without waiting for the next frame.
         if (acted || now >= next_frame) && lab.take_changed() {
             screen.draw(|area, buf| screen::draw(lab, true, area, buf))?;
             next_frame = now + frame;
@@ -50,7 +51,7 @@ pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<
     }
 }
 
-/// Has `session` keep `lab` as it stands; says so as long as it cannot.
+/// Saves the state of `lab` in `session`, and shows a message as long as saving fails.
 fn keep(lab: &mut Lab, session: Option<&Session>) {
     let Some(session) = session else {
         return;
@@ -59,8 +60,8 @@ fn keep(lab: &mut Lab, session: Option<&Session>) {
     lab.set_trouble(session.trouble());
 }
 
-/// For the tests of the end, which are built with debug assertions: `GYROLAB_PANIC_AFTER_MS=1000` makes this thread panic
-/// after a second, `GYROLAB_PANIC_ASIDE_AFTER_MS=1000` one in the background.
+/// Panics for tests of how the program ends; it is compiled with debug assertions only. `GYROLAB_PANIC_AFTER_MS=1000` makes
+/// this thread panic after a second, `GYROLAB_PANIC_ASIDE_AFTER_MS=1000` a background thread.
 #[cfg(debug_assertions)]
 #[expect(clippy::panic, reason = "it is what the tests ask for")]
 fn panic_if_asked(elapsed: Duration) {
@@ -77,12 +78,12 @@ fn panic_if_asked(elapsed: Duration) {
     }
 }
 
-/// How long there is time for events alone, with `to_frame` to go to the next frame.
+/// How long to wait for events, if the next frame is due in `to_frame`.
 fn wait(lab: &Lab, to_frame: Duration) -> Duration {
     if lab.playback().is_flat_out() {
         Duration::ZERO
     } else if lab.playback().is_busy() || lab.has_changed() {
-        // At least a little: a run too slow to change anything by the next frame must not spin.
+        // Wait at least a little: a run too slow to change anything by the next frame must not keep the processor busy.
         to_frame.max(Duration::from_millis(1))
     } else {
         let is_attentive =
@@ -106,7 +107,7 @@ fn handle(
         }
         Event::Suspend => Some(Request::Suspend),
         Event::Resized => {
-            // Of a screen that was smaller for a moment and is as large as before, a part is gone.
+            // A screen that was smaller for a moment has lost a part of its content, even if it has its old size again.
             screen.forget()?;
             screen::fit(lab, screen.size()?);
             None
@@ -130,7 +131,7 @@ fn handle(
     Ok(ControlFlow::Continue(()))
 }
 
-/// Carries out what `key` means, or says that it means nothing.
+/// Carries out the action of `key`, or shows a message that it has none.
 pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
     match keymap::action_with(panes::keys(lab.view().focus), lab.mode(), key) {
         Some(action) => lab.update(action),

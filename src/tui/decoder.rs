@@ -1,22 +1,22 @@
-//! What the bytes of a terminal say: keys and pastes.
+//! Decodes the bytes of a terminal into keys and pastes.
 //!
-//! Bytes come in pieces of any length. A sequence that is not finished waits for its next byte, but not for long: then,
-//! or at a byte that cannot belong to it, it is given up, and what follows is read anew. Ctrl-C ends every sequence.
-//! Reports of the mouse, of the focus and the like are recognised, so that they are no keys, and passed over.
+//! Bytes arrive in pieces of any length. An unfinished sequence waits a short time for its next byte. After that time, or at
+//! a byte that cannot belong to it, the sequence is dropped and decoding starts anew. Ctrl-C ends every sequence. Reports of
+//! the mouse, the focus and the like are recognised and ignored, so that they are not taken for keys.
 
 use crate::tui::keymap::Key;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// How long a sequence may wait for its next byte: so long a lone Esc is held back.
+/// How long a sequence may wait for its next byte. A single Esc is recognised only after this time.
 const GAP: Duration = Duration::from_millis(50);
 /// How long a sequence may take as a whole.
 const WHOLE: Duration = Duration::from_millis(500);
 /// How long a paste may wait for its next byte.
 const GAP_IN_PASTE: Duration = Duration::from_secs(1);
-/// Bytes of a sequence that are kept; no key has as many.
+/// The most bytes of a sequence that are kept; every key has fewer.
 const LONGEST: usize = 64;
-/// Bytes of a paste that are kept: more than any field takes.
+/// The most bytes of a paste that are kept; every field takes fewer.
 const LONGEST_PASTE: usize = 1 << 16;
 
 const ESC: u8 = 0x1b;
@@ -33,33 +33,33 @@ pub enum Typed {
     Paste(String),
 }
 
-/// Bytes on their way to keys.
+/// The decoder with its unfinished sequence and its finished keys.
 #[derive(Debug, Default)]
 pub struct Decoder {
     typed: VecDeque<Typed>,
-    /// The bytes of a sequence that is not finished.
+    /// The bytes of the unfinished sequence.
     pending: Vec<u8>,
     paste: Option<Paste>,
-    /// When the first and the last byte came of what is not finished.
+    /// When the first and the last byte of the unfinished sequence or paste arrived.
     came: Option<(Instant, Instant)>,
 }
 
-/// A paste that is not finished.
+/// An unfinished paste.
 #[derive(Debug, Default)]
 struct Paste {
     bytes: Vec<u8>,
-    /// How many bytes of [`END_OF_PASTE`] came last.
+    /// How many bytes at the end match the beginning of [`END_OF_PASTE`].
     of_end: usize,
 }
 
-/// What the bytes from an Esc or a text's first byte on are.
+/// What the bytes of a sequence or of a character mean.
 #[derive(Debug, PartialEq, Eq)]
 enum Found {
     /// Not finished.
     Unfinished,
     /// A key.
     Key(Key),
-    /// Finished, and no key of ours.
+    /// Finished, but no key that the lab uses.
     Nothing,
     /// The beginning of a paste.
     Paste,
@@ -68,7 +68,7 @@ enum Found {
 }
 
 impl Decoder {
-    /// Takes `bytes` that came at `now`.
+    /// Decodes `bytes` that arrived at `now`.
     pub fn feed(&mut self, bytes: &[u8], now: Instant) {
         self.expire(now);
         for &byte in bytes {
@@ -81,7 +81,7 @@ impl Decoder {
         self.came = self.is_waiting().then_some((first, now));
     }
 
-    /// What was typed next, of what is finished.
+    /// Takes the next finished key or paste.
     pub fn take_typed(&mut self) -> Option<Typed> {
         self.typed.pop_front()
     }
@@ -91,7 +91,7 @@ impl Decoder {
         self.typed.len()
     }
 
-    /// When what is not finished is given up, if there is such a thing.
+    /// When the unfinished sequence or paste will be dropped, if there is one.
     pub fn deadline(&self) -> Option<Instant> {
         let (first, last) = self.came?;
         match self.paste {
@@ -100,7 +100,7 @@ impl Decoder {
         }
     }
 
-    /// Gives up what has waited too long at `now`.
+    /// Drops the unfinished sequence or paste if its time is over at `now`.
     pub fn expire(&mut self, now: Instant) {
         if self.deadline().is_none_or(|deadline| now < deadline) {
             return;
@@ -141,8 +141,8 @@ impl Decoder {
         self.pending.clear();
     }
 
-    /// Gives up the sequence that is not finished. Esc, and Esc and one more key, may have been typed; what is longer,
-    /// no hand has typed so fast.
+    /// Drops the unfinished sequence. Esc, or Esc and one more key, count as typed; a longer sequence cannot have been
+    /// typed so fast and is ignored.
     fn give_up(&mut self) {
         let keys: &[u8] = match self.pending.as_slice() {
             [ESC] => &[ESC],
@@ -156,7 +156,7 @@ impl Decoder {
 
     fn take_pasted(&mut self, mut paste: Paste, byte: u8) {
         if byte == CTRL_C {
-            // No terminal pastes it: it is a key, after a paste whose end got lost.
+            // No terminal sends it within a paste: the end of the paste was lost, and this is a key.
             return self.typed.push_back(Typed::Key(key_of(byte)));
         }
         if byte == END_OF_PASTE[paste.of_end] {
@@ -183,7 +183,7 @@ impl Decoder {
     }
 }
 
-/// Whether `byte` goes on with the inside of the long sequence `pending`, and can be left out.
+/// Whether `byte` continues the body of the overlong sequence `pending`, so that it need not be kept.
 fn is_body(pending: &[u8], byte: u8) -> bool {
     match pending {
         [ESC, b'[', ..] => (0x20..0x40).contains(&byte),
@@ -246,7 +246,7 @@ fn known(key: Option<Key>) -> Found {
     key.map_or(Found::Nothing, Found::Key)
 }
 
-/// A string with which a terminal answers what nobody asked: it ends with `ESC \` or a bell.
+/// A string that a terminal sends unasked: it ends with `ESC \` or a bell, and is ignored.
 fn string(rest: &[u8]) -> Found {
     match rest {
         [.., CTRL_C] => Found::Broken,
@@ -260,7 +260,7 @@ fn string(rest: &[u8]) -> Found {
 fn control_sequence(rest: &[u8]) -> Found {
     match rest {
         [.., 0..0x20] => Found::Broken,
-        // The Linux console's F1 to F5, and an old way to report the mouse: both go on after what looks like an end.
+        // The Linux console's F1 to F5, and old mouse reports, continue after a byte that looks like the last one.
         [] | [b'['] | [b'M'] | [b'M', _] | [b'M', _, _] => Found::Unfinished,
         [b'[', _] | [b'M', ..] => Found::Nothing,
         [.., 0x20..0x40] => Found::Unfinished,
@@ -269,10 +269,10 @@ fn control_sequence(rest: &[u8]) -> Found {
     }
 }
 
-/// What the whole control sequence means.
+/// The meaning of a complete control sequence.
 fn meaning(parameters: &[u8], last: u8) -> Found {
     let text = std::str::from_utf8(parameters).unwrap_or("?");
-    // A number may have parts of its own behind a colon.
+    // A number may have sub-parameters after a colon.
     let number = |text: &str| text.split(':').next().and_then(|text| text.parse().ok());
     let mut numbers = text.split(';').map(number);
     let first: Option<u32> = numbers.next().flatten();

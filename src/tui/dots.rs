@@ -1,4 +1,4 @@
-//! A sheet of dots: what panes draw curves on, whatever the dots are made of.
+//! A canvas of dots on which panes draw curves, whichever characters show the dots.
 
 use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::Theme;
@@ -6,14 +6,14 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// How a dot is meant. Colour is never the only difference: see [`Marker::strong`] and [`Marker::faint`].
+/// The layer of a dot. Layers differ not in colour alone: see [`Marker::strong`] and [`Marker::faint`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
-    /// The motion itself; it hides what lies under it, but for the exact one in a patch that it fills.
+    /// The run's own motion. It hides the layers under it, except for the exact motion in cells that it fills.
     Strong(Role),
-    /// The exact motion, axes, what is old.
+    /// The exact motion, axes, and the previous sweep.
     Faint(Role),
-    /// The run before, under everything else.
+    /// The previous run, under all other layers.
     Ghost,
 }
 
@@ -26,7 +26,7 @@ struct Cell {
     faint_role: Role,
 }
 
-/// Dots on an area of cells, numbered from the upper left.
+/// Dots on an area of cells; columns and rows are counted from the upper left.
 pub struct Dots {
     area: Rect,
     marker: Marker,
@@ -77,7 +77,7 @@ impl Dots {
         }
     }
 
-    /// A straight line from one dot to another.
+    /// Draws a straight line from one dot to another.
     pub fn line(&mut self, from: (f64, f64), to: (f64, f64), ink: Ink) {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = dx.abs().max(dy.abs()).ceil();
@@ -95,14 +95,14 @@ impl Dots {
         }
     }
 
-    /// Every dot of column `x` from row `top` to row `bottom`.
+    /// Sets every dot of column `x` from row `top` to row `bottom`.
     pub fn column(&mut self, x: usize, top: usize, bottom: usize, ink: Ink) {
         for y in top..=bottom.min(self.height().saturating_sub(1)) {
             self.set(x as f64, y as f64, ink);
         }
     }
 
-    /// A cell that is filled, which no cell is that has a dot or two.
+    /// The bits of a filled cell; 0 for kinds of dots with at most two in a cell, whose cells never count as filled.
     fn patch(&self) -> u8 {
         let (across, down) = self.marker.dots();
         if across * down <= 2 {
@@ -112,7 +112,7 @@ impl Dots {
         places.fold(0, |bits, (x, y)| bits | self.marker.bit(x, y))
     }
 
-    /// Puts the dots on the screen; cells without dots are left as they are.
+    /// Draws the dots on the screen; cells without dots are left as they are.
     pub fn render(&self, theme: &Theme, buf: &mut Buffer) {
         let full = self.patch();
         for (cell, position) in self.cells.iter().zip(self.area.positions()) {
@@ -120,7 +120,7 @@ impl Dots {
                 (0, 0, 0) => continue,
                 (0, 0, ghost) => (self.marker.ghost(ghost), Role::Ghost),
                 (0, faint, _) => (self.marker.faint(faint), cell.faint_role),
-                // Where the motion swings too fast to be drawn it fills the cell: the exact one is a line in it.
+                // A motion too fast to be drawn as a line fills the cell; the exact motion is then drawn over it.
                 (strong, faint, _)
                     if strong == full && faint != 0 && cell.faint_role == Role::Exact =>
                 {

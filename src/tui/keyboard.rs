@@ -1,4 +1,4 @@
-//! The terminal's bytes as they come, and the word that there will be no more.
+//! Reads the terminal's bytes as they arrive, and reports when the terminal is closed.
 
 use super::decoder::{Decoder, Typed};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
@@ -8,15 +8,15 @@ use std::os::unix::net::UnixStream;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-/// Keys that are decoded before the first of them is handed on: the others stay with the system.
+/// The most keys that are decoded ahead; further bytes stay in the system's buffer.
 const MOST_AHEAD: usize = 256;
-/// Bytes taken at once.
+/// Bytes read at once.
 const CHUNK: usize = 4096;
 
-/// The other end of what [`Keyboard::wait`] listens to beside the terminal.
+/// Writing to this socket wakes [`Keyboard::wait`].
 static BELL: OnceLock<UnixStream> = OnceLock::new();
 
-/// Ends the [`wait`](Keyboard::wait) that is under way, or the next one. From any thread.
+/// Ends the [`wait`](Keyboard::wait) in progress, or the next one. Any thread may call it.
 pub fn wake() {
     if let Some(mut bell) = BELL.get() {
         let _ = bell.write(&[0]); // a full pipe wakes as well
@@ -31,7 +31,7 @@ pub struct Keyboard {
 }
 
 impl Keyboard {
-    /// Made once a process: a later one is woken by nobody.
+    /// Call it once per process: [`wake`] wakes only the first keyboard.
     ///
     /// # Errors
     /// When the system has no pipe left.
@@ -46,16 +46,16 @@ impl Keyboard {
         })
     }
 
-    /// What was typed next, if it has come.
+    /// Takes the next key or paste, if one has arrived.
     pub fn take_typed(&mut self) -> Option<Typed> {
         self.decoder.take_typed()
     }
 
-    /// Waits at most `wait` until something was typed, a signal came, or somebody called [`wake`]; takes all that has
-    /// come by then, up to a few hundred keys.
+    /// Waits at most `wait` until something is typed, a signal arrives, or [`wake`] is called. Then it reads all that has
+    /// arrived, up to a few hundred keys.
     ///
     /// # Errors
-    /// [`UnexpectedEof`](io::ErrorKind::UnexpectedEof) when the terminal is gone, with or without a signal that says so.
+    /// [`UnexpectedEof`](io::ErrorKind::UnexpectedEof) when the terminal is closed, with or without a signal.
     pub fn wait(&mut self, wait: Duration) -> io::Result<()> {
         let end = Instant::now() + wait;
         while self.decoder.ready() < MOST_AHEAD {
@@ -112,11 +112,11 @@ impl Keyboard {
         })
     }
 
-    /// Takes bytes that are known to be there.
+    /// Reads bytes after a poll has reported some.
     fn read(&mut self) -> io::Result<()> {
         let mut bytes = [0; CHUNK];
         match read(io::stdin(), &mut bytes) {
-            // A terminal in raw mode has an end only where it is gone.
+            // A terminal in raw mode reports the end of input only when it is closed.
             Ok(0) | Err(Errno::IO) => Err(gone()),
             Ok(length) => {
                 self.decoder.feed(&bytes[..length], Instant::now());
@@ -128,7 +128,7 @@ impl Keyboard {
     }
 }
 
-/// What a poll found.
+/// The result of a poll.
 #[derive(Clone, Copy, Debug, Default)]
 struct Came {
     typed: bool,

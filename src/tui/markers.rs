@@ -1,4 +1,4 @@
-//! How each kind of dots looks: how many fit in a cell of the screen, and which characters stand for them.
+//! The kinds of dots: how many fit in a cell of the screen, and which characters show them.
 
 use crate::lab::view::markers::Marker;
 
@@ -28,7 +28,7 @@ impl Marker {
         }
     }
 
-    /// The character of a cell with these `bits` of the motion itself.
+    /// The character of a cell with these `bits` of the run's own motion.
     pub fn strong(self, bits: u8) -> char {
         match self {
             Self::Braille => braille(bits),
@@ -38,7 +38,7 @@ impl Marker {
         }
     }
 
-    /// The character of a cell with these `bits` of what lies under it: the exact motion, axes, what is old.
+    /// The character of a cell with these `bits` of the layer under it: the exact motion, axes, the previous sweep.
     pub fn faint(self, bits: u8) -> char {
         match self {
             Self::Braille => braille(bits),
@@ -47,7 +47,7 @@ impl Marker {
         }
     }
 
-    /// The character of a cell with these `bits` of the run before, under all others.
+    /// The character of a cell with these `bits` of the previous run, the lowest layer.
     pub fn ghost(self, bits: u8) -> char {
         match self {
             Self::Braille => braille(bits),

@@ -1,17 +1,17 @@
-//! What the environment says about the terminal: whether it can show more than ASCII, and colours.
+//! What the environment variables say about the terminal: whether it shows colours, and more than ASCII.
 
 use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::{Background, Theme};
 
-/// When there are colours.
+/// When the lab uses colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColourChoice {
     /// Unless NO_COLOR is set or the terminal has none.
     #[default]
     Auto,
-    /// In any case.
+    /// Always.
     Always,
-    /// In no case.
+    /// Never.
     Never,
 }
 

@@ -1,9 +1,9 @@
-//! The terminal: taken over, drawn on, listened to, and given back once, whatever happens.
+//! Takes the terminal over, draws on it, receives its events, and gives it back exactly once, whatever happens.
 //!
-//! Before it is given back, whoever has something to bring home is told ([`at_exit`]).
+//! Before it gives the terminal back it runs the hooks of [`at_exit`].
 //!
-//! The one room that knows crossterm, which draws; what is typed is read by [`keyboard`]. Nothing here waits for an answer from the terminal: over slow lines, and in
-//! bare ptys, there may be none.
+//! Only this module uses crossterm, which draws; [`keyboard`] reads what is typed. Nothing here waits for an answer from the
+//! terminal: on a slow line or in a bare pty there may be none.
 
 use crate::storage::at_exit::{self, Release};
 use crate::tui::decoder::Typed;
@@ -29,17 +29,17 @@ use std::sync::{Mutex, MutexGuard, Once, OnceLock, PoisonError, TryLockError};
 use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 
-/// Whether the terminal is ours at the moment.
+/// Whether this process has taken the terminal over.
 static ENTERED: AtomicBool = AtomicBool::new(false);
-/// Whoever writes to the terminal holds it.
+/// Locked by the thread that writes to the terminal.
 static PEN: Mutex<()> = Mutex::new(());
 /// A signal is ending the process.
 static ENDING: AtomicBool = AtomicBool::new(false);
-/// Somebody asked from outside to stop until resumed.
+/// SIGTSTP has asked to suspend the process.
 static SUSPEND: AtomicBool = AtomicBool::new(false);
-/// The screen has another size.
+/// The size of the screen has changed.
 static RESIZED: AtomicBool = AtomicBool::new(false);
-/// The shell resumed us.
+/// The shell has resumed the process.
 static RESUMED: AtomicBool = AtomicBool::new(false);
 
 /// The signals that the process has handlers for, until a thread takes them.
@@ -47,32 +47,32 @@ static SIGNALS: Mutex<Option<Signals>> = Mutex::new(None);
 
 /// The thread that draws: when it panics, the lab ends.
 static DRAWING: OnceLock<ThreadId> = OnceLock::new();
-/// What other threads had to say when they panicked, for the end: on the picture it would be gone with the next frame.
+/// Panic messages of other threads. They are printed at the end: on the screen the next frame would overwrite them.
 static PANICS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// How long a terminal that takes no more bytes may hold up the end.
+/// How long a terminal that accepts no bytes may delay the end of the process.
 const PATIENCE: Duration = Duration::from_millis(500);
-/// Events taken at once: held keys on a slow line are joined.
+/// The most events taken at once; a held key on a slow line may send many.
 const MOST_EVENTS: usize = 256;
 
-/// What comes from the user.
+/// An event from the terminal or a signal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
     /// A key was pressed.
     Key(Key),
     /// A text was pasted.
     Paste(String),
-    /// The screen has another size.
+    /// The size of the screen has changed.
     Resized,
-    /// The program is to stop until resumed.
+    /// The program is asked to suspend.
     Suspend,
     /// The program has been resumed, and the screen may hold anything.
     Resumed,
 }
 
-/// The terminal while it is ours.
+/// The terminal while this process has taken it over.
 pub struct Screen {
-    /// Not dropped: ratatui's own farewell prints to a stderr that may be gone.
+    /// Never dropped, because ratatui's drop prints to a stderr that may be closed.
     terminal: ManuallyDrop<Terminal<CrosstermBackend<BufWriter<File>>>>,
     keyboard: Keyboard,
 }
@@ -102,14 +102,14 @@ impl Screen {
         }
     }
 
-    /// Draws a frame; only what differs from the one before goes over the line.
+    /// Draws a frame; only what differs from the previous one is sent.
     ///
     /// # Errors
     /// When the terminal cannot be written to.
     pub fn draw(&mut self, picture: impl FnOnce(Rect, &mut Buffer)) -> io::Result<()> {
         let _pen = PEN.lock().unwrap_or_else(PoisonError::into_inner);
         while ENDING.load(Ordering::SeqCst) {
-            thread::park(); // the process ends by a signal: nothing may follow the farewell
+            thread::park(); // a signal is ending the process: nothing may be drawn after the terminal is given back
         }
         self.terminal
             .draw(|frame| picture(frame.area(), frame.buffer_mut()))
@@ -126,7 +126,7 @@ impl Screen {
             .map(|size| Rect::new(0, 0, size.width, size.height))
     }
 
-    /// Forgets what is on the screen: the next frame is drawn whole.
+    /// Makes the next frame be sent completely.
     ///
     /// # Errors
     /// When the terminal cannot be written to.
@@ -156,10 +156,10 @@ impl Screen {
         self.forget()
     }
 
-    /// What came from the user; waits for it at most `wait`.
+    /// The events that have arrived; waits for the first at most `wait`.
     ///
     /// # Errors
-    /// When the terminal is gone.
+    /// When the terminal is closed.
     pub fn events(&mut self, wait: Duration) -> io::Result<Vec<Event>> {
         self.keyboard.wait(wait)?;
         listen_without_thread();
@@ -190,7 +190,8 @@ impl Drop for Screen {
     }
 }
 
-/// Stdout by a handle of its own: a frame that hangs in a stopped terminal must not hold a lock that leaving needs.
+/// A second handle of standard output, without Rust's lock: a frame that hangs in a stopped terminal would hold that lock,
+/// and giving the terminal back would hang too.
 fn stdout() -> io::Result<File> {
     io::stdout().as_fd().try_clone_to_owned().map(File::from)
 }
@@ -198,7 +199,7 @@ fn stdout() -> io::Result<File> {
 fn take_over() -> io::Result<()> {
     ENTERED.store(true, Ordering::SeqCst);
     terminal::enable_raw_mode()?;
-    // A lab that was killed has left its picture there.
+    // A lab that was killed has left its picture on the alternate screen.
     execute!(
         stdout()?,
         EnterAlternateScreen,
@@ -208,22 +209,22 @@ fn take_over() -> io::Result<()> {
     )
 }
 
-/// The one way out for every end there is: what others have to bring home first, then the terminal, then what
-/// could not be said while it was ours.
+/// Ends the use of the terminal, whatever the reason: it runs the exit hooks, gives the terminal back, and prints the panic
+/// messages of other threads.
 pub fn leave() {
     at_exit::run_hooks(Release::Exit);
     give_back();
-    tell_panics();
+    print_panics();
 }
 
-fn tell_panics() {
+fn print_panics() {
     let panics = std::mem::take(&mut *PANICS.lock().unwrap_or_else(PoisonError::into_inner));
     for panic in panics {
         let _ = writeln!(io::stderr(), "gyrolab: in the background, {panic}");
     }
 }
 
-/// Gives the terminal back, once. What fails here has nobody left to be told.
+/// Gives the terminal back, once. Errors are ignored, because there is no place left to report them.
 fn give_back() {
     if !ENTERED.swap(false, Ordering::SeqCst) {
         return;
@@ -234,7 +235,7 @@ fn give_back() {
     let _ = terminal::disable_raw_mode();
 }
 
-/// Leaves on panics and signals too; set up once a process.
+/// Installs, once per process, the panic hook and the signal handlers that give the terminal back.
 fn guard() -> io::Result<()> {
     static GUARD: Once = Once::new();
     let mut result = Ok(());
@@ -256,7 +257,7 @@ fn guard() -> io::Result<()> {
         result = Signals::new(ends.iter().chain(&[SIGTSTP, SIGCONT, SIGWINCH, SIGXFSZ])).map(
             |signals| {
                 *SIGNALS.lock().unwrap_or_else(PoisonError::into_inner) = Some(signals);
-                // Where there is no thread to be had, the loop looks after them: see listen_without_thread().
+                // If the system gives no thread, the loop handles signals: see listen_without_thread().
                 let _ = thread::Builder::new()
                     .name("signals".to_owned())
                     .spawn(listen);
@@ -266,28 +267,28 @@ fn guard() -> io::Result<()> {
     result
 }
 
-/// The end by a signal comes from here, not from the loop: a terminal that has hung up answers the loop with errors
-/// or not at all.
+/// Handles signals on a thread of its own. It ends the process without the loop, which may hang or fail on a terminal that
+/// has hung up.
 fn listen() {
     let mut signals = SIGNALS
         .lock()
         .unwrap_or_else(PoisonError::into_inner)
         .take();
     for signal in signals.iter_mut().flat_map(Signals::forever) {
-        heed(signal);
+        handle(signal);
         keyboard::wake();
     }
 }
 
-/// Heeds the signals that have come, where [`listen`] could not be given a thread.
+/// Handles pending signals, if there is no thread for [`listen`].
 fn listen_without_thread() {
     let mut signals = SIGNALS.lock().unwrap_or_else(PoisonError::into_inner);
     let pending: Vec<_> = signals.iter_mut().flat_map(Signals::pending).collect();
     drop(signals);
-    pending.into_iter().for_each(heed);
+    pending.into_iter().for_each(handle);
 }
 
-fn heed(signal: i32) {
+fn handle(signal: i32) {
     match signal {
         SIGTSTP => SUSPEND.store(true, Ordering::Relaxed),
         SIGWINCH => RESIZED.store(true, Ordering::Relaxed),
@@ -303,7 +304,7 @@ fn heed(signal: i32) {
     }
 }
 
-/// Waits until no frame is being drawn; `None` where one hangs in a terminal that takes no more bytes.
+/// Waits until no frame is being drawn; `None` if a frame hangs in a terminal that accepts no bytes.
 fn take_pen() -> Option<MutexGuard<'static, ()>> {
     let begin = Instant::now();
     while begin.elapsed() < PATIENCE {
@@ -320,14 +321,14 @@ fn leave_in_time() {
     let (done, left) = mpsc::channel();
     let spawned = thread::Builder::new().spawn(move || {
         give_back();
-        tell_panics();
+        print_panics();
         let _ = done.send(());
     });
     match spawned {
         Ok(_) => drop(left.recv_timeout(PATIENCE)),
         Err(_) => {
             give_back();
-            tell_panics();
+            print_panics();
         }
     }
 }

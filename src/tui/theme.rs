@@ -1,19 +1,19 @@
-//! Colours by what they mean, from the 16 that every terminal names.
+//! The colour of each role, from the 16 colours that every terminal has.
 //!
-//! x, y and z are told apart by people of every kind of colour vision: cyan, yellow and magenta differ in brightness
-//! as well as in hue, and so do blue, red and dark cyan on a light screen. Nothing is told by colour alone: each has
-//! its letter beside it, and without colours bold, dim and reversed remain.
+//! People with any kind of colour vision can tell x, y and z apart: cyan, yellow and magenta differ in brightness as well as
+//! in hue, and so do blue, red and dark cyan on a light screen. No meaning depends on colour alone: each curve has its
+//! letter, and without colours the roles differ by bold, dim and reversed.
 
 use crate::lab::view::theme::{Background, Theme};
 use ratatui::style::{Color, Modifier, Style};
 
-/// What a piece of the screen is.
+/// The role of a piece of the screen, which decides its style.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Role {
     /// Values and sentences.
     #[default]
     Text,
-    /// Units, labels, borders: there, and quiet.
+    /// Units, labels and borders, less prominent than values.
     Quiet,
     /// Headings.
     Heading,
@@ -27,15 +27,15 @@ pub enum Role {
     Path,
     /// The exact motion.
     Exact,
-    /// The run before.
+    /// The previous run.
     Ghost,
-    /// What pushes the body, and when.
+    /// Pushes and their times.
     Push,
-    /// The one accent: what has the focus.
+    /// What has the focus.
     Focus,
     /// What is selected in a list.
     Selected,
-    /// What is wrong with the numbers.
+    /// Warnings about the numbers.
     Warning,
 }
 
