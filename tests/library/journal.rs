@@ -1,4 +1,4 @@
-//! A run is a scenario and its journal: what an edit made at a step changes, from when on, and what it leaves alone.
+//! A run is a scenario and its journal: what an edit at a step changes, from which step on, and what it does not change.
 
 use crate::support::scenarios::parse;
 use gyrolab::export::{CsvWriter, stream};
@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// The textbook's wheel, tilted, with nothing but its weight.
+/// The textbook's wheel, tilted, with no load but its weight.
 const WHEEL: &str = r#"
 title = "Wheel"
 [body.rim]
@@ -27,7 +27,7 @@ momentum_frame = "body"
 [motion]
 "#;
 
-/// The wheel, with this for `[motion]` and what follows it, and with edits: the step and the TOML of what is set.
+/// The wheel with `motion` as the text from `[motion]` on, and with edits, each as a step and the TOML of its `set`.
 fn simulation(motion: &str, edits: &[(u64, &str)]) -> Simulation {
     let mut text = format!("{WHEEL}{motion}\n");
     for (step, set) in edits {
@@ -46,7 +46,7 @@ fn samples(mut simulation: Simulation) -> Vec<Sample> {
     samples
 }
 
-/// Whether two samples hold the same bits, whatever their segments.
+/// Whether two samples have the same bits, apart from their segments.
 fn same(a: &Sample, b: &Sample) -> bool {
     Sample { segment: 0, ..*a } == Sample { segment: 0, ..*b }
 }
@@ -163,7 +163,7 @@ fn an_edit_at_step_0_is_a_scenario_of_its_own() {
     }
 }
 
-/// Of the scheme before nothing is left but orientation, L and t.
+/// An edit of the scheme hands over orientation, L and t, and nothing else.
 #[test]
 fn orientation_and_momentum_pass_from_scheme_to_scheme() {
     for (first, second) in [("report", "rk4"), ("rk4", "report")] {
@@ -196,7 +196,8 @@ fn orientation_and_momentum_pass_from_scheme_to_scheme() {
     }
 }
 
-/// Steps on which a torque acts, and how many times that of the force alone; without gravity only a push makes one.
+/// The steps on which a torque acts, with its multiple of the torque of one push. `motion` has no gravity, so that only
+/// pushes cause a torque.
 fn pushed_steps(motion: &str, edits: &[(u64, &str)]) -> Vec<(u64, f64)> {
     let mut simulation = simulation(&format!("gravity_m_per_s2 = 0\n{motion}\n"), edits);
     let mut pushed = Vec::new();
@@ -300,7 +301,7 @@ fn a_push_in_steps_is_the_push_in_its_seconds() {
     }
 }
 
-/// Drift is what the scheme alone has done: neither a push nor an edit of gravity shows in it.
+/// Energy drift is the scheme's error alone: neither a push nor an edit of gravity contributes to it.
 #[test]
 fn the_energy_drift_leaves_out_the_work_of_pushes_and_of_edits_of_gravity() {
     let motion = "scheme = 'rk4'\ntime_step_s = 0.0005\nsteps = 8000\n\
@@ -374,7 +375,7 @@ fn the_azimuth_counts_every_turn_however_few_rows_there_are() {
     }
 }
 
-/// A run that ends in numbers that are not finite is read as it stood before, and stays there.
+/// A run whose numbers stop being finite keeps its last finite state, and stays there.
 #[test]
 fn an_edit_that_leads_nowhere_is_not_made() {
     let mut simulation = simulation(FINE, &[(50, "'motion.gravity_m_per_s2' = 1e307")]);

@@ -1,4 +1,4 @@
-//! Single panes on a sheet of their own: the run before, pushes and edits.
+//! Pictures of single panes: the previous run, pushes, edits, parameters and forms.
 
 use crate::support::scenarios::view as seen;
 use gyrolab::lab::editor::{Editor, Line};
@@ -23,12 +23,12 @@ use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 use std::sync::Arc;
 
-/// The traces of an 80x24 screen.
+/// Size of the traces pane on an 80x24 screen.
 const STRIPS: (u16, u16) = (40, 19);
-/// The view from above of one.
+/// Size of the view from above on an 80x24 screen.
 const ROUND: (u16, u16) = (36, 19);
 
-/// The run of a preset with `set` and `more` at its end, `steps` on.
+/// The run of a preset after `steps`; `set` changes its keys, and `more` is appended to its file.
 fn run(preset: &str, set: &[&str], more: &str, steps: u64) -> LiveRun {
     let text = presets::find(preset).unwrap().text;
     let mut document = Document::parse("test.toml", &format!("{text}\n{more}")).unwrap();
@@ -48,7 +48,7 @@ fn drawn(widget: impl Widget, (width, height): (u16, u16)) -> String {
     text(&buf)
 }
 
-/// Its cells as text, a line each.
+/// The cells of the buffer as text, one line for each row.
 fn text(buf: &Buffer) -> String {
     let lines = buf.content.chunks(buf.area.width.into());
     let line = |cells: &[Cell]| cells.iter().map(Cell::symbol).collect::<String>();
@@ -69,7 +69,7 @@ fn from_above(run: &LiveRun, ghost: Option<&Ghost>, marker: Marker) -> String {
     drawn(FromAbove { run, ghost, view }, ROUND)
 }
 
-/// A run that was edited, `steps` on, and what it was before: tilted less, for 7 s.
+/// An edited run after `steps`, and the previous run, which had less tilt and lasted 7 s.
 fn edited(steps: u64) -> (LiveRun, Ghost) {
     let before = run("loops", &[], "", 7000);
     let now = run("loops", &["start.tilt_deg=45"], "", steps);
@@ -92,7 +92,7 @@ fn the_run_before_lies_under_the_run() {
     }
 }
 
-/// The cells of `picture` that hold one of `signs`, without the border.
+/// The columns of `picture` that contain one of `signs`, without the border.
 fn columns_with(picture: &str, signs: &str) -> Vec<usize> {
     let inside = |line: &str| -> Vec<usize> {
         let cells = line.chars().enumerate();
@@ -205,7 +205,7 @@ fn a_push_that_acts_is_an_arrow() {
     assert!(!drawn(ThreeD { run: &over, view }, ROUND).contains('F'));
 }
 
-/// What the lab lists of method-2, or something like it: key, group, label, value, unit, whether it is a default.
+/// Parameters similar to those of method-2: key, group, label, value, unit, whether it is a default.
 const LINES: [(&str, &str, &str, &str, &str, bool); 22] = [
     (
         "title",
@@ -305,7 +305,7 @@ fn editor(group: &str, label: &str) -> Editor {
     editor
 }
 
-/// The parameters with `editor` on a sheet of this size; where they have the focus, or fill the screen.
+/// The parameters pane with `editor`, drawn at this size, with or without the focus, filling the screen or not.
 fn parameters(editor: &Editor, (focus, filled): (bool, bool), size: (u16, u16)) -> Buffer {
     let mut now = run("wobble-push", &[], "", 500);
     let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
@@ -341,7 +341,7 @@ fn the_parameters_are_an_editor_when_in_focus() {
     insta::assert_snapshot!("editor_first", shown(&first, (true, false), size));
     let last = editor("view", "look at");
     insta::assert_snapshot!("editor_last", shown(&last, (true, false), size));
-    // Without the focus it is what it always was.
+    // Without the focus it is the plain list.
     let away = shown(&dt, (false, false), size);
     assert!(
         away.contains("precession") && away.contains("f: all of them"),

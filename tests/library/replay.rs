@@ -1,5 +1,5 @@
-//! A run is its scenario and its journal: whatever the user does, and in whatever order, the saved run file replays it
-//! to the same last bit, and going back and forward again leads through the same numbers.
+//! A run is its scenario and its journal: whatever the user does in whatever order, the saved run file replays it bit for
+//! bit, and returning to an earlier step and going forward again gives the same numbers.
 
 use crate::support::desk::{Desk, commands};
 use gyrolab::observe::playback::Playback;
@@ -41,7 +41,7 @@ const DEEDS: &[&str] = &[
     "next_push = { for_s = 0.3 }",
 ];
 
-/// Every number of a step, to the bit.
+/// The bits of every number of a step.
 fn bits(simulation: &Simulation) -> Vec<u64> {
     let (state, sample) = (simulation.state(), simulation.sample());
     let numbers = state

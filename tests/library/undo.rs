@@ -1,4 +1,4 @@
-//! Taking back and bringing again, where several edits meet.
+//! Undo and redo, where several edits interact.
 
 use crate::support::desk::Desk;
 use gyrolab::lab::command::Command;
@@ -83,8 +83,8 @@ fn a_push_is_over_by_its_seconds() {
     assert!(said.contains("is over"), "{said}");
 }
 
-/// One of the things that can be done, with the number `value` in it.
-fn deed(kind: u8, value: f64) -> Act {
+/// An act of one of four kinds, with the number `value`.
+fn act(kind: u8, value: f64) -> Act {
     match kind {
         0 => Act::set("motion.gravity_m_per_s2", value.into()),
         1 => Act::set("title", format!("title {value}").into()),
@@ -102,7 +102,7 @@ fn deed(kind: u8, value: f64) -> Act {
 }
 
 proptest! {
-    /// Kinds 0 to 3 are deeds, 4 and 5 take back, 6 and 7 bring again.
+    /// Kinds 0 to 3 are acts, 4 and 5 undo, 6 and 7 redo.
     #[test]
     fn undo_and_redo_lead_through_the_same_files(
         ways in prop::collection::vec((0..8u8, 0..100u64, 1..50u32), 1..30)
@@ -129,7 +129,7 @@ proptest! {
                     past.push(before);
                 }
                 kind => {
-                    journal.act(step, deed(kind, f64::from(value))).unwrap();
+                    journal.act(step, act(kind, f64::from(value))).unwrap();
                     past.push(before);
                     future.clear();
                 }

@@ -32,7 +32,7 @@ fn pictures_of_the_lab() {
 fn pictures_of_what_lies_on_top() {
     insta::assert_snapshot!("help_small", picture("method-2", SMALL, 1.0, "?"));
     insta::assert_snapshot!("help_large", picture("method-2", LARGE, 1.0, "?"));
-    // Not the files: what lies in the folder is no part of the picture.
+    // The list of files is left out, because it depends on the folder.
     insta::assert_snapshot!("filter_small", picture("method-2", SMALL, 1.0, "o/cus"));
     insta::assert_snapshot!("filter_large", picture("method-2", LARGE, 1.0, "o/cus"));
 }
@@ -132,7 +132,7 @@ fn the_run_pauses_once_at_its_end() {
 fn top_speed_is_as_fast_as_there_is_time_for() {
     let mut stage = Stage::open("method-2", &["motion.steps=100000000"], SMALL);
     stage.press("99+").wait(0.5).shows("top ×");
-    // 25 ms a slice, 50 µs a look: 500 looks of some hundred steps each.
+    // 25 ms a slice, 50 µs for each reading of the clock: 500 readings with some hundred steps between them.
     assert!(stage.step() > 100_000, "{}", stage.step());
 }
 

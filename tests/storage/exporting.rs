@@ -1,4 +1,4 @@
-//! An export in the background: the bytes of `gyrolab run -o`, whole or not at all.
+//! Exports in the background: they write the bytes of `gyrolab run -o`, and leave a complete file or none.
 
 use crate::support::ground::names;
 use crate::support::scenarios::preset;
@@ -82,7 +82,7 @@ fn the_file_is_the_one_that_run_writes() {
 }
 
 #[test]
-fn what_it_comes_to_is_told_before() {
+fn the_estimate_is_close_to_the_export() {
     for (preset, n) in PRESETS.iter().flat_map(|preset| [(preset, 1), (preset, 7)]) {
         let scenario = scenario(preset.name, &[]);
         let told = estimate(&scenario, every(n));
@@ -104,7 +104,7 @@ fn the_estimate_of_no_rows_but_two_is_right() {
 }
 
 #[test]
-fn it_shows_how_far_it_is_and_cancelled_leaves_nothing() {
+fn it_reports_progress_and_leaves_no_file_when_cancelled() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
     let mut exporting = Exporting::begin(endless(), &path, every(1000), false).unwrap();
@@ -120,7 +120,7 @@ fn it_shows_how_far_it_is_and_cancelled_leaves_nothing() {
 }
 
 #[test]
-fn dropped_it_leaves_nothing() {
+fn dropping_it_leaves_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
     drop(Exporting::begin(endless(), &path, every(1000), false).unwrap());
@@ -216,10 +216,10 @@ fn a_dash_is_a_file_in_the_lab() {
     drop(exporting);
 }
 
-/// Names the folder for a process that exports into it.
+/// Environment variable that names the folder for the exporting process.
 const CHILD: &str = "GYROLAB_TEST_EXPORTING";
 
-/// Not a test of its own: a process that begins an export, goes on with it after a stop, and ends.
+/// Not a test by itself, but the body of a child process: it begins an export, continues it after a suspension, and ends.
 #[test]
 fn child() {
     let Some(folder) = std::env::var_os(CHILD) else {
@@ -241,7 +241,7 @@ fn child() {
 }
 
 #[test]
-fn a_farewell_leaves_nothing_of_it() {
+fn the_exit_hook_removes_the_temporary_file() {
     let folder = tempfile::tempdir().unwrap();
     let status = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "exporting::child"])

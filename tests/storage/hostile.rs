@@ -1,4 +1,4 @@
-//! Session files that were damaged, and a folder in which others have laid traps.
+//! Damaged session files, and session folders in which another user has placed links, FIFOs or files.
 
 use gyrolab::storage::session::{Content, Session, resume};
 use rustix::fs::{CWD, FileType, Mode, mknodat};
@@ -11,7 +11,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Whatever takes longer hangs.
+/// A call that takes longer than this counts as hanging.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 fn content(work: &str, place: &str) -> Content {
@@ -21,14 +21,14 @@ fn content(work: &str, place: &str) -> Content {
     }
 }
 
-/// The sessions' folder, in one that goes.
+/// A sessions' folder in a temporary folder.
 fn folder() -> (TempDir, PathBuf) {
     let outer = tempfile::tempdir().unwrap();
     let folder = outer.path().join("gyrolab");
     (outer, folder)
 }
 
-/// A session that has been written and is free.
+/// Saves a session and closes it.
 fn kept(folder: &Path, work: &str, places: &[&str]) {
     let session = Session::begin(folder).unwrap();
     let begin = Instant::now();
@@ -46,7 +46,7 @@ fn kept(folder: &Path, work: &str, places: &[&str]) {
     }
 }
 
-/// The file that ends so.
+/// The only file whose name ends with `end`.
 fn only(folder: &Path, end: &str) -> PathBuf {
     let files = fs::read_dir(folder).unwrap();
     let mut paths = files.map(|file| file.unwrap().path());
@@ -59,7 +59,7 @@ fn make_fifo(path: &Path) {
     mknodat(CWD, path, FileType::Fifo, Mode::from_raw_mode(0o666), 0).unwrap();
 }
 
-/// Does `what` on a thread, and fails where it never returns.
+/// Calls `what` on a thread, and fails if it does not return in time.
 #[track_caller]
 fn within_patience<T: Send + 'static>(what: impl FnOnce() -> T + Send + 'static) -> T {
     let (done, result) = mpsc::channel();
@@ -190,7 +190,7 @@ fn a_fifo_holds_nobody_up() {
     }
 }
 
-/// Only root can give a file away: for others there is nothing to be seen here.
+/// Only root can change the owner of a file; for other users this test does nothing.
 #[test]
 fn what_belongs_to_another_is_not_taken() {
     const NOBODY: u32 = 65534;

@@ -1,5 +1,5 @@
-//! What outlasts the screen: sessions and exports in the background. A program of its own, because a test that starts
-//! a process holds the locks of all files open beside it for a moment.
+//! Tests of sessions and of exports in the background. They are a separate test program, because a test that starts a
+//! process briefly keeps the locks of all files that other tests have open.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]

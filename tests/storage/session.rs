@@ -1,4 +1,4 @@
-//! Sessions on the disk, across processes that live, quit and are killed.
+//! Sessions on the disk, used by processes that run, quit and are killed.
 
 use gyrolab::storage::at_exit::{self, Release};
 use gyrolab::storage::session::{Content, Found, Session, list, resume, resume_named};
@@ -13,9 +13,9 @@ use std::time::{Duration, Instant, SystemTime};
 use tempfile::TempDir;
 
 const PATIENCE: Duration = Duration::from_secs(20);
-/// Has such a process say farewell, as a signal would.
+/// Input that makes such a process run the exit hooks, as a signal would.
 const END: &str = "end";
-/// Names the folder for a process that keeps a session in it.
+/// Environment variable that names the sessions' folder for the child process.
 const CHILD: &str = "GYROLAB_TEST_SESSION";
 
 fn content(work: &str, place: &str) -> Content {
@@ -25,7 +25,7 @@ fn content(work: &str, place: &str) -> Content {
     }
 }
 
-/// The sessions' folder, in one that goes.
+/// A sessions' folder in a temporary folder.
 fn folder() -> (TempDir, PathBuf) {
     let outer = tempfile::tempdir().unwrap();
     let folder = outer.path().join("state/gyrolab");
@@ -36,27 +36,27 @@ fn any(folder: &Path) -> Found<Content> {
     resume(folder, |content| Ok(content.clone())).unwrap()
 }
 
-/// What the newest free session holds; it is free again afterwards.
+/// The content of the newest unused session, which is closed again.
 fn newest(folder: &Path) -> Option<Content> {
     let found = any(folder);
     assert!(found.kept_aside.is_empty(), "{:?}", found.kept_aside);
     found.resumed.map(|resumed| resumed.what)
 }
 
-/// A session that has been kept and is free.
+/// Saves a session and closes it.
 fn kept(folder: &Path, work: &str, place: &str) {
     let session = Session::begin(folder).unwrap();
     session.note(content(work, place));
     closed(session);
 }
 
-/// Waits until what was noted has been tried to be written: on a busy machine a flush may give up before.
+/// Flushes until saving has been attempted: on a busy machine one flush may time out.
 #[track_caller]
 fn written(session: &Session) {
     wait_until(|| session.flush());
 }
 
-/// Waits until the session is on the disk and free.
+/// Closes the session, and returns its content as saved.
 #[track_caller]
 fn closed(session: Session) -> Content {
     session.close(PATIENCE).unwrap()
@@ -90,8 +90,8 @@ fn file_of(folder: &Path, text: &str) -> PathBuf {
         .unwrap()
 }
 
-/// Puts the writing of a session with the work at `path` so many seconds into the past. A session that was written
-/// before it was flushed has its place in a file of its own too.
+/// Sets the modification time of the session with the work file `path` so many `seconds` into the past. A session that was
+/// saved before it was flushed has a place file too.
 fn age(path: &Path, seconds: u64) {
     let time = SystemTime::now() - Duration::from_secs(seconds);
     for path in [path, &path.with_extension("place")] {
@@ -111,7 +111,7 @@ fn wait_until(is_so: impl Fn() -> bool) {
 }
 
 #[test]
-fn where_there_is_none_there_is_none() {
+fn an_empty_or_missing_folder_has_no_session() {
     let (_outer, folder) = folder();
     assert_eq!(newest(&folder), None);
     let session = Session::begin(&folder).unwrap();
@@ -126,7 +126,7 @@ fn where_there_is_none_there_is_none() {
 }
 
 #[test]
-fn what_was_noted_last_comes_back_and_is_gone_on_with() {
+fn the_last_content_is_resumed_and_the_session_continues() {
     let (_outer, folder) = folder();
     let session = Session::begin(&folder).unwrap();
     let work: Arc<str> = Arc::from("the run: ω\nand its journal\n");
@@ -203,7 +203,7 @@ fn a_place_is_never_taken_with_another_work() {
     assert!(of_the_first.ends_with('b'));
     session.note(content("second", "c"));
     closed(session);
-    // As if the process had died between the work and its place.
+    // This is the state after a process died between writing the work and the place.
     fs::write(only(&folder, ".place"), of_the_first).unwrap();
     assert_eq!(newest(&folder), Some(content("second", "c")));
 }
@@ -236,7 +236,7 @@ fn the_newest_that_is_not_in_use_is_taken() {
 }
 
 #[test]
-fn those_who_come_at_once_get_different_sessions() {
+fn processes_that_resume_at_the_same_time_get_different_sessions() {
     let (_outer, folder) = folder();
     (0..8).for_each(|n| kept(&folder, &n.to_string(), ""));
     let folder = &folder;
@@ -399,7 +399,7 @@ fn trouble_is_told_as_long_as_it_lasts_and_it_is_tried_again() {
     session.note(content("run", "one"));
     written(&session);
     assert_eq!(session.trouble(), None);
-    // A folder in the way of the temporary file does for a full disk.
+    // A folder with the name of the temporary file makes writing fail, as a full disk does.
     let in_the_way = only(&folder, ".work").with_extension("place.new");
     fs::create_dir(&in_the_way).unwrap();
     session.note(content("run", "two"));
@@ -511,7 +511,7 @@ fn a_folder_that_was_cleared_away_is_made_again() {
     assert_eq!(newest(&folder), Some(content("run", "two")));
 }
 
-/// Not a test of its own: a process that keeps a session, and notes what it is told on its input.
+/// Not a test by itself, but the body of a child process: it keeps a session and notes each line of its input.
 #[test]
 fn child() {
     let Some(folder) = std::env::var_os(CHILD) else {
@@ -536,7 +536,7 @@ fn child() {
     }
 }
 
-/// A process with a session of its own.
+/// A child process with its own session.
 struct Other {
     child: Child,
     says: BufReader<ChildStdout>,
@@ -600,7 +600,7 @@ fn a_process_that_is_killed_loses_a_second_at_most_and_frees_its_session() {
 }
 
 #[test]
-fn a_farewell_loses_nothing() {
+fn the_exit_hook_saves_the_last_content() {
     let (_outer, folder) = folder();
     let mut other = Other::begin(&folder);
     (0..1000).for_each(|n| other.note(&n.to_string()));
@@ -623,7 +623,7 @@ fn killed_at_any_moment_it_leaves_a_whole_session() {
 }
 
 #[test]
-fn who_has_the_newer_ones_is_told() {
+fn the_processes_that_use_newer_sessions_are_reported() {
     let (_outer, folder) = folder();
     kept(&folder, "old", "");
     age(&only(&folder, ".work"), 100);

@@ -1,4 +1,4 @@
-//! A lab on a desk, without a terminal: keys go in, and a clock goes only when told.
+//! A lab without a terminal and without a picture: tests send it keys and commands, and advance its clock.
 
 #![allow(dead_code, reason = "no test needs all of it")]
 
@@ -14,14 +14,14 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The lab, and what time it is there.
+/// The lab and its clock.
 pub struct Desk {
     pub lab: Lab,
     now: Duration,
 }
 
 impl Desk {
-    /// The preset `name`, standing still.
+    /// Opens the preset `name`, paused.
     pub fn open(name: &str) -> Self {
         Self::with(name, preset(name, &[]))
     }
@@ -31,7 +31,7 @@ impl Desk {
         Self::of(Lab::new(name, Arc::new(scenario), view, false))
     }
 
-    /// A lab that there is already.
+    /// A desk with an existing lab.
     pub fn of(lab: Lab) -> Self {
         Self {
             lab,
@@ -39,7 +39,7 @@ impl Desk {
         }
     }
 
-    /// Presses `keys`, and lets the lab get to where they lead.
+    /// Presses `keys`, and waits until the lab has finished the steps that they request.
     pub fn press(&mut self, keys: &[Key]) {
         for &key in keys {
             app::press(key, &mut self.lab);
@@ -53,7 +53,7 @@ impl Desk {
         });
     }
 
-    /// Lets some frames pass, and then as many as it takes to get to where the lab is on its way to.
+    /// Advances the clock by `frames`, and then until the lab has finished the requested steps.
     pub fn wait(&mut self, frames: u32) {
         for _ in 0..frames {
             self.pass(Duration::from_millis(70));
@@ -69,15 +69,15 @@ impl Desk {
         self.lab.advance(&mut || now);
     }
 
-    /// Carries `command` out, and lets the lab get to where it leads.
+    /// Carries `command` out, and waits until the lab has finished the steps that it requests.
     pub fn carry_out(&mut self, command: &Command) -> Answer {
         let answer = self.lab.carry_out(command);
         self.wait(2);
         answer
     }
 
-    /// Carries out the commands in `text`, the lines of a `[[do]]` each, which are not to be refused; gives what the last
-    /// of them said.
+    /// Carries out the commands in `text`, each line of which is the body of a `[[do]]`. None may be refused. Returns the
+    /// message of the last one.
     #[track_caller]
     pub fn commands(&mut self, text: &str) -> Option<String> {
         let mut said = None;
@@ -87,7 +87,7 @@ impl Desk {
         said
     }
 
-    /// Goes where `text` says, by the dialog.
+    /// Types `text` into the dialog that goes to a step or time.
     #[track_caller]
     pub fn go(&mut self, text: &str) {
         self.type_text("g");
@@ -129,13 +129,13 @@ impl Desk {
         self.lab.run().simulation()
     }
 
-    /// The scenario of the run with all that was done to it.
+    /// The scenario of the run with everything the user did to it.
     pub fn scenario(&self) -> Scenario {
         self.lab.run().scenario().as_ref().clone()
     }
 
-    /// Saves the run file in `folder`, where the lab works, and gives what is in it; `None` at step 0, where there is no
-    /// run yet.
+    /// Saves the run file in `folder`, the lab's working directory, and reads it back; `None` at step 0, where there is no
+    /// run to save yet.
     pub fn saved(&mut self, folder: &Path) -> Option<Scenario> {
         self.press(&[Key::Esc, Key::Char('s')]);
         if self.lab.mode() != Mode::Dialog {

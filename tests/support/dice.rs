@@ -19,12 +19,12 @@ impl Dice {
         low + (high - low) * self.unit()
     }
 
-    /// Even in the logarithm.
+    /// A number from `low` to `high` whose logarithm is uniformly distributed.
     pub fn scale(&mut self, low: f64, high: f64) -> f64 {
         (self.between(low.ln(), high.ln())).exp()
     }
 
-    /// A whole number from `low` to `high`, both among them.
+    /// A whole number from `low` to `high`, both included.
     pub fn whole(&mut self, low: u64, high: u64) -> u64 {
         low + (self.unit() * (high - low + 1) as f64) as u64
     }

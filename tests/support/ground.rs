@@ -1,4 +1,4 @@
-//! A folder in which the program works, and what is in it.
+//! A temporary working directory for the program, and its files.
 
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use tempfile::TempDir;
 pub const GYROLAB: &str = env!("CARGO_BIN_EXE_gyrolab");
 pub(super) const VARIABLES: [(&str, &str); 2] = [("TERM", "xterm"), ("LANG", "C.UTF-8")];
 
-/// A folder in which the program works, with another one in it where it keeps its sessions. It goes with its last clone.
+/// A temporary working directory for the program, with a subfolder for its sessions. It is removed with its last clone.
 #[derive(Clone)]
 pub struct Ground(Arc<TempDir>);
 
@@ -18,7 +18,7 @@ impl Ground {
         Self(Arc::new(tempfile::tempdir().unwrap()))
     }
 
-    /// One whose name begins with `prefix`.
+    /// A directory whose name begins with `prefix`.
     pub fn named(prefix: &str) -> Self {
         Self(Arc::new(
             tempfile::Builder::new().prefix(prefix).tempdir().unwrap(),
@@ -33,7 +33,7 @@ impl Ground {
         self.path().join(name)
     }
 
-    /// Where the sessions' folder is.
+    /// The folder in which the sessions' folder is created.
     pub fn state(&self) -> PathBuf {
         self.file("state")
     }
@@ -51,27 +51,27 @@ impl Ground {
         names(self.path())
     }
 
-    /// The names of what has been kept of sessions and ends so.
+    /// The names of session files that end with `end`.
     pub fn kept(&self, end: &str) -> Vec<String> {
         let mut names = names(&self.state().join("gyrolab"));
         names.retain(|name| name.ends_with(end));
         names
     }
 
-    /// The rights of a file.
+    /// The permission bits of a file.
     pub fn mode(&self, name: &str) -> u32 {
         let there = std::fs::metadata(self.file(name)).unwrap();
         there.permissions().mode() & 0o7777
     }
 
-    /// The program without a terminal, to be started.
+    /// A command that starts the program without a terminal.
     pub fn command(&self, args: &[&str]) -> Command {
         let mut command = self.in_it(GYROLAB);
         command.args(args);
         command
     }
 
-    /// The program without a terminal, and what came of it.
+    /// Runs the program without a terminal, and returns its output.
     pub fn run(&self, args: &[&str]) -> Output {
         self.command(args).output().unwrap()
     }
@@ -95,7 +95,7 @@ impl Ground {
     }
 }
 
-/// The names of all files and folders in `folder`, sorted; none where it is not there.
+/// The names of all files and folders in `folder`, sorted; none if it does not exist.
 pub fn names(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten();
     let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name();
@@ -126,7 +126,7 @@ pub fn done(output: Output) -> Output {
     output
 }
 
-/// Failed with exit code 1, without a panic, and with all of `words` in what it said.
+/// Asserts that the program failed with exit code 1 and without a panic, and that its message contains all `words`.
 #[track_caller]
 pub fn failed(output: &Output, words: &[&str]) {
     assert_eq!(code(output), 1, "{output:?}");

@@ -1,4 +1,4 @@
-//! What several tests need.
+//! Helpers that several test modules share.
 
 #![allow(dead_code, reason = "no test program needs all of it")]
 

@@ -1,4 +1,4 @@
-//! The program itself in a pty, in a folder of its own, and what a terminal would show of it.
+//! The real program in a pty and a temporary working directory, and the screen that a terminal would show.
 
 #![allow(dead_code, reason = "no test needs all of it")]
 
@@ -27,8 +27,8 @@ impl Ground {
         self.spawn(command, variables)
     }
 
-    /// The program where its terminal is not the one that controls it, as after `su -c`: a line that is lost sends it no
-    /// signal.
+    /// The program on a terminal that is not its controlling terminal, as after `su -c`: it gets no signal when the line is
+    /// lost.
     pub fn open_uncontrolled(&self, args: &[&str]) -> Terminal {
         let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_gyrolab"));
         command.args(args);
@@ -59,7 +59,7 @@ impl Ground {
     }
 }
 
-/// What has come from the program, and the picture that it makes.
+/// The bytes that the program has sent, and the screen that they make.
 struct Shown {
     bytes: Vec<u8>,
     parser: vt100::Parser,
@@ -73,14 +73,14 @@ pub struct Terminal {
     pty: Option<Box<dyn MasterPty + Send>>,
     shown: Arc<Mutex<Shown>>,
     size: (u16, u16),
-    /// The reader hangs up at the next byte.
+    /// Whether the reader hangs up at the next byte.
     lost: Arc<AtomicBool>,
-    /// The reader takes no more bytes, as a terminal stopped by Ctrl-S does.
+    /// Whether the reader accepts no bytes, like a terminal stopped by Ctrl-S.
     stopped: Arc<AtomicBool>,
 }
 
 impl Terminal {
-    /// The program on a ground of its own.
+    /// Opens the program in a new working directory.
     pub fn open(args: &[&str]) -> Self {
         Ground::new().open(args)
     }
@@ -129,7 +129,7 @@ impl Terminal {
         }
     }
 
-    /// Where it works.
+    /// Its working directory.
     pub fn ground(&self) -> &Ground {
         &self.ground
     }
@@ -148,7 +148,7 @@ impl Terminal {
     }
 
     pub fn resize(&mut self, size: (u16, u16)) {
-        // No byte of a picture of the new size may come to a screen of the old one.
+        // Resize the screen first: a picture of the new size must not reach a screen of the old size.
         let mut shown = self.shown.lock().unwrap();
         self.size = size;
         self.pty.as_ref().unwrap().resize(pty_size(size)).unwrap();
@@ -160,14 +160,14 @@ impl Terminal {
         signal(self.child.process_id().unwrap(), name);
     }
 
-    /// Closes the pty's other side, as a line that is lost does.
+    /// Closes the pty's other side, as a lost line does.
     pub fn lose_line(&mut self) {
         self.lost.store(true, Ordering::Relaxed);
         self.keys = None;
         self.pty = None;
     }
 
-    /// Whether the terminal takes bytes.
+    /// Makes the terminal accept no bytes, or accept them again.
     pub fn set_stopped(&self, stopped: bool) {
         self.stopped.store(stopped, Ordering::Relaxed);
     }
@@ -180,19 +180,19 @@ impl Terminal {
         String::from_utf8_lossy(&self.sent()).into_owned()
     }
 
-    /// Takes the picture away, and what has been sent.
+    /// Clears the screen and the stored bytes.
     pub fn forget(&self) {
         let mut shown = self.shown.lock().unwrap();
         shown.bytes.clear();
         shown.parser = parser(self.size);
     }
 
-    /// What a terminal would show.
+    /// The screen that a terminal would show, as text.
     pub fn screen(&self) -> String {
         self.shown.lock().unwrap().parser.screen().contents()
     }
 
-    /// The same with single blanks between the words, whatever line they stand in.
+    /// The words on the screen, separated by single blanks instead of line ends and padding.
     pub fn words(&self) -> String {
         let screen = self.screen();
         screen.split_whitespace().collect::<Vec<_>>().join(" ")
@@ -205,7 +205,7 @@ impl Terminal {
         rest.split_whitespace().next()?.parse().ok()
     }
 
-    /// The values of the lines `label` in the pane of parameters, as they are shown.
+    /// The values shown in the lines `label` of the parameters pane.
     pub fn values(&self, label: &str) -> Vec<String> {
         let screen = self.screen();
         let cells = screen.split(['│', '\n']);
@@ -268,14 +268,14 @@ impl Terminal {
         }
     }
 
-    /// Leaves the lab as the user does.
+    /// Leaves the lab by its key.
     #[track_caller]
     pub fn quit(&mut self) {
         self.press("q");
         assert_eq!(self.wait_for_end().exit_code(), 0);
     }
 
-    /// Ends it as nothing but the system can.
+    /// Kills the program with SIGKILL.
     pub fn kill(&mut self) {
         self.signal("KILL");
         self.wait_for_end();

@@ -1,4 +1,4 @@
-//! Scenarios, opened and read, and how they are looked at.
+//! Opens scenarios, and makes views of them.
 
 use gyrolab::lab::view::View;
 use gyrolab::lab::view::markers::Marker;
@@ -15,12 +15,12 @@ pub fn preset(name: &str, set: &[&str]) -> Scenario {
     scenario.unwrap_or_else(|problems| panic!("{problems}"))
 }
 
-/// The scenario that `text` is, or what is wrong with it.
+/// The scenario of the TOML `text`, or what is wrong with it.
 pub fn read(text: &str) -> Result<Scenario, Problems> {
     Document::parse("x.toml", text)?.scenario()
 }
 
-/// The scenario that `text` is.
+/// The scenario of the TOML `text`, which must be valid.
 #[track_caller]
 pub fn parse(text: &str) -> Scenario {
     read(text).unwrap_or_else(|problems| panic!("{problems}\n{text}"))

@@ -1,4 +1,4 @@
-//! The lab on a screen of a size, without a terminal: keys go in, pictures come out.
+//! The lab on a screen of a given size, without a terminal: tests send keys and compare pictures.
 
 use super::desk::commands;
 use super::scenarios::{preset, view};
@@ -25,12 +25,12 @@ pub const LARGE: Rect = Rect {
 };
 pub const FRAME: Duration = Duration::from_millis(100);
 
-/// A lab with a keyboard, and a clock that goes only when told.
+/// A lab with its screen, and a clock that only the test advances.
 pub struct Stage {
     pub lab: Lab,
     pub now: Duration,
     pub size: Rect,
-    /// Where it writes what it writes.
+    /// The folder of its files.
     _folder: tempfile::TempDir,
 }
 
@@ -72,7 +72,7 @@ impl Stage {
         self.wait(0.0)
     }
 
-    /// Lets time pass, frame by frame; looking at the clock takes time too.
+    /// Advances the clock by `seconds`, frame by frame; every reading of the clock advances it too.
     pub fn wait(&mut self, seconds: f64) -> &mut Self {
         for _ in 0..=(seconds / FRAME.as_secs_f64()).round() as usize {
             let mut looks = 0;
