@@ -53,7 +53,7 @@ impl Monitor {
     #[inline]
     pub fn follow(&mut self, simulation: &Simulation) {
         self.measure(simulation);
-        self.deviation(simulation);
+        self.hold(simulation.state());
     }
 
     /// The same, but for the exact motion: [`catch_up`](Self::catch_up) comes to that later, at the latest when health or
@@ -88,7 +88,6 @@ impl Monitor {
 
     /// Holds the run against the exact motion where it stands, and says how it is.
     pub fn health(&mut self, simulation: &Simulation) -> Health {
-        self.catch_up();
         let deviation = self.deviation(simulation);
         let theory = self.theory(simulation.state().time_s);
         Health::new(
@@ -99,7 +98,9 @@ impl Monitor {
         )
     }
 
-    fn deviation(&mut self, simulation: &Simulation) -> Option<Deviation> {
+    /// How far off the exact motion `simulation` is where it stands; `None` where that would take too long.
+    pub fn deviation(&mut self, simulation: &Simulation) -> Option<Deviation> {
+        self.catch_up();
         self.hold(simulation.state())
     }
 
@@ -123,6 +124,11 @@ impl Monitor {
         let load = truth.loads().on_axle(body, &top)?;
         let motion = truth.motion().closed_form()?;
         Some(Theory::new(&top, &load, motion, &state))
+    }
+
+    /// The largest distance of the traced point from the exact motion so far, m; 0 where it is not held against that.
+    pub fn most_distance_m(&self) -> f64 {
+        self.most_distance_m
     }
 
     /// The least and the greatest over every step of the run.

@@ -75,6 +75,27 @@ impl Readouts {
         }
     }
 
+    /// Reads those of `source` off `simulation` again, which `monitor` has followed on; the others stay as they are, where
+    /// reading them as well would cost more.
+    pub fn read_again(&mut self, source: Source, simulation: &Simulation, monitor: &mut Monitor) {
+        match source {
+            Source::EveryStep => self.extremes = *monitor.extremes(),
+            Source::Measured => {
+                self.precession = monitor.instruments().precession_rad_per_s();
+                self.nutation = monitor.instruments().nutation_period_s();
+            }
+            Source::Exact => {
+                let deviation = monitor.deviation(simulation);
+                self.health.deviation = deviation;
+                self.health.most_distance_m = deviation.map(|_| monitor.most_distance_m());
+            }
+            Source::Scenario | Source::State | Source::Scheme | Source::Theory | Source::Clock => {
+                let health = monitor.health(simulation);
+                *self = Self::new(simulation, monitor, &health, self.advice.as_ref());
+            }
+        }
+    }
+
     /// The number that `name` stands for; `None` where there is none of that name, it is a text, or it cannot be stated.
     pub fn number(&self, name: &str) -> Option<f64> {
         find(name)?.of(self).number()
@@ -189,6 +210,8 @@ pub struct Readout {
     pub meaning: &'static str,
     /// How it is obtained.
     pub source: Source,
+    /// Whether it is a text, never a number.
+    pub is_text: bool,
     get: fn(&Readouts) -> Value,
 }
 
@@ -283,6 +306,30 @@ fn uncertainty(measured: Option<Measured>) -> Option<f64> {
     measured.map(|measured| measured.uncertainty)
 }
 
+/// What a row's formula gives: a number, yes or no, or a text.
+trait Given {
+    const IS_TEXT: bool = false;
+}
+
+impl Given for f64 {}
+
+impl Given for u64 {}
+
+impl Given for bool {}
+
+impl Given for String {
+    const IS_TEXT: bool = true;
+}
+
+impl<T: Given> Given for Option<T> {
+    const IS_TEXT: bool = T::IS_TEXT;
+}
+
+/// Whether this formula gives a text.
+const fn is_text<T: Given>(_: &impl Fn(&Readouts) -> T) -> bool {
+    T::IS_TEXT
+}
+
 /// Makes a row of each line: name, unit, source, meaning, how it is got of the readouts `r`.
 macro_rules! readouts {
     ($($name:literal, $unit:literal, $source:ident, $meaning:literal, |$r:ident| $get:expr;)*) => {
@@ -293,6 +340,7 @@ macro_rules! readouts {
                 unit: $unit,
                 meaning: $meaning,
                 source: Source::$source,
+                is_text: is_text(&|$r: &Readouts| $get),
                 get: |$r| Value::from($get),
             }),*
         ];

@@ -1,17 +1,34 @@
-//! The numbers of a run by name, for conditions: the columns of the CSV as they are now, and the scenario's keys.
+//! The numbers of a run by name, for conditions: the columns of the CSV, the readouts, and the scenario's keys.
 
+use crate::analysis::Readouts;
+use crate::analysis::readouts::{self, Readout};
 use crate::export::columns::{COLUMNS, Column};
 use crate::observe::live::LiveRun;
+use crate::run::Sample;
 use crate::scenario::dotted;
 use crate::scenario::keys::{self, KEYS, Kind};
+use crate::scenario::problem::nearest;
 use crate::work::parameters::table_at;
 use toml::Value;
 
-/// Where a number comes from.
+/// A number that a condition can name.
+#[derive(Clone, Copy, Debug)]
+pub enum Named<'a> {
+    /// A column of the CSV.
+    Column(&'static Column),
+    /// A readout that is none.
+    Readout(&'static Readout),
+    /// A key of the scenario that holds a number.
+    Key(&'a str),
+}
+
+/// Where a number of one run comes from.
 #[derive(Clone, Copy, Debug)]
 pub enum Source {
     /// The present row of the CSV has it.
     Column(&'static Column),
+    /// It is read off the run.
+    Readout(&'static Readout),
     /// Gravity in force, m/s².
     Gravity,
     /// The time step in force, s.
@@ -20,47 +37,68 @@ pub enum Source {
     Fixed(Option<f64>),
 }
 
-/// Whether there is a number of that name: a column, or a key of the scenario that holds a number.
-pub fn is_known(name: &str) -> bool {
-    let holds_number = |kind| matches!(kind, Kind::Number(_) | Kind::Whole(..));
-    Column::find(name).is_some() || keys::find(name).is_ok_and(|(_, kind)| holds_number(kind))
-}
-
-/// The names to offer for one that is not known.
-pub fn names() -> impl Iterator<Item = &'static str> + Clone {
-    let columns = COLUMNS.iter().map(|column| column.name);
-    let numbers = KEYS
-        .iter()
-        .filter(|key| matches!(key.kind, Kind::Number(_) | Kind::Whole(..)));
-    columns.chain(numbers.map(|key| key.path))
-}
-
-/// Where the number of that name comes from in `run`; `None` where there is none such.
-pub fn source(run: &LiveRun, name: &str) -> Option<Source> {
+/// What is called `name`.
+///
+/// # Errors
+/// Why that is no number, with the nearest that is.
+pub fn find(name: &str) -> Result<Named<'_>, String> {
     if let Some(column) = Column::find(name) {
-        return Some(Source::Column(column));
+        return Ok(Named::Column(column));
     }
-    if !is_known(name) {
-        return None;
-    }
-    Some(match name {
-        "motion.gravity_m_per_s2" => Source::Gravity,
-        "motion.time_step_s" => Source::TimeStep,
-        _ => {
-            let table = table_at(run.scenario(), run.simulation().step_number());
-            Source::Fixed(dotted::find(&table, name).and_then(number))
+    match (readouts::find(name), keys::find(name)) {
+        (Some(readout), _) if readout.is_text => Err(format!(
+            "{name} is a text ({}), and a condition compares numbers",
+            readout.meaning
+        )),
+        (Some(readout), _) if readout.source == readouts::Source::Clock => {
+            Err(format!("{name} is not counted in the lab"))
         }
-    })
+        (Some(readout), _) => Ok(Named::Readout(readout)),
+        (None, Ok((_, kind))) if holds_number(kind) => Ok(Named::Key(name)),
+        (None, Ok((_, Kind::Vector))) => Err(format!(
+            "{name} is a vector: its numbers are {name}.0, {name}.1 and {name}.2"
+        )),
+        (None, Ok(_)) => Err(format!("{name} is no number")),
+        (None, Err(_)) => Err(format!(
+            "there is no number named {name}: {}",
+            nearest_to(name)
+        )),
+    }
 }
 
-impl Source {
-    /// The number as it is now in `run`.
-    pub fn value(&self, run: &LiveRun) -> Option<f64> {
+fn holds_number(kind: Kind) -> bool {
+    matches!(kind, Kind::Number(_) | Kind::Whole(..))
+}
+
+/// For a refusal of `wrong`: the nearest name, or the names there are.
+fn nearest_to(wrong: &str) -> String {
+    let near = readouts::nearest(wrong);
+    if near.contains(" or ") {
+        return near; // lowest_tilt_deg is measured or predicted
+    }
+    let columns = COLUMNS.iter().map(|column| column.name);
+    let readouts = readouts::READOUTS.iter().filter(|readout| {
+        !readout.is_text
+            && readout.source != readouts::Source::Clock
+            && Column::find(readout.name).is_none()
+    });
+    let keys = KEYS.iter().filter(|key| holds_number(key.kind));
+    let names = columns.chain(readouts.map(|readout| readout.name));
+    nearest(wrong, names.chain(keys.map(|key| key.path)))
+}
+
+impl Named<'_> {
+    /// Where it comes from in `run`.
+    pub fn of(self, run: &LiveRun) -> Source {
         match self {
-            Self::Column(column) => Some(column.value(&run.simulation().sample()).number()),
-            Self::Gravity => Some(run.simulation().motion().gravity),
-            Self::TimeStep => Some(run.simulation().motion().time_step_s),
-            Self::Fixed(value) => *value,
+            Self::Column(column) => Source::Column(column),
+            Self::Readout(readout) => Source::Readout(readout),
+            Self::Key("motion.gravity_m_per_s2") => Source::Gravity,
+            Self::Key("motion.time_step_s") => Source::TimeStep,
+            Self::Key(name) => {
+                let table = table_at(run.scenario(), run.simulation().step_number());
+                Source::Fixed(dotted::find(&table, name).and_then(number))
+            }
         }
     }
 }
@@ -68,4 +106,63 @@ impl Source {
 fn number(value: &Value) -> Option<f64> {
     let whole = || value.as_integer().map(|whole| whole as f64);
     value.as_float().or_else(whole)
+}
+
+/// The numbers of a run as it goes on, of each step only those that are asked for.
+#[derive(Debug, Default)]
+pub struct Numbers {
+    /// The readouts, some of them as they were at an earlier step.
+    readouts: Option<Readouts>,
+    /// What of them has been read at the present step.
+    read: Vec<readouts::Source>,
+}
+
+/// The numbers of a run where it stands.
+pub struct Now<'a> {
+    run: &'a mut LiveRun,
+    numbers: &'a mut Numbers,
+    sample: Option<Sample>,
+}
+
+impl Numbers {
+    /// Those of `run` where it stands.
+    pub fn at<'a>(&'a mut self, run: &'a mut LiveRun) -> Now<'a> {
+        self.read.clear();
+        Now {
+            run,
+            numbers: self,
+            sample: None,
+        }
+    }
+}
+
+impl Now<'_> {
+    /// The number from `source`; `None` where there is none now.
+    pub fn value(&mut self, source: &Source) -> Option<f64> {
+        match source {
+            Source::Column(column) => {
+                let sample = || self.run.simulation().sample();
+                Some(
+                    column
+                        .value(self.sample.get_or_insert_with(sample))
+                        .number(),
+                )
+            }
+            Source::Readout(readout) => readout.of(self.readouts(readout.source)).number(),
+            Source::Gravity => Some(self.run.simulation().motion().gravity),
+            Source::TimeStep => Some(self.run.simulation().motion().time_step_s),
+            Source::Fixed(value) => *value,
+        }
+    }
+
+    /// The readouts, with those of `source` as they are now.
+    fn readouts(&mut self, source: readouts::Source) -> &Readouts {
+        let Numbers { readouts, read } = &mut *self.numbers;
+        let readouts = readouts.get_or_insert_with(|| self.run.readouts());
+        if !read.contains(&source) {
+            self.run.read_again(readouts, source);
+            read.push(source);
+        }
+        readouts
+    }
 }

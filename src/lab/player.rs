@@ -2,7 +2,7 @@
 
 use super::carry_out::{Answer, Done, UnderWay};
 use super::command::Place;
-use super::numbers;
+use super::numbers::{self, Numbers};
 use crate::analysis::health::Advice;
 use crate::observe::advisor::Advisor;
 use crate::observe::ghost::Ghost;
@@ -182,10 +182,14 @@ impl Player {
     pub(super) fn run_until(&mut self, condition: &Expression) -> Answer {
         let run = self.run();
         let bound = condition
-            .bind(|name| numbers::source(run, name), &numbers::names())
+            .bind(|name| Ok(numbers::find(name)?.of(run)))
             .map_err(|fault| fault.to_string())?;
-        let condition = move |run: &LiveRun| bound.holds(|source| source.value(run));
-        Ok(match self.playback.run_until(Box::new(condition)) {
+        let mut numbers = Numbers::default();
+        let holds = move |run: &mut LiveRun| {
+            let mut now = numbers.at(run);
+            bound.holds(|source| now.value(source))
+        };
+        Ok(match self.playback.run_until(Box::new(holds)) {
             true => Done::SILENT.going_on(UnderWay::Playing),
             false => Done::saying("it holds already, at this step"),
         })

@@ -8,6 +8,7 @@ use super::checkpoints::Checkpoints;
 use super::overlay::Overlay;
 use super::path::Path;
 use super::recording::{Moment, Recording};
+use crate::analysis::readouts::Source;
 use crate::analysis::{Health, Instruments, Monitor, Readouts, Theory};
 use crate::run::{NotFinite, Simulation};
 use crate::scenario::Scenario;
@@ -240,7 +241,7 @@ impl LiveRun {
         time_s: f64,
         stop: u64,
         mut enough: impl FnMut() -> bool,
-        is_fulfilled: impl Fn(&Self) -> bool,
+        mut is_fulfilled: impl FnMut(&mut Self) -> bool,
     ) -> Played {
         let begin_s = self.now.time_s;
         let look_every = (STEPS_PER_LOOK / self.scenario().body.mechanics.points().len()).max(1);
@@ -306,6 +307,11 @@ impl LiveRun {
     pub fn readouts(&mut self) -> Readouts {
         let health = self.health();
         Readouts::new(&self.simulation, &mut self.monitor, &health, None)
+    }
+
+    /// Reads those of `source` off it again, of `readouts` that were read at an earlier step.
+    pub fn read_again(&mut self, readouts: &mut Readouts, source: Source) {
+        readouts.read_again(source, &self.simulation, &mut self.monitor);
     }
 
     /// What theory says of the exact motion now; `None` where it says nothing.

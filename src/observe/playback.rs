@@ -25,7 +25,7 @@ const MOST_COST_PER_KEY: u64 = 1_000_000;
 const MOST_UNTIL: u64 = 10_000_000;
 
 /// A condition on a run, until which it is played.
-pub type Condition = Box<dyn Fn(&LiveRun) -> bool>;
+pub type Condition = Box<dyn FnMut(&mut LiveRun) -> bool>;
 
 /// Why the playback has stopped by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -207,8 +207,8 @@ impl Playback {
 
     /// Plays `owed_s` of simulated time, or until `enough` returns true. Returns why the playback stopped, if it did.
     fn play(&mut self, owed_s: f64, wall: Duration, enough: impl FnMut() -> bool) -> Option<Halt> {
-        let until = self.until.as_ref();
-        let is_fulfilled = |run: &LiveRun| until.is_some_and(|until| until(run));
+        let mut until = self.until.as_mut();
+        let is_fulfilled = |run: &mut LiveRun| until.as_mut().is_some_and(|until| until(run));
         let Played { stepped_s, end } = self.run.play(owed_s, self.stop, enough, is_fulfilled);
         self.pace.spend(stepped_s, wall, end == PlayEnd::CutShort);
         let halt = match end {
@@ -226,9 +226,9 @@ impl Playback {
 
     /// Starts playing at its pace until `condition` holds; then it stops. It does not stop at the end of the scenario's
     /// run, and gives up after ten million steps. Returns false, and does not start, if the condition holds already.
-    pub fn run_until(&mut self, condition: Condition) -> bool {
+    pub fn run_until(&mut self, mut condition: Condition) -> bool {
         self.set_running(false);
-        if condition(&self.run) {
+        if condition(&mut self.run) {
             return false;
         }
         self.set_running(true);

@@ -4,7 +4,6 @@
 //! a readout or for a key of the scenario; what it is at a step is asked of the caller. A number that is not there makes
 //! of everything computed from it nothing; a comparison with it neither holds nor fails.
 
-use crate::scenario::problem::nearest;
 use std::fmt;
 
 /// The longest expression, bytes.
@@ -173,35 +172,18 @@ impl Expression {
         self.is_condition
     }
 
-    /// Checks that every name is one of `known`.
+    /// Looks every name up once, with `find`, which says in words why a name stands for no number.
     ///
     /// # Errors
-    /// The first that is not, with the nearest that is.
-    pub fn check_names<'a>(
-        &self,
-        is_known: impl Fn(&str) -> bool,
-        known: &(impl Iterator<Item = &'a str> + Clone),
-    ) -> Result<(), Fault> {
-        let bind = |name: &str| is_known(name).then_some(());
-        self.bind(bind, known).map(drop)
-    }
-
-    /// Looks every name up once, with `find`; `known` are the names to offer for one that is not found.
-    ///
-    /// # Errors
-    /// The first name that is not found.
+    /// The first name that is not found, where it stands, and why.
     pub fn bind<'a, T>(
-        &self,
-        find: impl Fn(&str) -> Option<T>,
-        known: &(impl Iterator<Item = &'a str> + Clone),
+        &'a self,
+        find: impl Fn(&'a str) -> Result<T, String>,
     ) -> Result<Bound<T>, Fault> {
-        let look_up = |(name, column): &(String, usize)| {
-            find(name).ok_or_else(|| Fault {
+        let look_up = |(name, column): &'a (String, usize)| {
+            find(name).map_err(|rule| Fault {
                 column: *column,
-                rule: format!(
-                    "there is no number named {name}: {}",
-                    nearest(name, known.clone())
-                ),
+                rule,
             })
         };
         let sources = self.names.iter().map(look_up).collect::<Result<_, _>>()?;
@@ -211,7 +193,7 @@ impl Expression {
 
     /// Its value, every name being what `value_of` says; `None` where a number it needs is not there.
     pub fn value(&self, value_of: impl Fn(&str) -> Option<f64>) -> Option<f64> {
-        self.root.value(&|index| value_of(&self.names[index].0))
+        self.root.value(&mut |index| value_of(&self.names[index].0))
     }
 }
 
@@ -223,25 +205,26 @@ impl PartialEq for Expression {
 
 impl<T> Bound<T> {
     /// Its value, every name being what `value_of` says; a condition is 1 where it holds and 0 where it does not.
-    pub fn value(&self, value_of: impl Fn(&T) -> Option<f64>) -> Option<f64> {
-        self.root.value(&|index| value_of(&self.sources[index]))
+    pub fn value(&self, mut value_of: impl FnMut(&T) -> Option<f64>) -> Option<f64> {
+        self.root.value(&mut |index| value_of(&self.sources[index]))
     }
 
-    /// Whether it is there and not 0.
-    pub fn holds(&self, value_of: impl Fn(&T) -> Option<f64>) -> bool {
+    /// Whether it is there and not 0. A number that decides nothing any more is not asked for.
+    pub fn holds(&self, value_of: impl FnMut(&T) -> Option<f64>) -> bool {
         self.value(value_of).is_some_and(|value| value != 0.0)
     }
 }
 
 impl Node {
-    fn value(&self, name: &impl Fn(usize) -> Option<f64>) -> Option<f64> {
+    fn value(&self, name: &mut impl FnMut(usize) -> Option<f64>) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),
             Self::Name(index) => name(*index),
             Self::Negated(inner) => Some(-inner.value(name)?),
             Self::Absolute(inner) => Some(inner.value(name)?.abs()),
             Self::Computed(operator, left, right) => {
-                operator.apply(left.value(name), || right.value(name))
+                let left = left.value(name);
+                operator.apply(left, || right.value(name))
             }
         }
     }
@@ -583,12 +566,13 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_name_is_told_with_the_nearest() {
+    fn a_wrong_name_is_told_with_its_column() {
         let expression = Expression::condition("z_m > 1 and tilt_dg > 3").unwrap();
-        let known = ["t_s", "z_m", "tilt_deg"];
-        let find = |name: &str| known.iter().position(|known| *known == name);
-        let fault = expression.bind(find, &known.into_iter()).unwrap_err();
-        assert_eq!(fault.column, 13);
-        assert!(fault.rule.contains("did you mean tilt_deg?"), "{fault}");
+        let find = |name: &str| match name {
+            "z_m" => Ok(()),
+            other => Err(format!("what is {other}?")),
+        };
+        let fault = expression.bind(find).unwrap_err();
+        assert_eq!(fault.to_string(), "column 13: what is tilt_dg?");
     }
 }

@@ -23,6 +23,7 @@ mod reference;
 mod refusals;
 mod replay;
 mod rooms;
+mod run_until;
 mod same_bits;
 mod schemes;
 mod start;

@@ -448,7 +448,7 @@ fn go_to(value: &Value) -> Read {
 
 fn run_until(value: &Value) -> Read {
     let read = Expression::condition(line(value)?).and_then(|condition| {
-        condition.check_names(numbers::is_known, &numbers::names())?;
+        condition.bind(numbers::find)?;
         Ok(condition)
     });
     match read {

@@ -1,0 +1,157 @@
+//! `run_until`: the numbers that a condition can name, and the step at which the run stops.
+
+use crate::support::desk::{Desk, commands};
+use crate::support::scenarios::preset;
+use gyrolab::analysis::readouts::{READOUTS, Value};
+use gyrolab::export::columns::Column;
+use gyrolab::lab::command;
+use gyrolab::observe::live::LiveRun;
+use gyrolab::run::Simulation;
+use gyrolab::scenario::Document;
+use std::sync::Arc;
+
+/// The lab after a run of `name` until `condition`, without a clock.
+fn played(name: &str, condition: &str) -> (Desk, Result<(), String>) {
+    let mut desk = Desk::open(name);
+    let text = format!("[[do]]\nrun_until = \"{condition}\"");
+    let document = Document::parse("demo.toml", &text).unwrap();
+    desk.lab.take_commands(command::read(&document).unwrap());
+    let end = desk.lab.finish_script();
+    (desk, end)
+}
+
+/// Why a file with this condition is refused.
+fn refusal(condition: &str) -> String {
+    let text = format!("[[do]]\nrun_until = \"{condition}\"");
+    let document = Document::parse("demo.toml", &text).unwrap();
+    command::read(&document).unwrap_err().to_string()
+}
+
+#[test]
+fn the_first_row_whose_running_maximum_is_above_the_limit() {
+    let (desk, end) = played("wobble-push", "measured_highest_tilt_deg > 50");
+    assert_eq!(end, Ok(()));
+    let tilt = Column::find("tilt_deg").unwrap();
+    let mut run = Simulation::new(Arc::new(preset("wobble-push", &[])));
+    let mut highest = f64::NEG_INFINITY;
+    let first = loop {
+        highest = highest.max(tilt.value(&run.sample()).number());
+        if highest > 50.0 {
+            break run.step_number();
+        }
+        run.step().unwrap();
+    };
+    assert!(first > 1, "{first}");
+    assert_eq!(desk.step(), first);
+}
+
+#[test]
+fn numbers_of_theory_of_the_exact_motion_and_of_measuring() {
+    for (name, condition) in [
+        ("wobble-push", "distance_m > 0.05"),
+        ("cusps", "measured_nutation_period_s > 0"),
+        (
+            "cusps",
+            "abs(measured_nutation_period_s / predicted_nutation_period_s - 1) < 0.01",
+        ),
+        ("cusps", "tilt_deg > predicted_highest_tilt_deg - 0.01"),
+        ("method-2", "L_axle_Js < 999.9 or steps >= 50"),
+        (
+            "method-2",
+            "steps == 7 and time_step_s == motion.time_step_s",
+        ),
+    ] {
+        let (mut desk, end) = played(name, condition);
+        assert_eq!(end, Ok(()), "{condition}");
+        let holds = |desk: &Desk| {
+            let readouts = &desk.lab.reading().readouts;
+            let expression = gyrolab::work::expression::Expression::parse(condition).unwrap();
+            let motion = desk.lab.motion();
+            let value = |name: &str| match name {
+                "motion.time_step_s" => Some(motion.time_step_s),
+                _ => readouts.number(name),
+            };
+            expression.value(value) == Some(1.0)
+        };
+        assert!(desk.step() > 0 && holds(&desk), "{condition}");
+        let step = desk.step();
+        desk.carry_out(&commands("step = -1").remove(0)).unwrap();
+        assert_eq!(desk.step(), step - 1);
+        assert!(!holds(&desk), "{condition} holds a step before");
+    }
+}
+
+#[test]
+fn a_name_that_is_no_number_is_refused_with_the_nearest() {
+    for (condition, told) in [
+        (
+            "distance > 1",
+            "column 1: there is no number named distance: did you mean distance_m?",
+        ),
+        (
+            "t_s > 1 and lowest_tilt_deg < 3",
+            "column 13: there is no number named lowest_tilt_deg: did you mean measured_lowest_tilt_deg or predicted_lowest_tilt_deg?",
+        ),
+        ("health == 1", "column 1: health is a text"),
+        ("motion.scheme == 1", "column 1: motion.scheme is no number"),
+        ("wall_s > 3", "column 1: wall_s is not counted in the lab"),
+        ("motion.time_step > 1", "did you mean motion.time_step_s?"),
+    ] {
+        let refusal = refusal(condition);
+        assert!(refusal.contains(told), "{condition}: {refusal}");
+    }
+}
+
+#[test]
+fn what_is_read_again_alone_is_what_is_read_with_everything() {
+    for (name, steps) in [("wobble-push", 300), ("cusps", 500), ("method-2", 120)] {
+        let mut run = LiveRun::new(Arc::new(preset(name, &[])));
+        let first = run.readouts();
+        for step in 0..steps {
+            run.step().unwrap();
+            if step % 7 > 0 {
+                continue;
+            }
+            let whole = run.readouts();
+            for readout in READOUTS {
+                let is_text = matches!(readout.of(&whole), Value::Text(_));
+                assert!(readout.is_text || !is_text, "{}", readout.name);
+                let mut again = first.clone();
+                run.read_again(&mut again, readout.source);
+                let (again, whole) = (readout.of(&again), readout.of(&whole));
+                assert!(
+                    readout.is_text || again == whole,
+                    "{name}: {}",
+                    readout.name
+                );
+            }
+        }
+    }
+}
+
+/// `cargo test --test library run_until:: -- --ignored --nocapture` prints how fast a run is played until a condition
+/// holds.
+#[test]
+#[ignore = "it measures, and decides nothing"]
+fn steps_a_second() {
+    for condition in [
+        "step >= 1000000",
+        "tilt_deg < 0 or step >= 1000000",
+        "measured_highest_tilt_deg > 180 or step >= 1000000",
+        "measured_precession_rad_per_s > 1e9 or step >= 1000000",
+        "distance_m < 0 or step >= 1000000",
+        "predicted_precession_rad_per_s > 1e9 or step >= 1000000",
+    ] {
+        let begin = std::time::Instant::now();
+        let (desk, end) = played("cusps", condition);
+        let rate = desk.step() as f64 / begin.elapsed().as_secs_f64();
+        println!("{rate:10.0} steps/s: {condition} {end:?}");
+    }
+    let begin = std::time::Instant::now();
+    let mut run = LiveRun::new(Arc::new(preset("cusps", &[])));
+    (0..1_000_000).for_each(|_| run.step().unwrap());
+    println!(
+        "{:10.0} steps/s: no condition",
+        1e6 / begin.elapsed().as_secs_f64()
+    );
+}
