@@ -131,8 +131,8 @@ impl Lab {
                 force,
             } => {
                 let scenario = self.run_until_step(*to_step, "export")?;
-                let path = self.path_of(path);
-                self.export(&scenario, &path, *every, *force)
+                let path = self.files.path_of(path);
+                self.files.export(&scenario, &path, *every, *force)
             }
             Command::Save {
                 path,
@@ -140,15 +140,15 @@ impl Lab {
                 to_step,
                 force,
             } => {
-                let path = self.path_of(path);
+                let path = self.files.path_of(path);
                 match from_here {
                     true => {
                         let content = self.present_as_text()?;
-                        self.save("the scenario", &content, &path, *force)
+                        self.files.save("the scenario", &content, &path, *force)
                     }
                     false => {
                         let run = self.run_until_step(*to_step, "save")?;
-                        self.save("the run", &run.to_toml(), &path, *force)
+                        self.files.save("the run", &run.to_toml(), &path, *force)
                     }
                 }
             }
@@ -179,7 +179,7 @@ impl Lab {
     }
 
     fn open_named(&mut self, name: &str) -> Answer {
-        self.admit(std::path::Path::new(name))?;
+        self.files.admit(std::path::Path::new(name))?;
         match super::opening::again(name).and_then(|document| document.scenario()) {
             Ok(scenario) => {
                 self.open(name, Arc::new(scenario));

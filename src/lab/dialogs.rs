@@ -1,20 +1,17 @@
 //! What the lab asks for in a dialog, and what it does with the answer.
 
-use super::carry_out::{Answer, Done, Refusal, UnderWay};
+use super::carry_out::{Answer, Done, Refusal};
 use super::command::Command;
 use super::form::{Field, Form};
 use super::{Lab, Mode};
-use crate::export::Destination;
-use crate::export::destination::DestinationError;
 use crate::lab::action::FieldEdit;
 use crate::scenario::{Document, Scenario};
-use crate::storage::exporting::{self, Estimate, Exporting, Written};
-use crate::text::printable::{Shown, is_steering};
+use crate::storage::exporting::{self, Estimate};
+use crate::text::printable::Shown;
 use crate::work::restart::scenario_from;
 use indicatif::{DecimalBytes, HumanCount};
-use std::io::Write;
 use std::num::NonZeroU64;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The keys that end a dialog.
@@ -142,7 +139,7 @@ impl Lab {
         };
         self.mode = Mode::Lab;
         let (text, second) = (dialog.form.text(0), dialog.form.text(1));
-        let path = self.path_of(text);
+        let path = self.files.path_of(text);
         let force = dialog.told_of.as_deref() == Some(&*path);
         let answer = match &dialog.asking {
             Asking::Value => self.carry_out_typed(self.values.value_typed(
@@ -167,7 +164,7 @@ impl Lab {
                 force,
             }),
             // The state as it was when it was asked for: the run may have gone on since.
-            Asking::SavePresent(content) => self.save("the scenario", content, &path, force),
+            Asking::SavePresent(content) => self.files.save("the scenario", content, &path, force),
         };
         match answer {
             Ok(_) => self.tell_answer(answer),
@@ -187,14 +184,14 @@ impl Lab {
     }
 
     pub(super) fn ask_for_export(&mut self) {
-        if self.exporting.is_some() {
+        if self.files.is_exporting() {
             return self.say("one export at a time: Esc stops the one under way");
         }
         let scenario = match self.run_until_step(None, "export") {
             Ok(scenario) => scenario,
             Err(reason) => return self.say(reason),
         };
-        let path = self.free_name("", "csv");
+        let path = self.files.free_name(self.name(), "", "csv");
         let fields = [("file", path), ("every", "1".to_owned())];
         let title = format!("export steps 0 to {} as CSV", scenario.steps);
         self.ask(Asking::Export(scenario), &title, &fields, &[]);
@@ -242,65 +239,17 @@ impl Lab {
         };
     }
 
-    pub(super) fn export(
-        &mut self,
-        scenario: &Arc<Scenario>,
-        path: &Path,
-        every: NonZeroU64,
-        force: bool,
-    ) -> Answer {
-        if self.exporting.is_some() {
-            return Err("one export at a time: wait until the one under way is done".into());
-        }
-        is_named(path)?;
-        self.admit(path)?;
-        let begun = Exporting::begin(Arc::clone(scenario), path, every, force);
-        self.exporting = Some(begun.map_err(refusal)?);
-        Ok(Done::saying("the export goes on in the background").going_on(UnderWay::Exporting))
-    }
-
-    pub(super) fn stop_export(&mut self) {
-        if let Some(exporting) = &self.exporting {
-            exporting.cancel();
-        }
-    }
-
     /// Looks after the export under way; says what has become of it.
     pub(super) fn follow_export(&mut self) {
-        let Some(exporting) = &mut self.exporting else {
-            return;
-        };
-        self.changed = true;
-        let Some(outcome) = exporting.outcome() else {
-            return;
-        };
-        self.exporting = None;
-        match outcome {
-            Ok(written) => {
-                self.notice.keep_saying(told(&written));
-                self.written.push(written);
-            }
-            Err(reason) => self.notice.keep_saying(reason),
-        }
-    }
-
-    pub(super) fn export_in_words(&self) -> Option<String> {
-        let (step, steps) = self.exporting.as_ref()?.progress();
-        let percent = 100.0 * step as f64 / steps.max(1) as f64;
-        Some(format!("exporting: {percent:.0} %, Esc stops it"))
-    }
-
-    /// The file that is called `name`.
-    pub(super) fn path_of(&self, name: &str) -> PathBuf {
-        match &self.folder {
-            Some(folder) if !name.is_empty() => folder.join(name),
-            _ => PathBuf::from(name),
+        self.changed |= self.files.is_exporting();
+        if let Some(text) = self.files.follow_export() {
+            self.notice.keep_saying(text);
         }
     }
 
     /// Whether the lab may end: not at the first word while an export is under way.
     pub(super) fn may_quit(&mut self, was_warned: bool) -> bool {
-        if self.exporting.is_none() || was_warned {
+        if !self.files.is_exporting() || was_warned {
             return true;
         }
         self.was_warned = true;
@@ -324,7 +273,7 @@ impl Lab {
             0 => vec![up_to.as_str()],
             _ => vec![up_to.as_str(), left_out.as_str()],
         };
-        let path = self.free_name("-run", "toml");
+        let path = self.files.free_name(self.name(), "-run", "toml");
         self.ask(
             Asking::SaveRun(scenario.steps),
             "save the run file",
@@ -337,7 +286,7 @@ impl Lab {
         match self.present_as_text() {
             Err(reason) => self.say(reason),
             Ok(content) => {
-                let path = self.free_name("-from-here", "toml");
+                let path = self.files.free_name(self.name(), "-from-here", "toml");
                 let info = "a scenario that starts from the state on the screen";
                 self.ask(
                     Asking::SavePresent(content),
@@ -358,37 +307,6 @@ impl Lab {
         let scenario = scenario_from(run.scenario(), run.state(), run.step_number())
             .map_err(|problems| problems.in_one_line())?;
         toml::to_string(&scenario.file).map_err(|error| error.to_string())
-    }
-
-    pub(super) fn save(&mut self, what: &str, content: &str, path: &Path, force: bool) -> Answer {
-        is_named(path)?;
-        self.admit(path)?;
-        let mut destination = Destination::open_file(path, force).map_err(refusal)?;
-        let written = destination.write_all(content.as_bytes());
-        written.map_err(|error| format!("cannot write {}: {error}", Shown(path)))?;
-        destination.keep().map_err(refusal)?;
-        let name = full(path);
-        Ok(Done {
-            stays: true,
-            ..Done::saying(format!("{what} is in {}", Shown(&name)))
-        })
-    }
-
-    /// A name for a file about the present run that no file here has yet.
-    fn free_name(&self, about: &str, extension: &str) -> String {
-        let stem = Path::new(self.name())
-            .file_stem()
-            .map_or("run".into(), |stem| stem.to_string_lossy());
-        let stem = stem.strip_suffix(about).unwrap_or(&stem);
-        let stem = stem.replace(is_steering, "_"); // what is offered can be seen and typed
-        let names = (1_u32..).map(|number| match number {
-            1 => format!("{stem}{about}.{extension}"),
-            _ => format!("{stem}{about}-{number}.{extension}"),
-        });
-        names
-            .take(1000)
-            .find(|name| !self.path_of(name).exists())
-            .unwrap_or_default()
     }
 }
 
@@ -415,41 +333,8 @@ fn refused(mut dialog: Dialog, refusal: Refusal) -> Dialog {
     }
 }
 
-fn refusal(error: DestinationError) -> Refusal {
-    match error {
-        DestinationError::Exists(path) => Refusal::Exists(path),
-        other => Refusal::Because(other.fact()),
-    }
-}
-
-fn is_named(path: &Path) -> Result<(), Refusal> {
-    match path.as_os_str().is_empty() {
-        true => Err(Refusal::Because("the file needs a name".to_owned())),
-        false => Ok(()),
-    }
-}
-
 fn every(text: &str) -> Result<NonZeroU64, String> {
     text.trim()
         .parse()
         .map_err(|_| "every must be a whole number, 1 or more".to_owned())
-}
-
-/// What has been written, and how to fetch it.
-fn told(written: &Written) -> String {
-    let rows = HumanCount(written.rows);
-    let end = match &written.not_finite {
-        Some(end) => format!(", as far as the numbers are finite (step {})", end.step - 1),
-        None => String::new(),
-    };
-    format!(
-        "wrote {rows} rows, {}{end}: {} · {}",
-        DecimalBytes(written.bytes),
-        Shown(&written.path),
-        exporting::scp_line(&written.path)
-    )
-}
-
-fn full(path: &Path) -> PathBuf {
-    std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
 }

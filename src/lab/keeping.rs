@@ -119,10 +119,7 @@ impl Lab {
             window_s: self.view.window_s,
             focus: self.view.focus.id().to_owned(),
             filled: self.view.filled,
-            exporting: self
-                .exporting
-                .as_ref()
-                .map(|exporting| Shown(exporting.path()).to_string()),
+            exporting: self.files.exported_to().map(|path| Shown(path).to_string()),
             next_push: self.values.next_push().clone(),
         }
     }
@@ -168,7 +165,9 @@ impl Lab {
             view.window_s = place.window_s;
         }
         let mut lab = Self::new(&present.name.clone(), scenario, view, false);
-        lab.confined = confined.cloned();
+        if let Some(folder) = confined {
+            lab.files.confine(folder.clone());
+        }
         lab.history = work.history;
         lab.set_file(lab.file_as_opened());
         lab.values.set_next_push(place.next_push);
@@ -192,7 +191,7 @@ impl Lab {
 
     /// What the run was opened from, where that is still there; else the run itself.
     fn file_as_opened(&self) -> Arc<Scenario> {
-        if self.admit(Path::new(self.name())).is_err() {
+        if self.files.admit(Path::new(self.name())).is_err() {
             return Arc::clone(self.run().scenario());
         }
         let file = super::opening::again(self.name()).and_then(|document| document.scenario());

@@ -4,7 +4,7 @@
 //! belongs together: `travel` through the run, `looking` at it, `editing` it, `opening` another, `dialogs` and what
 //! they ask for, `keeping` all of it. What they work on has rooms of its own: [`history`](mod@crate::work::history) the runs one after the other, each with its
 //! journal; [`editor`] the list of what can be edited; [`next_push`](mod@crate::work::next_push) the push to come; [`form`] what is typed into;
-//! [`browser`] the list of presets and files; [`changed`](mod@crate::work::changed) says what there is to see, [`notice`] what has just happened.
+//! [`browser`] the list of presets and files; `files` the folder, what may be written, and the export under way; [`changed`](mod@crate::work::changed) says what there is to see, [`notice`] what has just happened.
 
 pub mod action;
 pub mod browser;
@@ -13,6 +13,7 @@ pub mod command;
 mod dialogs;
 mod editing;
 pub mod editor;
+mod files;
 pub mod form;
 mod keeping;
 mod looking;
@@ -41,14 +42,15 @@ use crate::observe::reading::Reading;
 use crate::run::NotFinite;
 use crate::scenario::{Motion, Scenario};
 use crate::storage::confined::Confined;
-use crate::storage::exporting::{Exporting, Written};
+use crate::storage::exporting::Written;
 use crate::work::changed;
 use crate::work::history::History;
 use browser::Browser;
 use editor::Editor;
+use files::Files;
 use notice::Notice;
 use player::{Player, halt_in_words};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 use values::Values;
@@ -99,15 +101,10 @@ pub struct Lab {
     changed_from_file: Option<String>,
     player: Player,
     values: Values,
-    /// Where files are looked for and written to, if not in the present folder.
-    folder: Option<PathBuf>,
-    /// The folder that is not left, if there is one.
-    confined: Option<Confined>,
+    files: Files,
     /// Why the session is not kept, if it is not.
     trouble: Option<String>,
     dialog: Option<Dialog>,
-    exporting: Option<Exporting>,
-    written: Vec<Written>,
     /// Whether the end was asked for while something was under way.
     was_warned: bool,
     /// The text of run and journal for the session, as long as it holds.
@@ -138,12 +135,9 @@ impl Lab {
             player,
             values: Values::new(&scenario),
             file: scenario,
-            folder: None,
-            confined: None,
+            files: Files::default(),
             trouble: None,
             dialog: None,
-            exporting: None,
-            written: Vec::new(),
             was_warned: false,
             work: None,
             side_by_side: view.panes.to_vec(),
@@ -169,18 +163,12 @@ impl Lab {
 
     /// Looks for files in `folder`, and writes them there, instead of the present folder.
     pub fn work_in(&mut self, folder: &Path) {
-        self.folder = Some(folder.to_owned());
+        self.files.work_in(folder);
     }
 
     /// From now on reads and writes nothing outside of the folder.
     pub fn confine(&mut self, folder: Confined) {
-        self.confined = Some(folder);
-    }
-
-    /// Whether the file `path` may be read and written.
-    fn admit(&self, path: &Path) -> Result<(), String> {
-        let confined = self.confined.as_ref();
-        confined.map_or(Ok(()), |folder| folder.check(path))
+        self.files.confine(folder);
     }
 
     /// From now on looks in the background for what would mend a run that is not to be believed.
@@ -307,12 +295,12 @@ impl Lab {
 
     /// What has been exported since the lab was opened.
     pub fn written(&self) -> &[Written] {
-        &self.written
+        self.files.written()
     }
 
     /// Whether something is under way that time changes, beside the run.
     pub fn is_exporting(&self) -> bool {
-        self.exporting.is_some()
+        self.files.is_exporting()
     }
 
     /// Gravity, scheme and time step of the step to come.
@@ -360,6 +348,8 @@ impl Lab {
     pub fn notice(&self) -> Option<String> {
         let stepping = self.player.in_words();
         let said = || self.notice.text().map(str::to_owned);
-        stepping.or_else(said).or_else(|| self.export_in_words())
+        stepping
+            .or_else(said)
+            .or_else(|| self.files.export_in_words())
     }
 }

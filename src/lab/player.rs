@@ -281,3 +281,85 @@ pub(super) fn halt_in_words(halt: Halt) -> Option<String> {
 fn begins_with_exact(scenario: &Scenario) -> Option<bool> {
     scenario.file.view.as_ref()?.exact
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Document;
+
+    fn scenario() -> Arc<Scenario> {
+        let document = Document::open("method-2").unwrap();
+        Arc::new(document.scenario().unwrap())
+    }
+
+    #[test]
+    fn steps_and_places_lead_where_they_say() {
+        let mut player = Player::new(scenario(), false);
+        assert!(player.step(-1).is_err());
+        player.step(7).unwrap();
+        assert_eq!(player.playback.step_number(), 7);
+        for (place, step) in [
+            (Place::Time(1.5), 15),
+            (Place::Step(3), 3),
+            (Place::End, 2300),
+            (Place::Start, 0),
+        ] {
+            player.go_to(place).unwrap();
+            player.playback.finish();
+            assert_eq!(player.playback.step_number(), step, "{place:?}");
+        }
+        assert!(player.step_at(-1.0).is_err() && player.step_at(f64::NAN).is_err());
+    }
+
+    #[test]
+    fn a_run_that_was_played_stays_as_a_ghost() {
+        let mut player = Player::new(scenario(), false);
+        player.begin(scenario());
+        assert!(player.ghost().is_none(), "it stood at its start");
+        player.step(100).unwrap();
+        player.begin(scenario());
+        let end_s = player.ghost().map(Ghost::end_s);
+        assert!(end_s.is_some_and(|end_s| (end_s - 10.0).abs() < 1e-9));
+        player.step(1).unwrap();
+        player.begin(scenario());
+        assert_eq!(
+            player.ghost().map(Ghost::end_s),
+            end_s,
+            "one step is no run"
+        );
+        player.open(scenario());
+        assert!(player.ghost().is_none());
+    }
+
+    #[test]
+    fn what_is_kept_is_where_it_is_on_its_way_back_to() {
+        let mut player = Player::new(scenario(), false);
+        player.return_to(100_000_000);
+        assert!(player.playback.step_number() < 100_000_000);
+        assert_eq!(player.step_to_keep(), 100_000_000);
+        assert!(
+            player
+                .in_words()
+                .is_some_and(|text| text.ends_with("Esc stops"))
+        );
+        player.pause();
+        assert_eq!(player.step_to_keep(), player.playback.step_number());
+        assert_eq!(player.in_words(), None);
+    }
+
+    #[test]
+    fn a_condition_that_holds_already_begins_nothing() {
+        let mut player = Player::new(scenario(), false);
+        let holding = Expression::condition("measured_highest_tilt_deg > 1").unwrap();
+        let done = player.run_until(&holding).unwrap();
+        assert_eq!(
+            (done.under_way, player.playback.is_running()),
+            (None, false)
+        );
+        let later = Expression::condition("steps >= 9").unwrap();
+        let done = player.run_until(&later).unwrap();
+        assert_eq!(done.under_way, Some(UnderWay::Playing));
+        assert_eq!(player.playback.finish(), Some(Halt::Fulfilled));
+        assert_eq!(player.playback.step_number(), 9);
+    }
+}

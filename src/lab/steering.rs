@@ -8,7 +8,6 @@ use super::values::Target;
 use super::view::Pane;
 use super::{Lab, Mode, Request};
 use crate::observe::pace::Speed;
-use std::path::Path;
 
 /// Factor for Shift.
 const FAR: i32 = 10;
@@ -229,7 +228,7 @@ impl Lab {
             Action::Help => self.toggle_help(),
             Action::Close => self.close(closed),
             Action::Redraw => return Some(Request::Redraw),
-            Action::Suspend if self.confined.is_some() => {
+            Action::Suspend if self.files.confined().is_some() => {
                 self.say("there is no shell to go back to: q leaves");
             }
             Action::Suspend => return Some(Request::Suspend),
@@ -260,9 +259,9 @@ impl Lab {
     }
 
     fn browse(&mut self) {
-        let folder = self.folder.as_deref().unwrap_or(Path::new("."));
+        let folder = self.files.folder();
         let name = &self.history.present().name;
-        let confined = self.confined.as_ref();
+        let confined = self.files.confined();
         self.browser.begin(folder, name, |path| {
             confined.is_none_or(|folder| folder.check(path).is_ok())
         });
@@ -308,7 +307,7 @@ impl Lab {
             }
             Mode::Lab if self.view.filled => self.carry_out_all(&[Command::Fill(None)]),
             Mode::Lab if closed => {}
-            Mode::Lab if self.exporting.is_some() => self.stop_export(),
+            Mode::Lab if self.files.is_exporting() => self.files.stop_export(),
             Mode::Lab => self.say("nothing to close; q leaves"),
         }
     }

@@ -265,3 +265,88 @@ fn rank(group: &str) -> usize {
         None => 2 * place("body") + 1,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Document;
+    use crate::work::history::History;
+    use std::sync::Arc;
+
+    fn listed() -> (Values, Arc<Scenario>) {
+        let scenario = Document::open("method-2").unwrap().scenario().unwrap();
+        let scenario = Arc::new(scenario);
+        let run = LiveRun::new(Arc::clone(&scenario));
+        let history = History::new("method-2", &scenario);
+        let mut values = Values::new(&scenario);
+        values.list(&run, &history.present().journal);
+        assert!(!values.is_outdated(0, &history.present().journal));
+        (values, scenario)
+    }
+
+    #[test]
+    fn groups_stand_in_their_order() {
+        let (values, _) = listed();
+        let ranks: Vec<_> = values
+            .targets
+            .iter()
+            .map(|target| rank(target.group()))
+            .collect();
+        assert!(ranks.is_sorted() && !ranks.is_empty());
+        assert_eq!(values.editor().lines().len(), values.targets.len());
+    }
+
+    #[test]
+    fn a_value_is_found_by_its_key() {
+        let (values, _) = listed();
+        let step = values.parameter("motion.time_step_s").unwrap();
+        assert_eq!(step.value.as_float(), Some(0.1));
+        assert!(values.in_words("motion.time_step_s").contains("0.1 s"));
+        assert!(values.parameter("motion.nothing").is_none());
+        assert_eq!(values.in_words("motion.nothing"), "motion.nothing");
+    }
+
+    #[test]
+    fn nudges_of_one_key_belong_together_for_a_while() {
+        let (mut values, _) = listed();
+        let at = Duration::from_secs;
+        values.note_nudge("trace", at(10));
+        assert!(values.is_nudged_again("trace", at(12)));
+        assert!(!values.is_nudged_again("title", at(12)));
+        assert!(!values.is_nudged_again("trace", at(13)));
+        values.forget_nudge();
+        assert!(!values.is_nudged_again("trace", at(10)));
+    }
+
+    #[test]
+    fn a_push_has_its_own_and_the_rest_of_the_push_to_come() {
+        let (values, scenario) = listed();
+        let choice = PushChoice {
+            force_N: Some(Force::Vector([3.0, 0.0, 4.0])),
+            for_s: Some(0.5),
+            ..PushChoice::default()
+        };
+        let push = values.chosen(&choice, &scenario, 0.1).unwrap();
+        assert_eq!((push.size_N, push.for_s), (5.0, 0.5));
+        assert_eq!(push.toward, Toward::Along([3.0, 0.0, 4.0]));
+        assert_eq!(push.point, values.next_push().point);
+        let nobody = PushChoice {
+            point: Some("nobody".to_owned()),
+            ..PushChoice::default()
+        };
+        assert!(values.chosen(&nobody, &scenario, 0.1).is_err());
+    }
+
+    #[test]
+    fn what_is_typed_becomes_a_command_for_the_selected_line() {
+        let (mut values, scenario) = listed();
+        values.select_next_push();
+        let command = values.value_typed("70", &scenario, 0.1).unwrap();
+        let size = PushChoice {
+            force_N: Some(Force::Size(70.0)),
+            ..PushChoice::default()
+        };
+        assert_eq!(command, Some(Command::NextPush(size)));
+        assert!(values.value_typed("hard", &scenario, 0.1).is_err());
+    }
+}

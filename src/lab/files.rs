@@ -1,0 +1,247 @@
+//! The files of the lab: where they are looked for, what may be read and written, and the export under way.
+
+use super::carry_out::{Answer, Done, Refusal, UnderWay};
+use crate::export::Destination;
+use crate::export::destination::DestinationError;
+use crate::scenario::Scenario;
+use crate::storage::confined::Confined;
+use crate::storage::exporting::{self, Exporting, Written};
+use crate::text::printable::{Shown, is_steering};
+use indicatif::{DecimalBytes, HumanCount};
+use std::io::Write;
+use std::num::NonZeroU64;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Where files are read and written, and what is being written.
+#[derive(Default)]
+pub struct Files {
+    /// Where files are looked for and written to, if not in the present folder.
+    folder: Option<PathBuf>,
+    /// The folder that is not left, if there is one.
+    confined: Option<Confined>,
+    exporting: Option<Exporting>,
+    written: Vec<Written>,
+}
+
+impl Files {
+    /// Looks for files in `folder`, and writes them there, instead of the present folder.
+    pub(super) fn work_in(&mut self, folder: &Path) {
+        self.folder = Some(folder.to_owned());
+    }
+
+    /// Where files are looked for.
+    pub(super) fn folder(&self) -> &Path {
+        self.folder.as_deref().unwrap_or(Path::new("."))
+    }
+
+    /// From now on reads and writes nothing outside of the folder.
+    pub(super) fn confine(&mut self, folder: Confined) {
+        self.confined = Some(folder);
+    }
+
+    /// The folder that is not left, if there is one.
+    pub(super) fn confined(&self) -> Option<&Confined> {
+        self.confined.as_ref()
+    }
+
+    /// Whether the file `path` may be read and written.
+    ///
+    /// # Errors
+    /// Why it may not.
+    pub(super) fn admit(&self, path: &Path) -> Result<(), String> {
+        self.confined().map_or(Ok(()), |folder| folder.check(path))
+    }
+
+    /// What has been exported since the lab was opened.
+    pub fn written(&self) -> &[Written] {
+        &self.written
+    }
+
+    /// Whether an export is under way.
+    pub fn is_exporting(&self) -> bool {
+        self.exporting.is_some()
+    }
+
+    /// The file that is being written, if one is.
+    pub(super) fn exported_to(&self) -> Option<&Path> {
+        self.exporting.as_ref().map(Exporting::path)
+    }
+
+    /// Begins to write the rows of `scenario`.
+    ///
+    /// # Errors
+    /// Where one is being written, or the file may not be written or exists.
+    pub(super) fn export(
+        &mut self,
+        scenario: &Arc<Scenario>,
+        path: &Path,
+        every: NonZeroU64,
+        force: bool,
+    ) -> Answer {
+        if self.exporting.is_some() {
+            return Err("one export at a time: wait until the one under way is done".into());
+        }
+        is_named(path)?;
+        self.admit(path)?;
+        let begun = Exporting::begin(Arc::clone(scenario), path, every, force);
+        self.exporting = Some(begun.map_err(refusal)?);
+        Ok(Done::saying("the export goes on in the background").going_on(UnderWay::Exporting))
+    }
+
+    /// Asks the export under way to end.
+    pub(super) fn stop_export(&mut self) {
+        if let Some(exporting) = &self.exporting {
+            exporting.cancel();
+        }
+    }
+
+    /// Looks after the export under way; gives in words what has become of it, once it is done.
+    pub(super) fn follow_export(&mut self) -> Option<String> {
+        let outcome = self.exporting.as_mut()?.outcome()?;
+        self.exporting = None;
+        Some(match outcome {
+            Ok(written) => {
+                let text = told(&written);
+                self.written.push(written);
+                text
+            }
+            Err(reason) => reason,
+        })
+    }
+
+    /// How far the export under way is, in words.
+    pub(super) fn export_in_words(&self) -> Option<String> {
+        let (step, steps) = self.exporting.as_ref()?.progress();
+        let percent = 100.0 * step as f64 / steps.max(1) as f64;
+        Some(format!("exporting: {percent:.0} %, Esc stops it"))
+    }
+
+    /// The file that is called `name`.
+    pub(super) fn path_of(&self, name: &str) -> PathBuf {
+        match &self.folder {
+            Some(folder) if !name.is_empty() => folder.join(name),
+            _ => PathBuf::from(name),
+        }
+    }
+
+    /// Writes `content`, which is `what` in words.
+    ///
+    /// # Errors
+    /// Where the file may not be written or exists.
+    pub(super) fn save(&self, what: &str, content: &str, path: &Path, force: bool) -> Answer {
+        is_named(path)?;
+        self.admit(path)?;
+        let mut destination = Destination::open_file(path, force).map_err(refusal)?;
+        let written = destination.write_all(content.as_bytes());
+        written.map_err(|error| format!("cannot write {}: {error}", Shown(path)))?;
+        destination.keep().map_err(refusal)?;
+        let name = full(path);
+        Ok(Done {
+            stays: true,
+            ..Done::saying(format!("{what} is in {}", Shown(&name)))
+        })
+    }
+
+    /// A name for a file about the run called `name` that no file here has yet.
+    pub(super) fn free_name(&self, name: &str, about: &str, extension: &str) -> String {
+        let stem = Path::new(name)
+            .file_stem()
+            .map_or("run".into(), |stem| stem.to_string_lossy());
+        let stem = stem.strip_suffix(about).unwrap_or(&stem);
+        let stem = stem.replace(is_steering, "_"); // what is offered can be seen and typed
+        let names = (1_u32..).map(|number| match number {
+            1 => format!("{stem}{about}.{extension}"),
+            _ => format!("{stem}{about}-{number}.{extension}"),
+        });
+        names
+            .take(1000)
+            .find(|name| !self.path_of(name).exists())
+            .unwrap_or_default()
+    }
+}
+
+fn refusal(error: DestinationError) -> Refusal {
+    match error {
+        DestinationError::Exists(path) => Refusal::Exists(path),
+        other => Refusal::Because(other.fact()),
+    }
+}
+
+fn is_named(path: &Path) -> Result<(), Refusal> {
+    match path.as_os_str().is_empty() {
+        true => Err(Refusal::Because("the file needs a name".to_owned())),
+        false => Ok(()),
+    }
+}
+
+/// What has been written, and how to fetch it.
+fn told(written: &Written) -> String {
+    let rows = HumanCount(written.rows);
+    let end = match &written.not_finite {
+        Some(end) => format!(", as far as the numbers are finite (step {})", end.step - 1),
+        None => String::new(),
+    };
+    format!(
+        "wrote {rows} rows, {}{end}: {} · {}",
+        DecimalBytes(written.bytes),
+        Shown(&written.path),
+        exporting::scp_line(&written.path)
+    )
+}
+
+fn full(path: &Path) -> PathBuf {
+    std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn here() -> (tempfile::TempDir, Files) {
+        let folder = tempfile::tempdir().unwrap();
+        let mut files = Files::default();
+        files.work_in(folder.path());
+        (folder, files)
+    }
+
+    #[test]
+    fn a_free_name_is_that_of_no_file() {
+        let (folder, files) = here();
+        assert_eq!(
+            files.free_name("presets/cusps.toml", "", "csv"),
+            "cusps.csv"
+        );
+        std::fs::write(folder.path().join("cusps-run.toml"), "").unwrap();
+        let again = files.free_name("cusps-run.toml", "-run", "toml");
+        assert_eq!(again, "cusps-run-2.toml");
+        assert_eq!(files.free_name("a\u{1b}b", "", "csv"), "a_b.csv");
+    }
+
+    #[test]
+    fn a_file_is_replaced_only_where_that_is_asked_for() {
+        let (_folder, files) = here();
+        let path = files.path_of("run.toml");
+        let done = files.save("the run", "one", &path, false).unwrap();
+        assert!(done.stays && done.said.unwrap().starts_with("the run is in "));
+        let refused = files.save("the run", "two", &path, false);
+        assert_eq!(refused, Err(Refusal::Exists(path.clone())));
+        files.save("the run", "two", &path, true).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
+        let nameless = files.save("the run", "", &files.path_of(""), false);
+        assert!(nameless.unwrap_err().to_string().contains("needs a name"));
+    }
+
+    #[test]
+    fn nothing_is_under_way_at_first() {
+        let mut files = Files::default();
+        assert_eq!(files.folder(), Path::new("."));
+        assert!(!files.is_exporting() && files.written().is_empty());
+        assert_eq!(
+            (files.follow_export(), files.export_in_words()),
+            (None, None)
+        );
+        files.stop_export();
+        assert_eq!(files.admit(Path::new("/anywhere")), Ok(()));
+    }
+}
