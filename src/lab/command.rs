@@ -4,6 +4,7 @@
 //! stands behind it, and what it does; [`read`] and [`to_toml`] go by it, and so does the manual.
 
 mod table;
+mod write;
 
 pub use table::{COMMANDS, Row};
 
@@ -160,7 +161,7 @@ impl Command {
 
     /// Its name and the value behind it, as TOML.
     pub fn to_table(&self) -> Table {
-        let (name, value) = table::written(self);
+        let (name, value) = write::written(self);
         Table::from_iter([(name.to_owned(), value)])
     }
 }

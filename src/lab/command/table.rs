@@ -1,5 +1,6 @@
 //! The one table of commands: what each is called, what stands behind it, and what it does.
 
+use super::write::map;
 use super::{Command, Force, Place, PushChoice};
 use crate::lab::numbers;
 use crate::lab::view::{Pane, Part};
@@ -82,131 +83,6 @@ pub static COMMANDS: &[Row] = &[
     row("fill", "\"above\"", "the pane that fills the screen, or \"none\"", fill),
     row("camera", "{ yaw_deg = 30, pitch_deg = 20 }", "from where the 3-D view is seen", camera),
 ];
-
-/// Name and value of `command`.
-pub(super) fn written(command: &Command) -> (&'static str, Value) {
-    match command {
-        Command::Open(name) => ("open", name.clone().into()),
-        Command::Set(table) => ("set", table.clone().into()),
-        Command::Nudge { key, times } => (
-            "nudge",
-            map([("key", key.clone().into()), ("times", (*times).into())]),
-        ),
-        Command::Push(choice) if *choice == PushChoice::default() => ("push", true.into()),
-        Command::Push(choice) => ("push", push_written(choice)),
-        Command::NextPush(choice) => ("next_push", push_written(choice)),
-        Command::Step(steps) => ("step", (*steps).into()),
-        Command::GoTo(place) => ("go_to", place_written(*place)),
-        Command::RunUntil(condition) => ("run_until", condition.text().into()),
-        Command::Run => ("run", true.into()),
-        Command::Pause => ("pause", true.into()),
-        Command::Wait(seconds) => ("wait_s", (*seconds).into()),
-        Command::Undo(times) => ("undo", i64::from(*times).into()),
-        Command::Redo(times) => ("redo", i64::from(*times).into()),
-        Command::Export {
-            path,
-            every,
-            to_step,
-            force,
-        } => {
-            let mut table = file_written(path, *to_step, *force);
-            if every.get() > 1 {
-                table.insert("every".to_owned(), large(every.get()));
-            }
-            ("export", short(table))
-        }
-        Command::Save {
-            path,
-            from_here,
-            to_step,
-            force,
-        } => {
-            let mut table = file_written(path, *to_step, *force);
-            if *from_here {
-                table.insert("from_here".to_owned(), true.into());
-            }
-            ("save", short(table))
-        }
-        Command::Speed(Speed::Times(speed)) => ("speed", (*speed).into()),
-        Command::Speed(Speed::Top) => ("speed", "top".into()),
-        Command::LookAt(text) => ("look_at", text.clone().into()),
-        Command::Window(window_s) => ("window_s", (*window_s).into()),
-        Command::Exact(shown) => ("exact", (*shown).into()),
-        Command::Show(panes) => ("show", words(panes.iter().map(|pane| pane.id()))),
-        Command::Hide(parts) => ("hide", words(parts.iter().map(|part| part.id()))),
-        Command::Fill(pane) => ("fill", pane.map_or("none", Pane::id).into()),
-        Command::Camera(camera) => (
-            "camera",
-            map([
-                ("yaw_deg", camera.yaw_deg.into()),
-                ("pitch_deg", camera.pitch_deg.into()),
-            ]),
-        ),
-    }
-}
-
-fn map<const N: usize>(entries: [(&str, Value); N]) -> Value {
-    let entries = entries
-        .into_iter()
-        .map(|(name, value)| (name.to_owned(), value));
-    Value::Table(entries.collect())
-}
-
-fn words(list: impl Iterator<Item = &'static str>) -> Value {
-    Value::Array(list.map(Value::from).collect())
-}
-
-fn large(number: u64) -> Value {
-    Value::Integer(i64::try_from(number).unwrap_or(i64::MAX))
-}
-
-fn file_written(path: &str, to_step: Option<u64>, force: bool) -> Table {
-    let mut table = Table::from_iter([("path".to_owned(), path.into())]);
-    if let Some(step) = to_step {
-        table.insert("to_step".to_owned(), large(step));
-    }
-    if force {
-        table.insert("force".to_owned(), true.into());
-    }
-    table
-}
-
-/// The path alone where the table holds nothing else.
-fn short(mut table: Table) -> Value {
-    match table.len() {
-        1 => table.remove("path").unwrap_or(Value::Table(table)),
-        _ => Value::Table(table),
-    }
-}
-
-fn push_written(choice: &PushChoice) -> Value {
-    let mut table = Table::new();
-    let mut insert = |name: &str, value: Option<Value>| {
-        if let Some(value) = value {
-            table.insert(name.to_owned(), value);
-        }
-    };
-    insert("point", choice.point.clone().map(Value::from));
-    insert(
-        "force_N",
-        choice.force_N.map(|force| match force {
-            Force::Size(size) => size.into(),
-            Force::Vector(vector) => vector.to_vec().into(),
-        }),
-    );
-    insert("toward", choice.toward.map(|toward| toward.shown().into()));
-    insert("for_s", choice.for_s.map(Value::from));
-    Value::Table(table)
-}
-
-fn place_written(place: Place) -> Value {
-    match place {
-        Place::Step(step) => large(step),
-        Place::Time(time_s) => format!("{time_s} s").into(),
-        Place::Start => "start".into(),
-        Place::End => "end".into(),
-    }
-}
 
 fn wrong<T>(value: &Value, rule: impl Into<String>) -> Result<T, Vec<Problem>> {
     Err(vec![Problem::with_value("", value, rule)])

@@ -1,0 +1,259 @@
+//! Reading an expression: its tokens, and what they are joined to.
+
+use super::Operator::{Minus, Times};
+use super::{Fault, Node, OPERATORS, Operator};
+use std::fmt;
+
+/// How deep parentheses and signs may be nested.
+const DEEPEST: usize = 64;
+
+/// What was read: the expression, whether it is a condition, and every name in it once with its column.
+type Read = (Node, bool, Vec<(String, usize)>);
+
+/// Reads `text` to its end.
+///
+/// # Errors
+/// What is wrong with it, and at which character.
+pub(super) fn parse(text: &str) -> Result<Read, Fault> {
+    let mut parser = Parser {
+        tokens: tokens(text)?,
+        at: 0,
+        end: text.chars().count() + 1,
+        names: Vec::new(),
+        depth: 0,
+    };
+    let (root, is_condition) = parser.expression(0)?;
+    match parser.tokens.get(parser.at) {
+        None => Ok((root, is_condition, parser.names)),
+        Some((column, token)) => Err(Fault {
+            column: *column,
+            rule: format!("{token} cannot follow here: an operator must come first"),
+        }),
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Token {
+    Number(f64),
+    Name(String),
+    Operator(Operator),
+    Open,
+    Close,
+}
+
+impl fmt::Display for Token {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Name(name) => f.write_str(name),
+            Self::Operator(operator) => f.write_str(operator.name()),
+            Self::Open => f.write_str("("),
+            Self::Close => f.write_str(")"),
+        }
+    }
+}
+
+/// Every token with its column.
+fn tokens(text: &str) -> Result<Vec<(usize, Token)>, Fault> {
+    let characters: Vec<char> = text.chars().collect();
+    let mut tokens = Vec::new();
+    let mut at = 0;
+    while let Some(&c) = characters.get(at) {
+        if c.is_whitespace() {
+            at += 1;
+            continue;
+        }
+        let rest = &characters[at..];
+        let (token, length) = if c.is_ascii_digit() || c == '.' {
+            number(rest).map_err(|rule| Fault {
+                column: at + 1,
+                rule,
+            })?
+        } else if c.is_ascii_alphabetic() || c == '_' {
+            word(rest)
+        } else {
+            sign(rest).map_err(|rule| Fault {
+                column: at + 1,
+                rule,
+            })?
+        };
+        tokens.push((at + 1, token));
+        at += length;
+    }
+    Ok(tokens)
+}
+
+/// The number at the beginning of `text`: digits, a point, an exponent.
+fn number(text: &[char]) -> Result<(Token, usize), String> {
+    let is_part = |index: usize| {
+        let c = text[index];
+        let before = index.checked_sub(1).map(|before| text[before]);
+        c.is_ascii_alphanumeric()
+            || c == '.'
+            || (matches!(c, '+' | '-') && matches!(before, Some('e' | 'E')))
+    };
+    let length = (0..text.len())
+        .find(|&index| !is_part(index))
+        .unwrap_or(text.len());
+    let written: String = text[..length].iter().collect();
+    match written.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok((Token::Number(number), length)),
+        _ => Err(format!("{written} is no number")),
+    }
+}
+
+/// The name at the beginning of `text`, or the operator that is a word.
+fn word(text: &[char]) -> (Token, usize) {
+    let is_part = |c: &char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.');
+    let name: String = text.iter().take_while(|c| is_part(c)).collect();
+    let length = name.len();
+    let operator = OPERATORS.iter().find(|(known, _)| *known == name);
+    let token = operator.map_or(Token::Name(name), |(_, operator)| {
+        Token::Operator(*operator)
+    });
+    (token, length)
+}
+
+fn sign(text: &[char]) -> Result<(Token, usize), String> {
+    match text[0] {
+        '(' => return Ok((Token::Open, 1)),
+        ')' => return Ok((Token::Close, 1)),
+        _ => {}
+    }
+    let begins =
+        |name: &str| name.chars().zip(text).all(|(a, b)| a == *b) && name.len() <= text.len();
+    let operator = OPERATORS.iter().find(|(name, _)| begins(name));
+    match (operator, text[0]) {
+        (Some((name, operator)), _) => Ok((Token::Operator(*operator), name.len())),
+        (None, '=') => Err("a comparison is written ==".to_owned()),
+        (None, '&') => Err("write and".to_owned()),
+        (None, '|') => Err("write or, or abs(...)".to_owned()),
+        (None, c) => Err(format!("{} has no meaning here", c.escape_debug())),
+    }
+}
+
+struct Parser {
+    tokens: Vec<(usize, Token)>,
+    at: usize,
+    /// The column after the last character.
+    end: usize,
+    names: Vec<(String, usize)>,
+    depth: usize,
+}
+
+impl Parser {
+    fn column(&self) -> usize {
+        self.tokens
+            .get(self.at)
+            .map_or(self.end, |(column, _)| *column)
+    }
+
+    fn fault<T>(column: usize, rule: impl Into<String>) -> Result<T, Fault> {
+        let rule = rule.into();
+        Err(Fault { column, rule })
+    }
+
+    /// What is joined by operators that bind at least as tightly as `least`; and whether it is a condition.
+    fn expression(&mut self, least: u8) -> Result<(Node, bool), Fault> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Self::fault(self.column(), "it is nested too deep");
+        }
+        let begin = self.column();
+        let (mut left, mut is_condition) = self.operand()?;
+        while let Some((column, Token::Operator(operator))) = self.tokens.get(self.at) {
+            let (column, operator) = (*column, *operator);
+            if operator.power() < least {
+                break;
+            }
+            self.at += 1;
+            let right_begins = self.column();
+            let (right, right_is) = self.expression(operator.power() + 1)?;
+            for (is, at) in [(is_condition, begin), (right_is, right_begins)] {
+                Self::check_side(operator, is, at, column)?;
+            }
+            left = Node::Computed(operator, Box::new(left), Box::new(right));
+            is_condition = operator.gives_condition();
+        }
+        self.depth -= 1;
+        Ok((left, is_condition))
+    }
+
+    fn check_side(
+        operator: Operator,
+        is_condition: bool,
+        at: usize,
+        column: usize,
+    ) -> Result<(), Fault> {
+        let name = operator.name();
+        match (operator.joins_conditions(), is_condition) {
+            (true, false) => Self::fault(at, format!("{name} joins comparisons, not numbers")),
+            (false, true) => Self::fault(
+                column,
+                format!("{name} takes numbers, not comparisons: join those with and"),
+            ),
+            _ => Ok(()),
+        }
+    }
+
+    fn operand(&mut self) -> Result<(Node, bool), Fault> {
+        let Some((column, token)) = self.tokens.get(self.at).cloned() else {
+            return Self::fault(self.end, "a number or a name is missing at the end");
+        };
+        self.at += 1;
+        match token {
+            Token::Number(number) => Ok((Node::Number(number), false)),
+            Token::Operator(Minus) => {
+                let (inner, is_condition) = self.expression(Times.power() + 1)?;
+                Self::check_side(Minus, is_condition, column, column)?;
+                Ok((Node::Negated(Box::new(inner)), false))
+            }
+            Token::Open => {
+                let inner = self.expression(0)?;
+                self.close(column)?;
+                Ok(inner)
+            }
+            Token::Name(name) if name == "abs" => self.absolute(column),
+            Token::Name(name) => Ok((Node::Name(self.number_of(name, column)), false)),
+            other => Self::fault(
+                column,
+                format!("{other} needs a number or a name before it"),
+            ),
+        }
+    }
+
+    fn absolute(&mut self, column: usize) -> Result<(Node, bool), Fault> {
+        let open = self.column();
+        if self.tokens.get(self.at).map(|(_, token)| token) != Some(&Token::Open) {
+            return Self::fault(open, "abs needs parentheses: abs(...)");
+        }
+        self.at += 1;
+        let (inner, is_condition) = self.expression(0)?;
+        self.close(open)?;
+        if is_condition {
+            return Self::fault(column, "abs takes a number, not a comparison");
+        }
+        Ok((Node::Absolute(Box::new(inner)), false))
+    }
+
+    fn close(&mut self, opened: usize) -> Result<(), Fault> {
+        match self.tokens.get(self.at) {
+            Some((_, Token::Close)) => {
+                self.at += 1;
+                Ok(())
+            }
+            _ => Self::fault(
+                self.column(),
+                format!("the parenthesis of column {opened} is not closed"),
+            ),
+        }
+    }
+
+    fn number_of(&mut self, name: String, column: usize) -> usize {
+        let known = self.names.iter().position(|(known, _)| *known == name);
+        known.unwrap_or_else(|| {
+            self.names.push((name, column));
+            self.names.len() - 1
+        })
+    }
+}
