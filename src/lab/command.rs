@@ -155,7 +155,7 @@ impl Command {
     pub fn new(name: &str, value: &Value) -> Result<Self, Vec<Problem>> {
         match COMMANDS.iter().find(|row| row.name == name) {
             Some(row) => row.read(value),
-            None => Err(vec![unknown(name)]),
+            None => Err(vec![unknown(name, None)]),
         }
     }
 
@@ -246,7 +246,8 @@ fn one(index: usize, value: &Value) -> Result<Command, Vec<Problem>> {
     let wrong = names
         .iter()
         .filter(|name| !COMMANDS.iter().any(|row| row.name == name.as_str()));
-    let wrong: Vec<_> = wrong.map(|name| under(unknown(name))).collect();
+    let beside = COMMANDS.iter().find(|row| table.contains_key(row.name));
+    let wrong: Vec<_> = wrong.map(|name| under(unknown(name, beside))).collect();
     if !wrong.is_empty() {
         return Err(wrong);
     }
@@ -279,8 +280,15 @@ fn one(index: usize, value: &Value) -> Result<Command, Vec<Problem>> {
     }
 }
 
-fn unknown(name: &str) -> Problem {
-    let near = nearest(name, COMMANDS.iter().map(|row| row.name));
+/// That `name` is no command; `beside` is one in the same table, of which it may be meant to be a part.
+fn unknown(name: &str, beside: Option<&Row>) -> Problem {
+    let near = match beside {
+        Some(row) => format!(
+            "what belongs to {} stands in its value: {}",
+            row.name, row.value
+        ),
+        None => nearest(name, COMMANDS.iter().map(|row| row.name)),
+    };
     let key = match name.contains('.') {
         true => format!("\"{name}\""),
         false => name.to_owned(),

@@ -58,7 +58,9 @@ pub fn find(name: &str) -> Result<Named<'_>, String> {
         (None, Ok((_, Kind::Vector))) => Err(format!(
             "{name} is a vector: its numbers are {name}.0, {name}.1 and {name}.2"
         )),
-        (None, Ok(_)) => Err(format!("{name} is no number")),
+        (None, Ok(_)) => Err(format!(
+            "there is no number named {name}: that key holds no number"
+        )),
         (None, Err(_)) => Err(format!(
             "there is no number named {name}: {}",
             nearest_to(name)

@@ -247,6 +247,18 @@ fn what_is_wrong_is_told_with_its_line_and_the_nearest_right_name() {
             ".0, .1 and .2",
         ),
         ("[[do]]\nset = {}", "must hold a key"),
+        (
+            "[[do]]\nset = { motion.time_step_s = 0.05 }",
+            "do.0.set.motion: would be set as a whole: write each key in quotes, \"motion.time_step_s\"",
+        ),
+        (
+            "[[do]]\nset = { push.0.force_N = [0, 0, 1] }",
+            "in quotes, \"push.0.force_N\"",
+        ),
+        (
+            "[[do]]\nexport = \"x.csv\"\nevery = 10",
+            "do.0.every: unknown command: what belongs to export stands in its value: \"run.csv\", or { path",
+        ),
         ("[[do]]\nopen = \"wobble-pus\"", "did you mean wobble-push?"),
         ("[[do]]\nstep = 0", "do.0.step (0) must not be 0"),
         ("[[do]]\nrun = false", "must be true"),

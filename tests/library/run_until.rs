@@ -93,7 +93,10 @@ fn a_name_that_is_no_number_is_refused_with_the_nearest() {
             "column 13: there is no number named lowest_tilt_deg: did you mean measured_lowest_tilt_deg or predicted_lowest_tilt_deg?",
         ),
         ("health == 1", "column 1: health is a text"),
-        ("motion.scheme == 1", "column 1: motion.scheme is no number"),
+        (
+            "motion.scheme == 1",
+            "column 1: there is no number named motion.scheme: that key holds no number",
+        ),
         ("wall_s > 3", "column 1: wall_s is not counted in the lab"),
         ("motion.time_step > 1", "did you mean motion.time_step_s?"),
     ] {

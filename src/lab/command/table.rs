@@ -198,6 +198,13 @@ fn set(value: &Value) -> Read {
     for (key, value) in table {
         let is_table = value.is_table() && !key.ends_with('.');
         match keys::find(key) {
+            // { motion.time_step_s = 0.05 }: TOML makes a table of a dotted key without quotes.
+            Err(_) if is_table && !key.contains('.') => {
+                let inner = first_inside(key, value);
+                let rule =
+                    format!("would be set as a whole: write each key in quotes, \"{inner}\"");
+                problems.push(Problem::at(key.clone(), rule));
+            }
             // A whole push, or another table: what is in it is checked where it comes to stand.
             Err(_) if is_table && keys::is_table(key) => {}
             Err(rule) => problems.push(Problem::at(quoted(key), rule)),
@@ -211,6 +218,14 @@ fn set(value: &Value) -> Read {
     match problems.is_empty() {
         true => Ok(Command::Set(table.clone())),
         false => Err(problems),
+    }
+}
+
+/// The dotted key of the first value in `value`, which stands at `key`.
+fn first_inside(key: &str, value: &Value) -> String {
+    match value.as_table().and_then(|table| table.iter().next()) {
+        Some((name, inner)) => first_inside(&keys::join(key, name), inner),
+        None => key.to_owned(),
     }
 }
 
