@@ -23,6 +23,6 @@ pub mod start;
 
 pub use document::Document;
 pub use file::ScenarioFile;
-pub use model::{Body, Edit, Motion, Push, Scenario, Touches, Window};
+pub use model::{Body, Edit, Motion, Scenario, Touches};
 pub use problem::{Problem, Problems};
-pub use pushes::Pushes;
+pub use pushes::{Push, Pushes, Window};

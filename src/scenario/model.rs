@@ -2,9 +2,8 @@
 
 use super::file::ScenarioFile;
 use super::problem::{Problem, nearest};
-use super::pushes::Pushes;
+use super::pushes::{Push, Pushes};
 use crate::physics::{self, SchemeInfo, State};
-use nalgebra::Vector3;
 use std::collections::HashMap;
 
 /// A scenario, or a run with its edits, whose numbers have been checked.
@@ -47,38 +46,6 @@ pub struct Motion {
     pub scheme: &'static SchemeInfo,
     /// dt, s.
     pub time_step_s: f64,
-}
-
-/// A force on one point for a while.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Push {
-    /// Index of the pushed point.
-    pub point: usize,
-    /// Force, world frame, N.
-    pub force: Vector3<f64>,
-    /// When it acts.
-    pub window: Window,
-    /// Whether it is the report's line taken literally: j times the force on its j-th step, and kept to the end.
-    pub accumulates: bool,
-}
-
-/// When a push acts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Window {
-    /// On `count` steps from step `first` on; step 1 ends at t = dt.
-    Steps {
-        /// The first step on which it acts.
-        first: u64,
-        /// On how many.
-        count: u64,
-    },
-    /// From one time for so long, s.
-    Time {
-        /// The beginning, s.
-        from_s: f64,
-        /// The length, s.
-        for_s: f64,
-    },
 }
 
 /// A change during the run: made at `step`, it acts from the next step on.

@@ -3,9 +3,10 @@
 
 use super::file::{BodyFile, MotionFile, PushFile};
 use super::keys::{GRAVITY, MOST_POINTS};
-use super::model::{Body, Motion, Push, Window};
+use super::model::{Body, Motion};
 use super::problem::{Found, Problem};
 use super::pushes::Pushes;
+use super::pushes::{Push, Window};
 use crate::physics::{self, PointMass, SchemeInfo};
 use nalgebra::Vector3;
 use std::collections::HashMap;

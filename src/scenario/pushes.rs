@@ -1,8 +1,40 @@
-//! The pushes of a moment of a run. Those before and after an edit share what the edit leaves alone, so that a run of
-//! many pushes and many edits takes no more room than its file.
+//! A push, and the list of pushes that a run has at one time. The lists before and after an edit share the pushes that
+//! the edit does not change, so that a run of many pushes and many edits takes no more memory than its file.
 
-use super::model::Push;
+use nalgebra::Vector3;
 use std::ops::Index;
+
+/// A force on one point for a while.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// Index of the pushed point.
+    pub point: usize,
+    /// Force, world frame, N.
+    pub force: Vector3<f64>,
+    /// When it acts.
+    pub window: Window,
+    /// Whether it is the report's line taken literally: j times the force on its j-th step, and kept to the end.
+    pub accumulates: bool,
+}
+
+/// When a push acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Window {
+    /// On `count` steps from step `first` on; step 1 ends at t = dt.
+    Steps {
+        /// The first step on which it acts.
+        first: u64,
+        /// On how many.
+        count: u64,
+    },
+    /// From one time for so long, s.
+    Time {
+        /// The beginning, s.
+        from_s: f64,
+        /// The length, s.
+        for_s: f64,
+    },
+}
 
 /// A list of pushes; a clone takes no room of its own, and a change to it room for what it changes.
 #[derive(Clone, Debug, Default, PartialEq)]

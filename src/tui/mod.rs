@@ -1,10 +1,9 @@
 //! The terminal: the loop, the keys, and what is drawn of the lab.
 //!
 //! ```text
-//! key ─keymap→ Action ─→ lab.update ┐
-//! clock ───────────────→ lab.advance ┴→ Lab { history, live run, pace, view, readouts, ... } ─borrowed→ screen → panes
-//!                                            ├ history: journals ─→ scenario ─→ the run, any export, any saved file
-//!                                            └ live: simulation ─moment→ recording, path   (exact motion → overlay)
+//! key ─keymap→ Action ─→ lab.update ─→ Command ┐
+//! file of [[do]] ─script────────────→ Command ┴→ lab.carry_out ┐
+//! clock ─────────────────────────────────────→ lab.advance ────┴→ Lab { player, values, files, view, ... } ─→ screen → panes
 //! ```
 //!
 //! - [`app`] is the loop, [`terminal`] the only file that talks to the terminal, [`surroundings`] what the environment
