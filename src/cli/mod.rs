@@ -11,9 +11,10 @@ mod scenario;
 mod sessions;
 mod workbench;
 
-use crate::text::printable::printable_lines;
+use crate::text::printable::{is_steering, printable_lines};
 use args::{Cli, Command};
 use clap::Parser;
+use std::ffi::OsString;
 use std::io;
 use std::process::ExitCode;
 
@@ -55,16 +56,17 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Prints what clap has to say instead of going on: help, or why it takes no such arguments. It repeats them as they
-/// are, so what could steer a terminal is printed without clap's own colours.
+/// Prints what clap has to say instead of going on: help, or why it takes no such arguments. clap repeats the arguments
+/// as they are: where one holds a character that could steer a terminal, the text is printed escaped and without colours.
 fn misused(error: &clap::Error) -> ExitCode {
     use io::Write;
-    let plain = error.render().to_string();
-    let safe = printable_lines(&plain);
-    let printed = match (safe == plain, error.use_stderr()) {
-        (true, _) => error.print(),
-        (false, true) => io::stderr().write_all(safe.as_bytes()),
-        (false, false) => io::stdout().write_all(safe.as_bytes()),
+    let is_hostile = |argument: OsString| argument.to_string_lossy().contains(is_steering);
+    let text = error.render().to_string();
+    let plain = printable_lines(&text);
+    let printed = match (std::env::args_os().any(is_hostile), error.use_stderr()) {
+        (false, _) => error.print(),
+        (true, true) => io::stderr().write_all(plain.as_bytes()),
+        (true, false) => io::stdout().write_all(plain.as_bytes()),
     };
     let _ = printed; // where even that cannot be written there is nobody to tell
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))

@@ -156,3 +156,21 @@ fn the_lab_and_its_farewell_show_names_escaped() {
         assert!(!line.chars().any(is_steering), "{line:?}");
     }
 }
+
+#[test]
+fn what_clap_says_of_arguments_on_a_terminal_is_escaped() {
+    let ground = Ground::new();
+    // A whole sequence and nothing else: clap's own plain text leaves such a one out, its coloured text does not.
+    let title = "x\u{1b}]0;P\u{7}y";
+    let option = format!("--bo{title}");
+    for args in [&[option.as_str()][..], &["run", "cusps", "--scheme", title]] {
+        let mut terminal = ground.open(args);
+        assert_eq!(terminal.wait_for_end().exit_code(), 2, "{args:?}");
+        terminal.wait_until("clap's last line", |terminal| {
+            terminal.sent_text().contains("--help")
+        });
+        let sent = terminal.sent_text();
+        assert!(!sent.contains('\u{7}'), "{sent:?}");
+        assert!(!sent.contains('\u{1b}'), "{sent:?}");
+    }
+}
