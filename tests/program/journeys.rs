@@ -329,8 +329,9 @@ fn the_present_state_is_saved_as_a_scenario_that_runs() {
     );
     assert!(run(&ground, "here.toml").starts_with(b"# "));
     let begins = ground.open(&["here.toml", "--paused"]);
-    begins.wait_for("paused");
-    assert_eq!(shown(&begins)[2].last().cloned(), z);
+    begins.wait_until("the z of the saved state", |begins| {
+        begins.values("z").last().cloned() == z
+    });
 }
 
 #[test]
