@@ -68,7 +68,7 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
         None => (new(args, name)?, folder.and_then(|folder| begun(&folder))),
     };
     if let Some(folder) = confined {
-        lab.confine(folder);
+        lab.files_mut().confine(folder);
     }
     lab.set_trouble(session.as_ref().err().cloned());
     if let Ok(session) = &session {
@@ -257,7 +257,7 @@ fn left_alone(sessions: &[KeptAside]) -> String {
 /// Says on the shell's screen what was exported: the lab's is gone with its last notice.
 fn tell_of_exports(lab: &Lab) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
-    for written in lab.written() {
+    for written in lab.files().written() {
         let path = Shown(&written.path);
         writeln!(
             stdout,
@@ -303,11 +303,11 @@ fn print(wanted: Picture<'_>) -> anyhow::Result<ExitCode> {
     let commands = wanted.commands.map(command::open).transpose()?;
     let mut lab = lab(wanted.name, wanted.changes, wanted.markers, plain, false)?;
     if let Some(folder) = wanted.confined {
-        lab.confine(folder);
+        lab.files_mut().confine(folder);
     }
     let end = match commands {
         Some(_) => 0,
-        None => lab.run().scenario().steps,
+        None => lab.player().run().scenario().steps,
     };
     let ended = lab.begin_at(wanted.at.unwrap_or(end));
     let mut done = Ok(());

@@ -1,47 +1,47 @@
-//! Carrying commands out: each answers with what it did, or why it did nothing.
+//! Carries commands out. Each returns what it has done, or why it was refused.
 
 use super::Lab;
 use super::command::{Command, Force, PushChoice};
-use crate::lab::view::Pane;
-use crate::scenario::keys;
+use super::work::Way;
 use crate::scenario::problem::nearest;
+use crate::scenario::{Scenario, keys};
 use crate::work::journal::Act;
 use crate::work::next_push::NextPush;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// What a command has done.
+/// The result of a command that was carried out.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Done {
-    /// In words, where there is something to say that is not to be seen.
+    /// The message about it; `None` where the screen shows the result.
     pub said: Option<String>,
-    /// Whether that stands until the next key.
+    /// Whether the message stays until the next key, instead of a few seconds.
     pub stays: bool,
-    /// What goes on after the command, where it does.
+    /// The action that the command has started and that takes time; `None` if the command is complete.
     pub under_way: Option<UnderWay>,
 }
 
-/// What a command has begun, and time brings to its end.
+/// An action that takes time; [`Lab::advance`] continues it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnderWay {
     /// The run is on its way to a step.
     Going,
     /// The run plays until a condition holds.
     Playing,
-    /// The clock goes on to this time.
+    /// The script waits until the clock shows this time.
     Waiting(Duration),
-    /// A file is being written.
+    /// An export is being written.
     Exporting,
 }
 
-/// Why a command has done nothing.
+/// Why a command was refused. It has then changed nothing.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
-    /// The file exists.
+    /// The file exists and may not be replaced.
     #[error("{0} exists: force = true replaces it")]
     Exists(PathBuf),
-    /// For this reason.
+    /// Any other reason, in words.
     #[error("{0}")]
     Because(String),
 }
@@ -59,14 +59,14 @@ impl From<&str> for Refusal {
 }
 
 impl Done {
-    /// Nothing is to be said of it.
+    /// The command is complete and there is no message.
     pub(super) const SILENT: Self = Self {
         said: None,
         stays: false,
         under_way: None,
     };
 
-    /// Says `text` for a while.
+    /// The command is complete; the message `text` stays for a few seconds.
     pub(super) fn saying(text: impl Into<String>) -> Self {
         Self {
             said: Some(text.into()),
@@ -74,6 +74,7 @@ impl Done {
         }
     }
 
+    /// The same for a command that has started `under_way`.
     pub(super) fn going_on(self, under_way: UnderWay) -> Self {
         Self {
             under_way: Some(under_way),
@@ -82,20 +83,20 @@ impl Done {
     }
 }
 
-/// What became of a command.
+/// The result of a command: what it has done, or why it was refused.
 pub type Answer = Result<Done, Refusal>;
 
 impl Lab {
-    /// Carries `command` out; says in words what it did, or why it did nothing. What it begins goes on as time passes.
+    /// Carries `command` out. An action that takes time is only started: [`advance`](Self::advance) continues it.
     ///
     /// # Errors
-    /// Why nothing was done.
+    /// Why the command was refused; nothing has changed then.
     pub fn carry_out(&mut self, command: &Command) -> Answer {
         if !matches!(command, Command::Nudge { .. }) {
             self.values.forget_nudge();
         }
         let answer = self.done(command);
-        self.keep_focus();
+        self.view.keep_focus();
         self.read_now();
         answer
     }
@@ -122,15 +123,15 @@ impl Lab {
                 let until = self.now + Duration::try_from_secs_f64(*seconds).unwrap_or_default();
                 Ok(Done::SILENT.going_on(UnderWay::Waiting(until)))
             }
-            Command::Undo(times) => self.undo(*times),
-            Command::Redo(times) => self.redo(*times),
+            Command::Undo(times) => self.turn(Way::Back, *times),
+            Command::Redo(times) => self.turn(Way::On, *times),
             Command::Export {
                 path,
                 every,
                 to_step,
                 force,
             } => {
-                let scenario = self.run_until_step(*to_step, "export")?;
+                let scenario = self.run_up_to(*to_step, "export")?;
                 let path = self.files.path_of(path);
                 self.files.export(&scenario, &path, *every, *force)
             }
@@ -143,11 +144,11 @@ impl Lab {
                 let path = self.files.path_of(path);
                 match from_here {
                     true => {
-                        let content = self.present_as_text()?;
+                        let content = self.player.present_as_text()?;
                         self.files.save("the scenario", &content, &path, *force)
                     }
                     false => {
-                        let run = self.run_until_step(*to_step, "save")?;
+                        let run = self.run_up_to(*to_step, "save")?;
                         self.files.save("the run", &run.to_toml(), &path, *force)
                     }
                 }
@@ -180,7 +181,7 @@ impl Lab {
 
     fn open_named(&mut self, name: &str) -> Answer {
         self.files.admit(std::path::Path::new(name))?;
-        match super::opening::again(name).and_then(|document| document.scenario()) {
+        match super::opening::read(name).and_then(|document| document.scenario()) {
             Ok(scenario) => {
                 self.open(name, Arc::new(scenario));
                 Ok(Done::SILENT)
@@ -189,7 +190,7 @@ impl Lab {
         }
     }
 
-    /// Sets every key of `table`: those of body and start in a new run, the others from here on.
+    /// Sets all keys of `table` as one act. Keys of body and start begin a new run; the others act from the next step on.
     fn set_all(&mut self, table: &toml::Table) -> Answer {
         let is_of_a_new_run = |key: &str| keys::Effect::of(key) == keys::Effect::NewRun;
         let (new, rest): (toml::Table, toml::Table) = table
@@ -241,18 +242,18 @@ impl Lab {
     }
 
     fn chosen(&self, choice: &PushChoice) -> Result<NextPush, String> {
-        let time_step_s = self.motion().time_step_s;
+        let time_step_s = self.player.motion().time_step_s;
         self.values
-            .chosen(choice, self.run().scenario(), time_step_s)
+            .chosen(choice, self.player.run().scenario(), time_step_s)
     }
 
-    /// Gives the push to come, with what `choice` has of its own, from here on.
+    /// Pushes from the next step on: with the push to come, but for the values that `choice` has.
     fn push(&mut self, choice: &PushChoice) -> Answer {
         let push = self.chosen(choice)?;
-        let run = self.run();
+        let run = self.player.run();
         let mut given = push.given(run.scenario(), run.simulation().state())?;
         if let Some(Force::Vector(vector)) = choice.force_N {
-            given.force_N = vector; // as it was written, to the last digit
+            given.force_N = vector; // exactly as it was written: norm and direction would round it
         }
         let said = format!(
             "pushed: {}; u takes it back, P chooses another",
@@ -263,7 +264,7 @@ impl Lab {
     }
 
     fn set_window(&mut self, window_s: f64) -> Answer {
-        let least_s = 2.0 * self.run().simulation().motion().time_step_s;
+        let least_s = 2.0 * self.player.run().simulation().motion().time_step_s;
         if window_s < least_s {
             return Err(format!("the traces show two time steps at least: {least_s} s").into());
         }
@@ -271,13 +272,21 @@ impl Lab {
         Ok(Done::saying(format!("the traces show {window_s} s")))
     }
 
-    /// Whether `pane` fills the screen.
-    pub(super) fn is_filled_by(&self, pane: Pane) -> bool {
-        self.view.filled && self.view.focus == pane
+    /// The scenario of the run from step 0 to `to_step`, or to the present step; `to` says what it is for.
+    ///
+    /// # Errors
+    /// Why there is no such run.
+    pub(super) fn run_up_to(
+        &self,
+        to_step: Option<u64>,
+        to: &str,
+    ) -> Result<Arc<Scenario>, String> {
+        let here = self.player.playback.step_number();
+        self.work.run_up_to(to_step.unwrap_or(here), to)
     }
 }
 
-/// What setting the keys of `table` comes to: an edit, a description, or both.
+/// The acts that set the keys of `table`: an edit, a description, or both.
 fn acts(table: toml::Table) -> Vec<Act> {
     let is_idle = |key: &str| keys::Effect::of(key) == keys::Effect::None;
     let (idle, acting): (toml::Table, toml::Table) =

@@ -26,7 +26,7 @@ pub struct Files {
 
 impl Files {
     /// Looks for files in `folder`, and writes them there, instead of the present folder.
-    pub(super) fn work_in(&mut self, folder: &Path) {
+    pub fn work_in(&mut self, folder: &Path) {
         self.folder = Some(folder.to_owned());
     }
 
@@ -36,7 +36,7 @@ impl Files {
     }
 
     /// From now on reads and writes nothing outside of the folder.
-    pub(super) fn confine(&mut self, folder: Confined) {
+    pub fn confine(&mut self, folder: Confined) {
         self.confined = Some(folder);
     }
 

@@ -1,6 +1,7 @@
-//! The lab as a session keeps it: the runs with their journals, and where the lab stands.
+//! The content of a session: the history of runs, and the place of the lab in it, each as TOML.
 
 use super::Lab;
+use super::work::Work;
 use crate::lab::view::View;
 use crate::observe::pace::Speed;
 use crate::scenario::{Problems, Scenario};
@@ -13,24 +14,24 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The form of what is kept, and those before it that are read too: of form 1 only the journals were others.
+/// The version of this format, and the versions that can be read. Version 1 had other journals.
 const FORM: u32 = 2;
 const FORMS: std::ops::RangeInclusive<u32> = 1..=FORM;
 
-/// The runs and what was done to them.
+/// The text of the work.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Work {
+struct KeptWork {
     form: u32,
     history: History,
 }
 
-/// Where the lab stands.
+/// The text of the place: the step, how the run is shown, and the push to come.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Place {
+struct KeptPlace {
     step: u64,
-    /// Simulated seconds a second; none at top speed.
+    /// Simulated seconds a second; `None` at top speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     speed: Option<f64>,
     shows_exact: bool,
@@ -38,67 +39,54 @@ struct Place {
     /// The id of the pane in focus.
     focus: String,
     filled: bool,
-    /// The file an export was being written to.
+    /// The file of the export that was in progress.
     #[serde(skip_serializing_if = "Option::is_none")]
     exporting: Option<String>,
     next_push: NextPush,
 }
 
-/// What a session is about.
+/// What a list of sessions shows of a session.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Summary {
-    /// SCENARIO as it was opened.
+    /// The name under which the user opened the scenario: a preset or a file.
     pub name: String,
-    /// What the run is called.
+    /// The title of the run.
     pub title: String,
-    /// Where it stands.
+    /// The step of the run.
     pub step: u64,
 }
 
-/// What is kept cannot be read.
+/// Why the content of a session cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct Unreadable(String);
 
 impl Lab {
-    /// What a session is to keep of it.
+    /// The content of the session.
     pub fn content(&mut self) -> Content {
-        let work = match &self.work {
-            Some(work) => Arc::clone(work),
-            None => self.written_work(),
-        };
-        self.work = Some(Arc::clone(&work));
         Content {
-            work,
+            work: self.work.kept(),
             place: toml::to_string(&self.place()).unwrap_or_default(),
         }
     }
 
-    fn written_work(&self) -> Arc<str> {
-        let work = Work {
-            form: FORM,
-            history: self.history.clone(),
-        };
-        toml::to_string(&work).unwrap_or_default().into()
-    }
-
-    /// Whether `content` is read as what it was written from.
+    /// Checks that `content` can be read and would be written in the same way again.
     ///
     /// # Errors
-    /// Why it is not.
+    /// In words, where that is not so.
     pub fn check(content: &Content) -> Result<(), String> {
-        let work = reads_back::<Work>("the run", &content.work);
-        let place = reads_back::<Place>("the place in it", &content.place);
+        let work = reads_back::<KeptWork>("the run", &content.work);
+        let place = reads_back::<KeptPlace>("the place in it", &content.place);
         work.and(place).map_err(|error| error.to_string())
     }
 
-    /// What `content` is about.
+    /// What a list of sessions shows of `content`.
     ///
     /// # Errors
     /// Why it cannot be read.
     pub fn summary(content: &Content) -> Result<Summary, Unreadable> {
-        let work: Work = read("the run", &content.work)?;
-        let place: Place = read("the place in it", &content.place)?;
+        let work: KeptWork = read("the run", &content.work)?;
+        let place: KeptPlace = read("the place in it", &content.place)?;
         let present = work.history.present();
         Ok(Summary {
             name: present.name.clone(),
@@ -107,15 +95,15 @@ impl Lab {
         })
     }
 
-    fn place(&self) -> Place {
+    fn place(&self) -> KeptPlace {
         let speed = match self.player.playback.speed() {
             Speed::Times(speed) => Some(speed),
             Speed::Top => None,
         };
-        Place {
+        KeptPlace {
             step: self.player.step_to_keep(),
             speed,
-            shows_exact: self.run().overlay().is_some(),
+            shows_exact: self.player.run().overlay().is_some(),
             window_s: self.view.window_s,
             focus: self.view.focus.id().to_owned(),
             filled: self.view.filled,
@@ -124,7 +112,8 @@ impl Lab {
         }
     }
 
-    /// The lab that `content` was kept of, on its way to the step where it stood, and paused there; `view` says what it looks like on this screen.
+    /// The lab with `content`: on its way to the step where it stood, and paused there. `view` returns how its run is
+    /// shown on this screen.
     ///
     /// # Errors
     /// Why it cannot be read.
@@ -135,7 +124,7 @@ impl Lab {
         Self::resumed_in(content, None, view)
     }
 
-    /// The same, confined to a folder where one is given.
+    /// As [`resumed`](Self::resumed), for a lab that reads and writes in the folder `confined` only, if one is given.
     ///
     /// # Errors
     /// Why it cannot be read.
@@ -144,13 +133,13 @@ impl Lab {
         confined: Option<&Confined>,
         view: impl FnOnce(&Scenario) -> View,
     ) -> Result<Self, Unreadable> {
-        let work: Work = read("the run", &content.work)?;
+        let work: KeptWork = read("the run", &content.work)?;
         if !FORMS.contains(&work.form) {
             return Err(Unreadable(
                 "it was kept by another version of gyrolab".to_owned(),
             ));
         }
-        let place: Place = read("the place in it", &content.place)?;
+        let place: KeptPlace = read("the place in it", &content.place)?;
         let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
         work.history.check().map_err(unreadable)?;
         let present = work.history.present();
@@ -168,18 +157,18 @@ impl Lab {
         if let Some(folder) = confined {
             lab.files.confine(folder.clone());
         }
-        lab.history = work.history;
-        lab.set_file(lab.file_as_opened());
+        let file = lab.file_as_opened();
+        lab.work = Work::resumed(work.history, file);
         lab.values.set_next_push(place.next_push);
         lab.values.suit(lab.player.run().scenario());
-        lab.player.playback.set_end(lab.history.present().end_s);
+        lab.player.playback.set_end(lab.work.present().end_s);
         lab.player
             .playback
             .set_speed(place.speed.map_or(Speed::Top, Speed::Times));
         lab.player.playback.set_exact(place.shows_exact);
         lab.player.return_to(place.step);
-        lab.is_another();
-        lab.notice.keep_saying(match place.exporting {
+        lab.scenario_has_changed();
+        lab.tell(match place.exporting {
             Some(path) => {
                 format!("as it was left; the export to {path} was cut off, x begins another")
             }
@@ -189,40 +178,27 @@ impl Lab {
         Ok(lab)
     }
 
-    /// What the run was opened from, where that is still there; else the run itself.
+    /// The scenario as the user opened it, if its file can still be read; otherwise the present one.
     fn file_as_opened(&self) -> Arc<Scenario> {
-        if self.files.admit(Path::new(self.name())).is_err() {
-            return Arc::clone(self.run().scenario());
+        let (name, run) = (self.work.name(), self.player.run());
+        if self.files.admit(Path::new(name)).is_err() {
+            return Arc::clone(run.scenario());
         }
-        let file = super::opening::again(self.name()).and_then(|document| document.scenario());
-        file.map_or_else(|_| Arc::clone(self.run().scenario()), Arc::new)
-    }
-
-    /// Says `text` before what is being said already.
-    pub fn tell_first(&mut self, text: &str) {
-        let said = self.notice.text().unwrap_or_default();
-        self.tell(format!("{text}{said}"));
-    }
-
-    /// Says why the session is not kept, as long as it is not.
-    pub fn set_trouble(&mut self, trouble: Option<String>) {
-        self.changed |= self.trouble != trouble;
-        self.trouble = trouble;
-    }
-
-    /// Why the session is not kept, if it is not.
-    pub fn trouble(&self) -> Option<&str> {
-        self.trouble.as_deref()
-    }
-
-    /// Says `text` until the next key: something about the session that the user should know.
-    pub fn tell(&mut self, text: impl Into<String>) {
-        self.notice.keep_saying(text);
-        self.changed = true;
+        let file = super::opening::read(name).and_then(|document| document.scenario());
+        file.map_or_else(|_| Arc::clone(run.scenario()), Arc::new)
     }
 }
 
-/// Whether `text` is read as what it was written from.
+/// `history` as a session keeps it.
+pub(super) fn written(history: &History) -> Arc<str> {
+    let work = KeptWork {
+        form: FORM,
+        history: history.clone(),
+    };
+    toml::to_string(&work).unwrap_or_default().into()
+}
+
+/// Checks that `text` can be read as a `T` and would be written in the same way again.
 fn reads_back<T: Serialize + for<'a> Deserialize<'a>>(
     what: &str,
     text: &str,

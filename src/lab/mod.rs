@@ -1,24 +1,28 @@
-//! The lab's state, and what every action does to it. It draws nothing and reads no clock: time comes in.
+//! The lab: a run, what the user does to it, and how it is shown. It draws nothing, and reads no clock: the time is
+//! passed to it.
 //!
-//! This file has the state, the dispatch of actions and the passing of time; the rooms beside it carry out what
-//! belongs together: `travel` through the run, `looking` at it, `editing` it, `opening` another, `dialogs` and what
-//! they ask for, `keeping` all of it. What they work on has rooms of its own: [`history`](mod@crate::work::history) the runs one after the other, each with its
-//! journal; [`editor`] the list of what can be edited; [`next_push`](mod@crate::work::next_push) the push to come; [`form`] what is typed into;
-//! [`browser`] the list of presets and files; `files` the folder, what may be written, and the export under way; [`changed`](mod@crate::work::changed) says what there is to see, [`notice`] what has just happened.
+//! [`Lab`] consists of parts, each of which owns its state: the [`Work`] that was done to the run, the [`Player`] of the
+//! run, the [`Values`] that can be edited, the [`Files`], the [`View`] of the run, what lies [`OnTop`] of the panes, and the
+//! [`Script`] of commands that are not carried out yet. `Lab` itself carries out what concerns several parts:
+//!
+//! - `carry_out`: each [`Command`](command::Command), and `editing` for those that change the run;
+//! - `steering`: each [`Action`](action::Action) of the user, which stands for commands or changes the interface;
+//! - `script`: the commands of a script, one after the other;
+//! - `keeping`: the content of a session.
 
 pub mod action;
 pub mod browser;
 mod carry_out;
 pub mod command;
-mod dialogs;
+mod dialog;
 mod editing;
 pub mod editor;
 mod files;
 pub mod form;
 mod keeping;
-mod looking;
 pub mod notice;
 mod numbers;
+mod on_top;
 mod opening;
 mod player;
 pub mod preview;
@@ -27,126 +31,63 @@ mod steering;
 mod travel;
 mod values;
 pub mod view;
+mod work;
 
 pub use carry_out::{Answer, Done, Refusal, UnderWay};
-pub use dialogs::Dialog;
+pub use dialog::Dialog;
+pub use files::Files;
 pub use keeping::{Summary, Unreadable};
+pub use on_top::{Mode, OnTop};
+pub use player::Player;
 pub use script::Script;
+pub use values::Values;
+pub use work::Work;
 
-use crate::analysis::health::Advice;
-use crate::lab::view::{Pane, Part, View};
-use crate::observe::ghost::Ghost;
-use crate::observe::live::LiveRun;
-use crate::observe::playback::{Halt, Playback};
-use crate::observe::reading::Reading;
+use crate::observe::playback::Halt;
 use crate::run::NotFinite;
-use crate::scenario::{Motion, Scenario};
-use crate::storage::confined::Confined;
-use crate::storage::exporting::Written;
+use crate::scenario::Scenario;
 use crate::work::changed;
-use crate::work::history::History;
-use browser::Browser;
-use editor::Editor;
-use files::Files;
-use notice::Notice;
-use player::{Player, halt_in_words};
-use std::path::Path;
+use player::halt_in_words;
 use std::sync::Arc;
 use std::time::Duration;
-use values::Values;
+use view::{Pane, Part, View};
 
-/// What lies on top of the screen and gets the keys.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
-    /// The panes.
-    Lab,
-    /// The browser of presets and files.
-    Browser,
-    /// The line in which its filter is typed.
-    Filter,
-    /// The list of keys.
-    Help,
-    /// A dialog that is typed into.
-    Dialog,
-}
-
-impl Mode {
-    /// Every mode.
-    pub const ALL: [Self; 5] = [
-        Self::Lab,
-        Self::Browser,
-        Self::Filter,
-        Self::Help,
-        Self::Dialog,
-    ];
-}
-
-/// What the loop must do that the lab cannot.
+/// What only the main loop can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
     /// Draw the whole screen again.
     Redraw,
-    /// Stop until the shell resumes the program.
+    /// Suspend the program until the shell resumes it.
     Suspend,
-    /// End.
+    /// End the program.
     Quit,
 }
 
-/// The whole of what the user sees and steers.
+/// The state of the lab.
 pub struct Lab {
-    /// The run, what was done to it, and the runs before it.
-    history: History,
-    /// The scenario as it was opened, and how the run differs from it, where it does.
-    file: Arc<Scenario>,
-    changed_from_file: Option<String>,
+    work: Work,
     player: Player,
     values: Values,
     files: Files,
-    /// Why the session is not kept, if it is not.
-    trouble: Option<String>,
-    dialog: Option<Dialog>,
-    /// Whether the end was asked for while something was under way.
-    was_warned: bool,
-    /// The text of run and journal for the session, as long as it holds.
-    work: Option<Arc<str>>,
     view: View,
-    mode: Mode,
-    /// The mode under the help.
-    under_help: Mode,
-    browser: Browser,
-    count: Option<u64>,
-    notice: Notice,
-    /// Commands that are still to be carried out.
+    on_top: OnTop,
     script: Script,
+    /// The time since the lab was opened.
     now: Duration,
-    /// The panes that stand side by side while none fills the screen, in the order in which the focus goes through them.
-    side_by_side: Vec<Pane>,
+    /// Whether the picture has changed since it was drawn.
     changed: bool,
 }
 
 impl Lab {
-    /// A lab with the run of `scenario`, opened as `name`, at step 0.
+    /// A lab with the run of `scenario`, opened as `name`, at step 0. It plays if `running` is true.
     pub fn new(name: &str, scenario: Arc<Scenario>, view: View, running: bool) -> Self {
-        let history = History::new(name, &scenario);
-        let player = Player::new(Arc::clone(&scenario), running);
         let mut lab = Self {
-            history,
-            changed_from_file: None,
-            player,
+            work: Work::new(name, &scenario),
+            player: Player::new(Arc::clone(&scenario), running),
             values: Values::new(&scenario),
-            file: scenario,
             files: Files::default(),
-            trouble: None,
-            dialog: None,
-            was_warned: false,
-            work: None,
-            side_by_side: view.panes.to_vec(),
             view,
-            mode: Mode::Lab,
-            under_help: Mode::Lab,
-            browser: Browser::default(),
-            count: None,
-            notice: Notice::default(),
+            on_top: OnTop::default(),
             script: Script::default(),
             now: Duration::ZERO,
             changed: true,
@@ -155,54 +96,41 @@ impl Lab {
         lab
     }
 
-    /// Says that its scenario was `file` before it was changed: the file's note is shown only where it still holds.
+    /// Makes `file` the scenario as the user opened it. Where the run differs from it, the lab says so instead of showing
+    /// the file's line about what there is to see.
     pub fn set_file(&mut self, file: Arc<Scenario>) {
-        self.changed_from_file = changed::changed(&file, self.run().scenario());
-        self.file = file;
+        self.work.set_file(file);
+        self.work.compare_with_file(self.player.run().scenario());
     }
 
-    /// Looks for files in `folder`, and writes them there, instead of the present folder.
-    pub fn work_in(&mut self, folder: &Path) {
-        self.files.work_in(folder);
-    }
-
-    /// From now on reads and writes nothing outside of the folder.
-    pub fn confine(&mut self, folder: Confined) {
-        self.files.confine(folder);
-    }
-
-    /// From now on looks in the background for what would mend a run that is not to be believed.
+    /// From now on looks in the background for a scheme or time step that would make doubtful numbers right.
     pub fn take_advice(&mut self) {
         self.player.is_advised = true;
     }
 
-    /// What would mend the run, where that is known.
-    pub fn advice(&self) -> Option<&Advice> {
-        self.player.advice()
-    }
-
-    /// Takes the run to `step` at once, before anything is shown.
+    /// Takes the run to `step` at once.
     ///
     /// # Errors
-    /// When the numbers stop being finite on the way.
+    /// If the numbers stop being finite on the way.
     pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
         let arrived = self.player.playback.begin_at(step);
         self.read_now();
         arrived
     }
 
-    /// Lets time pass up to now, as `clock` tells it (since the lab was opened): steps, follows the exact motion, reads.
+    /// Advances everything that changes with time up to now. `clock` returns the time since the lab was opened; it is read
+    /// several times, so that the steps of a fast run end in time for the next frame.
     pub fn advance(&mut self, clock: &mut dyn FnMut() -> Duration) {
         let now = clock();
         let wall = now.saturating_sub(self.now);
         self.now = now;
-        self.changed |= self.notice.expire(now);
+        self.changed |= self.on_top.notice_mut().expire(now);
         let (halt, is_new) = self.player.advance(now, wall, clock);
         self.changed |= is_new;
         if let Some(halt) = halt {
             self.halted(halt);
         }
-        self.changed |= self.browser.take_news();
+        self.changed |= self.on_top.take_news();
         self.follow_export();
         self.go_on_with_script(halt);
         if self.changed && self.player.is_due(now, self.view.window_s) {
@@ -210,144 +138,145 @@ impl Lab {
         }
     }
 
+    /// Says why the run has stopped by itself.
     fn halted(&mut self, halt: Halt) {
         if let Some(text) = halt_in_words(halt) {
-            self.notice.keep_saying(text);
+            self.tell(text);
         }
         self.read_now();
     }
 
-    /// Says `text`: what was asked for means nothing here. A count that was typed is forgotten.
+    /// Takes note of the progress of the export, and says when it has ended.
+    fn follow_export(&mut self) {
+        self.changed |= self.files.is_exporting();
+        if let Some(text) = self.files.follow_export() {
+            self.tell(text);
+        }
+    }
+
+    /// Shows why a key means nothing here, and forgets the count that was typed.
     pub fn refuse(&mut self, text: impl Into<String>) {
-        self.count = None;
+        self.on_top.forget_count();
         self.say(text);
         self.changed = true;
     }
 
-    fn say(&mut self, text: impl Into<String>) {
-        self.notice.say(text, self.now);
+    /// Takes a pasted text, where text is typed.
+    pub fn paste(&mut self, text: &str) {
+        self.on_top.paste(text, self.now);
+        self.changed = true;
     }
 
+    /// Shows `text` for a few seconds.
+    fn say(&mut self, text: impl Into<String>) {
+        self.on_top.notice_mut().say(text, self.now);
+    }
+
+    /// Shows `text` until the next key.
+    pub fn tell(&mut self, text: impl Into<String>) {
+        self.on_top.notice_mut().keep_saying(text);
+        self.changed = true;
+    }
+
+    /// Shows `text` before the present message, until the next key.
+    pub fn tell_first(&mut self, text: &str) {
+        let said = self.on_top.notice().text().unwrap_or_default();
+        self.tell(format!("{text}{said}"));
+    }
+
+    /// Shows why the session cannot be saved, until it can.
+    pub fn set_trouble(&mut self, trouble: Option<String>) {
+        self.changed |= self.on_top.notice_mut().set_trouble(trouble);
+    }
+
+    /// Reads the numbers of the run, and lists its values again if others are in force.
     fn read_now(&mut self) {
         self.player.read(self.now);
         self.changed = true;
-        let (step, journal) = (
-            self.player.playback.step_number(),
-            &self.history.present().journal,
-        );
-        if self.values.is_outdated(step, journal) {
+        let step = self.player.playback.step_number();
+        if self.values.is_outdated(step, self.work.journal()) {
             self.list_parameters();
         }
     }
 
-    /// Says which panes stand side by side on the screen, as it is now, while none fills it, from left to right. Until
-    /// this is said, it is all of them. The whole picture is to be drawn again.
+    /// Tells the lab which panes stand side by side on the screen while none fills it, from left to right. The whole
+    /// picture is then drawn again.
     pub fn set_side_by_side(&mut self, panes: Vec<Pane>) {
-        self.side_by_side = panes;
-        self.keep_focus();
+        self.view.side_by_side = panes;
+        self.view.keep_focus();
         self.changed = true;
     }
 
-    /// The panes that stand side by side while none fills the screen.
-    pub fn side_by_side(&self) -> &[Pane] {
-        &self.side_by_side
-    }
-
-    /// Whether the picture has changed and is to be taken.
+    /// Whether the picture has changed since it was drawn.
     pub fn has_changed(&self) -> bool {
         self.changed
     }
 
-    /// Whether the picture has changed since this was asked last.
+    /// As [`has_changed`](Self::has_changed); from then on the picture counts as drawn.
     pub fn take_changed(&mut self) -> bool {
         std::mem::take(&mut self.changed)
     }
 
-    /// How long until the notice goes away by itself.
-    pub fn notice_ends_in(&self) -> Option<Duration> {
-        self.notice.ends_in(self.now)
+    /// What was done to the run.
+    pub fn work(&self) -> &Work {
+        &self.work
     }
 
-    /// The run on its pace.
-    pub fn playback(&self) -> &Playback {
-        &self.player.playback
+    /// The player of the run.
+    pub fn player(&self) -> &Player {
+        &self.player
     }
 
-    /// The run.
-    pub fn run(&self) -> &LiveRun {
-        self.player.run()
+    /// The values that can be edited.
+    pub fn values(&self) -> &Values {
+        &self.values
     }
 
-    /// The run before, where an edit has begun this one anew.
-    pub fn ghost(&self) -> Option<&Ghost> {
-        self.player.ghost()
+    /// The files of the lab.
+    pub fn files(&self) -> &Files {
+        &self.files
     }
 
-    /// What can be edited, and which of it is selected.
-    pub fn editor(&self) -> &Editor {
-        self.values.editor()
+    /// The files of the lab, to say where they are.
+    pub fn files_mut(&mut self) -> &mut Files {
+        &mut self.files
     }
 
-    /// The dialog on top, if there is one.
-    pub fn dialog(&self) -> Option<&Dialog> {
-        self.dialog.as_ref()
-    }
-
-    /// What has been exported since the lab was opened.
-    pub fn written(&self) -> &[Written] {
-        self.files.written()
-    }
-
-    /// Whether something is under way that time changes, beside the run.
-    pub fn is_exporting(&self) -> bool {
-        self.files.is_exporting()
-    }
-
-    /// Gravity, scheme and time step of the step to come.
-    pub fn motion(&self) -> Motion {
-        self.player.motion()
-    }
-
-    /// How it is looked at.
+    /// How the run is shown.
     pub fn view(&self) -> &View {
         &self.view
     }
 
-    /// The latest reading.
-    pub fn reading(&self) -> &Reading {
-        self.player.reading()
+    /// What lies on top of the panes.
+    pub fn on_top(&self) -> &OnTop {
+        &self.on_top
     }
 
-    /// What gets the keys.
-    pub fn mode(&self) -> Mode {
-        self.mode
+    /// The commands that are not carried out yet.
+    pub fn script(&self) -> &Script {
+        &self.script
     }
 
-    /// The browser of presets and files.
-    pub fn browser(&self) -> &Browser {
-        &self.browser
+    /// How long the present message stays; `None` where only a key removes it, or there is none.
+    pub fn notice_ends_in(&self) -> Option<Duration> {
+        self.on_top.notice().ends_in(self.now)
     }
 
-    /// The count typed so far.
-    pub fn count(&self) -> Option<u64> {
-        self.count
-    }
-
-    /// What there is to see in the run.
+    /// The line about what there is to see in the run.
     pub fn note(&self) -> &str {
         if self.view.hides(Part::LookAt) {
             return "";
         }
-        let file = || changed::look_at(self.run().scenario());
+        let file = || changed::look_at(self.player.run().scenario());
         let told = self.view.look_at.as_deref();
-        let note = told.or(self.changed_from_file.as_deref()).or_else(file);
+        let note = told.or(self.work.changed_from_file()).or_else(file);
         note.unwrap_or("r begins the run again, o opens another")
     }
 
-    /// What is to be said now, if anything: what keeps the lab busy, or else what has happened.
+    /// The message at the bottom of the screen: the steps that are being taken, the message, or the export's progress.
     pub fn notice(&self) -> Option<String> {
         let stepping = self.player.in_words();
-        let said = || self.notice.text().map(str::to_owned);
+        let said = || self.on_top.notice().text().map(str::to_owned);
         stepping
             .or_else(said)
             .or_else(|| self.files.export_in_words())

@@ -13,7 +13,7 @@ use crate::observe::reading::{self, Reading};
 use crate::run::Simulation;
 use crate::scenario::{Motion, Scenario};
 use crate::work::expression::Expression;
-use crate::work::restart::in_force;
+use crate::work::restart::{in_force, scenario_from};
 use indicatif::HumanCount;
 use std::sync::Arc;
 use std::time::Duration;
@@ -195,6 +195,36 @@ impl Player {
         })
     }
 
+    /// Whether it plays, or takes steps that were asked for.
+    pub(super) fn is_moving(&self) -> bool {
+        self.playback.is_running() || self.playback.steps_to_go().is_some()
+    }
+
+    /// The speed `notches` places higher, or lower, in the list of speeds.
+    ///
+    /// # Errors
+    /// In words, if there is no other speed in that direction.
+    pub(super) fn other_speed(&self, notches: i32) -> Result<Speed, String> {
+        let now = self.playback.speed();
+        match now.shifted(notches) {
+            next if next != now => Ok(next),
+            Speed::Top => Err("this is the top speed".to_owned()),
+            Speed::Times(_) if notches > 0 => Err("this is the top speed".to_owned()),
+            Speed::Times(_) => Err("this is the lowest speed; . takes a single step".to_owned()),
+        }
+    }
+
+    /// The scenario that starts from the present state, as TOML.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub(super) fn present_as_text(&self) -> Result<String, String> {
+        let run = self.run().simulation();
+        let scenario = scenario_from(run.scenario(), run.state(), run.step_number())
+            .map_err(|problems| problems.in_one_line())?;
+        toml::to_string(&scenario.file).map_err(|error| error.to_string())
+    }
+
     pub(super) fn pause(&mut self) -> Done {
         let to_go = self.playback.steps_to_go();
         self.playback.set_running(false);
@@ -225,6 +255,11 @@ impl Player {
             true => "the exact motion of the same start is drawn in dashes; t takes it away",
             false => "without the exact motion",
         })
+    }
+
+    /// The run with its speed and its pauses.
+    pub fn playback(&self) -> &Playback {
+        &self.playback
     }
 
     /// The run.

@@ -1,4 +1,5 @@
-//! Commands one after the other: the next is carried out when what the one before has begun is at its end.
+//! A script: commands that are carried out one after the other. Each waits until the action that the one before has
+//! started is complete.
 
 use super::Lab;
 use super::carry_out::UnderWay;
@@ -9,67 +10,77 @@ use std::collections::VecDeque;
 use std::thread;
 use std::time::Duration;
 
-/// How often a file being written is looked at where there is nothing else to do.
+/// How often to look whether an export is complete while there is nothing else to do.
 const LOOK: Duration = Duration::from_millis(2);
 
-/// Commands that are still to be carried out.
+/// The commands that are not carried out yet.
 #[derive(Clone, Debug, Default)]
 pub struct Script {
+    /// The file of the commands, as the user named it.
     origin: String,
     left: VecDeque<Placed>,
-    /// The command that is under way, and what of it.
+    /// The command whose action takes time, and that action.
     under_way: Option<(Placed, UnderWay)>,
-    /// Why it went no further.
+    /// The command that was refused, and why.
     failed: Option<String>,
 }
 
 impl Script {
-    /// Whether all of it is done.
+    /// The script of `commands`.
+    fn new(commands: Commands) -> Self {
+        Self {
+            origin: commands.origin,
+            left: commands.list.into(),
+            ..Self::default()
+        }
+    }
+
+    /// Whether all commands are carried out.
     pub fn is_done(&self) -> bool {
         self.left.is_empty() && self.under_way.is_none()
     }
 
-    /// `text` with the place of `placed` before it.
-    fn at(&self, placed: &Placed, text: &str) -> String {
+    /// Drops all commands because `placed` was refused for `reason`; returns the message.
+    fn fail(&mut self, placed: &Placed, reason: &str) -> String {
+        let rest = match self.left.len() {
+            0 => String::new(),
+            1 => "; the command after it is not carried out".to_owned(),
+            more => format!("; the {more} commands after it are not carried out"),
+        };
         let line = placed.line.map_or(String::new(), |line| format!(":{line}"));
-        let name = placed
-            .command
-            .to_table()
-            .keys()
-            .cloned()
-            .collect::<String>();
-        format!("{}{line}: {name}: {text}", self.origin)
+        let name: String = placed.command.to_table().keys().cloned().collect();
+        let text = format!("{}{line}: {name}: {reason}{rest}", self.origin);
+        self.left.clear();
+        self.failed = Some(text.clone());
+        text
+    }
+
+    /// Drops all commands; returns how many there were, with the one under way.
+    pub(super) fn drop_all(&mut self) -> usize {
+        let left = self.left.len() + usize::from(self.under_way.is_some());
+        *self = Self::default();
+        left
     }
 }
 
 impl Lab {
-    /// Carries `commands` out, one after the other, as time passes.
+    /// Carries out `commands` as time passes, in place of the present script.
     pub fn take_commands(&mut self, commands: Commands) {
-        self.script = Script {
-            origin: commands.origin,
-            left: commands.list.into(),
-            under_way: None,
-            failed: None,
-        };
+        self.script = Script::new(commands);
         self.go_on_with_script(None);
     }
 
-    /// The commands that are still to be carried out.
-    pub fn script(&self) -> &Script {
-        &self.script
-    }
-
-    /// Carries out what is left of the commands at once, without a clock: nothing is waited for but files.
+    /// Carries out the script at once, without a clock. It waits for exports only.
     ///
     /// # Errors
-    /// Which command was refused, and why; those after it are not carried out.
+    /// Which command was refused, and why; the commands after it are not carried out.
     pub fn finish_script(&mut self) -> Result<(), String> {
         while !self.script.is_done() {
             let halt = self.player.playback.finish();
             if let Some(halt) = halt {
                 self.halted(halt);
             }
-            if self.is_exporting() {
+            if self.files.is_exporting() {
                 thread::sleep(LOOK);
                 self.follow_export();
             }
@@ -82,17 +93,18 @@ impl Lab {
         self.script.failed.take().map_or(Ok(()), Err)
     }
 
-    /// Carries out as many commands as can be by now; `halt` says why the run has just stopped by itself, if it has.
+    /// Carries out the commands of the script that need not wait any longer. `halt` tells why the run has just stopped by
+    /// itself, if it has.
     pub(super) fn go_on_with_script(&mut self, halt: Option<Halt>) {
         loop {
             if let Some((placed, under_way)) = self.script.under_way.take() {
-                match self.came_to(under_way, halt) {
+                match self.is_complete(under_way, halt) {
                     Ok(true) => {}
                     Ok(false) => {
                         self.script.under_way = Some((placed, under_way));
                         return;
                     }
-                    Err(reason) => return self.break_off(&placed, &reason),
+                    Err(reason) => return self.script_has_failed(&placed, &reason),
                 }
             }
             let Some(next) = self.script.left.pop_front() else {
@@ -101,19 +113,22 @@ impl Lab {
             let answer = self.carry_out(&next.command);
             match &answer {
                 Ok(done) => self.script.under_way = done.under_way.map(|way| (next, way)),
-                Err(refusal) => return self.break_off(&next, &refusal.to_string()),
+                Err(refusal) => return self.script_has_failed(&next, &refusal.to_string()),
             }
             self.tell_answer(answer);
         }
     }
 
-    /// Whether what was begun is at its end.
-    fn came_to(&self, under_way: UnderWay, halt: Option<Halt>) -> Result<bool, String> {
+    /// Whether the action `under_way` is complete.
+    ///
+    /// # Errors
+    /// Why it has failed.
+    fn is_complete(&self, under_way: UnderWay, halt: Option<Halt>) -> Result<bool, String> {
         let is_on = match under_way {
             UnderWay::Going => self.player.playback.steps_to_go().is_some(),
             UnderWay::Playing => self.player.playback.is_running_until(),
             UnderWay::Waiting(until) => return Ok(self.now >= until),
-            UnderWay::Exporting => return Ok(!self.is_exporting()),
+            UnderWay::Exporting => return Ok(!self.files.is_exporting()),
         };
         match (is_on, halt, under_way) {
             (true, ..) => Ok(false),
@@ -127,24 +142,8 @@ impl Lab {
         }
     }
 
-    fn break_off(&mut self, placed: &Placed, reason: &str) {
-        let left = self.script.left.len();
-        let rest = match left {
-            0 => String::new(),
-            1 => "; the command after it is not carried out".to_owned(),
-            more => format!("; the {more} commands after it are not carried out"),
-        };
-        let text = self.script.at(placed, reason) + &rest;
-        self.notice.keep_saying(text.clone());
-        self.script.left.clear();
-        self.script.failed = Some(text);
-        self.changed = true;
-    }
-
-    /// Leaves what is left of the commands; gives how many there were, that under way among them.
-    pub(super) fn drop_script(&mut self) -> usize {
-        let left = self.script.left.len() + usize::from(self.script.under_way.is_some());
-        self.script = Script::default();
-        left
+    fn script_has_failed(&mut self, placed: &Placed, reason: &str) {
+        let text = self.script.fail(placed, reason);
+        self.tell(text);
     }
 }

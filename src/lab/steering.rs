@@ -1,53 +1,48 @@
-//! What an action comes to: commands, with the numbers that count and selection give them; or a step of the interface,
-//! a dialog, the focus, a list.
+//! What the lab does with an action: it carries out the commands that the action stands for, or changes the interface,
+//! which no command does: dialogs, the browser, the focus, dots and colours.
 
 use super::action::{Action, Direction};
 use super::carry_out::{Answer, Done};
 use super::command::{Command, Place, PushChoice};
+use super::dialog::{Dialog, Question};
+use super::on_top::{Cleared, Mode};
 use super::values::Target;
 use super::view::Pane;
-use super::{Lab, Mode, Request};
-use crate::observe::pace::Speed;
+use super::{Lab, Request};
 
-/// Factor for Shift.
+/// The factor of the arrows with Shift.
 const FAR: i32 = 10;
-/// The longest count that can be typed.
-const MOST_COUNTED: u64 = 999_999_999;
-/// Repeating something on the screen more often than this shows nothing new.
+/// The most times that an action is repeated; more repetitions would make no difference on the screen.
 const MOST_REPEATED: u64 = 1000;
 /// Rows of a page in lists.
 const PAGE: isize = 10;
-/// Degrees the camera turns at a key.
-const TURN_DEG: f64 = 10.0;
 
 impl Lab {
-    /// Carries out `action`; what only the loop can do comes back.
+    /// Carries out `action`. Returns what only the main loop can do.
     pub fn update(&mut self, action: Action) -> Option<Request> {
-        let count = self.count.take();
-        let closed = self.notice.take_back() || count.is_some();
-        let was_warned = std::mem::take(&mut self.was_warned);
+        let cleared = self.on_top.clear();
         if !matches!(
             action,
             Action::Move(_) | Action::MoveFar(_) | Action::Digit(_)
         ) {
             self.values.forget_nudge();
         }
-        match self.commands_of(action, count) {
+        match self.commands_of(action, cleared.count) {
             Ok(Some(commands)) => self.carry_out_all(&commands),
             Ok(None) => {
-                let request = self.step_of_interface(action, count, closed, was_warned);
+                let request = self.change_interface(action, cleared);
                 if request.is_some() {
                     return request;
                 }
             }
             Err(reason) => self.say(reason),
         }
-        self.keep_focus();
+        self.view.keep_focus();
         self.read_now();
         None
     }
 
-    /// Carries `commands` out up to the first that is refused, and says what came of them.
+    /// Carries out `commands` up to the first that is refused, and shows their messages.
     fn carry_out_all(&mut self, commands: &[Command]) {
         for command in commands {
             let answer = self.carry_out(command);
@@ -59,14 +54,14 @@ impl Lab {
         }
     }
 
-    /// Says what a command has done, or why it did nothing.
+    /// Shows the message of a command, or why it was refused.
     pub(super) fn tell_answer(&mut self, answer: Answer) {
         match answer {
             Ok(Done {
                 said: Some(text),
                 stays: true,
                 ..
-            }) => self.notice.keep_saying(text),
+            }) => self.tell(text),
             Ok(Done {
                 said: Some(text), ..
             }) => self.say(text),
@@ -75,10 +70,10 @@ impl Lab {
         }
     }
 
-    /// The commands that `action` leads to as the lab stands; `None` where it is a step of the interface.
+    /// The commands that `action` stands for as the lab is now; `None` for an action that only changes the interface.
     ///
     /// # Errors
-    /// Why it leads to none.
+    /// Why the action does nothing now.
     fn commands_of(
         &self,
         action: Action,
@@ -87,17 +82,18 @@ impl Lab {
         let times = repeated(count);
         let one = |command| Ok(Some(vec![command]));
         let steps = || i64::try_from(count.unwrap_or(1)).unwrap_or(i64::MAX);
+        let speed = |notches| Ok(Command::Speed(self.player.other_speed(notches)?));
         match action {
             Action::TogglePause if !self.script.is_done() => Ok(None),
-            Action::TogglePause => one(match self.is_moving() {
+            Action::TogglePause => one(match self.player.is_moving() {
                 true => Command::Pause,
                 false => Command::Run,
             }),
             Action::Step | Action::StepBack if count == Some(0) => one(Command::Pause),
             Action::Step => one(Command::Step(steps())),
             Action::StepBack => one(Command::Step(-steps())),
-            Action::Faster => self.other_speed(times).map(Some),
-            Action::Slower => self.other_speed(-times).map(Some),
+            Action::Faster => speed(times).and_then(one),
+            Action::Slower => speed(-times).and_then(one),
             Action::Restart => {
                 let run = self.player.playback.is_running().then_some(Command::Run);
                 let begin = Command::GoTo(Place::Start);
@@ -107,11 +103,11 @@ impl Lab {
             Action::Undo => one(Command::Undo(times.unsigned_abs())),
             Action::Redo => one(Command::Redo(times.unsigned_abs())),
             Action::Push => one(Command::Push(PushChoice::default())),
-            Action::ToggleExact => one(Command::Exact(self.run().overlay().is_none())),
+            Action::ToggleExact => one(Command::Exact(self.player.run().overlay().is_none())),
             Action::FillScreen => one(Command::Fill(
                 (!self.view.filled).then_some(self.view.focus),
             )),
-            Action::ThreeD if !self.is_filled_by(Pane::THREE_D) => {
+            Action::ThreeD if !self.view.is_filled_by(Pane::THREE_D) => {
                 one(Command::Fill(Some(Pane::THREE_D)))
             }
             Action::WiderWindow => Ok(self.other_window(true)),
@@ -122,30 +118,19 @@ impl Lab {
         }
     }
 
-    fn is_moving(&self) -> bool {
-        self.player.playback.is_running() || self.player.playback.steps_to_go().is_some()
-    }
-
-    fn other_speed(&self, notches: i32) -> Result<Vec<Command>, String> {
-        let now = self.player.playback.speed();
-        match now.shifted(notches) {
-            next if next != now => Ok(vec![Command::Speed(next)]),
-            Speed::Top => Err("this is the top speed".to_owned()),
-            Speed::Times(_) if notches > 0 => Err("this is the top speed".to_owned()),
-            Speed::Times(_) => Err("this is the lowest speed; . takes a single step".to_owned()),
-        }
-    }
-
     fn other_window(&self, wider: bool) -> Option<Vec<Command>> {
-        let time_step_s = self.run().simulation().motion().time_step_s;
+        let time_step_s = self.player.run().simulation().motion().time_step_s;
         let window_s = self.view.zoomed(wider, time_step_s)?;
         Some(vec![Command::Window(window_s)])
     }
 
-    /// What the arrow `direction` leads to, pressed `times` times.
+    /// The commands of an arrow key that is pressed `times` times.
     fn moved(&self, direction: Direction, times: i32) -> Result<Option<Vec<Command>>, String> {
-        match (self.mode, self.view.focus) {
-            (Mode::Lab, Pane::THREE_D) => Ok(Some(vec![self.turned(direction, times)])),
+        match (self.on_top.mode(), self.view.focus) {
+            (Mode::Lab, Pane::THREE_D) => {
+                let camera = self.view.turned(direction, times);
+                Ok(Some(vec![Command::Camera(camera)]))
+            }
             (Mode::Lab, Pane::PARAMETERS) => match direction {
                 Direction::Left => self.nudged(-times),
                 Direction::Right => self.nudged(times),
@@ -158,20 +143,7 @@ impl Lab {
         }
     }
 
-    fn turned(&self, direction: Direction, times: i32) -> Command {
-        let degrees = f64::from(times) * TURN_DEG;
-        let (yaw, pitch) = match direction {
-            Direction::Left => (-degrees, 0.0),
-            Direction::Right => (degrees, 0.0),
-            Direction::Up | Direction::PageUp => (0.0, degrees),
-            Direction::Down | Direction::PageDown => (0.0, -degrees),
-        };
-        let mut camera = self.view.camera;
-        camera.turn(yaw, pitch);
-        Command::Camera(camera)
-    }
-
-    /// The line that is selected, nudged.
+    /// The command that nudges the selected value `times` times.
     fn nudged(&self, times: i32) -> Result<Option<Vec<Command>>, String> {
         Ok(match self.values.selected() {
             None => None,
@@ -181,7 +153,7 @@ impl Lab {
                 times,
             }]),
             Some(Target::NextPush(field)) => {
-                let scenario = self.run().scenario();
+                let scenario = self.player.run().scenario();
                 let next = self.values.next_push().nudged(*field, times, scenario)?;
                 Some(vec![Command::NextPush(PushChoice::field(*field, &next))])
             }
@@ -189,52 +161,70 @@ impl Lab {
     }
 
     /// Carries out an action that is no command.
-    fn step_of_interface(
-        &mut self,
-        action: Action,
-        count: Option<u64>,
-        closed: bool,
-        was_warned: bool,
-    ) -> Option<Request> {
-        let times = repeated(count);
+    fn change_interface(&mut self, action: Action, cleared: Cleared) -> Option<Request> {
+        let times = repeated(cleared.count);
         match action {
-            Action::Digit(digit) => self.count = Some(counted(count, digit)),
+            Action::Digit(digit) => self.on_top.add_digit(cleared.count, digit),
             Action::TogglePause => self.stop_script(),
-            Action::GoTo => self.ask_where_to_go(),
-            Action::ChoosePush => self.choose_push(),
+            Action::GoTo => self.on_top.open_dialog(Dialog::go_to()),
+            Action::ChoosePush => self.turn_to_next_push(),
             Action::Parameters => self.turn_to_parameters(),
-            Action::Edit => self.ask_for_value(),
-            Action::Export => self.ask_for_export(),
-            Action::SaveRun => self.ask_where_to_save_the_run(),
-            Action::SavePresent => self.ask_where_to_save_the_present(),
-            Action::NextPane => self.shift_focus(true),
-            Action::PreviousPane => self.shift_focus(false),
+            Action::Edit if self.view.focus != Pane::PARAMETERS => self.turn_to_parameters(),
+            Action::Edit => {
+                if let Some(dialog) = Dialog::value(&self.values) {
+                    self.on_top.open_dialog(dialog);
+                }
+            }
+            Action::Export | Action::SaveRun | Action::SavePresent => {
+                match self.dialog_for_a_file(action) {
+                    Ok(dialog) => self.on_top.open_dialog(dialog),
+                    Err(reason) => self.say(reason),
+                }
+            }
+            Action::NextPane => self.view.shift_focus(true),
+            Action::PreviousPane => self.view.shift_focus(false),
             Action::ThreeD => self.view.toggle_three_d(),
             Action::WiderWindow | Action::NarrowerWindow => {
                 self.say(format!("the traces show {} s", self.view.window_s));
             }
             Action::Move(direction) => self.shift(direction, times),
             Action::MoveFar(direction) => self.shift(direction, times.saturating_mul(FAR)),
-            Action::NextMarker => self.next_marker(),
-            Action::ToggleColour => self.toggle_colour(),
-            Action::ToggleBackground => self.toggle_background(),
-            Action::Browse => self.browse(),
-            Action::Choose => self.choose(),
-            Action::Filter => self.mode = Mode::Filter,
-            Action::Type(typed) => self.type_char(typed),
-            Action::Erase => self.erase(),
-            Action::InField(edit) => self.edit_field(edit),
+            Action::NextMarker => {
+                let text = self.view.next_marker();
+                self.say(text);
+            }
+            Action::ToggleColour => {
+                let text = self.view.toggle_colour();
+                self.say(text);
+            }
+            Action::ToggleBackground => {
+                let text = self.view.toggle_background();
+                self.say(text);
+            }
+            Action::Browse => {
+                let files = &self.files;
+                let may_be_read = |path: &std::path::Path| files.admit(path).is_ok();
+                let name = self.work.name();
+                self.on_top.open_browser(files.folder(), name, may_be_read);
+            }
+            Action::Choose => self.open_chosen(),
+            Action::Filter => self.on_top.open_filter(),
+            Action::Type(typed) => self.on_top.type_char(typed),
+            Action::Erase => self.on_top.erase(),
+            Action::InField(edit) => self.on_top.edit_field(edit),
             Action::Accept => self.accept(),
-            Action::Help => self.toggle_help(),
-            Action::Close => self.close(closed),
+            Action::Help => self.on_top.toggle_help(),
+            Action::Close => self.close(cleared.anything),
             Action::Redraw => return Some(Request::Redraw),
             Action::Suspend if self.files.confined().is_some() => {
                 self.say("there is no shell to go back to: q leaves");
             }
             Action::Suspend => return Some(Request::Suspend),
-            Action::Quit if self.may_quit(was_warned) => return Some(Request::Quit),
-            Action::Quit
-            | Action::Step
+            Action::Quit if self.files.is_exporting() && !cleared.was_warned => {
+                self.on_top.warn_of_export(self.now);
+            }
+            Action::Quit => return Some(Request::Quit),
+            Action::Step
             | Action::StepBack
             | Action::Faster
             | Action::Slower
@@ -248,73 +238,124 @@ impl Lab {
         None
     }
 
-    /// Moves the selection of the list on top, or that of the values.
-    fn shift(&mut self, direction: Direction, times: i32) {
-        let rows = rows(direction) * times as isize;
-        match (self.mode, self.view.focus) {
-            (Mode::Browser | Mode::Filter, _) => self.browser.shift(rows),
-            (Mode::Lab, Pane::PARAMETERS) => self.values.shift(rows.signum() * times as isize),
-            _ => self.view.scroll = self.view.scroll.saturating_add_signed(rows),
+    /// The dialog that asks for the file of an export, a run file or a scenario of the present state.
+    ///
+    /// # Errors
+    /// Why there is nothing to write now.
+    fn dialog_for_a_file(&self, action: Action) -> Result<Dialog, String> {
+        let free_name = |about, extension| self.files.free_name(self.work.name(), about, extension);
+        match action {
+            Action::Export if self.files.is_exporting() => {
+                Err("one export at a time: Esc stops the one under way".to_owned())
+            }
+            Action::Export => {
+                let scenario = self.run_up_to(None, "export")?;
+                Ok(Dialog::export(scenario, free_name("", "csv")))
+            }
+            Action::SaveRun => {
+                let step = self.run_up_to(None, "save")?.steps;
+                let later = self.work.journal().later_than(step);
+                Ok(Dialog::save_run(step, later, free_name("-run", "toml")))
+            }
+            _ => {
+                let content = self.player.present_as_text()?;
+                Ok(Dialog::save_present(
+                    content,
+                    free_name("-from-here", "toml"),
+                ))
+            }
         }
     }
 
-    fn browse(&mut self) {
-        let folder = self.files.folder();
-        let name = &self.history.present().name;
-        let confined = self.files.confined();
-        self.browser.begin(folder, name, |path| {
-            confined.is_none_or(|folder| folder.check(path).is_ok())
-        });
-        self.mode = Mode::Browser;
+    /// Carries out the command that the open dialog asked for. If it is refused, the dialog stays and shows the reason.
+    fn accept(&mut self) {
+        let Some(dialog) = self.on_top.take_dialog() else {
+            return;
+        };
+        let answer = self.answer_to(&dialog);
+        match answer {
+            Ok(_) => self.tell_answer(answer),
+            Err(refusal) => self.on_top.open_dialog(dialog.refused(refusal)),
+        }
     }
 
-    fn choose(&mut self) {
-        let Some(name) = self.browser.choice().map(|entry| entry.name.clone()) else {
+    fn answer_to(&mut self, dialog: &Dialog) -> Answer {
+        let text = dialog.form().text(0);
+        let path = self.files.path_of(text);
+        let force = dialog.may_replace(&path);
+        let command = match dialog.question() {
+            Question::Value => {
+                let run = self.player.run();
+                let time_step_s = self.player.motion().time_step_s;
+                self.values.value_typed(text, run.scenario(), time_step_s)?
+            }
+            Question::GoTo => {
+                let step = self.player.step_meant(text)?;
+                Some(Command::GoTo(Place::Step(step)))
+            }
+            Question::Export(scenario) => Some(Command::Export {
+                path: text.to_owned(),
+                every: dialog.every()?,
+                to_step: Some(scenario.steps),
+                force,
+            }),
+            Question::SaveRun(to_step) => Some(Command::Save {
+                path: text.to_owned(),
+                from_here: false,
+                to_step: Some(*to_step),
+                force,
+            }),
+            Question::SavePresent(content) => {
+                return self.files.save("the scenario", content, &path, force);
+            }
+        };
+        command.map_or(Ok(Done::SILENT), |command| self.carry_out(&command))
+    }
+
+    /// Moves the selection of what lies on top, or of the values.
+    fn shift(&mut self, direction: Direction, times: i32) {
+        let rows = rows(direction) * times as isize;
+        match (self.on_top.mode(), self.view.focus) {
+            (Mode::Lab, Pane::PARAMETERS) => self.values.shift(rows.signum() * times as isize),
+            _ => self.on_top.shift(rows),
+        }
+    }
+
+    /// Opens the entry that is selected in the browser, and plays its run.
+    fn open_chosen(&mut self) {
+        let choice = self.on_top.browser().choice();
+        let Some(name) = choice.map(|entry| entry.name.clone()) else {
             return self.say("nothing is selected: Esc clears the filter");
         };
         let answer = self.carry_out(&Command::Open(name));
         if answer.is_ok() {
-            self.mode = Mode::Lab;
+            self.on_top.close_browser();
             self.carry_out_all(&[Command::Run]);
         }
         self.tell_answer(answer);
     }
 
-    fn toggle_help(&mut self) {
-        self.view.scroll = 0;
-        if self.mode == Mode::Help {
-            self.mode = self.under_help;
+    /// Closes or stops one thing: what lies on top, the script, the steps asked for, the pane that fills the screen, the
+    /// export. If there is none of these, it says how to leave, unless the key has already removed a message or a count.
+    fn close(&mut self, has_cleared: bool) {
+        if self.on_top.close() {
+        } else if !self.script.is_done() {
+            self.stop_script();
+        } else if self.player.playback.steps_to_go().is_some() {
+            self.carry_out_all(&[Command::Pause]);
+        } else if self.view.filled {
+            self.carry_out_all(&[Command::Fill(None)]);
+        } else if has_cleared {
+        } else if self.files.is_exporting() {
+            self.files.stop_export();
         } else {
-            self.under_help = self.mode;
-            self.mode = Mode::Help;
+            self.say("nothing to close; q leaves");
         }
     }
 
-    /// Closes what lies on top, one thing at a time; with nothing to close, and nothing `closed` already, it says how
-    /// to leave.
-    fn close(&mut self, closed: bool) {
-        match self.mode {
-            Mode::Help => self.toggle_help(),
-            Mode::Filter => {
-                self.browser.clear_filter();
-                self.mode = Mode::Browser;
-            }
-            Mode::Browser => self.mode = Mode::Lab,
-            Mode::Dialog => self.close_dialog(),
-            Mode::Lab if !self.script.is_done() => self.stop_script(),
-            Mode::Lab if self.player.playback.steps_to_go().is_some() => {
-                self.carry_out_all(&[Command::Pause]);
-            }
-            Mode::Lab if self.view.filled => self.carry_out_all(&[Command::Fill(None)]),
-            Mode::Lab if closed => {}
-            Mode::Lab if self.files.is_exporting() => self.files.stop_export(),
-            Mode::Lab => self.say("nothing to close; q leaves"),
-        }
-    }
-
-    /// Stops the run and leaves the commands that are still to be carried out.
+    /// Stops the run and drops the commands that are not carried out yet.
     fn stop_script(&mut self) {
-        let left = self.drop_script();
+        let left = self.script.drop_all();
         self.carry_out_all(&[Command::Pause]);
         self.say(match left {
             1 => "stopped: 1 command is left out".to_owned(),
@@ -323,11 +364,7 @@ impl Lab {
     }
 }
 
-fn counted(count: Option<u64>, digit: u8) -> u64 {
-    (count.unwrap_or(0) * 10 + u64::from(digit)).min(MOST_COUNTED)
-}
-
-/// How often to repeat what needs no more than `MOST_REPEATED` repetitions.
+/// How often an action is repeated for `count`.
 fn repeated(count: Option<u64>) -> i32 {
     count.unwrap_or(1).min(MOST_REPEATED) as i32
 }

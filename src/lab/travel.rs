@@ -1,43 +1,35 @@
-//! Through the run: at which speed, back, and to any step or time.
+//! The step that the user means when typing where to go.
 
-use super::command::{Command, Place, whole};
-use super::{Lab, dialogs::Asking};
+use super::command::whole;
+use super::player::Player;
 
 /// What the user may type to say where to go.
-const WHERE: &str = "a step (421), a time (12.5 s), so many on or back (+50, -2 s), start or end";
+pub(super) const WHERE: &str =
+    "a step (421), a time (12.5 s), so many on or back (+50, -2 s), start or end";
 
-impl Lab {
-    pub(super) fn ask_where_to_go(&mut self) {
-        let fields = [("to", String::new())];
-        self.ask(Asking::GoTo, "go to a step or a time", &fields, &[WHERE]);
-    }
-
-    /// The command that `text` means.
+impl Player {
+    /// The step that `text` means, seen from where the run stands.
     ///
     /// # Errors
-    /// Why that is nowhere.
-    pub(super) fn place_typed(&self, text: &str) -> Result<Command, String> {
-        let step = self.step_meant(text.trim())?;
-        Ok(Command::GoTo(Place::Step(step)))
-    }
-
-    fn step_meant(&self, text: &str) -> Result<u64, String> {
-        let here = self.player.playback.step_number();
+    /// Why the text means no step.
+    pub(super) fn step_meant(&self, text: &str) -> Result<u64, String> {
+        let text = text.trim();
+        let here = self.playback.step_number();
         let wrong = || format!("must be {WHERE}");
         let digits = text.trim_start_matches(['+', '-']);
         if let Some(time) = text.strip_suffix('s') {
             let time_s: f64 = time.trim().parse().map_err(|_| wrong())?;
-            // With a sign it counts from here, as steps do.
+            // With a sign the time counts from here, as steps do.
             let from_s = if digits == text {
                 0.0
             } else {
                 self.run().now().time_s
             };
-            return self.player.step_at(from_s + time_s);
+            return self.step_at(from_s + time_s);
         }
         match text {
             "start" => Ok(0),
-            "end" => Ok(self.player.playback.end_step()),
+            "end" => Ok(self.playback.end_step()),
             _ if text.starts_with('+') => whole(digits)
                 .map(|steps| here.saturating_add(steps))
                 .ok_or_else(wrong),
@@ -48,6 +40,37 @@ impl Lab {
                 Err("must be a whole number of steps, or a time such as 12.5 s".to_owned())
             }
             _ => whole(text).ok_or_else(wrong),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Document;
+    use std::sync::Arc;
+
+    #[test]
+    fn steps_and_times_count_from_the_start_or_from_here() {
+        let scenario = Document::open("method-2").unwrap().scenario().unwrap();
+        let mut player = Player::new(Arc::new(scenario), false);
+        player.step(100).unwrap();
+        for (text, step) in [
+            ("421", 421),
+            (" 1e3 ", 1000),
+            ("12.5 s", 125),
+            ("+50", 150),
+            ("-30", 70),
+            ("-300", 0),
+            ("+2 s", 120),
+            ("-2s", 80),
+            ("start", 0),
+            ("end", 2300),
+        ] {
+            assert_eq!(player.step_meant(text), Ok(step), "{text}");
+        }
+        for text in ["", "soon", "12.5", "-11 s", "nan s", "+x"] {
+            assert!(player.step_meant(text).is_err(), "{text}");
         }
     }
 }

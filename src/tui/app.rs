@@ -80,14 +80,15 @@ fn panic_if_asked(elapsed: Duration) {
 
 /// How long to wait for events, if the next frame is due in `to_frame`.
 fn wait(lab: &Lab, to_frame: Duration) -> Duration {
-    if lab.playback().is_flat_out() {
+    if lab.player().playback().is_flat_out() {
         Duration::ZERO
-    } else if lab.playback().is_busy() || lab.has_changed() {
+    } else if lab.player().playback().is_busy() || lab.has_changed() {
         // Wait at least a little: a run too slow to change anything by the next frame must not keep the processor busy.
         to_frame.max(Duration::from_millis(1))
     } else {
-        let is_attentive =
-            lab.is_exporting() || lab.browser().is_loading() || !lab.script().is_done();
+        let is_attentive = lab.files().is_exporting()
+            || lab.on_top().browser().is_loading()
+            || !lab.script().is_done();
         let rest = if is_attentive { ATTENTIVE } else { IDLE };
         lab.notice_ends_in().unwrap_or(rest).min(rest)
     }
@@ -133,10 +134,10 @@ fn handle(
 
 /// Carries out the action of `key`, or shows a message that it has none.
 pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
-    match keymap::action_with(panes::keys(lab.view().focus), lab.mode(), key) {
+    match keymap::action_with(panes::keys(lab.view().focus), lab.on_top().mode(), key) {
         Some(action) => lab.update(action),
         None => {
-            lab.refuse(keymap::refusal(lab.mode(), key));
+            lab.refuse(keymap::refusal(lab.on_top().mode(), key));
             None
         }
     }

@@ -23,7 +23,7 @@ pub fn fit(lab: &mut Lab, size: Rect) {
 
 /// Fits `lab` to a screen of this size again where other panes are shown than before.
 pub fn refit(lab: &mut Lab, size: Rect) {
-    if Layout::side_by_side(size, lab.view()) != lab.side_by_side() {
+    if Layout::side_by_side(size, lab.view()) != lab.view().side_by_side {
         fit(lab, size);
     }
 }
@@ -55,24 +55,24 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
 
 fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    match lab.mode() {
+    match lab.on_top().mode() {
         Mode::Lab => {}
         Mode::Dialog => {
-            if let Some(dialog) = lab.dialog() {
+            if let Some(dialog) = lab.on_top().dialog() {
                 let form = dialog.form();
                 FormPane { form, theme }.render(area, buf);
             }
         }
         Mode::Browser | Mode::Filter => {
             BrowserPane {
-                browser: lab.browser(),
-                mode: lab.mode(),
+                browser: lab.on_top().browser(),
+                mode: lab.on_top().mode(),
                 theme,
             }
             .render(area, buf);
         }
         Mode::Help => Help {
-            scroll: lab.view().scroll,
+            scroll: lab.on_top().help_scroll(),
             theme,
         }
         .render(area, buf),

@@ -334,7 +334,7 @@ fn a_set_of_several_keys_is_one_act_or_none() {
     desk.commands(
         "set = { 'motion.time_step_s' = 0.05, 'motion.gravity_m_per_s2' = 5, 'title' = 'mine' }",
     );
-    let motion = desk.lab.motion();
+    let motion = desk.lab.player().motion();
     assert_eq!((motion.time_step_s, motion.gravity), (0.05, 5.0));
     assert_eq!(desk.scenario().file.title, "mine");
     desk.commands("undo = 1");
@@ -358,7 +358,7 @@ fn body_and_start_begin_one_new_run() {
     assert_eq!(desk.step(), 0);
     assert_eq!(file.start.tilt_deg, Some(30.0));
     assert_eq!(file.body.rim.unwrap().radius_m, 0.5);
-    assert_eq!(desk.lab.motion().time_step_s, 0.05);
+    assert_eq!(desk.lab.player().motion().time_step_s, 0.05);
     desk.commands("undo = 2");
     assert_eq!(desk.step(), 100);
     // What is refused at its beginning leaves the run that was there.
@@ -385,9 +385,9 @@ fn a_push_has_the_force_that_was_written() {
         (push.force_N, push.from_s, push.for_s),
         ([1.0, -2.0, 0.3], Some(10.0), Some(2.0))
     );
-    let before = desk.lab.editor().lines().to_vec();
+    let before = desk.lab.values().editor().lines().to_vec();
     desk.commands("next_push = { force_N = 70, toward = 'around' }\npush = true");
-    assert_ne!(desk.lab.editor().lines(), before);
+    assert_ne!(desk.lab.values().editor().lines(), before);
     let [x, y, z] = desk.scenario().file.push[1].force_N;
     assert!((x.hypot(y) - 70.0).abs() < 1e-9 && z == 0.0, "{x} {y} {z}");
     let nobody = commands("push = { point = 'nobody' }").remove(0);
@@ -517,7 +517,7 @@ fn esc_stops_the_commands_and_a_refusal_says_where() {
 fn files_are_written_and_not_overwritten_unasked() {
     let folder = tempfile::tempdir().unwrap();
     let mut desk = Desk::open("method-2");
-    desk.lab.work_in(folder.path());
+    desk.lab.files_mut().work_in(folder.path());
     let text = "[[do]]\nstep = 40\n[[do]]\nexport = { path = \"a.csv\", every = 10 }\n[[do]]\nsave = \"a.toml\"\n\
         [[do]]\nsave = { path = \"b.toml\", from_here = true }\n[[do]]\nexport = { path = \"a.csv\", force = true, to_step = 3 }\n[[do]]\nsave = \"a.toml\"";
     let read = command::read(&Document::parse("demo.toml", text).unwrap()).unwrap();

@@ -77,7 +77,7 @@ proptest! {
     ) {
         let folder = tempfile::tempdir().unwrap();
         let mut desk = Desk::open(preset);
-        desk.lab.work_in(folder.path());
+        desk.lab.files_mut().work_in(folder.path());
         desk.commands(&format!("set = {{ 'motion.scheme' = '{scheme}' }}"));
         for deed in deeds {
             for command in commands(DEEDS[deed]) {
@@ -103,7 +103,7 @@ proptest! {
     ) {
         let folder = tempfile::tempdir().unwrap();
         let mut desk = Desk::open(preset);
-        desk.lab.work_in(folder.path());
+        desk.lab.files_mut().work_in(folder.path());
         let mut edits = edits;
         edits.sort_unstable();
         for (step, edit) in edits {
@@ -122,13 +122,13 @@ proptest! {
             let simulation = desk.simulation();
             let reached = simulation.step_number();
             let here = bits(simulation);
-            let health = desk.lab.reading().readouts.health;
+            let health = desk.lab.player().reading().readouts.health;
             prop_assert!(health.energy_drift.is_none_or(|drift| !drift.is_nan()));
             prop_assert_eq!(seen.entry(reached).or_insert_with(|| here.clone()), &here, "step {}", reached);
-            let (recording, path) = (desk.lab.run().recording(), desk.lab.run().path());
+            let (recording, path) = (desk.lab.player().run().recording(), desk.lab.player().run().path());
             prop_assert_eq!(recording.moments(), reached + 1);
             prop_assert_eq!(recording.coarse_since(), None);
-            let mut straight = Playback::new(Arc::clone(desk.lab.run().scenario()), false);
+            let mut straight = Playback::new(Arc::clone(desk.lab.player().run().scenario()), false);
             let _ = straight.begin_at(reached);
             let (whole, known) = (recording.whole().unwrap(), straight.run().recording().whole().unwrap());
             for curve in Curve::ALL {
@@ -147,7 +147,7 @@ proptest! {
 fn a_run_whose_numbers_have_ended_goes_on_once_it_is_mended() {
     let folder = tempfile::tempdir().unwrap();
     let mut desk = Desk::open("method-2");
-    desk.lab.work_in(folder.path());
+    desk.lab.files_mut().work_in(folder.path());
     desk.commands("go_to = 40\nset = { 'motion.scheme' = 'rk4' }\ngo_to = 2000");
     let ended_at = desk.simulation().step_number();
     assert!(
@@ -172,7 +172,7 @@ fn a_run_whose_numbers_have_ended_goes_on_once_it_is_mended() {
 fn an_edit_after_which_no_step_is_finite_is_taken_back_without_a_trace() {
     let folder = tempfile::tempdir().unwrap();
     let mut desk = Desk::open("wobble-push");
-    desk.lab.work_in(folder.path());
+    desk.lab.files_mut().work_in(folder.path());
     desk.commands("go_to = 60\nset = { 'motion.time_step_s' = 1e300 }\nstep = 1");
     assert!(desk.simulation().has_ended());
     assert_eq!(desk.simulation().step_number(), 60);

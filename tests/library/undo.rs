@@ -11,7 +11,7 @@ use std::time::Duration;
 #[test]
 fn a_length_taken_back_is_in_seconds_what_it_was() {
     let mut desk = Desk::open("method-2");
-    let end = |desk: &Desk| desk.lab.playback().end_step();
+    let end = |desk: &Desk| desk.lab.player().playback().end_step();
     desk.commands("go_to = 1000\nset = { 'motion.time_step_s' = 0.05 }");
     let before = end(&desk);
     desk.commands("set = { 'motion.steps' = 4000 }");
@@ -47,6 +47,7 @@ fn a_push_that_an_edit_of_the_file_adds_is_listed() {
     assert!(
         !desk
             .lab
+            .values()
             .editor()
             .lines()
             .iter()
@@ -55,6 +56,7 @@ fn a_push_that_an_edit_of_the_file_adds_is_listed() {
     desk.go("10");
     assert!(
         desk.lab
+            .values()
             .editor()
             .lines()
             .iter()
@@ -68,7 +70,7 @@ fn steps_of_a_push_to_come_are_those_of_now() {
     desk.go("10");
     desk.set("motion", "dt", "0.05");
     desk.set("next push (p)", "for", "20 steps");
-    let line = desk.lab.editor().selected().unwrap();
+    let line = desk.lab.values().editor().selected().unwrap();
     assert_eq!((line.label.as_str(), line.value.as_str()), ("for", "1"));
 }
 
@@ -158,7 +160,7 @@ fn a_time_with_a_sign_counts_from_here() {
 fn nudges_that_belong_together_are_one_undo_and_later_ones_another() {
     let mut desk = Desk::open("method-2");
     desk.commands("go_to = 100");
-    let gravity = |desk: &Desk| desk.lab.motion().gravity;
+    let gravity = |desk: &Desk| desk.lab.player().motion().gravity;
     let nudge = "nudge = 'motion.gravity_m_per_s2'\n";
     desk.commands(&nudge.repeat(3));
     assert_eq!(gravity(&desk), 10.1);

@@ -108,7 +108,10 @@ fn speed_is_apart_from_the_time_step() {
     stage.press("+").shows("×50").wait(1.0);
     assert_eq!(stage.step(), 500);
     stage.press("r---").shows("×5").wait(1.0);
-    assert_eq!(stage.lab.run().simulation().motion().time_step_s, 0.1);
+    assert_eq!(
+        stage.lab.player().run().simulation().motion().time_step_s,
+        0.1
+    );
     assert!((49..=51).contains(&stage.step()), "{}", stage.step());
     stage.press("99-").shows("×1e-4").press("99+").shows("top");
 }
@@ -165,6 +168,7 @@ fn the_exact_motion_and_the_distance_from_it() {
         .shows("e exact");
     let distance = stage
         .lab
+        .player()
         .reading()
         .readouts
         .health
@@ -204,6 +208,7 @@ fn a_true_scheme_lies_on_the_exact_motion() {
     stage.wait(3.0).press(" t").wait(6.0);
     let distance = stage
         .lab
+        .player()
         .reading()
         .readouts
         .health
@@ -234,7 +239,7 @@ fn the_browser_opens_what_the_filter_finds() {
         .shows("> loops")
         .press("\n");
     stage.shows("Loops").shows_no("filters by name").wait(1.0);
-    assert_eq!(stage.lab.run().scenario().file.title, "Loops");
+    assert_eq!(stage.lab.player().run().scenario().file.title, "Loops");
     assert!(stage.step() > 500);
 }
 
@@ -245,7 +250,7 @@ fn esc_closes_one_thing_at_a_time_and_never_leaves() {
     for _ in 0..5 {
         assert_eq!(stage.key(Key::Esc), None);
     }
-    assert_eq!(stage.lab.mode(), Mode::Lab);
+    assert_eq!(stage.lab.on_top().mode(), Mode::Lab);
     stage.shows("q leaves");
     assert_eq!(stage.key(Key::Char('q')), Some(Request::Quit));
 }
@@ -335,7 +340,7 @@ fn at_speed_numbers_and_pictures_are_of_one_moment() {
         for _ in 0..7 {
             stage.wait(0.1);
             assert_eq!(
-                stage.lab.reading().readouts.sample.step,
+                stage.lab.player().reading().readouts.sample.step,
                 stage.step(),
                 "{keys}"
             );
@@ -347,9 +352,16 @@ fn at_speed_numbers_and_pictures_are_of_one_moment() {
 fn a_precession_is_shown_once_it_is_measured() {
     let mut stage = Stage::open("cusps", &[], SMALL);
     stage.press(" 5.").wait(0.1);
-    assert_eq!(stage.lab.reading().precession_deg_per_s(), None);
+    assert_eq!(stage.lab.player().reading().precession_deg_per_s(), None);
     stage.press(" ").wait(6.0);
-    assert!(stage.lab.reading().precession_deg_per_s().is_some());
+    assert!(
+        stage
+            .lab
+            .player()
+            .reading()
+            .precession_deg_per_s()
+            .is_some()
+    );
 }
 
 #[test]
@@ -360,7 +372,7 @@ fn what_would_mend_a_run_is_found_on_the_side() {
     stage.wait(5.0).press(" ");
     for _ in 0..600 {
         std::thread::sleep(Duration::from_millis(100));
-        if stage.wait(0.0).lab.advice().is_some() {
+        if stage.wait(0.0).lab.player().advice().is_some() {
             break;
         }
     }

@@ -58,7 +58,7 @@ impl Desk {
         for _ in 0..frames {
             self.pass(Duration::from_millis(70));
         }
-        while self.lab.playback().steps_to_go().is_some() {
+        while self.lab.player().playback().steps_to_go().is_some() {
             self.pass(Duration::ZERO);
         }
     }
@@ -93,20 +93,25 @@ impl Desk {
         self.type_text("g");
         self.type_text(text);
         self.press(&[Key::Enter]);
-        assert_eq!(self.lab.mode(), Mode::Lab, "{:?}", self.lab.dialog());
+        assert_eq!(
+            self.lab.on_top().mode(),
+            Mode::Lab,
+            "{:?}",
+            self.lab.on_top().dialog()
+        );
     }
 
     /// Selects the value called `label` of `group`.
     #[track_caller]
     pub fn select(&mut self, group: &str, label: &str) {
         self.press(&[Key::Char('e')]);
-        let lines = self.lab.editor().lines();
+        let lines = self.lab.values().editor().lines();
         let wanted = lines
             .iter()
             .position(|line| line.group == group && line.label == label);
         let wanted = wanted.unwrap_or_else(|| panic!("no {label} of {group} in {lines:?}"));
-        while self.lab.editor().selected_index() != wanted {
-            let is_above = self.lab.editor().selected_index() < wanted;
+        while self.lab.values().editor().selected_index() != wanted {
+            let is_above = self.lab.values().editor().selected_index() < wanted;
             self.press(&[if is_above { Key::Down } else { Key::Up }]);
         }
     }
@@ -118,36 +123,46 @@ impl Desk {
         self.press(&[Key::Enter]);
         self.type_text(text);
         self.press(&[Key::Enter]);
-        assert_eq!(self.lab.mode(), Mode::Lab, "{:?}", self.lab.dialog());
+        assert_eq!(
+            self.lab.on_top().mode(),
+            Mode::Lab,
+            "{:?}",
+            self.lab.on_top().dialog()
+        );
     }
 
     pub fn step(&self) -> u64 {
-        self.lab.playback().step_number()
+        self.lab.player().playback().step_number()
     }
 
     pub fn simulation(&self) -> &Simulation {
-        self.lab.run().simulation()
+        self.lab.player().run().simulation()
     }
 
     /// The scenario of the run with everything the user did to it.
     pub fn scenario(&self) -> Scenario {
-        self.lab.run().scenario().as_ref().clone()
+        self.lab.player().run().scenario().as_ref().clone()
     }
 
     /// Saves the run file in `folder`, the lab's working directory, and reads it back; `None` at step 0, where there is no
     /// run to save yet.
     pub fn saved(&mut self, folder: &Path) -> Option<Scenario> {
         self.press(&[Key::Esc, Key::Char('s')]);
-        if self.lab.mode() != Mode::Dialog {
+        if self.lab.on_top().mode() != Mode::Dialog {
             assert_eq!(self.step(), 0);
             return None;
         }
         self.type_text("saved.toml");
         self.press(&[Key::Enter]);
-        if self.lab.mode() == Mode::Dialog {
+        if self.lab.on_top().mode() == Mode::Dialog {
             self.press(&[Key::Enter]); // it exists: replace it
         }
-        assert_eq!(self.lab.mode(), Mode::Lab, "{:?}", self.lab.dialog());
+        assert_eq!(
+            self.lab.on_top().mode(),
+            Mode::Lab,
+            "{:?}",
+            self.lab.on_top().dialog()
+        );
         let file = folder.join("saved.toml");
         Some(Document::read(&file).unwrap().scenario().unwrap())
     }

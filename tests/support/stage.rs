@@ -41,7 +41,7 @@ impl Stage {
         let mut lab = Lab::new(scenario, numbers, view, true);
         lab.set_file(Arc::new(preset(scenario, &[])));
         let folder = tempfile::tempdir().unwrap();
-        lab.work_in(folder.path());
+        lab.files_mut().work_in(folder.path());
         screen::fit(&mut lab, size);
         Self {
             lab,
@@ -108,7 +108,7 @@ impl Stage {
     }
 
     pub fn step(&self) -> u64 {
-        self.lab.run().simulation().step_number()
+        self.lab.player().run().simulation().step_number()
     }
 
     #[track_caller]

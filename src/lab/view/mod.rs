@@ -7,6 +7,7 @@
 pub mod markers;
 pub mod theme;
 
+use super::action::Direction;
 use crate::observe::camera::Camera;
 use crate::run::Clock;
 use crate::scenario::{Scenario, keys};
@@ -15,6 +16,8 @@ use theme::{Background, Theme};
 
 /// A sweep that takes longer than this to be drawn, s, is no picture of the run.
 const LONGEST_SWEEP_S: f64 = 120.0;
+/// Degrees by which one press of an arrow turns the camera.
+const TURN_DEG: f64 = 10.0;
 
 /// A pane, named by its id: the same word in commands, in `[view]` and in sessions. The terminal has the table of all
 /// panes; those named here are the ones that the lab itself turns to or moves something in.
@@ -105,8 +108,9 @@ pub struct View {
     pub hidden: Vec<Part>,
     /// What there is to see, where it was told apart from the scenario.
     pub look_at: Option<String>,
-    /// First line shown of a pane or list that is longer than its place.
-    pub scroll: usize,
+    /// The panes that stand side by side on the screen, as it is now, while none fills it: from left to right, in the
+    /// order in which the focus goes through them. Until the screen is known, all panes.
+    pub side_by_side: Vec<Pane>,
 }
 
 impl View {
@@ -123,7 +127,7 @@ impl View {
             shown: Vec::new(),
             hidden: Vec::new(),
             look_at: None,
-            scroll: 0,
+            side_by_side: panes.to_vec(),
         };
         view.fit(scenario);
         view
@@ -139,7 +143,7 @@ impl View {
         self.hidden = parts.filter_map(|id| Part::named(id)).collect();
         self.look_at = None;
         if !self.may_show(self.focus) {
-            self.keep_focus(&self.to_show());
+            self.keep_focus_among(&self.to_show());
         }
         if let Some(fill) = &file.fill {
             self.fill(Pane::named(fill));
@@ -194,52 +198,105 @@ impl View {
         (window_s >= 2.0 * time_step_s && window_s.is_finite()).then_some(window_s)
     }
 
-    /// The focus on the next pane of `shown`, or on the one before.
-    pub fn shift_focus(&mut self, shown: &[Pane], forward: bool) {
+    /// Whether `pane` fills the screen.
+    pub fn is_filled_by(&self, pane: Pane) -> bool {
+        self.filled && self.focus == pane
+    }
+
+    /// The panes that can have the focus: those side by side on the screen, or every pane that may be shown where the
+    /// screen holds one or two at a time.
+    fn focusable(&self) -> Vec<Pane> {
+        let may_have_it = |pane: &Pane| self.may_show(*pane) || self.is_filled_by(*pane);
+        let among = |panes: &[Pane]| panes.iter().copied().filter(may_have_it).collect();
+        if !self.filled && self.side_by_side.len() > 2 {
+            // A pane that was hidden since the screen was last fitted is still in this list.
+            let panes: Vec<_> = among(&self.side_by_side);
+            if !panes.is_empty() {
+                return panes;
+            }
+        }
+        among(self.panes)
+    }
+
+    /// Moves the focus to the next pane that can have it, or to the one before; after the last comes the first.
+    pub fn shift_focus(&mut self, forward: bool) {
+        let panes = self.focusable();
         let (count, here) = (
-            shown.len(),
-            shown.iter().position(|&pane| pane == self.focus),
+            panes.len(),
+            panes.iter().position(|&pane| pane == self.focus),
         );
         let next = match (here, forward) {
             (Some(here), true) => (here + 1) % count,
             (Some(here), false) => (here + count - 1) % count,
             (None, _) => 0,
         };
-        if let Some(&pane) = shown.get(next) {
-            self.focus = pane;
-            self.scroll = 0;
-        }
+        self.focus = panes.get(next).copied().unwrap_or(self.focus);
     }
 
-    /// The focus on `pane`; it fills the screen where it is not among the panes `shown`.
-    pub fn turn_to(&mut self, pane: Pane, shown: &[Pane]) {
-        self.filled = (self.filled && self.focus == pane) || !shown.contains(&pane);
+    /// Moves the focus to `pane`, which fills the screen if it is not on it.
+    pub fn turn_to(&mut self, pane: Pane) {
+        self.filled = self.is_filled_by(pane) || !self.focusable().contains(&pane);
         self.focus = pane;
     }
 
-    /// The focus on one of `shown`.
-    pub fn keep_focus(&mut self, shown: &[Pane]) {
-        if !shown.contains(&self.focus) {
-            self.focus = shown.first().copied().unwrap_or(Pane::TRACES);
+    /// Moves the focus to the first pane that can have it, if the one in focus no longer can.
+    pub fn keep_focus(&mut self) {
+        self.keep_focus_among(&self.focusable());
+    }
+
+    fn keep_focus_among(&mut self, panes: &[Pane]) {
+        if !panes.contains(&self.focus) {
+            self.focus = panes.first().copied().unwrap_or(Pane::TRACES);
         }
     }
 
-    /// The 3-D view fills the screen, or no longer.
+    /// Fills the screen with the 3-D view, or shows all panes again if it fills the screen already.
     pub fn toggle_three_d(&mut self) {
-        let shown = self.filled && self.focus == Pane::THREE_D;
-        (self.focus, self.filled) = if shown {
-            (Pane::TRACES, false)
-        } else {
-            (Pane::THREE_D, true)
+        (self.focus, self.filled) = match self.is_filled_by(Pane::THREE_D) {
+            true => (Pane::TRACES, false),
+            false => (Pane::THREE_D, true),
         };
     }
 
-    /// For a dark screen, or for a light one.
-    pub fn toggle_background(&mut self) {
+    /// Turns the camera once for an arrow key, `times` times: 10 degrees each.
+    pub(super) fn turned(&self, direction: Direction, times: i32) -> Camera {
+        let degrees = f64::from(times) * TURN_DEG;
+        let (yaw_deg, pitch_deg) = match direction {
+            Direction::Left => (-degrees, 0.0),
+            Direction::Right => (degrees, 0.0),
+            Direction::Up | Direction::PageUp => (0.0, degrees),
+            Direction::Down | Direction::PageDown => (0.0, -degrees),
+        };
+        let mut camera = self.camera;
+        camera.turn(yaw_deg, pitch_deg);
+        camera
+    }
+
+    /// Changes to the next kind of dots; returns the message about it.
+    pub(super) fn next_marker(&mut self) -> String {
+        self.marker = self.marker.next();
+        format!("dots: {}", self.marker.name())
+    }
+
+    /// Turns the colours on or off; returns the message about it.
+    pub(super) fn toggle_colour(&mut self) -> &'static str {
+        self.theme.colour = !self.theme.colour;
+        match self.theme.colour {
+            true => "with colours",
+            false => "without colours",
+        }
+    }
+
+    /// Chooses the colours for a dark screen, or those for a light one; returns the message about it.
+    pub(super) fn toggle_background(&mut self) -> String {
         self.theme.background = match self.theme.background {
             Background::Dark => Background::Light,
             Background::Light => Background::Dark,
         };
+        match self.theme.colour {
+            true => format!("colours for a {:?} screen", self.theme.background).to_lowercase(),
+            false => "there are no colours: c turns them on".to_owned(),
+        }
     }
 }
 

@@ -21,9 +21,13 @@ const SEPARATOR: &str = " · ";
 /// Title, scheme and time step on the left, what fits of it; time, step and pace on the right, in fixed columns.
 pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let motion = lab.motion();
+    let motion = lab.player().motion();
     let step = shortest(motion.time_step_s);
-    let clock = clock(lab.reading(), motion.time_step_s, area.width as usize);
+    let clock = clock(
+        lab.player().reading(),
+        motion.time_step_s,
+        area.width as usize,
+    );
     let clock_x = area.width.saturating_sub(clock.chars().count() as u16);
     write(area, (clock_x, 0), &clock, theme.style(Role::Text), buf);
     let left = Rect {
@@ -37,7 +41,7 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
         format!(" · dt {step} s"),
         String::new(),
     ];
-    let title = &lab.run().scenario().file.title;
+    let title = &lab.player().run().scenario().file.title;
     let least = title.chars().count().min(LEAST_TITLE);
     let found = details
         .iter()
@@ -71,7 +75,10 @@ fn clock(reading: &Reading, time_step_s: f64, width: usize) -> String {
 /// What the time step makes of the numbers, in words: at length if all of it fits, else in short, as much as fits.
 pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let remarks = remarks(&lab.reading().readouts.health, lab.advice());
+    let remarks = remarks(
+        &lab.player().reading().readouts.health,
+        lab.player().advice(),
+    );
     let length = |text: &String| text.chars().count() + SEPARATOR.chars().count();
     let whole: usize = remarks.iter().map(|remark| length(&remark.long)).sum();
     let mut x = 1;
@@ -121,9 +128,9 @@ const NOT_KEPT: &str = "session not kept";
 
 /// What stands in the line of hints. That the session is not kept stands there as long as it is so.
 fn said(lab: &Lab) -> (String, Role) {
-    let is_quiet = lab.count().is_none() && lab.notice().is_none();
+    let is_quiet = lab.on_top().count().is_none() && lab.notice().is_none();
     let (text, role) = said_of_run(lab);
-    match lab.trouble() {
+    match lab.on_top().notice().trouble() {
         None => (text, role),
         Some(trouble) if is_quiet => (trouble.to_owned(), Role::Warning),
         Some(_) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), role),
@@ -131,7 +138,7 @@ fn said(lab: &Lab) -> (String, Role) {
 }
 
 fn said_of_run(lab: &Lab) -> (String, Role) {
-    match (lab.count(), lab.notice()) {
+    match (lab.on_top().count(), lab.notice()) {
         (Some(count), _) => (
             format!("{count}: now the key, such as . for that many steps; Esc forgets it"),
             Role::Focus,
@@ -152,7 +159,7 @@ pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 fn footer(lab: &Lab, width: usize) -> Vec<(String, &'static str)> {
-    let (mode, is_running) = (lab.mode(), lab.playback().is_running());
+    let (mode, is_running) = (lab.on_top().mode(), lab.player().playback().is_running());
     let rows = super::keys(lab.view().focus)
         .iter()
         .chain(BINDINGS)

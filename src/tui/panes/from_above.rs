@@ -42,7 +42,7 @@ pub const ROW: PaneRow = PaneRow {
     rank: 1,
     least: (27, 18),
     draw: |lab, area, buf| {
-        let (run, ghost, view) = (lab.run(), lab.ghost(), lab.view());
+        let (run, ghost, view) = (lab.player().run(), lab.player().ghost(), lab.view());
         FromAbove { run, ghost, view }.render(area, buf);
     },
     keys: &[],

@@ -43,10 +43,10 @@ pub const ROW: PaneRow = PaneRow {
     least: (COLUMN, 0),
     draw: |lab, area, buf| {
         Parameters {
-            scenario: lab.run().scenario(),
-            motion: &lab.motion(),
-            reading: lab.reading(),
-            editor: lab.editor(),
+            scenario: lab.player().run().scenario(),
+            motion: &lab.player().motion(),
+            reading: lab.player().reading(),
+            editor: lab.values().editor(),
             view: lab.view(),
         }
         .render(area, buf);

@@ -35,7 +35,7 @@ pub const ROW: PaneRow = PaneRow {
     rank: 3,
     least: (40, 18),
     draw: |lab, area, buf| {
-        let (run, view) = (lab.run(), lab.view());
+        let (run, view) = (lab.player().run(), lab.view());
         ThreeD { run, view }.render(area, buf);
     },
     keys: &[],

@@ -29,7 +29,7 @@ pub const ROW: PaneRow = PaneRow {
     rank: 0,
     least: (27, 0),
     draw: |lab, area, buf| {
-        let (run, ghost, view) = (lab.run(), lab.ghost(), lab.view());
+        let (run, ghost, view) = (lab.player().run(), lab.player().ghost(), lab.view());
         Traces { run, ghost, view }.render(area, buf);
     },
     keys: &[],

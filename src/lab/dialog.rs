@@ -1,0 +1,278 @@
+//! A dialog: the form that the user fills in, and what the answer is for.
+
+use super::action::FieldEdit;
+use super::carry_out::Refusal;
+use super::form::{Field, Form};
+use super::travel::WHERE;
+use super::values::{Target, Values};
+use crate::scenario::Scenario;
+use crate::scenario::keys::Effect;
+use crate::storage::exporting::{self, Estimate};
+use crate::text::printable::Shown;
+use crate::work::parameters::Parameter;
+use indicatif::{DecimalBytes, HumanCount};
+use std::num::NonZeroU64;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The line about the keys in a dialog with one field.
+const KEYS: &str = "Enter takes it, typing replaces it, Esc leaves it";
+/// The same in a dialog with several fields.
+const KEYS_OF_TWO: &str = "Enter writes it, Up and Down the other line, Esc leaves it";
+
+/// A form on top of the panes, and the question that it asks.
+#[derive(Clone, Debug)]
+pub struct Dialog {
+    question: Question,
+    form: Form,
+    /// The existing file that the user was last asked about: the next Enter replaces it.
+    asked_to_replace: Option<PathBuf>,
+}
+
+/// The question of a dialog.
+#[derive(Clone, Debug)]
+pub(super) enum Question {
+    /// The value of the selected line of the parameters pane.
+    Value,
+    /// A step or a time to go to.
+    GoTo,
+    /// The CSV file for the rows of this run, and how many of the rows to write.
+    Export(Arc<Scenario>),
+    /// The run file for the run up to this step.
+    SaveRun(u64),
+    /// The file for this text, the scenario that starts from the present state. The text is that of the moment when the
+    /// dialog was opened: the run may go on while the user types.
+    SavePresent(String),
+}
+
+impl Dialog {
+    /// Asks for a step or a time to go to.
+    pub(super) fn go_to() -> Self {
+        let fields = [("to", String::new())];
+        Self::new(Question::GoTo, "go to a step or a time", &fields, &[WHERE])
+    }
+
+    /// Asks for the value of the selected line of `values`; `None` if there is no line.
+    pub(super) fn value(values: &Values) -> Option<Self> {
+        let line = values.editor().selected()?;
+        let title = match line.key.is_empty() {
+            true => format!("{} {}", line.group, line.label),
+            false => line.key.clone(),
+        };
+        let label = match line.unit.is_empty() {
+            true => line.label.clone(),
+            false => format!("{}, {}", line.label, line.unit),
+        };
+        let about = match values.selected()? {
+            Target::Parameter(parameter) => about(parameter),
+            Target::NextPush(field) => vec![
+                field.about().to_owned(),
+                "it acts when p gives the push".to_owned(),
+            ],
+        };
+        let about: Vec<_> = about.iter().map(String::as_str).collect();
+        let fields = [(label.as_str(), line.value.clone())];
+        Some(Self::new(Question::Value, &title, &fields, &about))
+    }
+
+    /// Asks for the CSV file of the run `scenario`; it offers `path`.
+    pub(super) fn export(scenario: Arc<Scenario>, path: String) -> Self {
+        let fields = [("file", path), ("every", "1".to_owned())];
+        let title = format!("export steps 0 to {} as CSV", scenario.steps);
+        let mut dialog = Self::new(Question::Export(scenario), &title, &fields, &[]);
+        dialog.show_estimate();
+        dialog
+    }
+
+    /// Asks for the run file of the run up to `step`, which leaves out `later` actions; it offers `path`.
+    pub(super) fn save_run(step: u64, later: usize, path: String) -> Self {
+        let left_out =
+            format!("without {later} later actions: go to the end of the run to have them in it");
+        let up_to = format!("the run up to step {step}: gyrolab run FILE gives the same rows as x");
+        let info = match later {
+            0 => vec![up_to.as_str()],
+            _ => vec![up_to.as_str(), left_out.as_str()],
+        };
+        let fields = [("file", path)];
+        Self::new(Question::SaveRun(step), "save the run file", &fields, &info)
+    }
+
+    /// Asks for the file of the scenario `content`; it offers `path`.
+    pub(super) fn save_present(content: String, path: String) -> Self {
+        let info = "a scenario that starts from the state on the screen";
+        let question = Question::SavePresent(content);
+        let title = "save the present state";
+        Self::new(question, title, &[("file", path)], &[info])
+    }
+
+    /// A dialog with `fields`, each with its label and the text that it offers, and the lines `info` below them.
+    fn new(question: Question, title: &str, fields: &[(&str, String)], info: &[&str]) -> Self {
+        let keys = if fields.len() > 1 { KEYS_OF_TWO } else { KEYS };
+        let fields = fields
+            .iter()
+            .map(|(label, text)| Field::new(label, text))
+            .collect();
+        let mut form = Form::new(title, fields, keys);
+        form.info = info.iter().map(|line| (*line).to_owned()).collect();
+        Self {
+            question,
+            form,
+            asked_to_replace: None,
+        }
+    }
+
+    /// The form to draw.
+    pub fn form(&self) -> &Form {
+        &self.form
+    }
+
+    pub(super) fn question(&self) -> &Question {
+        &self.question
+    }
+
+    /// Whether the user has confirmed that the existing file `path` is to be replaced.
+    pub(super) fn may_replace(&self, path: &Path) -> bool {
+        self.asked_to_replace.as_deref() == Some(path)
+    }
+
+    /// Which rows of a CSV file to write, as typed in the second field: 10 stands for each tenth row.
+    ///
+    /// # Errors
+    /// Why the text is no such number.
+    pub(super) fn every(&self) -> Result<NonZeroU64, String> {
+        let text = self.form.text(1).trim();
+        text.parse()
+            .map_err(|_| "every must be a whole number, 1 or more".to_owned())
+    }
+
+    pub(super) fn type_char(&mut self, typed: char) {
+        self.form.type_char(typed);
+        self.show_estimate();
+    }
+
+    pub(super) fn paste(&mut self, text: &str) {
+        self.form.paste(text);
+        self.show_estimate();
+    }
+
+    pub(super) fn erase(&mut self) {
+        self.form.erase();
+        self.show_estimate();
+    }
+
+    pub(super) fn edit_field(&mut self, edit: FieldEdit) {
+        match edit {
+            FieldEdit::Delete => self.form.delete(),
+            FieldEdit::Clear => self.form.clear(),
+            FieldEdit::Left => self.form.left(),
+            FieldEdit::Right => self.form.right(),
+            FieldEdit::Home => self.form.home(),
+            FieldEdit::End => self.form.end(),
+            FieldEdit::Next => self.form.next_field(),
+            FieldEdit::Previous => self.form.previous_field(),
+        }
+        self.show_estimate();
+    }
+
+    /// Shows how many rows and bytes an export would write. Other dialogs stay as they are.
+    fn show_estimate(&mut self) {
+        let Question::Export(scenario) = &self.question else {
+            return;
+        };
+        self.form.info = match self.every() {
+            Ok(every) => {
+                let Estimate { rows, bytes } = exporting::estimate(scenario, every);
+                let rows = format!("{} rows, about {}", HumanCount(rows), DecimalBytes(bytes));
+                vec![
+                    rows,
+                    "every 10 writes each tenth row, and the last".to_owned(),
+                ]
+            }
+            Err(reason) => vec![reason],
+        };
+    }
+
+    /// The same dialog with the reason why the answer was refused.
+    pub(super) fn refused(mut self, refusal: Refusal) -> Self {
+        let (complaint, asked_to_replace) = match refusal {
+            Refusal::Because(reason) => {
+                self.form.mark();
+                (reason, None)
+            }
+            Refusal::Exists(path) => (
+                format!("{} exists: Enter again replaces it", Shown(&path)),
+                Some(path),
+            ),
+        };
+        self.form.complaint = Some(complaint);
+        Self {
+            asked_to_replace,
+            ..self
+        }
+    }
+}
+
+/// What the dialog says about a parameter: its meaning, its choices, and when a change takes effect.
+fn about(parameter: &Parameter) -> Vec<String> {
+    let mut lines = vec![parameter.spec.about.to_owned()];
+    if parameter.value.is_bool() {
+        lines.push("true or false".to_owned());
+    }
+    if !parameter.choices.is_empty() {
+        lines.push(format!("one of {}", parameter.choices.join(", ")));
+    }
+    let when = match Effect::of(&parameter.key) {
+        Effect::NewRun => "a new run begins with it; the one before stays, dotted",
+        Effect::FromHere => "it acts from the next step on",
+        Effect::None => "no number depends on it",
+    };
+    lines.push(when.to_owned());
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Document;
+
+    fn export() -> Dialog {
+        let scenario = Document::open("method-2").unwrap().scenario().unwrap();
+        Dialog::export(Arc::new(scenario), "method-2.csv".to_owned())
+    }
+
+    #[test]
+    fn an_export_shows_its_size_as_it_is_typed() {
+        let mut dialog = export();
+        assert!(dialog.form().info[0].starts_with("2,301 rows"));
+        dialog.edit_field(FieldEdit::Next);
+        dialog.type_char('1');
+        dialog.type_char('0');
+        assert_eq!(dialog.every().unwrap().get(), 10);
+        assert!(dialog.form().info[0].starts_with("231 rows"));
+        dialog.edit_field(FieldEdit::Clear);
+        assert!(dialog.form().info[0].starts_with("every must be"));
+        dialog.paste("5");
+        assert_eq!(dialog.every().unwrap().get(), 5);
+        dialog.erase();
+        assert!(dialog.every().is_err());
+    }
+
+    #[test]
+    fn a_file_is_replaced_only_after_the_user_was_asked_about_it() {
+        let dialog = export();
+        let (path, other) = (Path::new("method-2.csv"), Path::new("other.csv"));
+        assert!(!dialog.may_replace(path));
+        let dialog = dialog.refused(Refusal::Exists(path.to_owned()));
+        assert!(dialog.may_replace(path) && !dialog.may_replace(other));
+        let dialog = dialog.refused(Refusal::Because("no".to_owned()));
+        assert!(!dialog.may_replace(path));
+        assert_eq!(dialog.form().complaint.as_deref(), Some("no"));
+    }
+
+    #[test]
+    fn a_run_file_says_what_it_leaves_out() {
+        let info = |later| Dialog::save_run(7, later, String::new()).form.info;
+        assert_eq!(info(0).len(), 1);
+        assert!(info(3)[1].starts_with("without 3 later actions"));
+    }
+}

@@ -1,0 +1,337 @@
+//! What lies on top of the panes and gets the keys: the browser, the help, a dialog; the count typed before a key; and
+//! the message at the bottom of the screen.
+
+use super::action::FieldEdit;
+use super::browser::{Browser, MOST_TYPED};
+use super::dialog::Dialog;
+use super::notice::Notice;
+use std::path::Path;
+use std::time::Duration;
+
+/// The largest count that can be typed.
+const MOST_COUNTED: u64 = 999_999_999;
+
+/// What gets the keys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// The panes: nothing lies on top of them.
+    Lab,
+    /// The browser of presets and files.
+    Browser,
+    /// The line in which the user types the browser's filter.
+    Filter,
+    /// The list of keys.
+    Help,
+    /// A dialog.
+    Dialog,
+}
+
+impl Mode {
+    /// Every mode.
+    pub const ALL: [Self; 5] = [
+        Self::Lab,
+        Self::Browser,
+        Self::Filter,
+        Self::Help,
+        Self::Dialog,
+    ];
+}
+
+/// The browser, the help and the dialog, and which of them is open; the count; the message.
+pub struct OnTop {
+    mode: Mode,
+    /// The mode to return to when the help is closed.
+    under_help: Mode,
+    /// The open dialog; `Some` exactly in [`Mode::Dialog`].
+    dialog: Option<Dialog>,
+    browser: Browser,
+    /// First line shown of the help.
+    help_scroll: usize,
+    count: Option<u64>,
+    notice: Notice,
+    /// Whether the last key asked to leave while an export was in progress, and the user was warned.
+    was_warned: bool,
+}
+
+/// What was on the screen when a key was pressed; the key has removed it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cleared {
+    /// The count that was typed.
+    pub(super) count: Option<u64>,
+    /// Whether a message or a count was removed.
+    pub(super) anything: bool,
+    /// Whether the user was warned that leaving stops the export.
+    pub(super) was_warned: bool,
+}
+
+impl Default for OnTop {
+    fn default() -> Self {
+        Self {
+            mode: Mode::Lab,
+            under_help: Mode::Lab,
+            dialog: None,
+            browser: Browser::default(),
+            help_scroll: 0,
+            count: None,
+            notice: Notice::default(),
+            was_warned: false,
+        }
+    }
+}
+
+impl OnTop {
+    /// What gets the keys.
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// The open dialog, if there is one.
+    pub fn dialog(&self) -> Option<&Dialog> {
+        self.dialog.as_ref()
+    }
+
+    /// The browser of presets and files; it is shown in [`Mode::Browser`] and [`Mode::Filter`].
+    pub fn browser(&self) -> &Browser {
+        &self.browser
+    }
+
+    /// First line shown of the help.
+    pub fn help_scroll(&self) -> usize {
+        self.help_scroll
+    }
+
+    /// The count typed so far.
+    pub fn count(&self) -> Option<u64> {
+        self.count
+    }
+
+    /// The message.
+    pub fn notice(&self) -> &Notice {
+        &self.notice
+    }
+
+    pub(super) fn notice_mut(&mut self) -> &mut Notice {
+        &mut self.notice
+    }
+
+    /// Removes the message and the count, as every key does.
+    pub(super) fn clear(&mut self) -> Cleared {
+        let count = self.count.take();
+        Cleared {
+            count,
+            anything: self.notice.take_back() || count.is_some(),
+            was_warned: std::mem::take(&mut self.was_warned),
+        }
+    }
+
+    /// Adds `digit` to `count`, the count that the key has removed.
+    pub(super) fn add_digit(&mut self, count: Option<u64>, digit: u8) {
+        let count = count.unwrap_or(0) * 10 + u64::from(digit);
+        self.count = Some(count.min(MOST_COUNTED));
+    }
+
+    /// Forgets the count that was typed.
+    pub(super) fn forget_count(&mut self) {
+        self.count = None;
+    }
+
+    /// Warns at `now` that leaving stops the export; asked again right after it, the lab ends.
+    pub(super) fn warn_of_export(&mut self, now: Duration) {
+        self.was_warned = true;
+        let text = "an export is under way: q again leaves it unfinished, and writes nothing";
+        self.notice.say(text, now);
+    }
+
+    pub(super) fn open_dialog(&mut self, dialog: Dialog) {
+        self.dialog = Some(dialog);
+        self.mode = Mode::Dialog;
+    }
+
+    /// Closes the dialog and returns it.
+    pub(super) fn take_dialog(&mut self) -> Option<Dialog> {
+        let dialog = self.dialog.take()?;
+        self.mode = Mode::Lab;
+        Some(dialog)
+    }
+
+    /// Opens the browser on `folder` with the entry `name` selected. It lists only the files for which `may_be_read` is
+    /// true.
+    pub(super) fn open_browser(
+        &mut self,
+        folder: &Path,
+        name: &str,
+        may_be_read: impl Fn(&Path) -> bool,
+    ) {
+        self.browser.begin(folder, name, may_be_read);
+        self.mode = Mode::Browser;
+    }
+
+    /// Opens the line for the browser's filter.
+    pub(super) fn open_filter(&mut self) {
+        self.mode = Mode::Filter;
+    }
+
+    /// Closes the browser.
+    pub(super) fn close_browser(&mut self) {
+        self.mode = Mode::Lab;
+    }
+
+    /// Updates the browser with what its background thread has read; returns whether that was anything.
+    pub(super) fn take_news(&mut self) -> bool {
+        self.browser.take_news()
+    }
+
+    /// Opens the help on top of the present mode, or closes it.
+    pub(super) fn toggle_help(&mut self) {
+        self.help_scroll = 0;
+        if self.mode == Mode::Help {
+            self.mode = self.under_help;
+        } else {
+            self.under_help = self.mode;
+            self.mode = Mode::Help;
+        }
+    }
+
+    /// Closes the topmost of help, filter, browser and dialog; returns whether one of them was open.
+    pub(super) fn close(&mut self) -> bool {
+        match self.mode {
+            Mode::Lab => return false,
+            Mode::Help => self.toggle_help(),
+            Mode::Filter => {
+                self.browser.clear_filter();
+                self.mode = Mode::Browser;
+            }
+            Mode::Browser => self.close_browser(),
+            Mode::Dialog => drop(self.take_dialog()),
+        }
+        true
+    }
+
+    /// Moves the selection of the browser or the lines of the help by `rows`.
+    pub(super) fn shift(&mut self, rows: isize) {
+        match self.mode {
+            Mode::Browser | Mode::Filter => self.browser.shift(rows),
+            Mode::Help => self.help_scroll = self.help_scroll.saturating_add_signed(rows),
+            Mode::Lab | Mode::Dialog => {}
+        }
+    }
+
+    pub(super) fn type_char(&mut self, typed: char) {
+        match &mut self.dialog {
+            Some(dialog) => dialog.type_char(typed),
+            None => self.browser.type_char(typed),
+        }
+    }
+
+    pub(super) fn erase(&mut self) {
+        match &mut self.dialog {
+            Some(dialog) => dialog.erase(),
+            None => self.browser.erase(),
+        }
+    }
+
+    pub(super) fn edit_field(&mut self, edit: FieldEdit) {
+        if let Some(dialog) = &mut self.dialog {
+            dialog.edit_field(edit);
+        }
+    }
+
+    /// Puts the pasted `text` into the dialog or the filter, and says at `now` if it does not fit. In other modes it says
+    /// that pasting does nothing: the letters of a pasted text are not meant as keys.
+    pub(super) fn paste(&mut self, text: &str, now: Duration) {
+        self.clear();
+        match (&mut self.dialog, self.mode) {
+            (Some(dialog), _) => dialog.paste(text),
+            (None, Mode::Filter) => {
+                if !self.browser.paste(text) {
+                    let text = format!(
+                        "the filter takes at most {MOST_TYPED} characters: what was pasted is cut"
+                    );
+                    self.notice.say(text, now);
+                }
+            }
+            _ => {
+                let text = "what is pasted goes into fields and the filter; here it does nothing";
+                self.notice.say(text, now);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NOW: Duration = Duration::ZERO;
+
+    #[test]
+    fn what_was_opened_last_is_closed_first() {
+        let mut on_top = OnTop::default();
+        assert!(!on_top.close());
+        on_top.open_browser(Path::new("/nowhere"), "cusps", |_| true);
+        on_top.toggle_help();
+        assert_eq!(on_top.mode(), Mode::Help);
+        assert!(on_top.close());
+        on_top.open_filter();
+        on_top.type_char('x');
+        assert_eq!(
+            (on_top.mode(), on_top.browser().filter()),
+            (Mode::Filter, "x")
+        );
+        assert!(on_top.close());
+        assert_eq!(
+            (on_top.mode(), on_top.browser().filter()),
+            (Mode::Browser, "")
+        );
+        assert!(on_top.close());
+        on_top.open_dialog(Dialog::go_to());
+        assert_eq!(on_top.mode(), Mode::Dialog);
+        assert!(on_top.close() && on_top.dialog().is_none());
+        assert_eq!(on_top.mode(), Mode::Lab);
+    }
+
+    #[test]
+    fn a_key_removes_count_message_and_warning() {
+        let mut on_top = OnTop::default();
+        on_top.add_digit(None, 4);
+        on_top.add_digit(Some(4), 2);
+        assert_eq!(on_top.count(), Some(42));
+        on_top.add_digit(Some(MOST_COUNTED), 9);
+        assert_eq!(on_top.count(), Some(MOST_COUNTED));
+        on_top.warn_of_export(NOW);
+        let cleared = on_top.clear();
+        assert_eq!(cleared.count, Some(MOST_COUNTED));
+        assert!(cleared.anything && cleared.was_warned);
+        let cleared = on_top.clear();
+        assert_eq!((cleared.count, cleared.anything), (None, false));
+        assert!(!cleared.was_warned && on_top.notice().text().is_none());
+    }
+
+    #[test]
+    fn pasted_text_goes_where_text_is_typed() {
+        let mut on_top = OnTop::default();
+        on_top.paste("q", NOW);
+        assert!(on_top.notice().text().unwrap().contains("does nothing"));
+        on_top.open_dialog(Dialog::go_to());
+        on_top.paste("400", NOW);
+        assert_eq!(on_top.take_dialog().unwrap().form().text(0), "400");
+        on_top.open_filter();
+        on_top.paste(&"x".repeat(MOST_TYPED + 1), NOW);
+        assert!(on_top.notice().text().unwrap().contains("is cut"));
+    }
+
+    #[test]
+    fn the_help_is_read_from_its_first_line_each_time() {
+        let mut on_top = OnTop::default();
+        on_top.toggle_help();
+        on_top.shift(10);
+        on_top.shift(-3);
+        assert_eq!(on_top.help_scroll(), 7);
+        on_top.shift(-30);
+        assert_eq!(on_top.help_scroll(), 0);
+        on_top.shift(1);
+        on_top.toggle_help();
+        on_top.toggle_help();
+        assert_eq!(on_top.help_scroll(), 0);
+    }
+}

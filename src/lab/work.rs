@@ -1,0 +1,352 @@
+//! What was done to the run: the history of runs with their journals, the scenario as the user opened it, and the
+//! difference between the two.
+
+use super::keeping;
+use crate::run::Clock;
+use crate::scenario::{Document, Problems, Scenario};
+use crate::work::changed;
+use crate::work::history::{History, Reversal, RunRecord};
+use crate::work::journal::{Act, Journal};
+use crate::work::next_push::NextPush;
+use std::sync::Arc;
+use toml::Table;
+
+/// The history of the lab and the scenario as it was opened. It shows nothing and plays nothing: its methods return the
+/// scenario that the run has afterwards.
+pub struct Work {
+    history: History,
+    /// The scenario as the user opened it.
+    file: Arc<Scenario>,
+    /// How the present run differs from that scenario, in words; `None` where it does not.
+    changed_from_file: Option<String>,
+    /// The history as the session keeps it; `None` where the history has changed since it was written.
+    kept: Option<Arc<str>>,
+}
+
+/// The direction in the history: back with undo, on with redo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    /// Undo.
+    Back,
+    /// Redo.
+    On,
+}
+
+/// What an undo or a redo has changed, and the scenario of the present run afterwards.
+pub(super) enum Turned {
+    /// The present run has changed after `step`.
+    SameRun {
+        /// The step at which the act was done.
+        step: u64,
+        /// The act that was undone or redone.
+        act: Act,
+        /// The run's new scenario.
+        scenario: Arc<Scenario>,
+    },
+    /// Another run is now the present one.
+    OtherRun {
+        /// Whether both runs were opened under the same name.
+        is_of_same_name: bool,
+        /// The scenario of the present run.
+        scenario: Arc<Scenario>,
+    },
+}
+
+impl Work {
+    /// The history of a run of `scenario`, opened as `name`, to which nothing was done yet.
+    pub(super) fn new(name: &str, scenario: &Arc<Scenario>) -> Self {
+        Self::resumed(History::new(name, scenario), Arc::clone(scenario))
+    }
+
+    /// A history from a session; the present run was opened from `file`.
+    pub(super) fn resumed(history: History, file: Arc<Scenario>) -> Self {
+        Self {
+            history,
+            file,
+            changed_from_file: None,
+            kept: None,
+        }
+    }
+
+    /// The name under which the user opened the present run: a preset or a file.
+    pub fn name(&self) -> &str {
+        &self.present().name
+    }
+
+    /// The present run.
+    pub fn present(&self) -> &RunRecord {
+        self.history.present()
+    }
+
+    /// What was done to the present run.
+    pub fn journal(&self) -> &Journal {
+        &self.present().journal
+    }
+
+    /// How the present run differs from the scenario as it was opened, in words; `None` where it does not.
+    pub fn changed_from_file(&self) -> Option<&str> {
+        self.changed_from_file.as_deref()
+    }
+
+    /// Makes `file` the scenario as the user opened it.
+    pub(super) fn set_file(&mut self, file: Arc<Scenario>) {
+        self.file = file;
+    }
+
+    /// Describes how `scenario`, the present run's, differs from the scenario as it was opened.
+    pub(super) fn compare_with_file(&mut self, scenario: &Scenario) {
+        self.changed_from_file = changed::changed(&self.file, scenario);
+    }
+
+    /// The history as the session keeps it.
+    pub(super) fn kept(&mut self) -> Arc<str> {
+        let history = &self.history;
+        let kept = self.kept.get_or_insert_with(|| keeping::written(history));
+        Arc::clone(kept)
+    }
+
+    /// The history, to be changed.
+    fn change(&mut self) -> &mut History {
+        self.kept = None;
+        &mut self.history
+    }
+
+    /// Records at which `step` the present run is left, and which push the user has prepared. To be called before any
+    /// method that may leave the present run.
+    pub(super) fn leave_at(&mut self, step: u64, next_push: &NextPush) {
+        self.change().set_left_at(step, next_push);
+    }
+
+    /// Leaves the present run and begins that of `scenario`, opened as `name`.
+    pub(super) fn open(&mut self, name: &str, scenario: &Arc<Scenario>) {
+        self.change().begin(name, scenario);
+        self.file = Arc::clone(scenario);
+    }
+
+    /// Begins a new run: the present one with the values of `set`, to which it does `acts` at step 0. With `is_again` it
+    /// replaces the present run, which began with another value of the same key. Returns the new run's scenario.
+    ///
+    /// # Errors
+    /// Why a value or an act is refused; nothing has changed then.
+    pub(super) fn begin_with(
+        &mut self,
+        set: &Table,
+        acts: Vec<Act>,
+        is_again: bool,
+    ) -> Result<Scenario, String> {
+        let before = (!acts.is_empty()).then(|| self.history.clone());
+        let history = self.change();
+        let begun = match is_again {
+            true => history.begin_again_with(set),
+            false => history.begin_with(set),
+        };
+        let begun = begun.and_then(|begun| {
+            let mut acts = acts.into_iter();
+            acts.try_fold(begun, |_, act| history.act(0, act))
+        });
+        let scenario = self.or_back_to(before, begun)?;
+        self.change().set_end(Clock::end_s(&scenario));
+        Ok(scenario)
+    }
+
+    /// Does `acts` at `step` of the present run as one act, all or none. With `is_again` they join the act before: one
+    /// undo takes back both. `steps` is the length of the run until now. Returns the run's new scenario; `None` if there
+    /// are no acts.
+    ///
+    /// # Errors
+    /// Why an act is refused; nothing has changed then.
+    pub(super) fn act(
+        &mut self,
+        step: u64,
+        acts: Vec<Act>,
+        is_again: bool,
+        steps: u64,
+    ) -> Result<Option<Scenario>, String> {
+        let before = (acts.len() > 1).then(|| self.history.clone());
+        let history = self.change();
+        let mut done = None;
+        for (index, act) in acts.into_iter().enumerate() {
+            let result = match is_again || index > 0 {
+                true => history.act_again(step, act),
+                false => history.act(step, act),
+            };
+            let is_refused = result.is_err();
+            done = Some(result);
+            if is_refused {
+                break;
+            }
+        }
+        let Some(done) = done else {
+            return Ok(None);
+        };
+        let scenario = self.or_back_to(before, done)?;
+        if scenario.steps != steps {
+            self.change().set_end(Clock::end_s(&scenario));
+        }
+        Ok(Some(scenario))
+    }
+
+    /// The scenario `done`; where it was refused, the history is again as it was `before`.
+    fn or_back_to(
+        &mut self,
+        before: Option<History>,
+        done: Result<Scenario, Problems>,
+    ) -> Result<Scenario, String> {
+        done.map_err(|problems| {
+            if let Some(before) = before {
+                *self.change() = before;
+            }
+            problems.in_one_line()
+        })
+    }
+
+    /// Undoes the last act, or does it again; `steps` is the length of the present run until now. `None` where there is no
+    /// such act.
+    ///
+    /// # Errors
+    /// Why the scenario afterwards is refused.
+    pub(super) fn turn(&mut self, way: Way, steps: u64) -> Result<Option<Turned>, String> {
+        let name = self.name().to_owned();
+        let history = self.change();
+        let turned = match way {
+            Way::Back => history.undo(),
+            Way::On => history.redo(),
+        };
+        let Some(turned) = turned else {
+            return Ok(None);
+        };
+        let scenario = self.journal().scenario();
+        let scenario = Arc::new(scenario.map_err(|problems| problems.in_one_line())?);
+        Ok(Some(match turned {
+            Reversal::SameRun { step, act } => {
+                if scenario.steps != steps {
+                    // Edits of the time step made after the number of steps was set have not moved the end: the end
+                    // follows from the scenario in which that number was set.
+                    let told = self.journal().when_steps_were_set();
+                    let end_s = Clock::end_s(told.as_ref().unwrap_or(&scenario));
+                    self.change().set_end(end_s);
+                }
+                Turned::SameRun {
+                    step,
+                    act,
+                    scenario,
+                }
+            }
+            Reversal::OtherRun => {
+                let is_of_same_name = self.name() == name;
+                if !is_of_same_name {
+                    self.file = Arc::clone(&scenario);
+                }
+                Turned::OtherRun {
+                    is_of_same_name,
+                    scenario,
+                }
+            }
+        }))
+    }
+
+    /// The scenario of the run from step 0 to `step`, with all that was done up to there; `to` says what it is for.
+    ///
+    /// # Errors
+    /// Why there is no such run.
+    pub(super) fn run_up_to(&self, step: u64, to: &str) -> Result<Arc<Scenario>, String> {
+        if step == 0 {
+            return Err(format!(
+                "there is nothing to {to} yet: the run stands at step 0"
+            ));
+        }
+        let file = self.journal().file_until(step);
+        let run = Document::from_file("the run", &file).and_then(|document| document.scenario());
+        run.map(Arc::new).map_err(|problems| problems.in_one_line())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toml::Value;
+
+    fn opened(name: &str) -> Arc<Scenario> {
+        Arc::new(Document::open(name).unwrap().scenario().unwrap())
+    }
+
+    fn work() -> Work {
+        Work::new("method-2", &opened("method-2"))
+    }
+
+    fn time_step(value: f64) -> Act {
+        Act::set("motion.time_step_s", Value::Float(value))
+    }
+
+    fn tilt(value: f64) -> Table {
+        Table::from_iter([("start.tilt_deg".to_owned(), Value::Float(value))])
+    }
+
+    #[test]
+    fn acts_are_done_all_or_none() {
+        let mut work = work();
+        let before = work.journal().clone();
+        let acts = vec![time_step(0.05), time_step(-1.0)];
+        assert!(work.act(40, acts, false, 2300).is_err());
+        assert_eq!(work.journal(), &before);
+        let acts = vec![
+            time_step(0.05),
+            Act::set("motion.gravity_m_per_s2", Value::Float(5.0)),
+        ];
+        assert!(work.act(40, acts, false, 2300).unwrap().is_some());
+        assert!(work.turn(Way::Back, 2300).unwrap().is_some());
+        assert_eq!(work.journal().file(), before.file());
+        assert!(work.turn(Way::Back, 2300).unwrap().is_none());
+        assert!(work.act(40, Vec::new(), false, 2300).unwrap().is_none());
+    }
+
+    #[test]
+    fn a_new_run_that_is_refused_leaves_the_old_one() {
+        let mut work = work();
+        let refused = work.begin_with(&tilt(30.0), vec![time_step(-1.0)], false);
+        assert!(refused.is_err());
+        assert_eq!(work.journal().file().start.tilt_deg, Some(45.0));
+        let scenario = work.begin_with(&tilt(30.0), vec![time_step(0.05)], false);
+        assert_eq!(scenario.unwrap().file.start.tilt_deg, Some(30.0));
+    }
+
+    #[test]
+    fn undo_returns_to_the_file_that_was_opened_before() {
+        let mut work = work();
+        work.open("cusps", &opened("cusps"));
+        work.compare_with_file(&opened("cusps"));
+        assert_eq!((work.name(), work.changed_from_file()), ("cusps", None));
+        let Some(Turned::OtherRun {
+            is_of_same_name,
+            scenario,
+        }) = work.turn(Way::Back, 1).unwrap()
+        else {
+            panic!("another run was expected")
+        };
+        work.compare_with_file(&scenario);
+        assert!(!is_of_same_name);
+        assert_eq!((work.name(), work.changed_from_file()), ("method-2", None));
+        assert!(work.turn(Way::On, 1).unwrap().is_some());
+        assert_eq!(work.name(), "cusps");
+    }
+
+    #[test]
+    fn the_kept_text_follows_every_change() {
+        let mut work = work();
+        let first = work.kept();
+        assert!(Arc::ptr_eq(&first, &work.kept()));
+        work.act(40, vec![time_step(0.05)], false, 2300).unwrap();
+        let second = work.kept();
+        assert_ne!(first, second);
+        work.turn(Way::Back, 2300).unwrap();
+        assert_ne!(second, work.kept());
+    }
+
+    #[test]
+    fn step_0_is_no_run_to_write() {
+        let work = work();
+        let refused = work.run_up_to(0, "export").unwrap_err();
+        assert!(refused.starts_with("there is nothing to export yet"));
+        assert_eq!(work.run_up_to(7, "export").unwrap().steps, 7);
+    }
+}
