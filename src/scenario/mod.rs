@@ -19,6 +19,7 @@ pub mod presets;
 pub mod problem;
 mod pushes;
 pub mod rescale;
+pub mod screen;
 pub mod start;
 
 pub use document::Document;

@@ -26,7 +26,7 @@ fn read(text: &str) -> Result<Vec<Command>, String> {
 
 /// The panes that files and commands can name.
 fn named_panes() -> Vec<Pane> {
-    let ids = gyrolab::scenario::keys::PANES.into_iter();
+    let ids = gyrolab::scenario::screen::PANES.into_iter();
     ids.filter_map(Pane::named).collect()
 }
 
@@ -630,7 +630,7 @@ fn shown_panes_share_the_screen_at_every_width() {
 
 #[test]
 fn a_pane_has_the_name_that_files_give_it() {
-    use gyrolab::scenario::keys::{FILLING, HIDEABLE, PANES};
+    use gyrolab::scenario::screen::{FILLING, HIDEABLE, PANES};
     assert_eq!(PANES, ["traces", "above", "3d", "parameters"]);
     for id in PANES {
         let pane = Pane::named(id).unwrap();

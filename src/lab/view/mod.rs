@@ -10,6 +10,7 @@ pub mod theme;
 use super::action::Direction;
 use crate::observe::camera::Camera;
 use crate::run::Clock;
+use crate::scenario::screen::PANES;
 use crate::scenario::{Scenario, keys};
 use markers::Marker;
 use theme::{Background, Theme};
@@ -62,7 +63,7 @@ impl Pane {
 
     /// The pane of that name in files and commands.
     pub fn named(id: &str) -> Option<Self> {
-        keys::PANES.into_iter().find(|pane| *pane == id).map(Self)
+        PANES.into_iter().find(|pane| *pane == id).map(Self)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The panes: each borrows what it shows, and draws it on its area. None of them changes anything.
 //!
-//! [`PANES`] is the one table of panes. A new pane is a file with its `ROW`, and that row's name in the table.
+//! [`PANES`] is the one table of panes. A new pane is a file with its `ROW`, that row's name in the table, and its id in
+//! [`screen`](crate::scenario::screen), by which files and commands name it.
 
 pub mod browser;
 pub mod chrome;
@@ -14,6 +15,7 @@ pub mod traces;
 use crate::lab::Lab;
 use crate::lab::view::Pane;
 use crate::lab::view::theme::Theme;
+use crate::scenario::screen;
 use crate::text::printable::printable;
 use crate::text::wrap::{columns, wrapped};
 use crate::tui::keymap::Binding;
@@ -66,6 +68,25 @@ pub static IDS: [Pane; PANES.len()] = {
         row += 1;
     }
     ids
+};
+
+/// Stops the compiler where a pane of the table has no name in files, or the other way round.
+const _: () = {
+    assert!(
+        IDS.len() == screen::PANES.len(),
+        "see scenario::screen::PANES"
+    );
+    let mut row = 0;
+    while row < PANES.len() {
+        let (id, named) = (PANES[row].id.id().as_bytes(), screen::PANES[row].as_bytes());
+        assert!(id.len() == named.len(), "see scenario::screen::PANES");
+        let mut byte = 0;
+        while byte < id.len() {
+            assert!(id[byte] == named[byte], "see scenario::screen::PANES");
+            byte += 1;
+        }
+        row += 1;
+    }
 };
 
 /// The row of `pane`.
@@ -152,13 +173,6 @@ mod tests {
         for (index, row) in PANES.iter().enumerate() {
             let mut before = PANES[..index].iter();
             assert!(before.all(|other| other.id != row.id && other.rank != row.rank));
-        }
-    }
-
-    #[test]
-    fn every_pane_that_files_name_is_in_the_table() {
-        for id in crate::scenario::keys::PANES {
-            assert!(IDS.iter().any(|pane| pane.id() == id), "{id}");
         }
     }
 
