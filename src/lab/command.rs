@@ -1,8 +1,10 @@
-//! What a user can do to the lab, as a value: what keys and dialogs lead to, what `--do` and lessons say.
+//! A command: one thing that a user can do to the lab, as a value. Keys and dialogs lead to commands, and files of
+//! commands (`--do`) contain them.
 //!
-//! A file of commands is a list of `[[do]]` tables with one command each. The [table](COMMANDS) has every name, what
-//! stands behind it, and what it does; [`read`] and [`to_toml`] go by it, and so does the manual.
+//! A file of commands is a list of `[[do]]` tables with one command each. The [table](COMMANDS) lists every command with
+//! its name, its value and its effect; [`read`] and the manual use it.
 
+mod reading;
 mod table;
 mod write;
 
@@ -24,40 +26,40 @@ use toml::{Table, Value};
 pub enum Command {
     /// Opens a preset or a file: SCENARIO as on the command line.
     Open(String),
-    /// Sets dotted keys of the scenario: one act, taken back at once.
+    /// Sets dotted keys of the scenario, as one act: one undo takes all of them back.
     Set(Table),
-    /// Nudges the value of a dotted key up so many times, or down where that is negative.
+    /// Nudges the value of a dotted key: up, or down where `times` is negative.
     Nudge {
         /// The key, of a single value.
         key: String,
-        /// How often, and which way; not 0.
+        /// How often; negative: downwards. Not 0.
         times: i32,
     },
-    /// Gives a push from here on.
+    /// Pushes from the next step on.
     Push(PushChoice),
     /// Chooses the push to come.
     NextPush(PushChoice),
-    /// Takes so many time steps, or goes so many back; not 0.
+    /// Takes this many time steps, or goes back by as many where that is negative. Not 0.
     Step(i64),
     /// Goes to a step or a time, and stops there.
     GoTo(Place),
-    /// Plays at the speed that is set until this condition holds, and stops there.
+    /// Plays at the present speed until this condition holds, and stops there.
     RunUntil(Expression),
     /// Lets the run go on.
     Run,
-    /// Stops the run.
+    /// Pauses the run.
     Pause,
-    /// Lets so many seconds pass on the clock before the next command.
+    /// Lets the next command of the script wait for this many seconds.
     Wait(f64),
-    /// Takes back so many of the things done last.
+    /// Undoes this many acts.
     Undo(u32),
-    /// Brings so many of them again.
+    /// Does this many undone acts again.
     Redo(u32),
     /// Writes the run up to here as CSV.
     Export {
         /// The file.
         path: String,
-        /// Writes every such row, counted from row 0, and the last.
+        /// 10 writes each tenth row, counted from row 0, and the last.
         every: NonZeroU64,
         /// Up to this step instead of the present one.
         to_step: Option<u64>,
@@ -75,9 +77,9 @@ pub enum Command {
         /// Whether an existing file is replaced.
         force: bool,
     },
-    /// How fast the run is played.
+    /// The speed at which the run is played.
     Speed(Speed),
-    /// What the line says of what there is to see.
+    /// The line about what there is to see.
     LookAt(String),
     /// Length of time that the traces show, s.
     Window(f64),
@@ -85,15 +87,15 @@ pub enum Command {
     Exact(bool),
     /// The panes that share the screen; none: as many as there is room for.
     Show(Vec<Pane>),
-    /// What is not shown.
+    /// The parts of the screen that are hidden.
     Hide(Vec<Part>),
     /// The pane that fills the screen, or none.
     Fill(Option<Pane>),
-    /// From where the 3-D view is seen.
+    /// The direction from which the 3-D view is seen.
     Camera(Camera),
 }
 
-/// A push as a command has it: what is not told is that of the push to come.
+/// The values of a push that a command gives. The push to come has the others.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 pub struct PushChoice {
@@ -101,9 +103,9 @@ pub struct PushChoice {
     pub point: Option<String>,
     /// The force, N.
     pub force_N: Option<Force>,
-    /// Where to, where the force is only a size.
+    /// Direction of the force, if `force_N` is only a size.
     pub toward: Option<Toward>,
-    /// For how long, s.
+    /// Duration, s.
     pub for_s: Option<f64>,
 }
 
@@ -129,10 +131,10 @@ pub enum Place {
     End,
 }
 
-/// A command of a file, and where it stands there.
+/// A command of a file, and its line there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed {
-    /// What is to be done.
+    /// The command.
     pub command: Command,
     /// Its line, from 1; `None` where that is not known.
     pub line: Option<usize>,
@@ -143,7 +145,7 @@ pub struct Placed {
 pub struct Commands {
     /// The file, as the user named it.
     pub origin: String,
-    /// What is to be done.
+    /// The commands.
     pub list: Vec<Placed>,
 }
 
@@ -166,13 +168,13 @@ impl Command {
     }
 }
 
-/// `commands` as a file has them.
+/// The text of a file of `commands`.
 pub fn to_toml(commands: &[Command]) -> String {
     let tables = commands
         .iter()
         .map(|command| Value::Table(command.to_table()));
     let file = Table::from_iter([("do".to_owned(), Value::Array(tables.collect()))]);
-    toml::to_string(&file).unwrap_or_default() // strings, numbers and lists of them: nothing that TOML cannot write
+    toml::to_string(&file).unwrap_or_default() // a command holds nothing that TOML cannot write
 }
 
 /// Whether `document` is a file of commands, by its `[[do]]`.
@@ -280,7 +282,7 @@ fn one(index: usize, value: &Value) -> Result<Command, Vec<Problem>> {
     }
 }
 
-/// That `name` is no command; `beside` is one in the same table, of which it may be meant to be a part.
+/// The problem that `name` is no command. `beside` is a command in the same table: `name` may belong into its value.
 fn unknown(name: &str, beside: Option<&Row>) -> Problem {
     let near = match beside {
         Some(row) => format!(
