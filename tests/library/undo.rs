@@ -4,6 +4,7 @@ use crate::support::desk::Desk;
 use gyrolab::lab::command::Command;
 use gyrolab::scenario::Document;
 use gyrolab::scenario::file::PushFile;
+use gyrolab::tui::keymap::{Key, Mode};
 use gyrolab::work::journal::{Act, Journal};
 use proptest::prelude::*;
 use std::time::Duration;
@@ -53,7 +54,7 @@ fn a_push_that_an_edit_of_the_file_adds_is_listed() {
             .iter()
             .any(|l| l.group == "push 1")
     );
-    desk.go("10");
+    desk.commands("go_to = 10");
     assert!(
         desk.lab
             .values()
@@ -67,9 +68,11 @@ fn a_push_that_an_edit_of_the_file_adds_is_listed() {
 #[test]
 fn steps_of_a_push_to_come_are_those_of_now() {
     let mut desk = Desk::open("method-2");
-    desk.go("10");
-    desk.set("motion", "dt", "0.05");
-    desk.set("next push (p)", "for", "20 steps");
+    desk.commands("go_to = 10\nset = { 'motion.time_step_s' = 0.05 }");
+    // Only what is typed can be in steps.
+    desk.press(&[Key::Char('P'), Key::Down, Key::Down, Key::Enter]);
+    desk.type_text("20 steps");
+    desk.press(&[Key::Enter]);
     let line = desk.lab.values().editor().selected().unwrap();
     assert_eq!((line.label.as_str(), line.value.as_str()), ("for", "1"));
 }
@@ -143,7 +146,7 @@ proptest! {
 #[test]
 fn a_time_with_a_sign_counts_from_here() {
     let mut desk = Desk::open("method-2");
-    desk.go("100");
+    desk.commands("go_to = 100");
     for (to, step) in [
         ("+5 s", 150),
         ("-2.5 s", 125),
@@ -151,7 +154,10 @@ fn a_time_with_a_sign_counts_from_here() {
         ("1e2", 100),
         ("-30", 70),
     ] {
-        desk.go(to);
+        desk.type_text("g"); // a command has no sign before a step or time
+        desk.type_text(to);
+        desk.press(&[Key::Enter]);
+        assert_eq!(desk.lab.on_top().mode(), Mode::Lab, "{to}");
         assert_eq!(desk.step(), step, "{to}");
     }
 }

@@ -96,7 +96,7 @@ fn a_note_that_may_not_hold_any_more_is_not_shown() {
     stage
         .shows("changed from the file: dt 0.01 s, not 0.1, another start")
         .shows_no("almost a circle");
-    stage.press("o\n").shows("almost a circle");
+    stage.commands("open = 'method-2'").shows("almost a circle");
     Stage::open("method-2", &["motion.steps=50", "view.speed=2"], SMALL).shows("almost a circle");
     let set = ["motion.time_step_s=0.01", "view.look_at=\"mine\""];
     Stage::open("method-2", &set, SMALL).shows("mine");
@@ -134,7 +134,7 @@ fn the_run_pauses_once_at_its_end() {
 #[test]
 fn top_speed_is_as_fast_as_there_is_time_for() {
     let mut stage = Stage::open("method-2", &["motion.steps=100000000"], SMALL);
-    stage.press("99+").wait(0.5).shows("top ×");
+    stage.commands("speed = 'top'").wait(0.5).shows("top ×");
     // 25 ms a slice, 50 µs for each reading of the clock: 500 readings with some hundred steps between them.
     assert!(stage.step() > 100_000, "{}", stage.step());
 }
@@ -160,9 +160,9 @@ fn steps_asked_for_by_the_million_do_not_hold_up_the_keys() {
 #[test]
 fn the_exact_motion_and_the_distance_from_it() {
     let mut stage = Stage::open("method-2", &["motion.time_step_s=0.05"], SMALL);
-    stage.wait(0.2).press(" ").shows_no("e exact");
+    stage.wait(0.2).commands("pause = true").shows_no("e exact");
     stage
-        .press("t")
+        .commands("exact = true")
         .wait(6.0)
         .shows(" off exact")
         .shows("e exact");
@@ -176,7 +176,10 @@ fn the_exact_motion_and_the_distance_from_it() {
         .unwrap()
         .distance_m;
     assert!(distance > 0.0 && distance < 0.05, "{distance}");
-    stage.press("t").wait(6.0).shows_no("e exact");
+    stage
+        .commands("exact = false")
+        .wait(6.0)
+        .shows_no("e exact");
 }
 
 #[test]
@@ -184,7 +187,7 @@ fn the_strips_have_room_for_the_exact_motion_too() {
     // The scheme damps the nutation: the run stays above the exact motion's lowest, at 36.69 degrees.
     let set = ["motion.scheme=\"report\"", "motion.time_step_s=0.02"];
     let mut stage = Stage::open("cusps", &set, SMALL);
-    stage.wait(3.0).press(" ");
+    stage.wait(3.0).commands("pause = true");
     let highest = |stage: &Stage| {
         let picture = stage.picture();
         let label = picture
@@ -198,14 +201,15 @@ fn the_strips_have_room_for_the_exact_motion_too() {
         numbers[1]
     };
     assert!(highest(&stage) < 36.68);
-    stage.press("t").wait(1.0);
+    stage.commands("exact = true").wait(1.0);
     assert!(highest(&stage) > 36.68);
 }
 
 #[test]
 fn a_true_scheme_lies_on_the_exact_motion() {
     let mut stage = Stage::open("cusps", &[], SMALL);
-    stage.wait(3.0).press(" t").wait(6.0);
+    stage.wait(3.0);
+    stage.commands("pause = true\nexact = true").wait(6.0);
     let distance = stage
         .lab
         .player()
@@ -293,7 +297,7 @@ fn resizing_at_any_moment_shows_what_there_is_room_for() {
 #[test]
 fn nothing_changes_while_it_stands_still() {
     let mut stage = Stage::open("method-2", &[], SMALL);
-    stage.wait(1.0).press(" ").wait(6.0);
+    stage.wait(1.0).commands("pause = true").wait(6.0);
     stage.lab.take_changed();
     stage.wait(10.0);
     assert!(!stage.lab.take_changed());
@@ -334,15 +338,15 @@ fn what_does_nothing_says_why() {
 
 #[test]
 fn at_speed_numbers_and_pictures_are_of_one_moment() {
-    for keys in ["+++++", "99+", "9000000."] {
+    for command in ["speed = 1000", "speed = 'top'", "step = 9000000"] {
         let mut stage = Stage::open("method-2", &["motion.steps=100000000"], SMALL);
-        stage.press(keys);
+        stage.commands(command);
         for _ in 0..7 {
             stage.wait(0.1);
             assert_eq!(
                 stage.lab.player().reading().readouts.sample.step,
                 stage.step(),
-                "{keys}"
+                "{command}"
             );
         }
     }
@@ -351,7 +355,7 @@ fn at_speed_numbers_and_pictures_are_of_one_moment() {
 #[test]
 fn a_precession_is_shown_once_it_is_measured() {
     let mut stage = Stage::open("cusps", &[], SMALL);
-    stage.press(" 5.").wait(0.1);
+    stage.commands("pause = true\nstep = 5").wait(0.1);
     assert_eq!(stage.lab.player().reading().precession_deg_per_s(), None);
     stage.press(" ").wait(6.0);
     assert!(
@@ -369,7 +373,7 @@ fn what_would_mend_a_run_is_found_on_the_side() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.shows("0 m off exact");
     stage.lab.take_advice();
-    stage.wait(5.0).press(" ");
+    stage.wait(5.0).commands("pause = true");
     for _ in 0..600 {
         std::thread::sleep(Duration::from_millis(100));
         if stage.wait(0.0).lab.player().advice().is_some() {
@@ -379,7 +383,7 @@ fn what_would_mend_a_run_is_found_on_the_side() {
     stage
         .shows("m off exact")
         .shows(" mends it")
-        .press("oj\n")
+        .commands("open = 'wobble-push'")
         .shows_no(" mends it");
 }
 
@@ -392,7 +396,7 @@ fn numbers_that_are_not_finite_stop_the_run_and_are_named() {
     ];
     let mut stage = Stage::open("method-2", &set, SMALL);
     stage
-        .press("99+")
+        .commands("speed = 'top'")
         .wait(1.0)
         .shows("no longer finite at step")
         .shows("paused");
@@ -421,10 +425,15 @@ fn ascii_is_ascii_to_the_last_cell() {
 #[test]
 fn every_number_is_on_the_screen_once_the_parameters_fill_it() {
     let mut stage = Stage::open("wobble-push", &[], SMALL);
-    stage.wait(5.0).press(" ").shows("f: all of them");
+    stage
+        .wait(5.0)
+        .commands("pause = true")
+        .shows("f: all of them");
     let unfilled = stage.picture();
     assert_eq!(unfilled.matches("predicted").count(), 2, "{unfilled}");
-    stage.press("\t\tf").shows_no("all of them");
+    stage
+        .commands("fill = 'parameters'")
+        .shows_no("all of them");
     for label in [
         "rim radius",
         "gravity",
@@ -444,7 +453,7 @@ fn every_number_is_on_the_screen_once_the_parameters_fill_it() {
 fn the_header_keeps_the_clock_before_the_title() {
     for (width, height) in [(80, 24), (79, 23), (60, 18), (50, 14), (40, 10), (30, 8)] {
         let mut stage = Stage::open("wobble-push", &[], Rect::new(0, 0, width, height));
-        stage.wait(1.0).press(" ");
+        stage.wait(1.0).commands("pause = true");
         let header = stage.picture().lines().next().unwrap().to_owned();
         for word in ["20.0 s", "step 200", "paused"] {
             assert!(header.contains(word), "{header}");
@@ -504,7 +513,7 @@ fn a_circle_is_round() {
             let mut stage = Stage::open("steady-slow", &[], Rect::new(0, 0, width, height));
             stage
                 .wait(8.0)
-                .press("\tf")
+                .commands("fill = 'above'")
                 .press(&"m".repeat(marker))
                 .wait(6.0);
             let (across, down) = extent_of_the_path(&stage.picture());

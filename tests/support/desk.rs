@@ -9,7 +9,7 @@ use gyrolab::lab::{Answer, Lab};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
 use gyrolab::tui::app;
-use gyrolab::tui::keymap::{Key, Mode};
+use gyrolab::tui::keymap::Key;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
@@ -87,50 +87,6 @@ impl Desk {
         said
     }
 
-    /// Types `text` into the dialog that goes to a step or time.
-    #[track_caller]
-    pub fn go(&mut self, text: &str) {
-        self.type_text("g");
-        self.type_text(text);
-        self.press(&[Key::Enter]);
-        assert_eq!(
-            self.lab.on_top().mode(),
-            Mode::Lab,
-            "{:?}",
-            self.lab.on_top().dialog()
-        );
-    }
-
-    /// Selects the value called `label` of `group`.
-    #[track_caller]
-    pub fn select(&mut self, group: &str, label: &str) {
-        self.press(&[Key::Char('e')]);
-        let lines = self.lab.values().editor().lines();
-        let wanted = lines
-            .iter()
-            .position(|line| line.group == group && line.label == label);
-        let wanted = wanted.unwrap_or_else(|| panic!("no {label} of {group} in {lines:?}"));
-        while self.lab.values().editor().selected_index() != wanted {
-            let is_above = self.lab.values().editor().selected_index() < wanted;
-            self.press(&[if is_above { Key::Down } else { Key::Up }]);
-        }
-    }
-
-    /// Types `text` for the value called `label` of `group`.
-    #[track_caller]
-    pub fn set(&mut self, group: &str, label: &str, text: &str) {
-        self.select(group, label);
-        self.press(&[Key::Enter]);
-        self.type_text(text);
-        self.press(&[Key::Enter]);
-        assert_eq!(
-            self.lab.on_top().mode(),
-            Mode::Lab,
-            "{:?}",
-            self.lab.on_top().dialog()
-        );
-    }
-
     pub fn step(&self) -> u64 {
         self.lab.player().playback().step_number()
     }
@@ -147,22 +103,10 @@ impl Desk {
     /// Saves the run file in `folder`, the lab's working directory, and reads it back; `None` at step 0, where there is no
     /// run to save yet.
     pub fn saved(&mut self, folder: &Path) -> Option<Scenario> {
-        self.press(&[Key::Esc, Key::Char('s')]);
-        if self.lab.on_top().mode() != Mode::Dialog {
-            assert_eq!(self.step(), 0);
+        if self.step() == 0 {
             return None;
         }
-        self.type_text("saved.toml");
-        self.press(&[Key::Enter]);
-        if self.lab.on_top().mode() == Mode::Dialog {
-            self.press(&[Key::Enter]); // it exists: replace it
-        }
-        assert_eq!(
-            self.lab.on_top().mode(),
-            Mode::Lab,
-            "{:?}",
-            self.lab.on_top().dialog()
-        );
+        self.commands("save = { path = 'saved.toml', force = true }");
         let file = folder.join("saved.toml");
         Some(Document::read(&file).unwrap().scenario().unwrap())
     }

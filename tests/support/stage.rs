@@ -128,6 +128,7 @@ impl Stage {
 
 pub fn picture(scenario: &str, size: Rect, seconds: f64, keys: &str) -> String {
     let mut stage = Stage::open(scenario, &[], size);
-    stage.wait(seconds).press(" ").press(keys).wait(6.0);
+    stage.wait(seconds).commands("pause = true");
+    stage.press(keys).wait(6.0);
     stage.picture()
 }
