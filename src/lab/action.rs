@@ -1,27 +1,27 @@
-//! What the user can want, in words that know no key.
+//! The actions of the user. The table of keys in `tui` says which key stands for which action.
 
-/// An intention; [`Lab::update`](crate::lab::Lab::update) carries it out.
+/// An action of the user; [`Lab::update`](crate::lab::Lab::update) carries it out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// Stops the run, or lets it go on.
+    /// Pauses the run, or lets it go on; stops a script.
     TogglePause,
-    /// One time step on, or as many as have been counted.
+    /// One time step forward, or as many as the count says.
     Step,
-    /// One time step back, or as many as have been counted.
+    /// One time step back, or as many as the count says.
     StepBack,
-    /// Asks for a step or a time to go to; with a count, goes to that step.
+    /// Asks for a step or a time to go to; with a count, goes to the step of that number.
     GoTo,
-    /// Takes the last thing back that was done.
+    /// Undoes the last act.
     Undo,
-    /// Brings it again.
+    /// Does again what was undone last.
     Redo,
-    /// Gives the push that is chosen.
+    /// Gives the push to come, now.
     Push,
-    /// The focus on the push that is to come.
+    /// Moves the focus to the values of the push to come.
     ChoosePush,
-    /// The focus on the values of the scenario.
+    /// Moves the focus to the values of the scenario.
     Parameters,
-    /// Asks for the value that is selected.
+    /// Asks for a new value of the selected line.
     Edit,
     /// Asks where to export the run.
     Export,
@@ -29,67 +29,67 @@ pub enum Action {
     SaveRun,
     /// Asks where to save the present state as a scenario.
     SavePresent,
-    /// A digit of the count for the next action.
+    /// Adds a digit to the count for the next action.
     Digit(u8),
-    /// The next speed up.
+    /// The next higher speed.
     Faster,
-    /// The next speed down.
+    /// The next lower speed.
     Slower,
-    /// Back to step 0.
+    /// Goes back to step 0.
     Restart,
-    /// Shows the exact motion beside the run, or does not.
+    /// Shows the exact motion beside the run, or hides it.
     ToggleExact,
-    /// The focus on the next pane.
+    /// Moves the focus to the next pane.
     NextPane,
-    /// The focus on the pane before.
+    /// Moves the focus to the pane before.
     PreviousPane,
-    /// The pane in focus fills the screen, or no longer.
+    /// Fills the screen with the pane in focus, or shows all panes again.
     FillScreen,
-    /// The 3-D view fills the screen, or no longer.
+    /// Fills the screen with the 3-D view, or shows all panes again.
     ThreeD,
-    /// Moves what is in focus, or nudges it.
+    /// Moves a selection, nudges the selected value, or turns the camera.
     Move(Direction),
-    /// The same, ten times.
+    /// As `Move`, ten times.
     MoveFar(Direction),
-    /// The traces show twice the time.
+    /// Doubles the time that the traces show.
     WiderWindow,
-    /// The traces show half the time.
+    /// Halves the time that the traces show.
     NarrowerWindow,
-    /// The next kind of dots.
+    /// Changes to the next kind of dots.
     NextMarker,
-    /// With colour, or without.
+    /// Turns the colours on or off.
     ToggleColour,
-    /// For a dark screen, or for a light one.
+    /// Chooses the colours for a dark screen or those for a light one.
     ToggleBackground,
     /// Opens the browser of presets and files.
     Browse,
-    /// Takes what is selected in the browser.
+    /// Opens the entry that is selected in the browser.
     Choose,
-    /// Types a filter for the browser.
+    /// Begins to type the filter of the browser.
     Filter,
-    /// A character of it, or of what a dialog asks for.
+    /// Types a character into the filter or the dialog.
     Type(char),
-    /// Takes the last character away.
+    /// Removes the character before the cursor.
     Erase,
-    /// Something else in the field of a dialog.
+    /// Any other change in the field of a dialog.
     InField(FieldEdit),
-    /// Takes what was typed into a dialog.
+    /// Accepts what is typed into the dialog.
     Accept,
-    /// The list of keys.
+    /// Opens or closes the list of keys.
     Help,
-    /// Closes what lies on top.
+    /// Closes what lies on top, or stops what is in progress.
     Close,
     /// Draws the whole screen again.
     Redraw,
-    /// Stops the program until the shell resumes it.
+    /// Suspends the program until the shell resumes it.
     Suspend,
     /// Ends the program.
     Quit,
 }
 
-/// What can be done in a field beside typing.
+/// A change in the field of a dialog that types no character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "they say it")]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum FieldEdit {
     Delete,
     Clear,
@@ -101,9 +101,9 @@ pub enum FieldEdit {
     Previous,
 }
 
-/// Where to.
+/// The direction of an arrow or page key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "they say it")]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum Direction {
     Up,
     Down,

@@ -1,11 +1,11 @@
-//! What can be edited, line by line, and which line is selected.
+//! The lines of the parameters pane while it has the focus, and the selected one.
 
-/// One value of the scenario.
+/// One value as the pane shows it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Line {
-    /// Dotted, as `--set` takes it.
+    /// Dotted key, as `--set` takes it; empty for the push to come.
     pub key: String,
-    /// What it stands with.
+    /// The heading under which it stands.
     pub group: String,
     /// Short name.
     pub label: String,
@@ -13,7 +13,7 @@ pub struct Line {
     pub value: String,
     /// Its unit, or nothing.
     pub unit: String,
-    /// Whether the scenario leaves it at what is assumed.
+    /// Whether the scenario does not contain it: the value is the default.
     pub is_default: bool,
 }
 
@@ -25,7 +25,7 @@ pub struct Editor {
 }
 
 impl Editor {
-    /// Other `lines`; the selection stays on the line of the same group and label, or else about where it was.
+    /// Replaces the lines. The selection stays on the line of the same group and label, or else at the same number.
     pub fn set_lines(&mut self, lines: Vec<Line>) {
         let was = self
             .selected()
@@ -37,12 +37,12 @@ impl Editor {
         }
     }
 
-    /// The selection `rows` lines on, or back; it stops at both ends.
+    /// Moves the selection by `rows` lines; it stops at both ends.
     pub fn shift(&mut self, rows: isize) {
         self.selected = self.selected.saturating_add_signed(rows).min(self.last());
     }
 
-    /// Selects the line called `label` of `group`; gives whether there is one.
+    /// Selects the line `label` of `group`; returns whether there is one.
     pub fn select(&mut self, group: &str, label: &str) -> bool {
         let is_it = |line: &Line| line.group == group && line.label == label;
         let found = self.lines.iter().position(is_it);

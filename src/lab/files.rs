@@ -1,4 +1,4 @@
-//! The files of the lab: where they are looked for, what may be read and written, and the export under way.
+//! The files of the lab: their folder, which of them may be read and written, and the export in progress.
 
 use super::carry_out::{Answer, Done, Refusal, UnderWay};
 use crate::export::Destination;
@@ -13,24 +13,24 @@ use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Where files are read and written, and what is being written.
+/// The folder of the lab's files, and the exports.
 #[derive(Default)]
 pub struct Files {
-    /// Where files are looked for and written to, if not in the present folder.
+    /// The folder in which files are read and written; `None` for the working directory.
     folder: Option<PathBuf>,
-    /// The folder that is not left, if there is one.
+    /// The folder outside of which nothing is read or written, if there is one.
     confined: Option<Confined>,
     exporting: Option<Exporting>,
     written: Vec<Written>,
 }
 
 impl Files {
-    /// Looks for files in `folder`, and writes them there, instead of the present folder.
+    /// Reads and writes files in `folder` instead of the working directory.
     pub fn work_in(&mut self, folder: &Path) {
         self.folder = Some(folder.to_owned());
     }
 
-    /// Where files are looked for.
+    /// The folder of the files.
     pub(super) fn folder(&self) -> &Path {
         self.folder.as_deref().unwrap_or(Path::new("."))
     }
@@ -40,7 +40,7 @@ impl Files {
         self.confined = Some(folder);
     }
 
-    /// The folder that is not left, if there is one.
+    /// The folder outside of which nothing is read or written, if there is one.
     pub(super) fn confined(&self) -> Option<&Confined> {
         self.confined.as_ref()
     }
@@ -89,14 +89,14 @@ impl Files {
         Ok(Done::saying("the export goes on in the background").going_on(UnderWay::Exporting))
     }
 
-    /// Asks the export under way to end.
+    /// Asks the export to stop.
     pub(super) fn stop_export(&mut self) {
         if let Some(exporting) = &self.exporting {
             exporting.cancel();
         }
     }
 
-    /// Looks after the export under way; gives in words what has become of it, once it is done.
+    /// Checks the export in progress; returns the message about its end once it has ended.
     pub(super) fn follow_export(&mut self) -> Option<String> {
         let outcome = self.exporting.as_mut()?.outcome()?;
         self.exporting = None;
@@ -110,14 +110,14 @@ impl Files {
         })
     }
 
-    /// How far the export under way is, in words.
+    /// The progress of the export, in words.
     pub(super) fn export_in_words(&self) -> Option<String> {
         let (step, steps) = self.exporting.as_ref()?.progress();
         let percent = 100.0 * step as f64 / steps.max(1) as f64;
         Some(format!("exporting: {percent:.0} %, Esc stops it"))
     }
 
-    /// The file that is called `name`.
+    /// The path of the file that the user calls `name`.
     pub(super) fn path_of(&self, name: &str) -> PathBuf {
         match &self.folder {
             Some(folder) if !name.is_empty() => folder.join(name),
@@ -125,7 +125,7 @@ impl Files {
         }
     }
 
-    /// Writes `content`, which is `what` in words.
+    /// Writes `content` to the file `path`; `what` names the content in the message.
     ///
     /// # Errors
     /// Where the file may not be written or exists.
@@ -143,7 +143,8 @@ impl Files {
         })
     }
 
-    /// A name for a file about the run called `name` that no file here has yet.
+    /// A free name for a file: `name` without its folder and extension, then `about`, a number if needed, and
+    /// `extension`.
     pub(super) fn free_name(&self, name: &str, about: &str, extension: &str) -> String {
         let stem = Path::new(name)
             .file_stem()
@@ -175,7 +176,7 @@ fn is_named(path: &Path) -> Result<(), Refusal> {
     }
 }
 
-/// What has been written, and how to fetch it.
+/// The message about a complete export, and how to copy the file.
 fn told(written: &Written) -> String {
     let rows = HumanCount(written.rows);
     let end = match &written.not_finite {

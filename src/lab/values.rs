@@ -1,4 +1,5 @@
-//! What can be edited: the values of the scenario as they are now, and the push to come; and which is selected.
+//! The values that the user can edit: those of the scenario, as they are at the present step, and those of the push to
+//! come. One of them is selected.
 
 use super::command::{Command, Force, PushChoice};
 use super::editor::{Editor, Line};
@@ -11,16 +12,16 @@ use nalgebra::Vector3;
 use std::time::Duration;
 use toml::Table;
 
-/// A value that was nudged longer ago is nudged anew: undo takes back what belongs together.
+/// Nudges of the same value with shorter pauses than this between them are one act: one undo takes back all of them.
 const BELONGS: Duration = Duration::from_secs(3);
 
-/// The editor's group of lines for the push to come.
+/// The heading over the values of the push to come.
 const NEXT_PUSH: &str = "next push (p)";
 
-/// The groups in the order in which the editor lists them; pushes stand after the start, points after the body.
+/// The order of the groups in the list. The scenario's pushes come after the start, its points after the body.
 const ORDER: [&str; 6] = ["motion", "start", NEXT_PUSH, "body", "view", "scenario"];
 
-/// What a line of the editor stands for.
+/// The value that a line of the list shows and that typing and nudging change.
 #[derive(Clone)]
 pub(super) enum Target {
     /// A value of the scenario.
@@ -29,21 +30,21 @@ pub(super) enum Target {
     NextPush(Field),
 }
 
-/// The list of what can be edited, the push to come, and what was nudged last.
+/// The list of values, the push to come, and the value that was nudged last.
 #[derive(Clone)]
 pub struct Values {
-    /// What each line of the list stands for.
+    /// The value of each line of the editor, in the same order.
     targets: Vec<Target>,
     editor: Editor,
     next_push: NextPush,
-    /// How many entries of the journal act on what is listed.
+    /// How many entries of the journal had acted when the list was made.
     entries_listed: usize,
-    /// The key that was nudged last, if nothing else has been done since.
+    /// The key that was nudged last, and when; `None` if something else was done since.
     last_nudged: Option<(String, Duration)>,
 }
 
 impl Values {
-    /// Nothing listed yet, and a push that suits `scenario`.
+    /// An empty list, and a first push to come that is possible in `scenario`.
     pub(super) fn new(scenario: &Scenario) -> Self {
         Self {
             targets: Vec::new(),
@@ -54,13 +55,13 @@ impl Values {
         }
     }
 
-    /// Lists what can be edited in `run`, of which `journal` tells, as it is now.
+    /// Makes the list of the values of `run`, whose journal is `journal`, at its present step.
     pub(super) fn list(&mut self, run: &LiveRun, journal: &Journal) {
         let step = run.simulation().step_number();
         self.entries_listed = journal.count_by(step);
         let scenario = run.scenario();
         let table = parameters::table_at(scenario, step);
-        // Of a push that is given later, nothing can be set here: what is done here takes its place.
+        // A push that is given at a later step cannot be edited here: an edit here would discard it.
         let pushes = journal.pushes_by(step);
         let first_added = scenario.file.push.len(); // by an edit, which stands in the table once it is made
         let is_given = |parameter: &Parameter| {
@@ -79,17 +80,17 @@ impl Values {
         self.targets = targets;
     }
 
-    /// Whether other entries of `journal` act at `step` than on what is listed.
+    /// Whether the list must be made again, as other entries of `journal` have acted at `step`.
     pub(super) fn is_outdated(&self, step: u64, journal: &Journal) -> bool {
         journal.count_by(step) != self.entries_listed
     }
 
-    /// The lines, and which of them is selected.
+    /// The lines of the list, and the selected one.
     pub fn editor(&self) -> &Editor {
         &self.editor
     }
 
-    /// The selection `rows` lines on, or back.
+    /// Moves the selection by `rows` lines.
     pub(super) fn shift(&mut self, rows: isize) {
         self.editor.shift(rows);
     }
@@ -99,12 +100,12 @@ impl Values {
         self.editor.select(NEXT_PUSH, Field::Size.label().0);
     }
 
-    /// What the selected line stands for.
+    /// The value of the selected line.
     pub(super) fn selected(&self) -> Option<&Target> {
         self.targets.get(self.editor.selected_index())
     }
 
-    /// The value at the dotted `key`, where the scenario has one.
+    /// The listed value with the dotted `key`.
     pub(super) fn parameter(&self, key: &str) -> Option<&Parameter> {
         self.targets.iter().find_map(|target| match target {
             Target::Parameter(parameter) if parameter.key == key => Some(&**parameter),
@@ -112,7 +113,7 @@ impl Values {
         })
     }
 
-    /// The value at `key` with its label and unit; the key where it is not listed.
+    /// The value of `key` with its label and unit; the key alone where it is not listed.
     pub(super) fn in_words(&self, key: &str) -> String {
         let line = self.editor.lines().iter().find(|line| line.key == key);
         let value = match line {
@@ -122,19 +123,19 @@ impl Values {
         value.trim_end().to_owned()
     }
 
-    /// Whether a nudge of `key` at `now` belongs together with the one before.
+    /// Whether a nudge of `key` at `now` joins the nudge before into one act.
     pub(super) fn is_nudged_again(&self, key: &str, now: Duration) -> bool {
         let belongs =
             |(last, at): &(String, Duration)| *last == key && now.saturating_sub(*at) < BELONGS;
         self.last_nudged.as_ref().is_some_and(belongs)
     }
 
-    /// Notes that `key` was nudged at `now`.
+    /// Records that `key` was nudged at `now`.
     pub(super) fn note_nudge(&mut self, key: &str, now: Duration) {
         self.last_nudged = Some((key.to_owned(), now));
     }
 
-    /// Notes that something else was done.
+    /// Records that something else was done: the next nudge is an act of its own.
     pub(super) fn forget_nudge(&mut self) {
         self.last_nudged = None;
     }
@@ -144,20 +145,20 @@ impl Values {
         &self.next_push
     }
 
-    /// Chooses the push to come; the list has its values once it is made again.
+    /// Sets the push to come. The list shows it after the next [`list`](Self::list).
     pub(super) fn set_next_push(&mut self, push: NextPush) {
         self.next_push = push;
     }
 
-    /// Has the push to come act on a point of `scenario`.
+    /// Makes the push to come act on a point that `scenario` has.
     pub(super) fn suit(&mut self, scenario: &Scenario) {
         self.next_push = self.next_push.clone().suited_to(scenario);
     }
 
-    /// The push to come, with what `choice` has of its own; `time_step_s` is that in force.
+    /// The push to come, with the values that `choice` has in place of its own. `time_step_s` is the time step in force, s.
     ///
     /// # Errors
-    /// Why it is no push.
+    /// Why a value is refused.
     pub(super) fn chosen(
         &self,
         choice: &PushChoice,
@@ -181,10 +182,10 @@ impl Values {
         push.checked()
     }
 
-    /// The command that gives the line that is selected the value `text`; none where it has it.
+    /// The command that gives the selected line the value `text`; `None` if it already has that value.
     ///
     /// # Errors
-    /// Why it is no value.
+    /// Why `text` is refused.
     pub(super) fn value_typed(
         &self,
         text: &str,
@@ -211,7 +212,7 @@ impl Values {
 }
 
 impl PushChoice {
-    /// The `field` of `push`.
+    /// A choice of the `field` of `push` only.
     pub(super) fn field(field: Field, push: &NextPush) -> Self {
         let mut choice = Self::default();
         match field {
@@ -255,7 +256,7 @@ impl Target {
     }
 }
 
-/// The place of a group in the list: pushes stand above the push to come, points below the body.
+/// The place of a group in the list; groups with a smaller number come first.
 fn rank(group: &str) -> usize {
     let listed = ORDER.iter().position(|known| *known == group);
     let place = |of: &str| ORDER.iter().position(|known| *known == of).unwrap_or(0);
