@@ -1,10 +1,12 @@
 //! The content of a session: the history of runs, and the place of the lab in it, each as TOML.
 
-use super::Lab;
+use super::command::{self, Command, Commands, Place};
+use super::view::{Part, View};
 use super::work::Work;
-use crate::lab::view::View;
+use super::{Lab, Script, UnderWay};
+use crate::observe::camera::Camera;
 use crate::observe::pace::Speed;
-use crate::scenario::{Problems, Scenario};
+use crate::scenario::{Document, Problems, Scenario};
 use crate::storage::confined::Confined;
 use crate::storage::session::Content;
 use crate::text::printable::Shown;
@@ -14,8 +16,9 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The version of this format, and the versions that can be read. Version 1 had other journals.
-const FORM: u32 = 2;
+/// The version of this format, and the versions that can be read. Version 1 had other journals; in version 2 the place
+/// had neither panes nor what is hidden, nor camera, line and script.
+const FORM: u32 = 3;
 const FORMS: std::ops::RangeInclusive<u32> = 1..=FORM;
 
 /// The text of the work.
@@ -42,7 +45,41 @@ struct KeptPlace {
     /// The file of the export that was in progress.
     #[serde(skip_serializing_if = "Option::is_none")]
     exporting: Option<String>,
+    /// The ids of the panes that share the screen; `None` where `[view]` of the scenario tells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    show: Option<Vec<String>>,
+    /// The ids of what is hidden; `None` where `[view]` of the scenario tells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    hide: Option<Vec<String>>,
+    /// The line about what there is to see; `None` where the scenario tells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    look_at: Option<String>,
     next_push: NextPush,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    camera: Option<KeptCamera>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    script: Option<KeptScript>,
+}
+
+/// The camera of the 3-D view, as [`Camera`] has it.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct KeptCamera {
+    yaw_deg: f64,
+    pitch_deg: f64,
+}
+
+/// The commands of the script that were not complete, as two files of commands: the one after the other.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct KeptScript {
+    /// The file from which they were read, as the user named it.
+    origin: String,
+    /// What leads back to the command under way: it is carried out again, but steps that were under way are only taken
+    /// to their end.
+    first: String,
+    /// The commands after that one.
+    left: String,
 }
 
 /// What a list of sessions shows of a session.
@@ -95,7 +132,10 @@ impl Lab {
         })
     }
 
-    fn place(&self) -> KeptPlace {
+    fn place(&mut self) -> KeptPlace {
+        let ids = |list: &mut dyn Iterator<Item = &'static str>| -> Vec<String> {
+            list.map(str::to_owned).collect()
+        };
         let speed = match self.player.playback.speed() {
             Speed::Times(speed) => Some(speed),
             Speed::Top => None,
@@ -108,8 +148,41 @@ impl Lab {
             focus: self.view.focus.id().to_owned(),
             filled: self.view.filled,
             exporting: self.files.exported_to().map(|path| Shown(path).to_string()),
+            show: Some(ids(&mut self.view.shown.iter().map(|pane| pane.id()))),
+            hide: Some(ids(&mut self.view.hidden.iter().map(|part| part.id()))),
+            look_at: self.view.look_at.clone(),
             next_push: self.values.next_push().clone(),
+            camera: Some(KeptCamera {
+                yaw_deg: self.view.camera.yaw_deg,
+                pitch_deg: self.view.camera.pitch_deg,
+            }),
+            script: self.kept_script(),
         }
+    }
+
+    /// The commands of the script that are not complete; `None` where all are.
+    fn kept_script(&mut self) -> Option<KeptScript> {
+        if self.script.is_done() {
+            return None;
+        }
+        let playback = &self.player.playback;
+        let is_playing = playback.is_running() && !playback.is_running_until();
+        let under_way = self.script.under_way();
+        let again = under_way.and_then(|(command, under_way)| match under_way {
+            UnderWay::Going => {
+                let to_go = playback.steps_to_go()?;
+                let step = playback.step_number().saturating_add(to_go);
+                Some(Command::GoTo(Place::Step(step)))
+            }
+            UnderWay::Playing | UnderWay::Waiting(_) | UnderWay::Exporting => Some(command.clone()),
+        });
+        let run = is_playing.then_some(Command::Run);
+        let first: Vec<_> = run.into_iter().chain(again).collect();
+        Some(KeptScript {
+            origin: self.script.origin().to_owned(),
+            first: command::to_toml(&first),
+            left: self.script.left_as_text().to_string(),
+        })
     }
 
     /// The lab with `content`: on its way to the step where it stood, and paused there. `view` returns how its run is
@@ -150,6 +223,19 @@ impl Lab {
             .kept_as(&place.focus)
             .ok_or_else(|| Unreadable(format!("there is no pane {}", place.focus)))?;
         view.filled = place.filled;
+        if let Some(ids) = &place.show {
+            view.shown = ids.iter().filter_map(|id| view.kept_as(id)).collect();
+        }
+        if let Some(ids) = &place.hide {
+            view.hidden = ids.iter().filter_map(|id| Part::named(id)).collect();
+        }
+        view.look_at = place.look_at;
+        if let Some(KeptCamera { yaw_deg, pitch_deg }) = place.camera
+            && yaw_deg.is_finite()
+            && (-90.0..=90.0).contains(&pitch_deg)
+        {
+            view.camera = Camera { yaw_deg, pitch_deg };
+        }
         if place.window_s.is_finite() && place.window_s >= 2.0 * scenario.motion.time_step_s {
             view.window_s = place.window_s;
         }
@@ -168,12 +254,34 @@ impl Lab {
         lab.player.playback.set_exact(place.shows_exact);
         lab.player.return_to(place.step);
         lab.scenario_has_changed();
-        lab.tell(match place.exporting {
+        let mut told = match place.exporting {
             Some(path) => {
                 format!("as it was left; the export to {path} was cut off, x begins another")
             }
             None => "as it was left; space goes on".to_owned(),
-        });
+        };
+        match place.script.map(|kept| kept.commands()) {
+            None => {}
+            Some(Ok(commands)) => {
+                let (count, origin) = (commands.list.len(), &commands.origin);
+                told = match count {
+                    1 => format!(
+                        "1 command of {origin} is left: space goes on with it, Esc leaves it out"
+                    ),
+                    _ => format!(
+                        "{count} commands of {origin} are left: space goes on with them, Esc leaves them out"
+                    ),
+                };
+                lab.script = Script::held(commands);
+            }
+            Some(Err(problems)) => {
+                told += &format!(
+                    "; the rest of its script is lost: {}",
+                    problems.in_one_line()
+                );
+            }
+        }
+        lab.tell(told);
         lab.read_now();
         Ok(lab)
     }
@@ -186,6 +294,25 @@ impl Lab {
         }
         let file = super::opening::read(name).and_then(|document| document.scenario());
         file.map_or_else(|_| Arc::clone(run.scenario()), Arc::new)
+    }
+}
+
+impl KeptScript {
+    /// The commands to be carried out.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    fn commands(&self) -> Result<Commands, Problems> {
+        let read = |text: &str| {
+            let document = Document::parse(&self.origin, text)?;
+            command::read(&document)
+        };
+        let mut commands = read(&self.first)?;
+        commands.list.extend(read(&self.left)?.list);
+        for placed in &mut commands.list {
+            placed.line = None; // the line in the user's file is not kept
+        }
+        Ok(commands)
     }
 }
 

@@ -83,8 +83,8 @@ impl Lab {
     pub fn new(name: &str, scenario: Arc<Scenario>, view: View, running: bool) -> Self {
         let mut lab = Self {
             work: Work::new(name, &scenario),
-            player: Player::new(Arc::clone(&scenario), running),
             values: Values::new(&scenario),
+            player: Player::new(scenario, running),
             files: Files::default(),
             view,
             on_top: OnTop::default(),

@@ -3,10 +3,11 @@
 
 use super::Lab;
 use super::carry_out::UnderWay;
-use super::command::{Commands, Placed};
+use super::command::{self, Command, Commands, Place, Placed};
 use crate::observe::playback::Halt;
 use indicatif::HumanCount;
 use std::collections::VecDeque;
+use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
 
@@ -23,6 +24,10 @@ pub struct Script {
     under_way: Option<(Placed, UnderWay)>,
     /// The command that was refused, and why.
     failed: Option<String>,
+    /// Whether the script comes from a session and waits until the user lets it go on.
+    is_held: bool,
+    /// `left` as a file of commands; `None` where `left` has changed since it was written.
+    kept: Option<Arc<str>>,
 }
 
 impl Script {
@@ -35,9 +40,54 @@ impl Script {
         }
     }
 
+    /// The script of `commands` from a session. It waits until the user lets it go on.
+    pub(super) fn held(commands: Commands) -> Self {
+        Self {
+            is_held: true,
+            ..Self::new(commands)
+        }
+    }
+
+    /// Whether the script comes from a session and waits until the user lets it go on.
+    pub fn is_held(&self) -> bool {
+        self.is_held
+    }
+
+    /// The file of the commands, as the user named it.
+    pub fn origin(&self) -> &str {
+        &self.origin
+    }
+
+    /// How many commands are not complete, with the one under way.
+    pub fn count(&self) -> usize {
+        self.left.len() + usize::from(self.under_way.is_some())
+    }
+
+    /// The command whose action takes time, and that action.
+    pub(super) fn under_way(&self) -> Option<(&Command, UnderWay)> {
+        let (placed, under_way) = self.under_way.as_ref()?;
+        Some((&placed.command, *under_way))
+    }
+
+    /// The commands after the one under way, as a file of commands.
+    pub(super) fn left_as_text(&mut self) -> Arc<str> {
+        let left = &self.left;
+        let written = || {
+            let left: Vec<_> = left.iter().map(|placed| placed.command.clone()).collect();
+            command::to_toml(&left).into()
+        };
+        Arc::clone(self.kept.get_or_insert_with(written))
+    }
+
+    /// Removes the next command and returns it.
+    fn next(&mut self) -> Option<Placed> {
+        self.kept = None;
+        self.left.pop_front()
+    }
+
     /// Whether all commands are carried out.
     pub fn is_done(&self) -> bool {
-        self.left.is_empty() && self.under_way.is_none()
+        self.count() == 0
     }
 
     /// Drops all commands because `placed` was refused for `reason`; returns the message.
@@ -50,14 +100,14 @@ impl Script {
         let line = placed.line.map_or(String::new(), |line| format!(":{line}"));
         let name: String = placed.command.to_table().keys().cloned().collect();
         let text = format!("{}{line}: {name}: {reason}{rest}", self.origin);
-        self.left.clear();
+        (self.left, self.kept) = (VecDeque::new(), None);
         self.failed = Some(text.clone());
         text
     }
 
     /// Drops all commands; returns how many there were, with the one under way.
     pub(super) fn drop_all(&mut self) -> usize {
-        let left = self.left.len() + usize::from(self.under_way.is_some());
+        let left = self.count();
         *self = Self::default();
         left
     }
@@ -75,6 +125,7 @@ impl Lab {
     /// # Errors
     /// Which command was refused, and why; the commands after it are not carried out.
     pub fn finish_script(&mut self) -> Result<(), String> {
+        self.release_script();
         while !self.script.is_done() {
             let halt = self.player.playback.finish();
             if let Some(halt) = halt {
@@ -93,10 +144,27 @@ impl Lab {
         self.script.failed.take().map_or(Ok(()), Err)
     }
 
+    /// Lets a script from a session go on, as soon as the run is back at the step where it was left.
+    pub(super) fn release_script(&mut self) {
+        if !std::mem::take(&mut self.script.is_held) {
+            return;
+        }
+        if let Some(to_go) = self.player.playback.steps_to_go() {
+            let step = self.player.playback.step_number().saturating_add(to_go);
+            let command = Command::GoTo(Place::Step(step));
+            let arrive = Placed {
+                command,
+                line: None,
+            };
+            self.script.under_way = Some((arrive, UnderWay::Going));
+        }
+        self.go_on_with_script(None);
+    }
+
     /// Carries out the commands of the script that need not wait any longer. `halt` tells why the run has just stopped by
     /// itself, if it has.
     pub(super) fn go_on_with_script(&mut self, halt: Option<Halt>) {
-        loop {
+        while !self.script.is_held {
             if let Some((placed, under_way)) = self.script.under_way.take() {
                 match self.is_complete(under_way, halt) {
                     Ok(true) => {}
@@ -107,7 +175,7 @@ impl Lab {
                     Err(reason) => return self.script_has_failed(&placed, &reason),
                 }
             }
-            let Some(next) = self.script.left.pop_front() else {
+            let Some(next) = self.script.next() else {
                 return;
             };
             let answer = self.carry_out(&next.command);

@@ -165,6 +165,7 @@ impl Lab {
         let times = repeated(cleared.count);
         match action {
             Action::Digit(digit) => self.on_top.add_digit(cleared.count, digit),
+            Action::TogglePause if self.script.is_held() => self.release_script(),
             Action::TogglePause => self.stop_script(),
             Action::GoTo => self.on_top.open_dialog(Dialog::go_to()),
             Action::ChoosePush => self.turn_to_next_push(),

@@ -2,15 +2,17 @@
 
 use crate::support::desk::Desk;
 use gyrolab::lab::Lab;
+use gyrolab::lab::command::{self, Command};
 use gyrolab::lab::view::View;
 use gyrolab::lab::view::markers::Marker;
 use gyrolab::lab::view::theme::{Background, Theme};
-use gyrolab::scenario::Scenario;
+use gyrolab::scenario::{Document, Scenario};
 use gyrolab::storage::session::{Content, resume};
 use gyrolab::tui::keymap::Key;
-use gyrolab::tui::panes;
+use gyrolab::tui::{panes, screen};
 use std::fs;
 use std::path::Path;
+use std::time::Duration;
 
 fn view(scenario: &Scenario) -> View {
     let theme = Theme {
@@ -32,10 +34,8 @@ fn resumed(content: &Content) -> Desk {
 /// Goes to a step and then gives `count` pushes, each one step earlier than the one before.
 fn pushed_backwards(count: usize) -> Desk {
     let mut desk = Desk::open("method-2");
-    desk.go("600");
-    for _ in 0..count {
-        desk.press(&[Key::Char('p'), Key::Char(',')]);
-    }
+    desk.commands("go_to = 600");
+    desk.commands(&"push = true\nstep = -1\n".repeat(count));
     desk
 }
 
@@ -46,14 +46,14 @@ fn any_number_of_acts_each_earlier_than_the_one_before_comes_back() {
     let mut back = resumed(&content);
     assert_eq!(back.step(), 400);
     for step in 402..=600 {
-        back.press(&[Key::Char('u')]);
+        back.commands("undo = 1");
         assert_eq!(back.step(), step - 1, "the undo of the push there");
     }
     assert_eq!(back.scenario().file.push.len(), 1);
-    back.press(&[Key::Char('u')]);
+    back.commands("undo = 1");
     assert_eq!(back.scenario().file.push.len(), 0);
-    back.press(&[Key::Char('u')]);
-    assert_eq!(back.lab.notice().as_deref(), Some("nothing to undo"));
+    let refused = back.carry_out(&Command::Undo(1)).unwrap_err();
+    assert_eq!(refused.to_string(), "nothing to undo");
 }
 
 #[test]
@@ -105,23 +105,23 @@ fn a_session_of_form_1_comes_back_with_all_that_can_be_undone() {
     ];
     for (undone, (from, edits)) in wanted.into_iter().enumerate() {
         if undone > 0 {
-            desk.press(&[Key::Char('u')]);
+            desk.commands("undo = 1");
         }
         assert_eq!(done(&desk), (from.to_vec(), edits), "{undone} undone");
     }
-    desk.press(&[Key::Char('u')]);
+    desk.commands("undo = 1");
     let start = |desk: &Desk| desk.scenario().file.start.tilt_deg;
     assert_eq!(start(&desk), Some(45.0), "the run before");
     assert_eq!(done(&desk), (vec![6.0], 0));
 
     let mut desk = back();
     assert_eq!((desk.step(), start(&desk)), (113, Some(46.0)));
-    desk.press(&[Key::Char('U')]);
+    desk.commands("redo = 1");
     assert_eq!(done(&desk), (vec![7.300000000000001], 0), "brought again");
 
     // Kept anew it is of the present form, and the same.
     let mut again = resumed(&back().lab.content());
-    again.press(&[Key::Char('u'), Key::Char('u')]);
+    again.commands("undo = 2");
     assert_eq!(done(&again), (vec![13.3], 1));
 }
 
@@ -147,4 +147,115 @@ fn the_focus_that_earlier_versions_kept_comes_back() {
     content.place = content.place.replace("\"traces\"", "\"nowhere\"");
     let refused = Lab::resumed(&content, view).err().unwrap().to_string();
     assert_eq!(refused, "there is no pane nowhere");
+}
+
+/// A lab that has begun to carry out the commands in `text`, the lines of a `[[do]]` each.
+fn with_script(preset: &str, text: &str) -> Desk {
+    let mut desk = Desk::open(preset);
+    let file: String = text
+        .lines()
+        .map(|line| format!("[[do]]\n{line}\n"))
+        .collect();
+    let document = Document::parse("demo.toml", &file).unwrap();
+    desk.lab.take_commands(command::read(&document).unwrap());
+    desk
+}
+
+fn seconds(desk: &mut Desk, seconds: u32) {
+    (0..10 * seconds).for_each(|_| desk.pass(Duration::from_millis(100)));
+}
+
+#[test]
+fn what_is_shown_and_hidden_comes_back() {
+    let mut desk = Desk::open("loops");
+    desk.commands("step = 300\nshow = ['traces', '3d']\nhide = ['health', 'predicted']");
+    desk.commands("look_at = 'the dip'\ncamera = { yaw_deg = 75, pitch_deg = -10 }");
+    for fill in ["none", "3d"] {
+        desk.commands(&format!("fill = '{fill}'"));
+        let mut back = resumed(&desk.lab.content());
+        desk.press(&[Key::Esc]); // no message hides the line
+        back.press(&[Key::Esc]);
+        desk.commands(&format!("fill = '{fill}'"));
+        back.commands(&format!("fill = '{fill}'"));
+        let picture = |desk: &mut Desk| {
+            desk.wait(100);
+            screen::text(&desk.lab, true, (120, 40))
+        };
+        assert_eq!(picture(&mut back), picture(&mut desk));
+        assert_eq!(back.lab.view().focus, desk.lab.view().focus);
+    }
+    // What the file hides, and the lab has shown again.
+    let mut document = Document::open("loops").unwrap();
+    document.set("view.hide=['traces']").unwrap();
+    let mut desk = Desk::with("loops", document.scenario().unwrap());
+    desk.commands("hide = []");
+    assert_eq!(resumed(&desk.lab.content()).lab.view().hidden, []);
+}
+
+#[test]
+fn what_is_left_of_a_script_waits_for_space_and_goes_on() {
+    let text = "speed = 20\nrun_until = 't_s >= 20'\nwait_s = 5\nstep = 7\npush = true\nstep = 3";
+    let mut desk = with_script("method-2", text);
+    (0..5).for_each(|_| desk.pass(Duration::from_millis(100)));
+    let left_at = desk.step();
+    assert!((50..150).contains(&left_at), "{left_at}");
+    let mut back = resumed(&desk.lab.content());
+    seconds(&mut back, 20);
+    assert_eq!((back.step(), back.lab.script().is_done()), (left_at, false));
+    let told = back.lab.notice().unwrap();
+    assert!(told.contains("5 commands of demo.toml are left"), "{told}");
+    // Kept again before it goes on, it is the same.
+    let mut back = resumed(&back.lab.content());
+    back.press(&[Key::Char(' ')]);
+    seconds(&mut back, 3);
+    assert_eq!(
+        back.step(),
+        200,
+        "it plays until the condition holds, and waits"
+    );
+    let mut waiting = resumed(&back.lab.content());
+    waiting.press(&[Key::Char(' ')]);
+    seconds(&mut waiting, 4);
+    assert_eq!(waiting.step(), 200, "the wait begins again");
+    for mut desk in [waiting, back] {
+        seconds(&mut desk, 5);
+        assert_eq!((desk.step(), desk.lab.script().is_done()), (210, true));
+        assert_eq!(done(&desk).0.len(), 1);
+    }
+}
+
+#[test]
+fn steps_under_way_in_a_script_come_back() {
+    let mut desk = with_script("method-2", "step = 40000\nundo = 1");
+    let content = desk.lab.content();
+    let mut back = Desk::of(Lab::resumed(&content, view).unwrap());
+    back.wait(2);
+    assert!(back.step() < 40_000, "it has not been told to go on");
+    back.press(&[Key::Char(' ')]);
+    assert_eq!(back.step(), 40_000);
+    let told = back.lab.notice().unwrap();
+    assert!(told.contains("demo.toml: undo: nothing to undo"), "{told}");
+}
+
+#[test]
+fn esc_drops_what_is_left_of_a_script() {
+    let mut desk = with_script("method-2", "wait_s = 5\nstep = 7");
+    let mut back = resumed(&desk.lab.content());
+    back.press(&[Key::Esc]);
+    assert_eq!(
+        back.lab.notice().as_deref(),
+        Some("stopped: 2 commands are left out")
+    );
+    seconds(&mut back, 10);
+    assert_eq!((back.step(), back.lab.script().is_done()), (0, true));
+    assert!(resumed(&back.lab.content()).lab.script().is_done());
+    let again = desk.lab.content();
+    let broken = Content {
+        place: again.place.replace("step = 7", "stap = 7"),
+        ..again
+    };
+    let back = Lab::resumed(&broken, view).unwrap();
+    assert!(back.script().is_done());
+    let told = back.notice().unwrap();
+    assert!(told.contains("did you mean step?"), "{told}");
 }
