@@ -1,4 +1,4 @@
-//! The list of presets and files: what there is, which of it the filter lets through, which is selected.
+//! The browser: the list of presets and files, the filter, the selected entry and its preview.
 
 use super::preview::{Loader, Preview, read};
 use crate::scenario::presets::PRESETS;
@@ -9,27 +9,27 @@ use std::sync::Arc;
 /// Files beyond this many are not listed.
 const MOST_FILES: usize = 1000;
 
-/// Characters the filter holds at most.
+/// The most characters of the filter.
 pub(super) const MOST_TYPED: usize = 100;
 
-/// What may be opened.
+/// A preset or file that can be opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// As SCENARIO on the command line: a preset's name, or a file's path.
+    /// The name of the preset or the path of the file, as SCENARIO on the command line.
     pub name: String,
     /// Whether it is a file.
     pub is_file: bool,
 }
 
-/// The browser's state.
+/// The state of the browser.
 #[derive(Debug, Default)]
 pub struct Browser {
     entries: Vec<Entry>,
-    /// What the lab has open.
+    /// The name of the entry that is open in the lab.
     open: String,
     filter: String,
     selected: usize,
-    /// The selected entry, and what it holds.
+    /// The selected entry and its preview.
     preview: Option<(Entry, Preview)>,
     loader: Loader,
 }
@@ -42,7 +42,7 @@ impl Browser {
         browser
     }
 
-    /// Lists what there is anew, as [`new`](Self::new) does, of the files only those that `may_be_read`.
+    /// Makes the list again, as [`new`](Self::new) does, with only the files for which `may_be_read` is true.
     pub fn begin(&mut self, folder: &Path, name: &str, may_be_read: impl Fn(&Path) -> bool) {
         let presets = PRESETS.iter().map(|preset| Entry {
             name: preset.name.to_owned(),
@@ -61,7 +61,7 @@ impl Browser {
         self.refilter();
     }
 
-    /// The entries the filter lets through.
+    /// The entries whose names contain the filter.
     pub fn shown(&self) -> Vec<&Entry> {
         let wanted = self.filter.to_lowercase();
         self.entries
@@ -75,7 +75,7 @@ impl Browser {
         self.entries.iter().filter(|entry| entry.is_file).count()
     }
 
-    /// The place of the selected one among them.
+    /// The number of the selected entry among those shown, from 0.
     pub fn selected(&self) -> usize {
         self.selected
     }
@@ -85,7 +85,7 @@ impl Browser {
         self.shown().get(self.selected).copied()
     }
 
-    /// What the selected entry holds, as far as that is known.
+    /// The preview of the selected entry.
     pub fn preview(&self) -> Option<&Preview> {
         self.preview.as_ref().map(|(_, preview)| preview)
     }
@@ -95,7 +95,7 @@ impl Browser {
         matches!(self.preview(), Some(Preview::Loading))
     }
 
-    /// Takes what has been found out about the selected entry since; gives whether there was anything.
+    /// Takes over the preview that has been read in the background; returns whether there was one.
     pub fn take_news(&mut self) -> bool {
         match (&mut self.preview, self.loader.news()) {
             (Some((_, preview @ Preview::Loading)), Some(news)) => {
@@ -106,24 +106,24 @@ impl Browser {
         }
     }
 
-    /// The filter as it is typed.
+    /// The filter.
     pub fn filter(&self) -> &str {
         &self.filter
     }
 
-    /// Moves the selection by `rows`, no further than the ends.
+    /// Moves the selection by `rows`; it stops at both ends.
     pub fn shift(&mut self, rows: isize) {
         let last = self.shown().len().saturating_sub(1);
         self.selected = self.selected.saturating_add_signed(rows).min(last);
         self.load_preview();
     }
 
-    /// Adds a character to the filter, if it has room.
+    /// Adds a character to the filter if it has fewer than 100.
     pub fn type_char(&mut self, typed: char) {
         self.paste(typed.encode_utf8(&mut [0; 4]));
     }
 
-    /// Adds `text` to the filter, as far as it has room; gives whether it had.
+    /// Adds `text` to the filter, up to 100 characters; returns whether all of it had room.
     pub fn paste(&mut self, text: &str) -> bool {
         let typed = text.chars().filter(|&c| !is_steering(c));
         let room = MOST_TYPED.saturating_sub(self.filter.chars().count());
@@ -133,19 +133,19 @@ impl Browser {
         !is_cut
     }
 
-    /// Takes the filter's last character away.
+    /// Removes the last character of the filter.
     pub fn erase(&mut self) {
         self.filter.pop();
         self.refilter();
     }
 
-    /// Lets everything through again.
+    /// Removes the filter: all entries are shown.
     pub fn clear_filter(&mut self) {
         self.filter.clear();
         self.refilter();
     }
 
-    /// Selects the first that the filter lets through; without a filter what is open.
+    /// Selects the first entry that is shown; without a filter, the one that is open.
     fn refilter(&mut self) {
         let open = match self.filter.is_empty() {
             true => self
@@ -173,7 +173,7 @@ impl Browser {
     }
 }
 
-/// What SCENARIO would name the files in `folder` that may hold a scenario, in the order of their names.
+/// The files in `folder` that may hold a scenario, as SCENARIO names them, in the order of their names.
 fn files(folder: &Path) -> Vec<String> {
     let Ok(entries) = std::fs::read_dir(folder) else {
         return Vec::new(); // a folder that cannot be read has nothing to offer

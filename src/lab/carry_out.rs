@@ -35,7 +35,7 @@ pub enum UnderWay {
     Exporting,
 }
 
-/// Why a command was refused. It has then changed nothing.
+/// Why a command was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     /// The file exists and may not be replaced.
@@ -90,7 +90,8 @@ impl Lab {
     /// Carries `command` out. An action that takes time is only started: [`advance`](Self::advance) continues it.
     ///
     /// # Errors
-    /// Why the command was refused; nothing has changed then.
+    /// Why the command was refused. It has then changed nothing; but `undo` and `redo` of more acts than there are have
+    /// undone or redone all.
     pub fn carry_out(&mut self, command: &Command) -> Answer {
         if !matches!(command, Command::Nudge { .. }) {
             self.values.forget_nudge();

@@ -1,4 +1,4 @@
-//! A small dialog of a few fields to type into.
+//! A form: a few fields to type into.
 
 use crate::text::printable::is_steering;
 use tui_input::{Input, InputRequest};
@@ -6,31 +6,31 @@ use tui_input::{Input, InputRequest};
 /// Characters a field holds at most.
 const MOST_TYPED: usize = 1000;
 
-/// One line to type into. The cursor goes by characters as they are seen, of whatever code points they consist.
+/// One line to type into. The cursor moves by visible characters, each of which may consist of several code points.
 #[derive(Clone, Debug, Default)]
 pub struct Field {
-    /// What is asked for.
+    /// Its label.
     pub label: String,
-    /// What is typed so far, and where the cursor is in it.
+    /// The text and the cursor.
     input: Input,
-    /// Whether the whole text is marked, as it was put there: what is typed takes its place.
+    /// Whether the whole text is marked: typing then replaces it.
     is_marked: bool,
 }
 
-/// A few fields, and what there is to say about them.
+/// A few fields, with a title above and lines of text below.
 #[derive(Clone, Debug, Default)]
 pub struct Form {
-    /// What it is about.
+    /// Its title.
     pub title: String,
-    /// Its fields, from above.
+    /// Its fields, from top to bottom.
     pub fields: Vec<Field>,
     /// The number of the field that is typed into.
     pub selected: usize,
-    /// What is known about what is typed.
+    /// The lines below the fields.
     pub info: Vec<String>,
-    /// Why it was refused; typing takes it away.
+    /// Why the form was refused; typing removes it.
     pub complaint: Option<String>,
-    /// The keys that end it.
+    /// The line about the keys that end it.
     pub keys: &'static str,
 }
 
@@ -44,7 +44,7 @@ impl Field {
         }
     }
 
-    /// What is typed so far.
+    /// Its text.
     pub fn text(&self) -> &str {
         self.input.value()
     }
@@ -54,7 +54,7 @@ impl Field {
         self.input.cursor()
     }
 
-    /// Whether the whole text is marked: what is typed takes its place.
+    /// Whether the whole text is marked: typing then replaces it.
     pub fn is_marked(&self) -> bool {
         self.is_marked
     }
@@ -69,7 +69,7 @@ impl Field {
         }
     }
 
-    /// Takes the text away if it is marked; gives whether it did.
+    /// Removes the text if it is marked; returns whether it did.
     fn take_marked(&mut self) -> bool {
         let was_marked = std::mem::take(&mut self.is_marked);
         if was_marked {
@@ -80,7 +80,7 @@ impl Field {
 }
 
 impl Form {
-    /// An empty form of `title` with `fields`, the first of them selected; `keys` says how it ends.
+    /// A form with `title` and `fields`, the first of them selected; `keys` is the line about the keys that end it.
     pub fn new(title: &str, fields: Vec<Field>, keys: &'static str) -> Self {
         Self {
             title: title.to_owned(),
@@ -90,18 +90,18 @@ impl Form {
         }
     }
 
-    /// What stands in the `index`th field; nothing where there is none.
+    /// The text of the field `index`, from 0; empty if there is no such field.
     pub fn text(&self, index: usize) -> &str {
         self.fields.get(index).map_or("", Field::text)
     }
 
-    /// Puts `typed` before the cursor; characters that would steer a terminal are refused.
+    /// Inserts `typed` before the cursor. Characters that would control a terminal are refused.
     pub fn type_char(&mut self, typed: char) {
         self.edit(|field| field.type_char(typed));
     }
 
-    /// Puts the pasted `text` before the cursor, as if it had been typed, as far as the field has room; says so where
-    /// it has not.
+    /// Inserts the pasted `text` before the cursor as if it had been typed. If the field is too short for it, the end is
+    /// cut and the form says so.
     pub fn paste(&mut self, text: &str) {
         let mut typed = text.chars().filter(|&c| !is_steering(c)).peekable();
         self.edit(|field| {
@@ -119,22 +119,22 @@ impl Form {
         }
     }
 
-    /// Takes the character before the cursor away, or what is marked.
+    /// Removes the character before the cursor, or the marked text.
     pub fn erase(&mut self) {
         self.take(InputRequest::DeletePrevChar);
     }
 
-    /// Takes the character at the cursor away, or what is marked.
+    /// Removes the character at the cursor, or the marked text.
     pub fn delete(&mut self) {
         self.take(InputRequest::DeleteNextChar);
     }
 
-    /// Takes the whole of the field away.
+    /// Removes the whole text of the field.
     pub fn clear(&mut self) {
         self.take(InputRequest::DeleteLine);
     }
 
-    /// Marks the whole of the field: what is typed takes its place.
+    /// Marks the whole text of the field: typing then replaces it.
     pub fn mark(&mut self) {
         self.end();
         if let Some(field) = self.fields.get_mut(self.selected) {
@@ -142,32 +142,32 @@ impl Form {
         }
     }
 
-    /// The cursor one character to the left.
+    /// Moves the cursor one character to the left.
     pub fn left(&mut self) {
         self.move_cursor(InputRequest::GoToPrevChar);
     }
 
-    /// The cursor one character to the right.
+    /// Moves the cursor one character to the right.
     pub fn right(&mut self) {
         self.move_cursor(InputRequest::GoToNextChar);
     }
 
-    /// The cursor to the beginning.
+    /// Moves the cursor to the beginning.
     pub fn home(&mut self) {
         self.move_cursor(InputRequest::GoToStart);
     }
 
-    /// The cursor to the end.
+    /// Moves the cursor to the end.
     pub fn end(&mut self) {
         self.move_cursor(InputRequest::GoToEnd);
     }
 
-    /// The field below; after the last the first.
+    /// Selects the field below; after the last, the first.
     pub fn next_field(&mut self) {
         self.select(1);
     }
 
-    /// The field above; before the first the last.
+    /// Selects the field above; before the first, the last.
     pub fn previous_field(&mut self) {
         self.select(self.fields.len().saturating_sub(1));
     }

@@ -1,4 +1,4 @@
-//! The numbers of a run by name, for conditions: the columns of the CSV, the readouts, and the scenario's keys.
+//! The numbers of a run that a condition can name: the columns of the CSV, the readouts, and keys of the scenario.
 
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{self, Readout};
@@ -16,31 +16,31 @@ use toml::Value;
 pub enum Named<'a> {
     /// A column of the CSV.
     Column(&'static Column),
-    /// A readout that is none.
+    /// A readout that is no column of the CSV.
     Readout(&'static Readout),
     /// A key of the scenario that holds a number.
     Key(&'a str),
 }
 
-/// Where a number of one run comes from.
+/// The source of a number in one run.
 #[derive(Clone, Copy, Debug)]
 pub enum Source {
-    /// The present row of the CSV has it.
+    /// The CSV row of the present step.
     Column(&'static Column),
-    /// It is read off the run.
+    /// A readout of the run.
     Readout(&'static Readout),
     /// Gravity in force, m/s².
     Gravity,
     /// The time step in force, s.
     TimeStep,
-    /// A value of the scenario, where it has one.
+    /// A value of the scenario, which does not change; `None` if the scenario has none.
     Fixed(Option<f64>),
 }
 
-/// What is called `name`.
+/// The number called `name`.
 ///
 /// # Errors
-/// Why that is no number, with the nearest that is.
+/// Why `name` is no number, with the nearest name of one.
 pub fn find(name: &str) -> Result<Named<'_>, String> {
     if let Some(column) = Column::find(name) {
         return Ok(Named::Column(column));
@@ -72,7 +72,7 @@ fn holds_number(kind: Kind) -> bool {
     matches!(kind, Kind::Number(_) | Kind::Whole(..))
 }
 
-/// For a refusal of `wrong`: the nearest name, or the names there are.
+/// Completes the refusal of `wrong`: the nearest name, or all names.
 fn nearest_to(wrong: &str) -> String {
     let near = readouts::nearest(wrong);
     if near.contains(" or ") {
@@ -90,7 +90,7 @@ fn nearest_to(wrong: &str) -> String {
 }
 
 impl Named<'_> {
-    /// Where it comes from in `run`.
+    /// Its source in `run`.
     pub fn of(self, run: &LiveRun) -> Source {
         match self {
             Self::Column(column) => Source::Column(column),
@@ -110,16 +110,16 @@ fn number(value: &Value) -> Option<f64> {
     value.as_float().or_else(whole)
 }
 
-/// The numbers of a run as it goes on, of each step only those that are asked for.
+/// The numbers of a run at one step after the other. At each step only the numbers that are asked for are computed.
 #[derive(Debug, Default)]
 pub struct Numbers {
-    /// The readouts, some of them as they were at an earlier step.
+    /// The readouts; those not in `read` are of an earlier step.
     readouts: Option<Readouts>,
-    /// What of them has been read at the present step.
+    /// Which of the readouts have been computed at the present step.
     read: Vec<readouts::Source>,
 }
 
-/// The numbers of a run where it stands.
+/// The numbers of a run at its present step.
 pub struct Now<'a> {
     run: &'a mut LiveRun,
     numbers: &'a mut Numbers,
@@ -127,7 +127,7 @@ pub struct Now<'a> {
 }
 
 impl Numbers {
-    /// Those of `run` where it stands.
+    /// The numbers of `run` at its present step.
     pub fn at<'a>(&'a mut self, run: &'a mut LiveRun) -> Now<'a> {
         self.read.clear();
         Now {
@@ -139,7 +139,7 @@ impl Numbers {
 }
 
 impl Now<'_> {
-    /// The number from `source`; `None` where there is none now.
+    /// The number of `source`; `None` if there is none at this step.
     pub fn value(&mut self, source: &Source) -> Option<f64> {
         match source {
             Source::Column(column) => {

@@ -1,4 +1,4 @@
-//! The run on the screen: played at its pace, read off a few times a second, with its ghost and what would mend it.
+//! The player: the run on the screen with its speed, the reading of its numbers, its ghost, and the advice about it.
 
 use super::carry_out::{Answer, Done, UnderWay};
 use super::command::Place;
@@ -18,24 +18,24 @@ use indicatif::HumanCount;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Part of the traces' time that may pass between two readings.
+/// The share of the traces' window that may pass between two readings; a faster run is read for every frame.
 const FAST: f64 = 0.1;
-/// A step that takes longer than this is announced, s.
+/// If a step takes longer than this at the chosen speed, s, a message says so.
 const LONG_STEP_S: f64 = 3.0;
-/// A run that has come less than this part as far as its ghost is no ghost itself: a value was nudged once more.
+/// A run that is shorter than this share of its ghost does not replace the ghost: a value was only nudged once more.
 const SHORT: f64 = 0.1;
 
-/// A run that is played, and what is known of it.
+/// The run, its ghost, its latest reading and the advice about it.
 pub struct Player {
     pub(super) playback: Playback,
     /// The run before, where an edit has begun this one anew.
     ghost: Option<Ghost>,
-    /// Whether to look for what would mend a run.
+    /// Whether to look for a scheme or time step that would make doubtful numbers right.
     pub(super) is_advised: bool,
     advisor: Option<Advisor>,
     reading: Reading,
     read_at: Duration,
-    /// The step to which a run or a session that was come back to is on its way.
+    /// The step to which the run is on its way after an undo or after a session was resumed.
     returning_to: Option<u64>,
 }
 
@@ -56,7 +56,7 @@ impl Player {
         }
     }
 
-    /// Plays the run of `scenario` instead, which is none of the present scenario's; it stands still at step 0.
+    /// Changes to the run of `scenario`, which was opened under another name. It is paused at step 0.
     pub(super) fn open(&mut self, scenario: Arc<Scenario>) {
         let shows_exact = self.run().overlay().is_some();
         let exact = begins_with_exact(&scenario).unwrap_or(shows_exact);
@@ -65,7 +65,7 @@ impl Player {
         self.playback.set_exact(exact);
     }
 
-    /// Begins the run of `scenario`, which differs from the present one by an edit: that one stays as a ghost.
+    /// Begins the run of `scenario`, which differs from the present one by an edit. The present run stays as a ghost.
     pub(super) fn begin(&mut self, scenario: Arc<Scenario>) {
         let left = Ghost::of(self.run());
         let is_short = |before: &Ghost| left.end_s() < SHORT * before.end_s();
@@ -75,20 +75,20 @@ impl Player {
         self.playback.begin(scenario);
     }
 
-    /// As [`begin`](Self::begin), where an edit is taken back or brought again: the present run stays as a ghost, if it
-    /// was played, and no other.
+    /// As [`begin`](Self::begin), after an undo or redo: the present run stays as a ghost if it was played; an earlier
+    /// ghost does not stay.
     pub(super) fn go_over_to(&mut self, scenario: Arc<Scenario>) {
         self.ghost = None;
         self.begin(scenario);
     }
 
-    /// Comes back to `step`, where the run was left.
+    /// Goes to `step`, at which the run was left.
     pub(super) fn return_to(&mut self, step: u64) {
         self.playback.go_to(step);
         self.returning_to = Some(step);
     }
 
-    /// Where it stands, or is on its way back to.
+    /// The present step, or the step to which the run is on its way back.
     pub(super) fn step_to_keep(&self) -> u64 {
         let to_go = self.playback.steps_to_go();
         let bound_for = to_go.map(|to_go| self.playback.step_number().saturating_add(to_go));
@@ -97,13 +97,13 @@ impl Player {
         destination.unwrap_or(self.playback.step_number())
     }
 
-    /// What was known of the scenario before no longer holds.
+    /// Forgets the advice: the scenario has changed.
     pub(super) fn forget_advice(&mut self) {
         self.advisor = None;
     }
 
-    /// Lets `wall` pass up to `now`, as `clock` tells it: steps, follows the exact motion. Gives why the run stopped by
-    /// itself, if it did, and whether there is something new to be seen.
+    /// Advances the run and the exact motion by `wall`, the time up to `now`; `clock` returns the present time. Returns why
+    /// the run stopped by itself, if it did, and whether the picture has changed.
     pub(super) fn advance(
         &mut self,
         now: Duration,
@@ -121,19 +121,19 @@ impl Player {
         (halt, is_new)
     }
 
-    /// Whether the numbers are to be read at `now`, where the traces show `window_s`.
+    /// Whether the numbers must be read again at `now`, if the traces show `window_s`.
     pub(super) fn is_due(&self, now: Duration, window_s: f64) -> bool {
         self.is_fast(window_s) || now >= self.read_at + reading::EVERY
     }
 
-    /// Whether the pictures run away from numbers that are read off a few times a second.
+    /// Whether the run is so fast that its pictures would differ from numbers that are read a few times a second.
     fn is_fast(&self, window_s: f64) -> bool {
         let passes_s = reading::EVERY.as_secs_f64();
         self.playback.is_flat_out()
             || matches!(self.playback.speed(), Speed::Times(speed) if speed * passes_s > FAST * window_s)
     }
 
-    /// Reads the numbers, and asks what would mend a run that is not to be believed.
+    /// Reads the numbers, and begins to look for advice if they are doubtful.
     pub(super) fn read(&mut self, now: Duration) {
         self.reading = self.playback.read();
         self.read_at = now;
@@ -171,7 +171,7 @@ impl Player {
     /// The step at `time_s`.
     ///
     /// # Errors
-    /// Where no run has been yet.
+    /// If the time is negative or not finite.
     pub(super) fn step_at(&self, time_s: f64) -> Result<u64, String> {
         match time_s >= 0.0 && time_s.is_finite() {
             true => Ok(Simulation::step_at(self.run().scenario(), time_s)),
@@ -277,7 +277,7 @@ impl Player {
         &self.reading
     }
 
-    /// What would mend the run, where that is known.
+    /// The scheme or time step that would make doubtful numbers right, if one has been found.
     pub fn advice(&self) -> Option<&Advice> {
         self.advisor.as_ref()?.advice()
     }
@@ -288,14 +288,14 @@ impl Player {
         in_force(simulation.scenario(), simulation.step_number()).0
     }
 
-    /// What is under way, in words.
+    /// The message while steps are taken.
     pub(super) fn in_words(&self) -> Option<String> {
         let left = self.playback.steps_to_go()?;
         Some(format!("stepping: {} to go, Esc stops", HumanCount(left)))
     }
 }
 
-/// What is to be said of a run that has stopped by itself, if anything.
+/// The message about a run that has stopped by itself, if it needs one.
 pub(super) fn halt_in_words(halt: Halt) -> Option<String> {
     match halt {
         Halt::StepsTaken | Halt::Fulfilled => None,

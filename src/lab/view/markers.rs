@@ -1,4 +1,4 @@
-//! Which kinds of dots there are to choose from. How each is drawn is the terminal's affair.
+//! The kinds of dots. `tui` draws them.
 
 /// A kind of dots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

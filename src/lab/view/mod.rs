@@ -1,6 +1,5 @@
-//! How the user looks at a run: which pane has the focus, how much time the traces show, and which dots and colours
-//! are chosen. All of it is plain values: the terminal gives them their places and their looks. A run's numbers never
-//! depend on them.
+//! How a run is shown: which panes, which of them has the focus, how much time the traces show, and which dots and
+//! colours. `tui` draws accordingly. No number of a run depends on it.
 //!
 //! [`markers`] lists the kinds of dots, [`theme`] the choice of colours.
 
@@ -15,20 +14,20 @@ use crate::scenario::{Scenario, keys};
 use markers::Marker;
 use theme::{Background, Theme};
 
-/// A sweep that takes longer than this to be drawn, s, is no picture of the run.
+/// The longest time that one sweep of the traces may take at first, seconds of wall time.
 const LONGEST_SWEEP_S: f64 = 120.0;
 /// Degrees by which one press of an arrow turns the camera.
 const TURN_DEG: f64 = 10.0;
 
-/// A pane, named by its id: the same word in commands, in `[view]` and in sessions. The terminal has the table of all
-/// panes; those named here are the ones that the lab itself turns to or moves something in.
+/// A pane, by its id: the word for it in commands, in `[view]` and in sessions. `tui` has the table of all panes. The
+/// constants here are the panes that the lab itself needs to know.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pane(&'static str);
 
-/// What earlier versions called panes in the sessions they kept, and the present ids.
+/// Ids of panes in sessions of earlier versions, and the present ids.
 const EARLIER_IDS: [(&str, &str); 2] = [("from-above", "above"), ("three-d", "3d")];
 
-/// What can be hidden of the screen.
+/// A part of the screen that can be hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// A pane.
@@ -103,11 +102,11 @@ pub struct View {
     pub window_s: f64,
     /// Where the 3-D view is looked at from.
     pub camera: Camera,
-    /// The panes that share the screen; none: as many as there is room for.
+    /// The panes that share the screen; if empty, as many as there is room for.
     pub shown: Vec<Pane>,
-    /// What is not shown.
+    /// The hidden parts.
     pub hidden: Vec<Part>,
-    /// What there is to see, where it was told apart from the scenario.
+    /// The line about what there is to see, if a command has set it; otherwise the scenario's line is shown.
     pub look_at: Option<String>,
     /// The panes that stand side by side on the screen, as it is now, while none fills it: from left to right, in the
     /// order in which the focus goes through them. Until the screen is known, all panes.
@@ -115,7 +114,7 @@ pub struct View {
 }
 
 impl View {
-    /// What a lab starts with that has these `panes`: the first has the focus, and the traces show the run of `scenario`.
+    /// The view with which a lab of these `panes` starts: the first has the focus, and the traces show the run of `scenario`.
     pub fn new(scenario: &Scenario, marker: Marker, theme: Theme, panes: &'static [Pane]) -> Self {
         let mut view = Self {
             panes,
@@ -134,7 +133,7 @@ impl View {
         view
     }
 
-    /// For another scenario: the traces show its run, and the screen begins as its `[view]` says.
+    /// Changes to another scenario: the traces show its run, and the rest is as its `[view]` says.
     pub fn fit(&mut self, scenario: &Scenario) {
         let file = scenario.file.view.clone().unwrap_or_default();
         self.window_s = file.window_s.unwrap_or_else(|| first_window_s(scenario));
@@ -175,20 +174,20 @@ impl View {
         panes.filter(|pane| self.may_show(*pane)).collect()
     }
 
-    /// The pane of this id, as sessions name it: those that earlier versions kept are known too.
+    /// The pane with this id in a session; ids of earlier versions are known too.
     pub fn kept_as(&self, id: &str) -> Option<Pane> {
         let earlier = EARLIER_IDS.iter().find(|(earlier, _)| *earlier == id);
         let id = earlier.map_or(id, |(_, present)| present);
         self.panes.iter().copied().find(|pane| pane.id() == id)
     }
 
-    /// `pane` fills the screen, or none does.
+    /// Fills the screen with `pane` and moves the focus there; with `None` shows all panes again.
     pub fn fill(&mut self, pane: Option<Pane>) {
         self.filled = pane.is_some();
         self.focus = pane.unwrap_or(self.focus);
     }
 
-    /// The time on the traces, s, when they show twice as much (`wider`), or half; `None` where less than two steps of
+    /// Twice the time that the traces show (`wider`), or half of it, s; `None` if less than two time steps of
     /// `time_step_s` (s) would remain.
     pub fn zoomed(&self, wider: bool, time_step_s: f64) -> Option<f64> {
         let window_s = if wider {
@@ -259,7 +258,7 @@ impl View {
         };
     }
 
-    /// Turns the camera once for an arrow key, `times` times: 10 degrees each.
+    /// The camera after an arrow key was pressed `times` times; each press turns it by 10 degrees.
     pub(super) fn turned(&self, direction: Direction, times: i32) -> Camera {
         let degrees = f64::from(times) * TURN_DEG;
         let (yaw_deg, pitch_deg) = match direction {
@@ -301,7 +300,7 @@ impl View {
     }
 }
 
-/// The time the traces show at first, s: the whole run, or as much of it as is played in a while.
+/// The time that the traces show at first, s: the whole run, or what of it is played in two minutes.
 fn first_window_s(scenario: &Scenario) -> f64 {
     let speed = scenario
         .file
@@ -313,4 +312,59 @@ fn first_window_s(scenario: &Scenario) -> f64 {
     whole
         .min(LONGEST_SWEEP_S * speed)
         .max(2.0 * scenario.motion.time_step_s)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Document;
+
+    static ALL: [Pane; 4] = [
+        Pane::TRACES,
+        Pane::FROM_ABOVE,
+        Pane::THREE_D,
+        Pane::PARAMETERS,
+    ];
+
+    fn view() -> View {
+        let scenario = Document::open("method-2").unwrap().scenario().unwrap();
+        let theme = Theme {
+            colour: false,
+            background: Background::Dark,
+        };
+        View::new(&scenario, Marker::Braille, theme, &ALL)
+    }
+
+    #[test]
+    fn the_focus_goes_through_the_panes_on_the_screen_and_no_others() {
+        let mut view = view();
+        view.side_by_side = vec![Pane::TRACES, Pane::FROM_ABOVE, Pane::PARAMETERS];
+        let mut seen = Vec::new();
+        for _ in 0..4 {
+            seen.push(view.focus.id());
+            view.shift_focus(true);
+        }
+        assert_eq!(seen, ["traces", "above", "parameters", "traces"]);
+        view.hidden = vec![Part::Pane(Pane::FROM_ABOVE)];
+        view.keep_focus();
+        assert_eq!(view.focus, Pane::TRACES, "the one in focus is hidden");
+        view.shift_focus(false);
+        assert_eq!(view.focus, Pane::PARAMETERS);
+        // On a screen for one or two panes the focus reaches all of them.
+        view.side_by_side = vec![Pane::TRACES];
+        view.shift_focus(false);
+        assert_eq!(view.focus, Pane::THREE_D);
+    }
+
+    #[test]
+    fn a_pane_that_is_not_on_the_screen_fills_it_when_it_gets_the_focus() {
+        let mut view = view();
+        view.side_by_side = vec![Pane::TRACES, Pane::FROM_ABOVE, Pane::PARAMETERS];
+        view.turn_to(Pane::PARAMETERS);
+        assert!(!view.filled);
+        view.turn_to(Pane::THREE_D);
+        assert!(view.is_filled_by(Pane::THREE_D));
+        view.toggle_three_d();
+        assert_eq!((view.focus, view.filled), (Pane::TRACES, false));
+    }
 }

@@ -1,6 +1,6 @@
-//! Which colours the user has chosen. What each of them colours is the terminal's affair.
+//! The user's choice of colours. `tui` has the colours themselves.
 
-/// What lies behind the text.
+/// The kind of screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Background {
     /// Light text on a dark screen.
