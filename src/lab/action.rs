@@ -53,6 +53,18 @@ pub enum Action {
     MoveFar(Direction),
     /// Doubles the time that the traces show.
     WiderWindow,
+    /// Moves the cursor on the traces by one step to the left or right.
+    StepCursor(Direction),
+    /// Moves it to the next turn of the tilt on that side.
+    ToTurn(Direction),
+    /// Goes to the step at the cursor.
+    GoToCursor,
+    /// The traces show earlier or later times.
+    Pan(Direction),
+    /// The values of the traces are magnified twice as much, or half.
+    Magnify(bool),
+    /// The traces show the run as at first.
+    WholeView,
     /// Halves the time that the traces show.
     NarrowerWindow,
     /// Changes to the next kind of dots.

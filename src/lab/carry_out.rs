@@ -159,6 +159,10 @@ impl Lab {
                 self.view.look_at = Some(text.clone());
                 Ok(Done::SILENT)
             }
+            Command::Detail(detail_s) => self.set_detail(*detail_s),
+            Command::Since(since_s) => self.set_since(*since_s),
+            Command::Magnify(times) => self.magnify(*times),
+            Command::Cursor(to) => self.set_cursor(*to),
             Command::Window(window_s) => self.set_window(*window_s),
             Command::Exact(shown) => Ok(self.player.set_exact(*shown)),
             Command::Show(panes) => {
@@ -262,15 +266,6 @@ impl Lab {
         );
         let made_way = self.act_all(vec![Act::Push(given)], false)?;
         Ok(Done::saying(made_way.unwrap_or(said)))
-    }
-
-    fn set_window(&mut self, window_s: f64) -> Answer {
-        let least_s = 2.0 * self.player.run().simulation().motion().time_step_s;
-        if window_s < least_s {
-            return Err(format!("the traces show two time steps at least: {least_s} s").into());
-        }
-        self.view.window_s = window_s;
-        Ok(Done::saying(format!("the traces show {window_s} s")))
     }
 
     /// The scenario of the run from step 0 to `to_step`, or to the present step; `to` says what it is for.

@@ -21,6 +21,13 @@ use std::num::NonZeroU64;
 use std::path::Path;
 use toml::{Table, Value};
 
+/// The most that values are magnified.
+pub const MOST_MAGNIFIED: f64 = 1e6;
+/// What stands for the absence of a choice, and for turns of the tilt, in files.
+const NONE: &str = "none";
+const NEXT_TURN: &str = "next turn";
+const TURN_BEFORE: &str = "turn before";
+
 /// Something a user can do to the lab.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
@@ -83,6 +90,14 @@ pub enum Command {
     LookAt(String),
     /// Length of time that the traces show, s.
     Window(f64),
+    /// Length of time that the strip of the fast motion shows, s.
+    Detail(f64),
+    /// Time at the left edge of the traces, s; `None`: they follow the run.
+    Since(Option<f64>),
+    /// How many times the values of the traces are magnified.
+    Magnify(f64),
+    /// The step at which the traces are read off.
+    Cursor(CursorTo),
     /// Whether the exact motion is drawn beside the run.
     Exact(bool),
     /// The panes that share the screen; none: as many as there is room for.
@@ -129,6 +144,19 @@ pub enum Place {
     Start,
     /// The last of the scenario.
     End,
+}
+
+/// Where the cursor on the traces is moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CursorTo {
+    /// To a step or a time that the run has reached.
+    Place(Place),
+    /// To the next step at which the tilt turns up or down.
+    NextTurn,
+    /// To the last such step before it.
+    TurnBefore,
+    /// Off the traces.
+    Nowhere,
 }
 
 /// A command of a file, and its line there.

@@ -28,6 +28,7 @@ mod player;
 pub mod preview;
 mod script;
 mod steering;
+mod traces;
 mod travel;
 mod values;
 pub mod view;
@@ -191,7 +192,7 @@ impl Lab {
 
     /// Reads the numbers of the run, and lists its values again if others are in force.
     fn read_now(&mut self) {
-        self.player.read(self.now);
+        self.player.read(self.now, &self.view);
         self.changed = true;
         let step = self.player.playback.step_number();
         if self.values.is_outdated(step, self.work.journal()) {

@@ -4,13 +4,16 @@ use super::carry_out::{Answer, Done, UnderWay};
 use super::command::Place;
 use super::numbers::{self, Numbers};
 use crate::analysis::health::Advice;
+use crate::lab::view::View;
 use crate::observe::advisor::Advisor;
+use crate::observe::detail::{Detail, Wanted};
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
+use crate::observe::lookup;
 use crate::observe::pace::Speed;
 use crate::observe::playback::{Halt, Playback};
 use crate::observe::reading::{self, Reading};
-use crate::run::Simulation;
+use crate::run::{Clock, Sample, Simulation};
 use crate::scenario::{Motion, Scenario};
 use crate::work::expression::Expression;
 use crate::work::restart::{in_force, scenario_from};
@@ -25,6 +28,11 @@ const LONG_STEP_S: f64 = 3.0;
 /// A run that is shorter than this share of its ghost does not replace the ghost: a value was only nudged once more.
 const SHORT: f64 = 0.1;
 
+/// A window of the fast motion that passes in less than this, s, stands still meanwhile.
+const PASSES_S: f64 = 8.0;
+/// How long it stands still.
+const HOLD: Duration = Duration::from_secs(1);
+
 /// The run, its ghost, its latest reading and the advice about it.
 pub struct Player {
     pub(super) playback: Playback,
@@ -35,6 +43,10 @@ pub struct Player {
     advisor: Option<Advisor>,
     reading: Reading,
     read_at: Duration,
+    detail: Detail,
+    detail_at: Duration,
+    /// The numbers at the cursor, and the scenario of their run.
+    at_cursor: Option<(Arc<Scenario>, Sample)>,
     /// The step to which the run is on its way after an undo or after a session was resumed.
     returning_to: Option<u64>,
 }
@@ -45,8 +57,13 @@ impl Player {
         let exact = begins_with_exact(&scenario).unwrap_or(false);
         let mut playback = Playback::new(scenario, running);
         playback.set_exact(exact);
+        let reading = playback.read();
+        let following = Wanted::following(Clock::end_s(playback.run().scenario()));
         Self {
-            reading: playback.read(),
+            detail: Detail::new(playback.run(), &reading.readouts, &following, None),
+            detail_at: Duration::ZERO,
+            at_cursor: None,
+            reading,
             playback,
             ghost: None,
             is_advised: false,
@@ -134,15 +151,64 @@ impl Player {
     }
 
     /// Reads the numbers, and begins to look for advice if they are doubtful.
-    pub(super) fn read(&mut self, now: Duration) {
+    pub(super) fn read(&mut self, now: Duration, view: &View) {
         self.reading = self.playback.read();
         self.read_at = now;
+        self.read_off(view.cursor);
+        self.choose_detail(now, view);
         if self.is_advised
             && self.advisor.is_none()
             && self.reading.readouts.health.is_believed() == Some(false)
         {
             self.advisor = Some(Advisor::ask(Arc::clone(self.run().scenario())));
         }
+    }
+
+    /// Looks up the numbers at the cursor, unless they are known.
+    fn read_off(&mut self, cursor: Option<u64>) {
+        let run = self.playback.run();
+        let is_known = |(of, sample): &(Arc<Scenario>, Sample)| {
+            Some(sample.step) == cursor && Arc::ptr_eq(of, run.scenario())
+        };
+        if self.at_cursor.as_ref().is_some_and(is_known) {
+            return;
+        }
+        let found = cursor.and_then(|step| lookup::sample(run, step).ok());
+        self.at_cursor = found.map(|sample| (Arc::clone(run.scenario()), sample));
+    }
+
+    /// The numbers at the cursor on the traces.
+    pub fn cursor(&self) -> Option<&Sample> {
+        self.at_cursor.as_ref().map(|(_, sample)| sample)
+    }
+
+    /// Chooses the time that the strip of the fast motion shows. While that would pass too fast to be seen, it is chosen
+    /// once in a while only.
+    fn choose_detail(&mut self, now: Duration, view: &View) {
+        let is_held = match self.playback.speed() {
+            _ if !self.playback.is_running() => false,
+            Speed::Top => true,
+            Speed::Times(speed) => speed * PASSES_S > self.detail.window_s,
+        };
+        let is_held = is_held && self.cursor().is_none();
+        let is_of_this_run = self.detail.begin_s + self.detail.window_s <= self.run().now().time_s;
+        if is_held && is_of_this_run && now < self.detail_at + HOLD {
+            return;
+        }
+        let wanted = Wanted {
+            window_s: view.detail_s,
+            long_s: view.window_s,
+            about_s: self.cursor().map(|cursor| cursor.time_s),
+            is_held,
+        };
+        let (run, readouts) = (self.playback.run(), &self.reading.readouts);
+        self.detail = Detail::new(run, readouts, &wanted, Some(&self.detail));
+        self.detail_at = now;
+    }
+
+    /// The time that the strip of the fast motion shows.
+    pub fn detail(&self) -> &Detail {
+        &self.detail
     }
 
     pub(super) fn step(&mut self, steps: i64) -> Answer {

@@ -3,7 +3,7 @@
 
 use super::action::{Action, Direction};
 use super::carry_out::{Answer, Done};
-use super::command::{Command, Place, PushChoice};
+use super::command::{Command, CursorTo, Place, PushChoice};
 use super::dialog::{Dialog, Question};
 use super::on_top::{Cleared, Mode};
 use super::values::Target;
@@ -110,6 +110,18 @@ impl Lab {
             Action::ThreeD if !self.view.is_filled_by(Pane::THREE_D) => {
                 one(Command::Fill(Some(Pane::THREE_D)))
             }
+            Action::StepCursor(direction) => one(self.stepped_cursor(signed(direction, times))),
+            Action::ToTurn(direction) => one(Command::Cursor(match direction {
+                Direction::Left => CursorTo::TurnBefore,
+                _ => CursorTo::NextTurn,
+            })),
+            Action::GoToCursor => match self.view.cursor {
+                Some(step) => one(Command::GoTo(Place::Step(step))),
+                None => Err("Left and Right set the cursor first".to_owned()),
+            },
+            Action::Pan(direction) => one(self.panned(direction, times)),
+            Action::Magnify(more) => one(self.magnified(if more { times } else { -times })),
+            Action::WholeView => Ok(Some(self.whole_view())),
             Action::WiderWindow => Ok(self.other_window(true)),
             Action::NarrowerWindow => Ok(self.other_window(false)),
             Action::Move(direction) => self.moved(direction, times),
@@ -136,6 +148,11 @@ impl Lab {
                 Direction::Right => self.nudged(times),
                 _ => Ok(None),
             },
+            (Mode::Lab, Pane::TRACES)
+                if matches!(direction, Direction::Left | Direction::Right) =>
+            {
+                Ok(Some(vec![self.moved_cursor(signed(direction, times))]))
+            }
             (Mode::Lab, _) => {
                 Err("arrows change values (e), turn the 3-D view (d) and move in lists".to_owned())
             }
@@ -234,7 +251,13 @@ impl Lab {
             | Action::Redo
             | Action::Push
             | Action::ToggleExact
-            | Action::FillScreen => {} // commands
+            | Action::FillScreen
+            | Action::StepCursor(_)
+            | Action::ToTurn(_)
+            | Action::GoToCursor
+            | Action::Pan(_)
+            | Action::Magnify(_)
+            | Action::WholeView => {} // commands
         }
         None
     }
@@ -344,6 +367,8 @@ impl Lab {
             self.stop_script();
         } else if self.player.playback.steps_to_go().is_some() {
             self.carry_out_all(&[Command::Pause]);
+        } else if self.view.cursor.is_some() {
+            self.carry_out_all(&[Command::Cursor(CursorTo::Nowhere)]);
         } else if self.view.filled {
             self.carry_out_all(&[Command::Fill(None)]);
         } else if has_cleared {
@@ -368,6 +393,14 @@ impl Lab {
 /// How often an action is repeated for `count`.
 fn repeated(count: Option<u64>) -> i32 {
     count.unwrap_or(1).min(MOST_REPEATED) as i32
+}
+
+/// `times` to the right, or as many to the left.
+fn signed(direction: Direction, times: i32) -> i32 {
+    match direction {
+        Direction::Left => -times,
+        _ => times,
+    }
 }
 
 fn rows(direction: Direction) -> isize {

@@ -176,6 +176,16 @@ impl LiveRun {
         }
     }
 
+    /// The run at the last stored state that is at `step` or before.
+    pub(super) fn stored_before(&self, step: u64) -> &Simulation {
+        let stored = &self.checkpoints.before(step).simulation;
+        let here = self.simulation.step_number();
+        if (stored.step_number()..=step).contains(&here) && !self.simulation.has_ended() {
+            return &self.simulation;
+        }
+        stored
+    }
+
     /// Puts the run at the latest stored state that is not later than `latest`: a checkpoint, or the present one, which is
     /// at step `here`.
     fn stand_before(&mut self, latest: u64, here: u64) {

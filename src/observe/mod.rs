@@ -2,8 +2,10 @@
 //!
 //! - [`live`] plays a run, and returns to earlier steps by [`checkpoints`]; [`recording`] and [`path`] store the data of
 //!   its pictures, [`overlay`] the exact motion beside it.
-//! - [`sweep`] and [`camera`] are the geometry of the pictures, for a screen and for a figure alike: the range of a curve
-//!   in each column of a window of time, and the position of a point in space in a plane picture.
+//! - [`strip`], [`scale`] and [`camera`] are the geometry of the pictures, for a screen and for a figure alike: a curve in
+//!   each column of a window of time, the values at an axis, and the position of a point in space in a plane picture.
+//!   [`detail`] is the window of time in which fast motion is seen.
+//! - [`lookup`] gives the numbers of any earlier step.
 //! - [`pace`] is the playback speed; [`playback`] plays the run at it until the next stop.
 //! - [`reading`] holds the numbers on the screen; [`advisor`] searches for a setting that makes them reliable.
 //! - [`marks`] are the times of pushes and edits; [`ghost`] is the picture of the previous run.
@@ -11,8 +13,10 @@
 pub mod advisor;
 pub mod camera;
 pub mod checkpoints;
+pub mod detail;
 pub mod ghost;
 pub mod live;
+pub mod lookup;
 pub mod marks;
 pub mod overlay;
 pub mod pace;
@@ -20,4 +24,5 @@ pub mod path;
 pub mod playback;
 pub mod reading;
 pub mod recording;
-pub mod sweep;
+pub mod scale;
+pub mod strip;

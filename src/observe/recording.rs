@@ -8,8 +8,9 @@
 //! when that moment was the newest; [`coarse_since`](Recording::coarse_since) tells from which moment on it should be
 //! recorded again.
 
-use crate::physics::State;
-use nalgebra::Vector3;
+mod block;
+
+pub use block::{Block, Curve, Extent, Moment};
 use std::collections::VecDeque;
 
 /// The most blocks of one size that reach back to the start.
@@ -20,151 +21,6 @@ const RECENT: usize = 2048;
 const FINEST: usize = 2048;
 /// A stretch is coarse if it has fewer blocks than this, each of more than one step.
 const COARSE: u64 = 256;
-
-/// The curves that are recorded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Curve {
-    /// x of the traced point, world frame, m.
-    X,
-    /// y of the traced point, world frame, m.
-    Y,
-    /// z of the traced point, world frame, m.
-    Z,
-    /// Angle of the axle from +z, degrees.
-    Tilt,
-}
-
-impl Curve {
-    /// Every curve, in the order in which blocks hold them.
-    pub const ALL: [Self; 4] = [Self::X, Self::Y, Self::Z, Self::Tilt];
-
-    /// What it is called where it is drawn.
-    pub fn name(self) -> &'static str {
-        self.named().0
-    }
-
-    /// The unit of its extents, as it is written after numbers.
-    pub fn unit(self) -> &'static str {
-        self.named().1
-    }
-
-    /// Name and unit.
-    fn named(self) -> (&'static str, &'static str) {
-        match self {
-            Self::X => ("x", "m"),
-            Self::Y => ("y", "m"),
-            Self::Z => ("z", "m"),
-            Self::Tilt => ("tilt", "deg"),
-        }
-    }
-}
-
-/// The values of one moment that the pictures need.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
-    /// Time, s.
-    pub time_s: f64,
-    /// The traced point, world frame, m.
-    pub position: Vector3<f64>,
-    /// Height of the axle's direction, a unit vector: the cosine of the tilt.
-    pub axle_height: f64,
-}
-
-impl Moment {
-    /// The values of `state`; the traced point is at `traced` (body frame, m).
-    pub fn new(state: &State, traced: &Vector3<f64>) -> Self {
-        Self {
-            time_s: state.time_s,
-            position: state.orientation * traced,
-            axle_height: state.axle().z,
-        }
-    }
-
-    /// The stored value of each curve. For the tilt it is the negative cosine: it grows with the tilt, and saves computing
-    /// an arc cosine at every step.
-    fn values(&self) -> [f64; 4] {
-        let at = &self.position;
-        [at.x, at.y, at.z, -self.axle_height]
-    }
-}
-
-/// The smallest and largest value of a stretch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent {
-    /// Smallest.
-    pub min: f64,
-    /// Largest.
-    pub max: f64,
-}
-
-impl Extent {
-    /// The extent of one value.
-    pub fn of(value: f64) -> Self {
-        Self {
-            min: value,
-            max: value,
-        }
-    }
-
-    /// The extent of both.
-    pub fn and(self, other: Self) -> Self {
-        Self {
-            min: self.min.min(other.min),
-            max: self.max.max(other.max),
-        }
-    }
-}
-
-/// A stretch of the run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Block {
-    /// Time of its first moment, s.
-    pub begin_s: f64,
-    /// Time of its last moment, s.
-    pub end_s: f64,
-    /// Extremes of the stored value of each curve.
-    extents: [Extent; 4],
-    /// The traced point at its last moment, world frame, m.
-    pub end: Vector3<f64>,
-}
-
-impl Block {
-    /// The extremes of `curve`, in its unit.
-    pub fn extent(&self, curve: Curve) -> Extent {
-        let Extent { min, max } = self.extents[curve as usize];
-        match curve {
-            Curve::X | Curve::Y | Curve::Z => Extent { min, max },
-            Curve::Tilt => Extent {
-                min: tilt_deg(min),
-                max: tilt_deg(max),
-            },
-        }
-    }
-
-    fn of(moment: &Moment) -> Self {
-        Self {
-            begin_s: moment.time_s,
-            end_s: moment.time_s,
-            extents: moment.values().map(Extent::of),
-            end: moment.position,
-        }
-    }
-
-    fn and(&self, later: &Self) -> Self {
-        Self {
-            begin_s: self.begin_s,
-            end_s: later.end_s,
-            extents: std::array::from_fn(|curve| self.extents[curve].and(later.extents[curve])),
-            end: later.end,
-        }
-    }
-}
-
-/// The tilt of an axle, degrees, from the negative cosine of the tilt. Near the vertical it is accurate to a millionth of a
-/// degree, which is enough for a picture but not for a printed number.
-fn tilt_deg(negative_cosine: f64) -> f64 {
-    libm::acos((-negative_cosine).clamp(-1.0, 1.0)).to_degrees()
-}
 
 /// The blocks of one size, in order and without gaps.
 #[derive(Clone, Debug, Default)]
@@ -220,6 +76,11 @@ impl Level {
         self.blocks.partition_point(|block| block.end_s < time_s)
     }
 
+    /// The index of the first stored block that begins later than `time_s`.
+    fn first_from(&self, time_s: f64) -> usize {
+        self.blocks.partition_point(|block| block.begin_s <= time_s)
+    }
+
     fn reaches(&self, time_s: f64) -> bool {
         let front = self.blocks.front();
         self.is_whole() || front.is_some_and(|block| block.begin_s <= time_s)
@@ -232,12 +93,40 @@ pub struct Recording {
     levels: Vec<Level>,
     moments: u64,
     whole: Option<Block>,
+    course: Course,
+}
+
+/// In which direction each curve goes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Course {
+    /// The stored values of the newest moment.
+    values: Option<[f64; 4]>,
+    /// Whether each curve went up when it last changed; `None` before it has changed.
+    is_up: [Option<bool>; 4],
+}
+
+impl Course {
+    /// Goes on to `values`; gives which curves have turned.
+    fn go_on(&mut self, values: [f64; 4]) -> [bool; 4] {
+        let Some(before) = self.values.replace(values) else {
+            return [false; 4];
+        };
+        std::array::from_fn(|curve| {
+            let change = values[curve] - before[curve];
+            if change == 0.0 || change.is_nan() {
+                return false;
+            }
+            let is_up = Some(change > 0.0);
+            let was_up = std::mem::replace(&mut self.is_up[curve], is_up);
+            was_up.is_some() && was_up != is_up
+        })
+    }
 }
 
 impl Recording {
     /// Appends the next moment.
     pub fn push(&mut self, moment: &Moment) {
-        let block = Block::of(moment);
+        let block = Block::of(moment, self.course.go_on(moment.values()));
         self.whole = Some(self.whole.map_or(block, |whole| whole.and(&block)));
         self.moments += 1;
         let mut carry = Some(block);
@@ -272,6 +161,8 @@ impl Recording {
             .since(f64::NEG_INFINITY)
             .copied()
             .reduce(|whole, block| whole.and(&block));
+        // A turn at the very place of the cut is not counted.
+        self.course = Course::default();
         self.moments
     }
 
@@ -297,24 +188,33 @@ impl Recording {
         self.whole.as_ref()
     }
 
-    /// Blocks in order of time that cover everything from `since_s` (s) to now: those of the smallest size that reaches
-    /// back so far and has not too many, followed by smaller ones for the newest moments.
+    /// Blocks in order of time that cover everything from `since_s` (s) to now, as [`between`](Self::between) has them.
     pub fn since(&self, since_s: f64) -> impl Iterator<Item = &Block> {
-        let suits = |level: &Level| {
-            level.reaches(since_s) && level.blocks.len() - level.first_since(since_s) <= 2 * FINEST
+        self.between(since_s, f64::INFINITY)
+    }
+
+    /// Blocks in order of time that cover everything from `since_s` to `until_s` (s): those of the smallest size that
+    /// reaches back so far and has not too many, followed by smaller ones for the newest moments.
+    pub fn between(&self, since_s: f64, until_s: f64) -> impl Iterator<Item = &Block> {
+        let range = move |level: &Level| {
+            let first = level.first_since(since_s);
+            first..level.first_from(until_s).max(first)
         };
+        let suits = |level: &Level| level.reaches(since_s) && range(level).len() <= 2 * FINEST;
         let size = self.levels.iter().position(suits).unwrap_or(0);
         let covering = self.levels.get(size..=size).into_iter().flatten();
-        let covering =
-            covering.flat_map(move |level| level.blocks.range(level.first_since(since_s)..));
+        let covering = covering.flat_map(move |level| level.blocks.range(range(level)));
         let newest = self.levels[..size.min(self.levels.len())].iter().rev();
-        covering.chain(newest.filter_map(Level::waiting))
+        let newest = newest.filter_map(Level::waiting);
+        covering
+            .chain(newest.filter(move |block| block.begin_s <= until_s && block.end_s >= since_s))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Vector3;
     use proptest::prelude::*;
 
     fn moment(step: u64, value: f64) -> Moment {
@@ -405,6 +305,45 @@ mod tests {
                 covers(&recording, 0.0)?;
             }
         }
+    }
+
+    #[test]
+    fn a_block_knows_its_mean_and_how_often_the_curve_turns() {
+        // Ten swings of a triangle about 5, from 0 to 10 and back in 20 steps each.
+        let triangle = |step: u64| (10.0 - (step % 20) as f64).abs();
+        let values: Vec<f64> = (0..=200).map(triangle).collect();
+        let recording = recorded(&values);
+        let whole = recording.whole().unwrap();
+        assert_eq!((whole.moments(), whole.turns(Curve::X)), (201, 19));
+        let mean = values.iter().sum::<f64>() / 201.0;
+        assert!((whole.mean(Curve::X) - mean).abs() < 1e-12);
+        let turns: u32 = recording
+            .since(0.0)
+            .map(|block| block.turns(Curve::X))
+            .sum();
+        assert_eq!(turns, 19);
+        // It stands still, and goes on in the same direction: no turn.
+        assert_eq!(
+            recorded(&[0.0, 1.0, 1.0, 2.0, 2.0, 1.0])
+                .whole()
+                .unwrap()
+                .turns(Curve::X),
+            1
+        );
+    }
+
+    #[test]
+    fn a_stretch_long_ago_has_more_blocks_than_a_part_of_all() {
+        let values: Vec<f64> = (0..100_000).map(f64::from).collect();
+        let recording = recorded(&values);
+        let blocks: Vec<_> = recording.between(10_000.0, 11_000.0).collect();
+        assert!(blocks[0].begin_s <= 10_000.0 && blocks[blocks.len() - 1].end_s >= 11_000.0);
+        assert!(
+            blocks
+                .windows(2)
+                .all(|pair| pair[0].end_s + 1.0 == pair[1].begin_s)
+        );
+        assert!((100..200).contains(&blocks.len()), "{}", blocks.len());
     }
 
     #[test]

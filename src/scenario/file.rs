@@ -142,6 +142,8 @@ pub struct ViewFile {
     pub look_at: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window_s: Option<f64>,
+    /// Length of time that the strip of the fast motion shows, s.
+    pub detail_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exact: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -204,6 +204,7 @@ pub static KEYS: &[Key] = &[
     may("view.speed", Number(Positive), "what the workbench starts with: simulated seconds a second (default: 1)").lab("speed", "s/s", Ladder).or(Absent::Number(SPEED)),
     may("view.look_at", Line, "one line: what there is to see").lab("look at", "", Typed),
     may("view.window_s", Number(Positive), "length of time that the traces show, s (default: the run, or what is played of it in two minutes)"),
+    may("view.detail_s", Number(Positive), "length of time that the strip of the fast motion shows, s (default: about ten swings of the axle)"),
     may("view.exact", Flag, "whether the exact motion is drawn beside the run (default: false)"),
     may("view.show", Words(&PANES), "the panes that share the screen, where it has room for them; empty: as many as there is room for (default)"),
     may("view.hide", Words(&HIDEABLE), "what is not shown: panes, the line about the numbers' health, theory's predicted numbers, the line look_at (default: empty)"),

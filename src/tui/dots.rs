@@ -44,6 +44,11 @@ impl Dots {
         }
     }
 
+    /// Dots in a cell, across and down.
+    pub fn in_a_cell(&self) -> (usize, usize) {
+        self.marker.dots()
+    }
+
     /// Dots across.
     pub fn width(&self) -> usize {
         self.area.width as usize * self.marker.dots().0

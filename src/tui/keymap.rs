@@ -49,7 +49,8 @@ pub struct Binding {
     pub help: &'static str,
 }
 
-const fn row(
+/// A row of a table of keys.
+pub const fn row(
     modes: &'static [Mode],
     keys: &'static [Key],
     action: Action,
@@ -207,7 +208,11 @@ mod tests {
     #[test]
     fn every_action_has_a_key() {
         use Action as A;
-        let bound = |action: A| BINDINGS.iter().any(|row| row.action == action);
+        let of_panes = || crate::tui::panes::PANES.iter().flat_map(|pane| pane.keys);
+        let bound = |action: A| {
+            let mut rows = BINDINGS.iter().chain(of_panes());
+            rows.any(|row| row.action == action)
+        };
         let all = [
             A::TogglePause,
             A::Step,
@@ -240,6 +245,12 @@ mod tests {
             A::Move(Direction::Right),
             A::Move(Direction::PageUp),
             A::Move(Direction::PageDown),
+            A::StepCursor(Direction::Left),
+            A::ToTurn(Direction::Right),
+            A::GoToCursor,
+            A::Pan(Direction::Left),
+            A::Magnify(true),
+            A::WholeView,
             A::WiderWindow,
             A::NarrowerWindow,
             A::NextMarker,
@@ -285,6 +296,12 @@ mod tests {
                 | A::FillScreen
                 | A::ThreeD
                 | A::Move(_)
+                | A::StepCursor(_)
+                | A::ToTurn(_)
+                | A::GoToCursor
+                | A::Pan(_)
+                | A::Magnify(_)
+                | A::WholeView
                 | A::WiderWindow
                 | A::NarrowerWindow
                 | A::NextMarker

@@ -6,10 +6,13 @@ use gyrolab::lab::form::{Field, Form};
 use gyrolab::lab::view::markers::Marker;
 use gyrolab::lab::view::theme::{Background, Theme};
 use gyrolab::lab::view::{Pane, View};
+use gyrolab::observe::detail::Detail;
 use gyrolab::observe::ghost::Ghost;
 use gyrolab::observe::live::LiveRun;
 use gyrolab::observe::pace::Pace;
 use gyrolab::observe::reading::Reading;
+use gyrolab::observe::recording::Curve;
+use gyrolab::observe::strip::Strip;
 use gyrolab::scenario::{Document, presets};
 use gyrolab::tui::panes::form::FormPane;
 use gyrolab::tui::panes::from_above::FromAbove;
@@ -61,7 +64,26 @@ fn traces(run: &LiveRun, ghost: Option<&Ghost>, window_s: Option<f64>, marker: M
     let mut view = view(run, marker);
     view.window_s = window_s.unwrap_or(view.window_s);
     let view = &view;
-    drawn(Traces { run, ghost, view }, STRIPS)
+    let detail = &undivided(run, view);
+    drawn(
+        Traces {
+            run,
+            ghost,
+            view,
+            detail,
+            cursor: None,
+        },
+        STRIPS,
+    )
+}
+
+/// No strip of its own for the fast motion: all strips show the same time.
+fn undivided(run: &LiveRun, view: &View) -> Detail {
+    let long = Strip::following(run.now().time_s, view.window_s, 1);
+    Detail {
+        begin_s: long.begin_s,
+        window_s: long.window_s,
+    }
 }
 
 fn from_above(run: &LiveRun, ghost: Option<&Ghost>, marker: Marker) -> String {
@@ -159,11 +181,11 @@ fn pushes_and_edits_are_marked_where_they_were() {
         assert!(pushed.contains("push"), "{border}");
         assert_eq!(columns_with(&picture, ":"), [14, 28], "{picture}");
     }
-    // A minute on, the sweep before is to be seen from the pen on: the edit at 30 s, and no longer the push.
-    let now = run("wobble-push", &[], EDITS, 1150);
-    assert_eq!(now.now().time_s, 65.0);
+    // Later the window begins at 20 s: it has the edit at 30 s, and no longer the push.
+    let now = run("wobble-push", &[], EDITS, 950);
+    assert_eq!(now.now().time_s, 55.0);
     let picture = traces(&now, None, Some(40.0), Marker::Braille);
-    assert_eq!(columns_with(&picture, ":"), [28], "{picture}");
+    assert_eq!(columns_with(&picture, ":"), [9], "{picture}");
     assert!(!picture.contains("push"), "{picture}");
 }
 
@@ -185,6 +207,51 @@ fn no_curve_crosses_an_edit() {
     let (whole, parts) = (columns(""), columns(cut));
     assert_eq!(whole.len(), 31, "{whole:?}");
     assert!(parts.len() < 20, "{parts:?}");
+}
+
+#[test]
+fn fast_and_slow_motion_are_both_seen() {
+    // The push makes the axle swing every 1.97 s, 23 times in the first 46 s and twice in a column of the lower strips.
+    let now = run("wobble-push", &[], "", 460);
+    let view = &view(&now, Marker::Braille);
+    let detail = &Detail {
+        begin_s: 20.0,
+        window_s: 20.0,
+    };
+    let panes = |size| {
+        drawn(
+            Traces {
+                run: &now,
+                ghost: None,
+                view,
+                detail,
+                cursor: None,
+            },
+            size,
+        )
+    };
+    insta::assert_snapshot!("fast_and_slow_27x19", panes((27, 19)));
+    insta::assert_snapshot!("fast_and_slow_100x45", panes((100, 45)));
+}
+
+#[test]
+fn the_edges_of_a_band_are_the_extremes_of_the_steps() {
+    let now = run("wobble-push", &[], "", 2300);
+    let strip = Strip::new(0.0, 230.0, 50);
+    let columns = strip.columns(now.recording(), Curve::Z, &[]);
+    let mut steps = run("wobble-push", &[], "", 0);
+    let mut extremes = vec![(f64::INFINITY, f64::NEG_INFINITY); 50];
+    for _ in 0..=2300 {
+        let (time_s, z) = (steps.now().time_s, steps.now().position.z);
+        let slot = &mut extremes[strip.column(time_s).unwrap()];
+        *slot = (slot.0.min(z), slot.1.max(z));
+        steps.step().unwrap();
+    }
+    for (column, (min, max)) in columns.iter().flatten().zip(extremes) {
+        assert!(column.is_band);
+        assert_eq!((column.extent.min, column.extent.max), (min, max));
+        assert!(min < column.mean && column.mean < max);
+    }
 }
 
 #[test]
@@ -449,7 +516,7 @@ proptest! {
     #[test]
     fn panes_with_everything_on_them_stay_inside(
         width in 0u16..80, height in 0u16..30, marker in 0..4usize, steps in 0u64..900, ghosts in 0u64..2000,
-        window_s in 0.2..300.0f64, force in prop::array::uniform3(-100.0..100.0f64),
+        window_s in 0.2..300.0f64, force in prop::array::uniform3(-100.0..100.0f64), begin_s in 0.0..90.0f64, share in 0.01..1.1f64,
     ) {
         let set = format!("push.0.force_N={force:?}");
         let now = run("wobble-push", &[&set], EDITS, steps);
@@ -459,10 +526,11 @@ proptest! {
         let around = Rect::new(0, 0, width + 6, height + 6);
         let inside = Rect::new(3, 3, width, height);
         let (run, view, ghost) = (&now, &view, Some(&ghost));
+        let detail = &Detail { begin_s, window_s: share * window_s };
         for pane in 0..3 {
             let mut buf = Buffer::filled(around, Cell::new("#"));
             match pane {
-                0 => Traces { run, ghost, view }.render(inside, &mut buf),
+                0 => Traces { run, ghost, view, detail, cursor: None }.render(inside, &mut buf),
                 1 => FromAbove { run, ghost, view }.render(inside, &mut buf),
                 _ => ThreeD { run, view }.render(inside, &mut buf),
             }

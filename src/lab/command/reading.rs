@@ -1,7 +1,9 @@
 //! Reads the value of each command of the [table](super::COMMANDS).
 
 use super::write::map;
-use super::{Command, Force, Place, PushChoice};
+use super::{
+    Command, CursorTo, Force, MOST_MAGNIFIED, NEXT_TURN, NONE, Place, PushChoice, TURN_BEFORE,
+};
 use crate::lab::numbers;
 use crate::lab::view::{Pane, Part};
 use crate::observe::camera::Camera;
@@ -260,13 +262,17 @@ pub(super) fn step(value: &Value) -> Read {
     }
 }
 
-pub(super) fn go_to(value: &Value) -> Read {
-    let place = match value {
+/// The step or time that `value` names.
+fn place(value: &Value) -> Option<Place> {
+    match value {
         Value::Integer(step) => u64::try_from(*step).ok().map(Place::Step),
         Value::String(text) => Place::parse(text),
         _ => None,
-    };
-    match place {
+    }
+}
+
+pub(super) fn go_to(value: &Value) -> Read {
+    match place(value) {
         Some(place) => Ok(Command::GoTo(place)),
         None => wrong(
             value,
@@ -376,6 +382,41 @@ pub(super) fn look_at(value: &Value) -> Read {
 
 pub(super) fn window(value: &Value) -> Read {
     Ok(Command::Window(number_in(of_view("window_s", value)?)))
+}
+
+pub(super) fn detail(value: &Value) -> Read {
+    Ok(Command::Detail(number_in(of_view("detail_s", value)?)))
+}
+
+pub(super) fn since(value: &Value) -> Read {
+    if value.as_str() == Some(NONE) {
+        return Ok(Command::Since(None));
+    }
+    number(Range::NotNegative, value).map(|since_s| Command::Since(Some(since_s)))
+}
+
+pub(super) fn magnify(value: &Value) -> Read {
+    let times = number(Range::Positive, value)?;
+    match (1.0..=MOST_MAGNIFIED).contains(&times) {
+        true => Ok(Command::Magnify(times)),
+        false => wrong(value, "must be between 1 and 1000000"),
+    }
+}
+
+pub(super) fn cursor(value: &Value) -> Read {
+    let to = match value.as_str() {
+        Some(NONE) => Some(CursorTo::Nowhere),
+        Some(NEXT_TURN) => Some(CursorTo::NextTurn),
+        Some(TURN_BEFORE) => Some(CursorTo::TurnBefore),
+        _ => place(value).map(CursorTo::Place),
+    };
+    match to {
+        Some(to) => Ok(Command::Cursor(to)),
+        None => wrong(
+            value,
+            "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\", \"end\", \"next turn\", \"turn before\" or \"none\"",
+        ),
+    }
 }
 
 pub(super) fn exact(value: &Value) -> Read {

@@ -2,8 +2,9 @@
 
 use super::Command;
 use super::reading::{
-    Read, camera, count, exact, export, fill, go_to, hide, look_at, next_push, nudge, open, push,
-    run_until, save, set, show, speed, step, told, wait, window,
+    Read, camera, count, cursor, detail, exact, export, fill, go_to, hide, look_at, magnify,
+    next_push, nudge, open, push, run_until, save, set, show, since, speed, step, told, wait,
+    window,
 };
 use crate::scenario::Problem;
 use toml::Value;
@@ -64,6 +65,10 @@ pub static COMMANDS: &[Row] = &[
     row("speed", "20 or \"top\"", "how fast the run is played, simulated seconds a second", speed),
     row("look_at", "\"one line\"", "what the lab says of what there is to see", look_at),
     row("window_s", "60", "length of time that the traces show, s", window),
+    row("detail_s", "0.5", "length of time that the strip of the fast motion shows, s", detail),
+    row("since_s", "12.5, or \"none\"", "time at the left edge of the traces, s; none: they follow the run", since),
+    row("magnify", "4", "how many times the values of the traces are magnified, 1 to 1000000", magnify),
+    row("cursor", "400, \"60 s\", \"next turn\", \"turn before\" or \"none\"", "the step at which the traces are read off; turns are those of the tilt", cursor),
     row("exact", "true or false", "whether the exact motion is drawn beside the run", exact),
     row("show", "[\"traces\", \"3d\"]", "the panes that share the screen, of traces, above, 3d, parameters; none: as many as there is room for", show),
     row("hide", "[\"health\"]", "what is not shown: panes, health, predicted, look_at", hide),

@@ -1,6 +1,6 @@
 //! Commands written as TOML, as the [table](super::COMMANDS) reads them.
 
-use super::{Command, Force, Place, PushChoice};
+use super::{Command, CursorTo, Force, NEXT_TURN, NONE, Place, PushChoice, TURN_BEFORE};
 use crate::lab::view::Pane;
 use crate::observe::pace::Speed;
 use toml::{Table, Value};
@@ -52,6 +52,11 @@ pub(super) fn written(command: &Command) -> (&'static str, Value) {
         Command::Speed(Speed::Times(speed)) => ("speed", (*speed).into()),
         Command::Speed(Speed::Top) => ("speed", "top".into()),
         Command::LookAt(text) => ("look_at", text.clone().into()),
+        Command::Detail(detail_s) => ("detail_s", (*detail_s).into()),
+        Command::Since(Some(since_s)) => ("since_s", (*since_s).into()),
+        Command::Since(None) => ("since_s", NONE.into()),
+        Command::Magnify(times) => ("magnify", (*times).into()),
+        Command::Cursor(to) => ("cursor", cursor_written(*to)),
         Command::Window(window_s) => ("window_s", (*window_s).into()),
         Command::Exact(shown) => ("exact", (*shown).into()),
         Command::Show(panes) => ("show", words(panes.iter().map(|pane| pane.id()))),
@@ -120,6 +125,15 @@ fn push_written(choice: &PushChoice) -> Value {
     insert("toward", choice.toward.map(|toward| toward.shown().into()));
     insert("for_s", choice.for_s.map(Value::from));
     Value::Table(table)
+}
+
+fn cursor_written(to: CursorTo) -> Value {
+    match to {
+        CursorTo::Place(place) => place_written(place),
+        CursorTo::NextTurn => NEXT_TURN.into(),
+        CursorTo::TurnBefore => TURN_BEFORE.into(),
+        CursorTo::Nowhere => NONE.into(),
+    }
 }
 
 fn place_written(place: Place) -> Value {

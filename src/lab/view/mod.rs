@@ -100,6 +100,14 @@ pub struct View {
     pub theme: Theme,
     /// Length of time the traces show, s.
     pub window_s: f64,
+    /// Length of time that the strip of the fast motion shows, s; `None`: about ten swings.
+    pub detail_s: Option<f64>,
+    /// Time at the left edge of the traces, s; `None`: they follow the run.
+    pub since_s: Option<f64>,
+    /// How many times the values of the traces are magnified, about the cursor or else about the run's own.
+    pub magnified: f64,
+    /// The step at which the traces are read off.
+    pub cursor: Option<u64>,
     /// Where the 3-D view is looked at from.
     pub camera: Camera,
     /// The panes that share the screen; if empty, as many as there is room for.
@@ -123,6 +131,10 @@ impl View {
             marker,
             theme,
             window_s: first_window_s(scenario),
+            detail_s: None,
+            since_s: None,
+            magnified: 1.0,
+            cursor: None,
             camera: Camera::default(),
             shown: Vec::new(),
             hidden: Vec::new(),
@@ -136,7 +148,9 @@ impl View {
     /// Changes to another scenario: the traces show its run, and the rest is as its `[view]` says.
     pub fn fit(&mut self, scenario: &Scenario) {
         let file = scenario.file.view.clone().unwrap_or_default();
-        self.window_s = file.window_s.unwrap_or_else(|| first_window_s(scenario));
+        self.window_s = self.usual_window_s(scenario);
+        self.detail_s = file.detail_s;
+        (self.since_s, self.magnified, self.cursor) = (None, 1.0, None);
         let panes = file.show.iter().flatten();
         self.shown = panes.filter_map(|id| Pane::named(id)).collect();
         let parts = file.hide.iter().flatten();
@@ -155,6 +169,12 @@ impl View {
                 pitch_deg: camera.pitch_deg.unwrap_or(usual.pitch_deg),
             };
         }
+    }
+
+    /// The time that the traces show of the run of `scenario` while none is chosen by hand, s.
+    pub fn usual_window_s(&self, scenario: &Scenario) -> f64 {
+        let chosen = scenario.file.view.as_ref().and_then(|view| view.window_s);
+        chosen.unwrap_or_else(|| first_window_s(scenario))
     }
 
     /// Whether `part` is hidden.

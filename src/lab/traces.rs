@@ -1,0 +1,152 @@
+//! How the traces are looked at: the time that they show, how far their values are magnified, and the cursor at which
+//! they are read off.
+
+use super::Lab;
+use super::action::Direction;
+use super::carry_out::{Answer, Done};
+use super::command::{Command, CursorTo, MOST_MAGNIFIED, Place};
+use crate::observe::live::LiveRun;
+use crate::observe::lookup;
+use crate::observe::strip::Strip;
+
+/// The part of the window by which a key moves the cursor, and that by which it moves the window.
+const CURSOR_SHARE: f64 = 0.02;
+const PAN_SHARE: f64 = 0.5;
+
+impl Lab {
+    pub(super) fn set_window(&mut self, window_s: f64) -> Answer {
+        let least_s = 2.0 * self.player.motion().time_step_s;
+        if window_s < least_s {
+            return Err(format!("the traces show two time steps at least: {least_s} s").into());
+        }
+        self.view.window_s = window_s;
+        Ok(Done::saying(format!("the traces show {window_s} s")))
+    }
+
+    pub(super) fn set_detail(&mut self, detail_s: f64) -> Answer {
+        let least_s = 2.0 * self.player.motion().time_step_s;
+        if detail_s < least_s {
+            return Err(format!("the strip shows two time steps at least: {least_s} s").into());
+        }
+        self.view.detail_s = Some(detail_s);
+        let text = format!("the strip of the fast motion shows {detail_s} s");
+        Ok(Done::saying(text))
+    }
+
+    pub(super) fn set_since(&mut self, since_s: Option<f64>) -> Answer {
+        self.view.since_s = since_s;
+        Ok(Done::saying(match since_s {
+            Some(since_s) => format!("the traces begin at {since_s} s; Home shows the run again"),
+            None => "the traces follow the run".to_owned(),
+        }))
+    }
+
+    pub(super) fn magnify(&mut self, times: f64) -> Answer {
+        self.view.magnified = times;
+        Ok(Done::saying(match times > 1.0 {
+            true => format!("values are magnified {times} times; Home shows all of them again"),
+            false => "values are shown in full".to_owned(),
+        }))
+    }
+
+    pub(super) fn set_cursor(&mut self, to: CursorTo) -> Answer {
+        let run = self.player.run();
+        let here = self
+            .view
+            .cursor
+            .unwrap_or(self.player.playback.step_number());
+        let step = match to {
+            CursorTo::Nowhere => None,
+            CursorTo::Place(Place::Step(step)) => Some(step),
+            CursorTo::Place(Place::Time(time_s)) => Some(self.player.step_at(time_s)?),
+            CursorTo::Place(Place::Start) => Some(0),
+            CursorTo::Place(Place::End) => Some(run.furthest()),
+            CursorTo::NextTurn => Some(turn(run, here, true)?),
+            CursorTo::TurnBefore => Some(turn(run, here, false)?),
+        };
+        let step = step.map(|step| step.min(run.furthest()));
+        if let Some(step) = step {
+            let sample = lookup::sample(run, step).map_err(|missing| missing.to_string())?;
+            self.show_time(sample.time_s);
+        }
+        self.view.cursor = step;
+        Ok(Done::SILENT)
+    }
+
+    /// Moves the traces where they do not show `time_s`.
+    fn show_time(&mut self, time_s: f64) {
+        let window_s = self.view.window_s;
+        let now_s = self.player.run().now().time_s;
+        let is_shown = |since_s: f64| (since_s..=since_s + window_s).contains(&time_s);
+        let begin_s = match self.view.since_s {
+            Some(since_s) => since_s,
+            None => Strip::following(now_s, window_s, 1).begin_s,
+        };
+        if !is_shown(begin_s) {
+            self.view.since_s = Some((time_s - 0.5 * window_s).max(0.0));
+        }
+    }
+
+    /// The command that moves the cursor by so many fiftieths of the window.
+    pub(super) fn moved_cursor(&self, fiftieths: i32) -> Command {
+        let run = self.player.run();
+        let here = self
+            .view
+            .cursor
+            .unwrap_or(self.player.playback.step_number());
+        let time_step_s = self.player.motion().time_step_s;
+        let steps = (CURSOR_SHARE * self.view.window_s / time_step_s)
+            .round()
+            .max(1.0);
+        let steps = steps as i64 * i64::from(fiftieths);
+        let step = here.saturating_add_signed(steps).min(run.furthest());
+        Command::Cursor(CursorTo::Place(Place::Step(step)))
+    }
+
+    /// The command that moves the cursor by so many steps.
+    pub(super) fn stepped_cursor(&self, steps: i32) -> Command {
+        let here = self
+            .view
+            .cursor
+            .unwrap_or(self.player.playback.step_number());
+        let step = here.saturating_add_signed(i64::from(steps));
+        Command::Cursor(CursorTo::Place(Place::Step(step)))
+    }
+
+    /// The command that moves the window to earlier or later times, by half its length.
+    pub(super) fn panned(&self, direction: Direction, times: i32) -> Command {
+        let window_s = self.view.window_s;
+        let now_s = self.player.run().now().time_s;
+        let begin_s = self
+            .view
+            .since_s
+            .unwrap_or_else(|| Strip::following(now_s, window_s, 1).begin_s);
+        let by_s = PAN_SHARE * window_s * f64::from(times);
+        let since_s = match direction {
+            Direction::Left => begin_s - by_s,
+            _ => begin_s + by_s,
+        };
+        Command::Since(Some(since_s.max(0.0)))
+    }
+
+    /// The command that magnifies the values so many times twice, or half.
+    pub(super) fn magnified(&self, notches: i32) -> Command {
+        let times = self.view.magnified * 2_f64.powi(notches);
+        Command::Magnify(times.clamp(1.0, MOST_MAGNIFIED))
+    }
+
+    /// The commands that show the run again, after the time or the values were chosen by hand.
+    pub(super) fn whole_view(&self) -> Vec<Command> {
+        vec![
+            Command::Cursor(CursorTo::Nowhere),
+            Command::Magnify(1.0),
+            Command::Window(self.view.usual_window_s(self.player.run().scenario())),
+            Command::Since(None),
+        ]
+    }
+}
+
+/// The step of the next turn of the tilt of `run` after or before the step `from`.
+fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, String> {
+    lookup::turn(run, from, forward).map_err(|missing| missing.to_string())
+}

@@ -1,0 +1,201 @@
+//! The window of time in which the fast motion is drawn swing by swing, while the others show the slow motion.
+//!
+//! It is about ten swings of the tilt long and begins where the tilt is greatest. While the run is played so fast that
+//! the window would pass before anyone had seen it, it stands still, and is taken anew now and then: of a motion that
+//! repeats itself it then shows the same picture.
+
+use super::live::LiveRun;
+use super::recording::{Curve, Recording};
+use crate::analysis::Readouts;
+use crate::text::ladder;
+
+/// The most swings that the window shows.
+const MOST_SWINGS: f64 = 12.0;
+/// With so many swings or fewer in the window, a longer one is taken.
+const FEWEST_SWINGS: f64 = 4.0;
+/// Where the run comes to the end of the window, this part of it is taken off its beginning.
+const PAGE: f64 = 0.25;
+/// The least window, time steps.
+const LEAST_STEPS: f64 = 10.0;
+
+/// A window of time, and the swing that it was chosen for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Detail {
+    /// Time at its left edge, s.
+    pub begin_s: f64,
+    /// Its length, s.
+    pub window_s: f64,
+}
+
+/// What the window is chosen by.
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted {
+    /// Its length, s, where it was chosen by hand.
+    pub window_s: Option<f64>,
+    /// Length of the long window, s: the longest that it may have.
+    pub long_s: f64,
+    /// The time that it shows about its middle, s; `None`: it follows the run.
+    pub about_s: Option<f64>,
+    /// Whether it shows the latest whole window, and not the present one as it fills.
+    pub is_held: bool,
+}
+
+impl Wanted {
+    /// The window that follows the run, no longer than `long_s` (s).
+    pub fn following(long_s: f64) -> Self {
+        Self {
+            window_s: None,
+            long_s,
+            about_s: None,
+            is_held: false,
+        }
+    }
+}
+
+impl Detail {
+    /// The window for `run` with these `readouts`; `before` is the last one.
+    pub fn new(run: &LiveRun, readouts: &Readouts, wanted: &Wanted, before: Option<&Self>) -> Self {
+        let swing_s = swing_s(readouts);
+        let least_s = LEAST_STEPS * readouts.time_step_s;
+        let window_s = wanted.window_s.unwrap_or_else(|| {
+            let before_s = before.map(|before| before.window_s);
+            length_s(swing_s, before_s).map_or(wanted.long_s, |length_s| {
+                length_s.max(least_s).min(wanted.long_s)
+            })
+        });
+        let swing_s = swing_s.unwrap_or(0.0).min(0.5 * window_s);
+        let now_s = run.now().time_s;
+        let begin_s = match wanted.about_s {
+            Some(about_s) => about_s - 0.5 * window_s,
+            None if wanted.is_held => now_s - window_s,
+            None => {
+                let pages = ((now_s + swing_s - window_s) / (PAGE * window_s)).ceil();
+                PAGE * window_s * pages.max(0.0)
+            }
+        };
+        let begin_s = match wanted.about_s {
+            Some(_) => begin_s,
+            None => highest_tilt_s(run.recording(), begin_s, swing_s),
+        };
+        Self {
+            begin_s: begin_s.max(0.0),
+            window_s,
+        }
+    }
+}
+
+/// The period of the tilt's swings as the steps show them, s: measured, or before that predicted; `None` where there are
+/// none.
+fn swing_s(readouts: &Readouts) -> Option<f64> {
+    let measured = readouts.nutation.map(|measured| measured.value);
+    let predicted = || {
+        let theory = readouts.theory_about_z()?;
+        let is_seen = readouts.nutation_is_resolved() == Some(true);
+        theory.nutation_period_s.filter(|_| is_seen)
+    };
+    measured
+        .or_else(predicted)
+        .filter(|swing_s| *swing_s > 0.0 && swing_s.is_finite())
+}
+
+/// A length of 1, 2 or 5 times a power of ten for swings of `swing_s`; `before_s` as long as that is right (all s).
+fn length_s(swing_s: Option<f64>, before_s: Option<f64>) -> Option<f64> {
+    let swing_s = swing_s?;
+    let holds = |length_s: &f64| {
+        let swings = length_s / swing_s;
+        (FEWEST_SWINGS..=MOST_SWINGS + 1.0).contains(&swings)
+            && ladder::at_or_below(*length_s) == *length_s
+    };
+    let chosen = || ladder::at_or_below(MOST_SWINGS * swing_s);
+    Some(before_s.filter(holds).unwrap_or_else(chosen))
+}
+
+/// The time of the greatest tilt between `begin_s - swing_s` and `begin_s` (s); before the first swing the beginning.
+fn highest_tilt_s(recording: &Recording, begin_s: f64, swing_s: f64) -> f64 {
+    if begin_s <= swing_s || swing_s <= 0.0 {
+        return begin_s;
+    }
+    let blocks = recording.between(begin_s - swing_s, begin_s);
+    let highest = blocks
+        .map(|block| (block.extent(Curve::Tilt).max, block.begin_s))
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    highest.map_or(begin_s, |(_, time_s)| time_s)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Document;
+    use std::sync::Arc;
+
+    fn at(preset: &str, steps: u64) -> (LiveRun, Readouts) {
+        let document = Document::open(preset).unwrap();
+        let mut run = LiveRun::new(Arc::new(document.scenario().unwrap()));
+        (0..steps).for_each(|_| run.step().unwrap());
+        let readouts = run.readouts();
+        (run, readouts)
+    }
+
+    #[test]
+    fn it_shows_between_four_and_twelve_swings_on_the_ladder() {
+        for (preset, steps) in [
+            ("cusps", 2000),
+            ("loops", 2000),
+            ("method-1", 900),
+            ("wobble-push", 100),
+        ] {
+            let (run, readouts) = at(preset, steps);
+            let detail = Detail::new(&run, &readouts, &Wanted::following(230.0), None);
+            let swings = detail.window_s / swing_s(&readouts).unwrap();
+            assert!((4.0..=12.1).contains(&swings), "{preset}: {swings}");
+            assert_eq!(ladder::at_or_below(detail.window_s), detail.window_s);
+            let now_s = run.now().time_s;
+            assert!(
+                (detail.begin_s..=detail.begin_s + detail.window_s).contains(&now_s),
+                "{preset}"
+            );
+        }
+    }
+
+    #[test]
+    fn held_it_begins_at_the_top_of_a_swing_each_time() {
+        let (mut run, _) = at("cusps", 9000);
+        let held = Wanted {
+            is_held: true,
+            ..Wanted::following(230.0)
+        };
+        for _ in 0..5 {
+            (0..237).for_each(|_| run.step().unwrap());
+            let readouts = run.readouts();
+            let detail = Detail::new(&run, &readouts, &held, None);
+            assert!(detail.begin_s + detail.window_s <= run.now().time_s);
+            let tilt = |time_s| {
+                let mut blocks = run.recording().between(time_s, time_s);
+                blocks
+                    .next()
+                    .map(|block| block.extent(Curve::Tilt).max)
+                    .unwrap()
+            };
+            let highest = run.recording().whole().unwrap().extent(Curve::Tilt).max;
+            assert!(
+                (tilt(detail.begin_s) - highest).abs() < 0.05,
+                "{}",
+                tilt(detail.begin_s)
+            );
+        }
+    }
+
+    #[test]
+    fn a_motion_without_swings_is_shown_at_length() {
+        let (run, readouts) = at("steady-slow", 0);
+        let calm = Readouts {
+            nutation: None,
+            theory: None,
+            ..readouts
+        };
+        assert_eq!(
+            Detail::new(&run, &calm, &Wanted::following(230.0), None).window_s,
+            230.0
+        );
+    }
+}

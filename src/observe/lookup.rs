@@ -1,0 +1,173 @@
+//! The numbers of any step that a run has reached, computed again from its stored states, without moving the run.
+
+use super::live::LiveRun;
+use crate::run::{Sample, Simulation};
+use std::sync::Arc;
+
+/// The most time steps of a body of one point that are computed for an answer; a body of n points has 1/n of that.
+const MOST_STEPS: u64 = 4_000_000;
+
+/// Why a step cannot be looked up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Missing {
+    /// The run has not been there.
+    NotReached,
+    /// Computing it would take too long.
+    TooFar,
+    /// The curve turns nowhere on that side.
+    NoTurn,
+}
+
+impl std::fmt::Display for Missing {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::NotReached => "the run has not been there",
+            Self::TooFar => {
+                "this body has so many points that its steps are only computed by going there"
+            }
+            Self::NoTurn => "the tilt turns nowhere on that side",
+        })
+    }
+}
+
+/// The numbers at `step` of `run`: those that its CSV has in that row.
+///
+/// # Errors
+/// Where the run has not been at the step, or computing it again would take too long.
+pub fn sample(run: &LiveRun, step: u64) -> Result<Sample, Missing> {
+    if step > run.furthest() {
+        return Err(Missing::NotReached);
+    }
+    let mut steps = Steps::before(run, step)?;
+    steps.go_to(step)?;
+    Ok(steps.simulation.sample())
+}
+
+/// The step nearest to `from`, after or before it, at which the tilt of `run` turns up or down.
+///
+/// # Errors
+/// Where there is none, or computing it would take too long.
+pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
+    if forward {
+        let mut steps = Steps::before(run, from.saturating_sub(1))?;
+        while steps.step_number() < run.furthest() {
+            if let Some(turn) = steps.step()?.filter(|turn| *turn > from) {
+                return Ok(turn);
+            }
+        }
+        return Err(Missing::NoTurn);
+    }
+    // From stored states further and further back, until the tilt turns after one of them.
+    let mut begin = from;
+    while begin > 0 {
+        let mut steps = Steps::before(run, begin - 1)?;
+        begin = steps.step_number();
+        let mut last = None;
+        while steps.step_number() < from {
+            last = steps.step()?.or(last);
+        }
+        if let Some(turn) = last {
+            return Ok(turn);
+        }
+    }
+    Err(Missing::NoTurn)
+}
+
+/// A copy of a run that steps through its past.
+struct Steps {
+    simulation: Simulation,
+    /// Steps that may still be computed.
+    left: u64,
+    /// How the height of the axle changed in the last step, where it did.
+    change: f64,
+}
+
+impl Steps {
+    /// From the last stored state at `step` or before.
+    fn before(run: &LiveRun, step: u64) -> Result<Self, Missing> {
+        let mut simulation = run.stored_before(step).clone();
+        let scenario = run.scenario();
+        if !Arc::ptr_eq(simulation.scenario(), scenario) {
+            simulation.go_on_in(Arc::clone(scenario));
+        }
+        let points = scenario.body.mechanics.points().len() as u64;
+        Ok(Self {
+            simulation,
+            left: MOST_STEPS / points.max(1),
+            change: 0.0,
+        })
+    }
+
+    fn step_number(&self) -> u64 {
+        self.simulation.step_number()
+    }
+
+    /// Takes a step; gives the step before it where the tilt has turned there.
+    fn step(&mut self) -> Result<Option<u64>, Missing> {
+        self.left = self.left.checked_sub(1).ok_or(Missing::TooFar)?;
+        let (before, height) = (self.step_number(), self.simulation.state().axle().z);
+        self.simulation.step().map_err(|_| Missing::NotReached)?;
+        let change = self.simulation.state().axle().z - height;
+        let turned = change * self.change < 0.0;
+        if change != 0.0 {
+            self.change = change;
+        }
+        Ok(turned.then_some(before))
+    }
+
+    fn go_to(&mut self, step: u64) -> Result<(), Missing> {
+        while self.step_number() < step {
+            self.step()?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Document;
+
+    fn played(preset: &str, steps: u64) -> LiveRun {
+        let document = Document::open(preset).unwrap();
+        let mut run = LiveRun::new(Arc::new(document.scenario().unwrap()));
+        (0..steps).for_each(|_| run.step().unwrap());
+        run
+    }
+
+    #[test]
+    fn the_numbers_of_an_earlier_step_are_those_that_it_had() {
+        let samples: Vec<_> = (0..=700)
+            .map(|steps| played("cusps", steps))
+            .map(|run| run.simulation().sample())
+            .collect();
+        let run = played("cusps", 700);
+        for step in [0, 1, 255, 256, 257, 699, 700] {
+            assert_eq!(sample(&run, step).unwrap(), samples[step as usize]);
+        }
+        assert_eq!(sample(&run, 701), Err(Missing::NotReached));
+    }
+
+    #[test]
+    fn turns_of_the_tilt_are_found_on_both_sides() {
+        // It is highest at the cusps, every 0.8225 s, and lowest between them.
+        let run = played("cusps", 3000);
+        let mut turns = vec![];
+        let mut at = 0;
+        while let Ok(turn) = turn(&run, at, true) {
+            turns.push(turn);
+            at = turn;
+        }
+        assert_eq!(turns.len(), 7, "{turns:?}");
+        for (index, &turn) in turns.iter().enumerate() {
+            let expected = 411.25 * (index + 1) as f64;
+            assert!((turn as f64 - expected).abs() < 2.0, "{turns:?}");
+        }
+        for pair in turns.windows(2) {
+            assert_eq!(super::turn(&run, pair[1], false), Ok(pair[0]));
+            assert_eq!(super::turn(&run, pair[1] - 1, false), Ok(pair[0]));
+        }
+        assert_eq!(super::turn(&run, turns[0], false), Err(Missing::NoTurn));
+        assert_eq!(super::turn(&run, turns[6], true), Err(Missing::NoTurn));
+    }
+}

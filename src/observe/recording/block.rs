@@ -1,0 +1,193 @@
+//! What a recording stores: the curves, their values at one moment, and their extremes over many.
+
+use crate::physics::State;
+use nalgebra::Vector3;
+
+/// The curves that are recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Curve {
+    /// x of the traced point, world frame, m.
+    X,
+    /// y of the traced point, world frame, m.
+    Y,
+    /// z of the traced point, world frame, m.
+    Z,
+    /// Angle of the axle from +z, degrees.
+    Tilt,
+}
+
+impl Curve {
+    /// Every curve, in the order in which blocks hold them.
+    pub const ALL: [Self; 4] = [Self::X, Self::Y, Self::Z, Self::Tilt];
+
+    /// What it is called where it is drawn.
+    pub fn name(self) -> &'static str {
+        self.named().0
+    }
+
+    /// The unit of its extents, as it is written after numbers.
+    pub fn unit(self) -> &'static str {
+        self.named().1
+    }
+
+    /// Name and unit.
+    fn named(self) -> (&'static str, &'static str) {
+        match self {
+            Self::X => ("x", "m"),
+            Self::Y => ("y", "m"),
+            Self::Z => ("z", "m"),
+            Self::Tilt => ("tilt", "deg"),
+        }
+    }
+}
+
+/// The values of one moment that the pictures need.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Time, s.
+    pub time_s: f64,
+    /// The traced point, world frame, m.
+    pub position: Vector3<f64>,
+    /// Height of the axle's direction, a unit vector: the cosine of the tilt.
+    pub axle_height: f64,
+}
+
+impl Moment {
+    /// The values of `state`; the traced point is at `traced` (body frame, m).
+    pub fn new(state: &State, traced: &Vector3<f64>) -> Self {
+        Self {
+            time_s: state.time_s,
+            position: state.orientation * traced,
+            axle_height: state.axle().z,
+        }
+    }
+
+    /// What `curve` has, in its unit.
+    pub fn value(&self, curve: Curve) -> f64 {
+        let stored = self.values()[curve as usize];
+        match curve {
+            Curve::X | Curve::Y | Curve::Z => stored,
+            Curve::Tilt => tilt_deg(stored),
+        }
+    }
+
+    /// The stored value of each curve. For the tilt it is the negative cosine: it grows with the tilt, and saves computing
+    /// an arc cosine at every step.
+    pub(super) fn values(&self) -> [f64; 4] {
+        let at = &self.position;
+        [at.x, at.y, at.z, -self.axle_height]
+    }
+}
+
+/// The smallest and largest value of a stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// Smallest.
+    pub min: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+impl Extent {
+    /// The extent of one value.
+    pub fn of(value: f64) -> Self {
+        Self {
+            min: value,
+            max: value,
+        }
+    }
+
+    /// The extent of both.
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
+    }
+}
+
+/// A stretch of the run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    /// Time of its first moment, s.
+    pub begin_s: f64,
+    /// Time of its last moment, s.
+    pub end_s: f64,
+    /// How many moments it has.
+    moments: u64,
+    /// Extremes of the stored value of each curve.
+    pub(super) extents: [Extent; 4],
+    /// Sum of the stored values of each curve over the moments.
+    sums: [f64; 4],
+    /// How often each curve has turned: gone up after it had gone down, or down after it had gone up.
+    turns: [u32; 4],
+    /// The traced point at its last moment, world frame, m.
+    pub end: Vector3<f64>,
+}
+
+impl Block {
+    /// The extremes of `curve`, in its unit.
+    pub fn extent(&self, curve: Curve) -> Extent {
+        let Extent { min, max } = self.extents[curve as usize];
+        match curve {
+            Curve::X | Curve::Y | Curve::Z => Extent { min, max },
+            Curve::Tilt => Extent {
+                min: tilt_deg(min),
+                max: tilt_deg(max),
+            },
+        }
+    }
+
+    /// The mean of `curve` over its moments, in the curve's unit. That of the tilt is the tilt of the mean height of the
+    /// axle.
+    pub fn mean(&self, curve: Curve) -> f64 {
+        let mean = self.sums[curve as usize] / self.moments as f64;
+        match curve {
+            Curve::X | Curve::Y | Curve::Z => mean,
+            Curve::Tilt => tilt_deg(mean),
+        }
+    }
+
+    /// How many moments it has.
+    pub fn moments(&self) -> u64 {
+        self.moments
+    }
+
+    /// How often `curve` turns in it, up or down: twice in a swing.
+    pub fn turns(&self, curve: Curve) -> u32 {
+        self.turns[curve as usize]
+    }
+
+    /// The block of one moment, at which the curves have turned or not.
+    pub(super) fn of(moment: &Moment, turned: [bool; 4]) -> Self {
+        let values = moment.values();
+        Self {
+            begin_s: moment.time_s,
+            end_s: moment.time_s,
+            moments: 1,
+            extents: values.map(Extent::of),
+            sums: values,
+            turns: turned.map(u32::from),
+            end: moment.position,
+        }
+    }
+
+    /// Both as one; `later` begins where this one ends.
+    pub(super) fn and(&self, later: &Self) -> Self {
+        Self {
+            begin_s: self.begin_s,
+            end_s: later.end_s,
+            moments: self.moments + later.moments,
+            extents: std::array::from_fn(|curve| self.extents[curve].and(later.extents[curve])),
+            sums: std::array::from_fn(|curve| self.sums[curve] + later.sums[curve]),
+            turns: std::array::from_fn(|curve| self.turns[curve] + later.turns[curve]),
+            end: later.end,
+        }
+    }
+}
+
+/// The tilt of an axle, degrees, from the negative cosine of the tilt. Near the vertical it is accurate to a millionth of a
+/// degree, which is enough for a picture but not for a printed number.
+fn tilt_deg(negative_cosine: f64) -> f64 {
+    libm::acos((-negative_cosine).clamp(-1.0, 1.0)).to_degrees()
+}

@@ -1,0 +1,154 @@
+//! The range of values that an axis shows, and the round values at its ticks.
+
+use super::recording::Extent;
+use crate::text::ladder;
+use crate::text::number::{fixed, rounded};
+
+/// A tick this share of the range beyond an end stands at the end: the difference is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Significant digits of a tick: no rounding of its last bits is seen.
+const DIGITS: usize = 15;
+
+/// The values at both ends of an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// The lowest value.
+    pub low: f64,
+    /// The highest value.
+    pub high: f64,
+}
+
+impl Scale {
+    /// From `-reach` to `reach`, rounded up.
+    pub fn about_zero(reach: f64) -> Self {
+        let reach = nice_above(reach.max(1e-9));
+        Self {
+            low: -reach,
+            high: reach,
+        }
+    }
+
+    /// Round numbers around `extent`, at least `least` apart; they change seldom while the extent grows.
+    pub fn around(extent: Extent, least: f64) -> Self {
+        let unit = nice_above((extent.max - extent.min).max(least)) / 4.0;
+        let (low, high) = ((extent.min / unit).floor(), (extent.max / unit).ceil());
+        let missing = (least / unit - (high - low)).ceil().max(0.0);
+        let below = (0.5 * missing).floor();
+        Self {
+            low: (low - below) * unit,
+            high: (high + missing - below) * unit,
+        }
+    }
+
+    /// The part of it that is `zoom` times smaller and has `value` at the same place.
+    pub fn zoomed(&self, zoom: f64, value: f64) -> Self {
+        Self {
+            low: value + (self.low - value) / zoom,
+            high: value + (self.high - value) / zoom,
+        }
+    }
+
+    /// The place of `value`: 0 at the high end, 1 at the low one.
+    pub fn from_top(&self, value: f64) -> f64 {
+        (self.high - value) / (self.high - self.low)
+    }
+
+    /// Whether some of `extent` is within it.
+    pub fn meets(&self, extent: Extent) -> bool {
+        extent.max >= self.low && extent.min <= self.high
+    }
+
+    /// Round values within it, from low to high, about `most` of them and no more.
+    pub fn ticks(&self, most: usize) -> Vec<f64> {
+        ticks(self.low, self.high, most)
+    }
+
+    /// Digits after the point that tell its ends and the quarters between them apart.
+    pub fn decimals(&self) -> usize {
+        decimals((self.high - self.low) / 10.0)
+    }
+
+    /// Both ends.
+    pub fn in_words(&self) -> String {
+        let digits = self.decimals();
+        format!(
+            "{} .. {}",
+            fixed(self.low, digits),
+            fixed(self.high, digits)
+        )
+    }
+}
+
+/// Digits after the point that numbers `apart` need to be told apart.
+pub fn decimals(apart: f64) -> usize {
+    (-apart.log10() - ROUNDING).ceil().clamp(0.0, 9.0) as usize
+}
+
+/// The multiples of a number 1, 2 or 5 times a power of ten from `low` to `high`: as many as there can be, at most `most`.
+pub fn ticks(low: f64, high: f64, most: usize) -> Vec<f64> {
+    let range = high - low;
+    if !(range > 0.0 && range.is_finite()) || most == 0 {
+        return Vec::new();
+    }
+    let first = ladder::rung_below(range / most as f64);
+    let all = |rung: i64| {
+        let apart = ladder::rung(rung);
+        let (from, to) = (
+            (low / apart - ROUNDING).ceil(),
+            (high / apart + ROUNDING).floor(),
+        );
+        (apart, from, to)
+    };
+    let fits = |&(_, from, to): &(f64, f64, f64)| to - from < most as f64;
+    let Some((apart, from, to)) = (first..first + 4).map(all).find(fits) else {
+        return Vec::new();
+    };
+    let count = (to - from + 1.0).max(0.0) as usize;
+    let tick = |index: usize| rounded((from + index as f64) * apart, DIGITS);
+    (0..count).map(tick).collect()
+}
+
+/// The smallest of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value` (> 0).
+fn nice_above(value: f64) -> f64 {
+    const STEPS: [f64; 11] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
+    let unit = libm::exp10(value.log10().floor());
+    let step = STEPS
+        .into_iter()
+        .find(|step| step * unit >= value * 0.999_999);
+    step.unwrap_or(10.0) * unit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_calm_value_needs_few_digits() {
+        let extent = Extent::of(29.999_999_75).and(Extent::of(30.000_000_02));
+        assert_eq!(Scale::around(extent, 0.02).in_words(), "29.990 .. 30.010");
+        let constant = Scale::around(Extent::of(30.0), 0.02);
+        assert_eq!(constant.in_words(), "29.990 .. 30.010");
+    }
+
+    #[test]
+    fn ticks_are_round_and_no_more_than_there_is_room_for() {
+        assert_eq!(ticks(0.0, 230.0, 6), [0.0, 50.0, 100.0, 150.0, 200.0]);
+        assert_eq!(ticks(0.0, 230.0, 2), [0.0, 200.0]);
+        assert_eq!(ticks(-0.8, 0.8, 5), [-0.5, 0.0, 0.5]);
+        assert_eq!(ticks(12.25, 12.35, 3), [12.25, 12.3, 12.35]);
+        assert!(ticks(1.0, 1.0, 5).is_empty() && ticks(0.0, f64::INFINITY, 5).is_empty());
+        assert!(ticks(0.0, 1.0, 0).is_empty());
+    }
+
+    #[test]
+    fn a_zoomed_scale_keeps_its_value_in_place() {
+        let scale = Scale {
+            low: 0.0,
+            high: 8.0,
+        };
+        let zoomed = scale.zoomed(4.0, 2.0);
+        assert_eq!((zoomed.low, zoomed.high), (1.5, 3.5));
+        assert_eq!(scale.from_top(2.0), zoomed.from_top(2.0));
+    }
+}

@@ -1,0 +1,402 @@
+//! The geometry of a curve over time: a window of time on the columns of a strip.
+//!
+//! Time runs from left to right under one axis. Where the run goes on beyond the right edge, the window moves on by half
+//! its length at once: between two such moves only the columns at the pen change, which a slow line can transmit, but
+//! not a scrolling picture.
+
+use super::recording::{Block, Curve, Extent, Recording};
+use std::ops::Range;
+
+/// A part of a column below this share is rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// The longest window, s: small enough that adding it to a time does not overflow.
+const LONGEST_S: f64 = f64::MAX / 4.0;
+
+/// Columns over which the turns of a curve are counted to tell whether its swings can be drawn one by one.
+const NEIGHBOURS: usize = 5;
+
+/// From so many turns in a column on, swings cannot be drawn one by one: a swing has two turns, and needs five columns.
+const MOST_TURNS: f64 = 0.4;
+
+/// A tilt that changes by less than this, degrees, does not swing: it has no more than rounding.
+const LEAST_SWING_DEG: f64 = 0.01;
+
+/// A window of time on a number of columns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strip {
+    /// Time at the left edge, s.
+    pub begin_s: f64,
+    /// Length of the window, s.
+    pub window_s: f64,
+    /// Columns (of dots) the window is wide.
+    pub columns: usize,
+}
+
+/// A curve in one column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Column {
+    /// The extremes of all steps in the column, and of the straight lines to the steps before and after.
+    pub extent: Extent,
+    /// The mean of the steps in and about the column.
+    pub mean: f64,
+    /// Whether the curve swings too fast here to be drawn swing by swing: a picture of its extremes and its mean tells
+    /// more.
+    pub is_band: bool,
+}
+
+impl Strip {
+    /// The window of `window_s` (s) on `columns` that begins at `begin_s` (s).
+    pub fn new(begin_s: f64, window_s: f64, columns: usize) -> Self {
+        Self {
+            begin_s,
+            window_s: window_s.min(LONGEST_S),
+            columns,
+        }
+    }
+
+    /// The window of `window_s` on `columns` for a run that stands at `now_s` (both s): the first one, or one later by
+    /// half its length as often as that is needed.
+    pub fn following(now_s: f64, window_s: f64, columns: usize) -> Self {
+        let window_s = window_s.min(LONGEST_S);
+        // A run of exactly one window ends at its right edge.
+        let halves = ((now_s / window_s * (1.0 - 1e-12) - 1.0) / 0.5).ceil();
+        Self::new(halves.max(0.0) * 0.5 * window_s, window_s, columns)
+    }
+
+    /// Time at the right edge, s.
+    pub fn end_s(&self) -> f64 {
+        self.begin_s + self.window_s
+    }
+
+    /// The column of `time_s` (s); `None` where it is not shown.
+    pub fn column(&self, time_s: f64) -> Option<usize> {
+        let is_shown = time_s >= self.begin_s && time_s <= self.end_s() && self.columns > 0;
+        is_shown.then(|| self.place(time_s).min(self.columns - 1))
+    }
+
+    /// The time at the middle of `column`, s.
+    pub fn time_s(&self, column: usize) -> f64 {
+        self.begin_s + (column as f64 + 0.5) / self.columns.max(1) as f64 * self.window_s
+    }
+
+    /// The columns in which some of the time from `begin_s` to `end_s` (s) is shown.
+    pub fn shown(&self, begin_s: f64, end_s: f64) -> Range<usize> {
+        let (begin_s, end_s) = (begin_s.max(self.begin_s), end_s.min(self.end_s()));
+        if begin_s >= end_s {
+            return 0..0;
+        }
+        let share = |time_s: f64| (time_s - self.begin_s) / self.window_s * self.columns as f64;
+        let first = ((share(begin_s) + ROUNDING) as usize).min(self.columns.saturating_sub(1));
+        // A stretch that ends where a column begins does not include that column; every stretch has at least one column.
+        let end = ((share(end_s) - ROUNDING).ceil() as usize).max(first + 1);
+        first..end.min(self.columns)
+    }
+
+    /// The column of a time (s) that is not before the left edge; it may lie beyond the right one.
+    fn place(&self, time_s: f64) -> usize {
+        let column = (time_s - self.begin_s) / self.window_s * self.columns as f64;
+        (column.max(0.0) as usize).min(usize::MAX / 2)
+    }
+
+    /// `curve` of `recording` in each column; `None` where the recording has nothing. No line crosses a time of `cuts` (s).
+    pub fn columns(
+        &self,
+        recording: &Recording,
+        curve: Curve,
+        cuts: &[f64],
+    ) -> Vec<Option<Column>> {
+        let mut pen = Pen::new(self.columns, curve, cuts);
+        for block in recording.between(self.begin_s, self.end_s()) {
+            let (from_s, to_s) = (block.begin_s.max(self.begin_s), block.end_s);
+            pen.draw(block, self.place(from_s), self.place(to_s));
+        }
+        pen.finish()
+    }
+}
+
+/// What has been drawn in one column.
+#[derive(Clone, Copy, Debug, Default)]
+struct Drawn {
+    extent: Option<Extent>,
+    /// Sum of the means of blocks, each as often as it has moments here.
+    sum: f64,
+    moments: f64,
+    turns: f64,
+    /// The tilt swings with every nutation; the curve itself does not turn where slow motion is faster than that.
+    turns_of_tilt: f64,
+    tilt: Option<Extent>,
+}
+
+impl Drawn {
+    fn include(&mut self, extent: Extent) {
+        self.extent = Some(self.extent.map_or(extent, |old| old.and(extent)));
+    }
+}
+
+/// Draws a curve block by block.
+struct Pen<'a> {
+    columns: Vec<Drawn>,
+    curve: Curve,
+    cuts: &'a [f64],
+    /// Of the previous block: its end, s, its last column and its extremes.
+    before: Option<(f64, usize, Extent)>,
+}
+
+impl<'a> Pen<'a> {
+    fn new(columns: usize, curve: Curve, cuts: &'a [f64]) -> Self {
+        Self {
+            columns: vec![Drawn::default(); columns],
+            curve,
+            cuts,
+            before: None,
+        }
+    }
+
+    /// Draws `block` from column `first` to `last`; columns beyond the right edge are left out.
+    fn draw(&mut self, block: &Block, first: usize, last: usize) {
+        let extent = block.extent(self.curve);
+        if let Some((end_s, column, from)) = self.before
+            && column < first
+            && !self.is_cut(end_s, block.begin_s)
+        {
+            join(&mut self.columns, (column, from), (first, extent));
+        }
+        let share = 1.0 / (last + 1 - first) as f64;
+        let moments = block.moments() as f64 * share;
+        let mean = block.mean(self.curve);
+        let turns = f64::from(block.turns(self.curve)) * share;
+        let turns_of_tilt = f64::from(block.turns(Curve::Tilt)) * share;
+        let tilt = block.extent(Curve::Tilt);
+        for drawn in self.columns.iter_mut().take(last + 1).skip(first) {
+            drawn.include(extent);
+            drawn.sum += mean * moments;
+            drawn.moments += moments;
+            drawn.turns += turns;
+            drawn.turns_of_tilt += turns_of_tilt;
+            drawn.tilt = Some(drawn.tilt.map_or(tilt, |old| old.and(tilt)));
+        }
+        self.before = Some((block.end_s, last, extent));
+    }
+
+    /// Whether there is a cut at `from_s` or later and before `to_s`.
+    fn is_cut(&self, from_s: f64, to_s: f64) -> bool {
+        let next = self.cuts.partition_point(|&cut| cut < from_s);
+        self.cuts.get(next).is_some_and(|&cut| cut < to_s)
+    }
+
+    fn finish(self) -> Vec<Option<Column>> {
+        let about = |index: usize| {
+            let first = index.saturating_sub(NEIGHBOURS / 2);
+            let drawn = self
+                .columns
+                .iter()
+                .skip(first)
+                .take(index + NEIGHBOURS / 2 + 1 - first);
+            drawn.filter(|drawn| drawn.extent.is_some())
+        };
+        let column = |(index, drawn): (usize, &Drawn)| {
+            let extent = drawn.extent?;
+            let moments: f64 = about(index).map(|drawn| drawn.moments).sum();
+            let sum: f64 = about(index).map(|drawn| drawn.sum).sum();
+            let turns: f64 = about(index).map(|drawn| drawn.turns).sum();
+            let turns_of_tilt: f64 = about(index).map(|drawn| drawn.turns_of_tilt).sum();
+            let tilt = about(index)
+                .filter_map(|drawn| drawn.tilt)
+                .reduce(Extent::and);
+            let swings = tilt.is_some_and(|tilt| tilt.max - tilt.min > LEAST_SWING_DEG);
+            let turns = if swings {
+                turns.max(turns_of_tilt)
+            } else {
+                turns
+            };
+            let mean = if moments > 0.0 {
+                sum / moments
+            } else {
+                extent.min
+            };
+            Some(Column {
+                extent,
+                mean: mean.clamp(extent.min, extent.max),
+                is_band: turns > MOST_TURNS * about(index).count() as f64,
+            })
+        };
+        self.columns.iter().enumerate().map(column).collect()
+    }
+}
+
+/// Draws the straight line from one block to the next: over the columns between them, and half a column in each of the
+/// blocks' own. It may lead beyond the right edge.
+fn join(columns: &mut [Drawn], from: (usize, Extent), to: (usize, Extent)) {
+    let ((begin, from), (end, to)) = (from, to);
+    let (leave, arrive) = nearest(from, to);
+    if !(leave.is_finite() && arrive.is_finite()) {
+        return; // the exact motion may overflow where the run does not
+    }
+    let length = (end - begin) as f64;
+    let (low, high) = (leave.min(arrive), leave.max(arrive));
+    let at = |place: f64| (leave + (arrive - leave) * (place / length)).clamp(low, high);
+    let way = columns.iter_mut().take(end + 1).skip(begin);
+    for (place, drawn) in way.enumerate() {
+        let place = place as f64;
+        drawn.include(Extent::of(at(place - 0.5)).and(Extent::of(at(place + 0.5))));
+    }
+}
+
+/// The pair of values, one from each extent, with the smallest distance.
+fn nearest(from: Extent, to: Extent) -> (f64, f64) {
+    if from.max < to.min {
+        (from.max, to.min)
+    } else if to.max < from.min {
+        (from.min, to.max)
+    } else {
+        let shared = from.min.max(to.min);
+        (shared, shared)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::recording::Moment;
+    use super::*;
+    use nalgebra::Vector3;
+    use proptest::prelude::*;
+
+    fn recorded(values: &[f64], dt: f64) -> Recording {
+        let mut recording = Recording::default();
+        for (step, &x) in values.iter().enumerate() {
+            let position = Vector3::new(x, 0.0, 0.0);
+            recording.push(&Moment {
+                time_s: step as f64 * dt,
+                position,
+                axle_height: 1.0,
+            });
+        }
+        recording
+    }
+
+    fn x(strip: Strip, recording: &Recording) -> Vec<Option<Column>> {
+        strip.columns(recording, Curve::X, &[])
+    }
+
+    #[test]
+    fn what_is_no_number_is_joined_to_nothing() {
+        let mut columns = vec![Drawn::default(); 8];
+        let none = Extent::of(f64::NAN);
+        let endless = Extent::of(f64::INFINITY);
+        for (from, to) in [
+            (none, none),
+            (none, Extent::of(1.0)),
+            (endless, none),
+            (endless, Extent::of(0.0)),
+        ] {
+            join(&mut columns, (1, from), (5, to));
+        }
+        let mut extents = columns.iter().filter_map(|drawn| drawn.extent);
+        assert!(extents.all(|extent| extent.min.is_finite()), "{columns:?}");
+    }
+
+    proptest! {
+        #[test]
+        fn every_sub_steps_extremes_are_drawn(
+            values in prop::collection::vec(-1.0..1.0f64, 2..9_000), columns in 1usize..300
+        ) {
+            let recording = recorded(&values, 1.0);
+            let now = (values.len() - 1) as f64;
+            let drawn = x(Strip::following(now, now, columns), &recording);
+            let of = |pick: fn(&Extent) -> f64| drawn.iter().flatten().map(|column| pick(&column.extent)).collect::<Vec<_>>();
+            let (lowest, highest) = (of(|e| e.min), of(|e| e.max));
+            prop_assert_eq!(lowest.into_iter().fold(2.0, f64::min), values.iter().copied().fold(2.0, f64::min));
+            prop_assert_eq!(highest.into_iter().fold(-2.0, f64::max), values.iter().copied().fold(-2.0, f64::max));
+            prop_assert!(drawn.iter().all(Option::is_some), "a gap in a whole run");
+            prop_assert!(drawn.iter().flatten().all(|c| c.extent.min <= c.mean && c.mean <= c.extent.max));
+        }
+
+        #[test]
+        fn now_is_in_the_window_and_half_of_it_is_filled(
+            now in 0.0..1e7f64, window in 0.01..500.0f64, columns in 1usize..200
+        ) {
+            let strip = Strip::following(now, window, columns);
+            prop_assert!(strip.column(now).is_some());
+            prop_assert!(strip.begin_s == 0.0 || now - strip.begin_s > 0.49 * window);
+        }
+    }
+
+    #[test]
+    fn the_window_moves_on_by_half_its_length() {
+        let begin = |now_s| Strip::following(now_s, 100.0, 50).begin_s;
+        assert_eq!(
+            [0.0, 99.0, 100.0, 101.0, 150.0, 151.0].map(begin),
+            [0.0, 0.0, 0.0, 50.0, 50.0, 100.0]
+        );
+    }
+
+    #[test]
+    fn right_of_the_pen_there_is_nothing() {
+        let values: Vec<f64> = (0..150).map(f64::from).collect();
+        let drawn = x(Strip::following(149.0, 100.0, 100), &recorded(&values, 1.0));
+        assert_eq!(drawn[10].unwrap().extent.max, 60.5);
+        assert!(drawn[..99].iter().all(Option::is_some) && drawn[99].is_some());
+        let drawn = x(Strip::new(100.0, 100.0, 100), &recorded(&values, 1.0));
+        assert_eq!(drawn.iter().rposition(Option::is_some), Some(49));
+    }
+
+    #[test]
+    fn a_window_in_the_past_shows_its_own_time() {
+        let values: Vec<f64> = (0..3000).map(f64::from).collect();
+        let drawn = x(Strip::new(100.0, 100.0, 50), &recorded(&values, 1.0));
+        assert_eq!(drawn[0].unwrap().extent.min, 100.0);
+        assert!(drawn[49].unwrap().extent.max <= 200.0);
+        assert!(drawn.iter().all(Option::is_some));
+    }
+
+    #[test]
+    fn neighbours_are_joined() {
+        let recording = recorded(&[0.0, 10.0], 1.0);
+        let drawn = x(Strip::new(0.0, 1.0, 6), &recording);
+        for pair in drawn.windows(2) {
+            assert!(pair[0].unwrap().extent.max >= pair[1].unwrap().extent.min - 1e-12);
+        }
+    }
+
+    /// Columns of which 1000 steps of a sine of `period` steps are bands, of 100.
+    fn bands(period: f64) -> usize {
+        let sine = |step: u32| (f64::from(step) / period * std::f64::consts::TAU).sin();
+        let values: Vec<f64> = (0..1000).map(sine).collect();
+        let drawn = x(Strip::new(0.0, 1000.0, 100), &recorded(&values, 1.0));
+        drawn
+            .iter()
+            .flatten()
+            .filter(|column| column.is_band)
+            .count()
+    }
+
+    #[test]
+    fn swings_are_a_band_where_five_columns_hold_a_whole_one() {
+        assert_eq!([25.0, 10.0, 7.3, 2.5].map(bands), [100; 4]);
+        assert_eq!([60.0, 100.0, 1000.0].map(bands), [0; 3]);
+    }
+
+    #[test]
+    fn a_slow_curve_is_no_band_and_its_mean_is_itself() {
+        let values: Vec<f64> = (0..1000).map(f64::from).collect();
+        let drawn = x(Strip::new(0.0, 1000.0, 100), &recorded(&values, 1.0));
+        assert!(drawn.iter().flatten().all(|column| !column.is_band));
+        assert!((drawn[50].unwrap().mean - 504.5).abs() < 1.0);
+    }
+
+    #[test]
+    fn stretches_are_shown_where_the_curves_are() {
+        let strip = Strip::new(100.0, 100.0, 50);
+        assert_eq!(strip.shown(100.0, 104.0), 0..2);
+        assert_eq!(strip.shown(180.0, 500.0), 40..50);
+        assert!(strip.shown(200.0, 500.0).is_empty() && strip.shown(40.0, 60.0).is_empty());
+        assert_eq!(strip.shown(98.0, 102.0), 0..1);
+        assert_eq!(strip.shown(120.0, 120.0 + 1e-9), 10..11);
+        assert_eq!(
+            [99.0, 100.0, 120.0, 200.0, 200.1].map(|time_s| strip.column(time_s)),
+            [None, Some(0), Some(10), Some(49), None]
+        );
+        assert_eq!(strip.time_s(10), 121.0);
+    }
+}

@@ -1,0 +1,149 @@
+//! The axis of time under the strips, and the axis of values beside them.
+
+use crate::observe::scale::{self, Scale};
+use crate::observe::strip::Strip;
+use crate::text::number::{decimal, exponent, fixed};
+
+/// Times from this on, s, have more digits than a tick has room for.
+const LONG_TIME_S: f64 = 1e6;
+/// From this time on (s) it has more digits than anyone reads.
+const MOST_TIME_S: f64 = 1e15;
+/// Columns from one label to the next, at least.
+const APART: usize = 2;
+/// What follows the last label.
+const UNIT: &str = " s";
+
+/// A text, and the cell in which it begins.
+pub type Placed = (usize, String);
+
+/// The labels of the time axis of `strip` on `width` cells, in order: round times, each in the middle under its own.
+pub fn times(strip: &Strip, width: usize) -> Vec<Placed> {
+    if strip.end_s() >= LONG_TIME_S {
+        return both_ends(strip, width);
+    }
+    let most = (1..=width / 3).rev();
+    let mut fitting = most.filter_map(|most| round_times(strip, width, most));
+    fitting.next().unwrap_or_default()
+}
+
+/// At most `most` round times, if there is room for them all.
+fn round_times(strip: &Strip, width: usize, most: usize) -> Option<Vec<Placed>> {
+    let ticks = scale::ticks(strip.begin_s, strip.end_s(), most);
+    let apart = match ticks[..] {
+        [first, second, ..] => second - first,
+        _ => strip.window_s,
+    };
+    let digits = scale::decimals(apart);
+    let last = ticks.len().checked_sub(1)?;
+    let mut placed: Vec<Placed> = Vec::with_capacity(ticks.len());
+    let mut free_from = 0;
+    for (index, &time_s) in ticks.iter().enumerate() {
+        let label = fixed(time_s + 0.0, digits);
+        let share = (time_s - strip.begin_s) / strip.window_s;
+        let middle = (share * width as f64).min(width as f64 - 1.0) as usize;
+        let unit = if index == last { UNIT } else { "" };
+        let length = label.len() + unit.len();
+        let at = middle
+            .saturating_sub(label.len() / 2)
+            .min(width.checked_sub(length)?);
+        if at < free_from {
+            return None;
+        }
+        free_from = at + length + APART;
+        placed.push((at, label + unit));
+    }
+    Some(placed)
+}
+
+/// Both ends of a window of times with many digits, or how much later the right one is where there is no room.
+fn both_ends(strip: &Strip, width: usize) -> Vec<Placed> {
+    let (begin, end) = ends(strip, width);
+    if begin.len() + end.len() >= width {
+        return vec![(0, begin)];
+    }
+    vec![(0, begin), (width - end.len(), end)]
+}
+
+fn ends(strip: &Strip, width: usize) -> (String, String) {
+    let digits = scale::decimals(strip.window_s / 10.0).min(6);
+    // Whole numbers that tell the two ends apart, up to where they have more digits than anyone reads.
+    let [begin, end] = [strip.begin_s, strip.end_s()].map(|time_s| match time_s < MOST_TIME_S {
+        true => format!("{time_s:.digits$}"),
+        false => exponent(time_s, 3),
+    });
+    let end = end + UNIT;
+    if begin.len() + end.len() < width {
+        return (begin, end);
+    }
+    let later = format!("+ {} s", decimal(strip.window_s));
+    let whole = begin + UNIT;
+    if whole.len() + later.len() < width {
+        return (whole, later);
+    }
+    (exponent(strip.begin_s, 3) + UNIT, later)
+}
+
+/// The labels of `scale` on `rows`, each with its row: both ends, and round values between them where there is room.
+pub fn values(scale: &Scale, rows: usize) -> Vec<Placed> {
+    /// Rows for each value between the ends.
+    const ROWS: usize = 3;
+    let digits = scale.decimals();
+    let mut placed = vec![(0, fixed(scale.high + 0.0, digits))];
+    if rows > 2 * ROWS {
+        let between = scale.ticks(rows / ROWS);
+        let row = |value: f64| (scale.from_top(value) * rows as f64) as usize;
+        let clear = between.into_iter().rev().map(|value| (row(value), value));
+        let clear = clear.filter(|&(row, _)| row >= ROWS - 1 && row + ROWS <= rows);
+        placed.extend(clear.map(|(row, value)| (row, fixed(value + 0.0, digits))));
+    }
+    if rows > 1 {
+        placed.push((rows - 1, fixed(scale.low + 0.0, digits)));
+    }
+    placed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(strip: &Strip, width: usize) -> String {
+        let mut line = String::new();
+        for (at, label) in times(strip, width) {
+            line += &" ".repeat(at - line.len());
+            line += &label;
+        }
+        line
+    }
+
+    #[test]
+    fn times_are_round_and_stand_under_their_place() {
+        let of = |begin_s, window_s, width| line(&Strip::new(begin_s, window_s, 2 * width), width);
+        assert_eq!(of(0.0, 230.0, 25), "0   50   100   150  200 s");
+        assert_eq!(of(0.0, 230.0, 12), "0      200 s");
+        assert_eq!(of(12.0, 0.5, 30), "12.0  12.1  12.2  12.3  12.4 s");
+        assert_eq!(of(0.0, 230.0, 4), "0 s");
+        assert_eq!(of(0.0, 230.0, 1), "");
+    }
+
+    #[test]
+    fn late_times_are_told_at_both_ends() {
+        let at = |begin_s, width| ends(&Strip::new(begin_s, 230.0, 50), width);
+        let pair = |begin: &str, end: &str| (begin.to_owned(), end.to_owned());
+        assert_eq!(at(1_130_220.0, 25), pair("1130220", "1130450 s"));
+        assert_eq!(at(1.1303e12, 25).1, "+ 230 s");
+        assert_eq!(at(1.1303e12, 18).0, "1.130e12 s");
+    }
+
+    #[test]
+    fn values_are_both_ends_and_round_ones_between() {
+        let scale = Scale {
+            low: -0.8,
+            high: 0.8,
+        };
+        let of = |rows| values(&scale, rows);
+        let text = |row: usize, text: &str| (row, text.to_owned());
+        assert_eq!(of(3), [text(0, "0.8"), text(2, "-0.8")]);
+        assert_eq!(of(1), [text(0, "0.8")]);
+        assert_eq!(of(9), [text(0, "0.8"), text(4, "0.0"), text(8, "-0.8")]);
+    }
+}

@@ -1,0 +1,78 @@
+//! A curve of a strip as dots: a line, or the edges and the mean of a band where its swings are too fast to be drawn one
+//! by one.
+
+use crate::observe::scale::Scale;
+use crate::observe::strip::Column;
+use crate::tui::dots::{Dots, Ink};
+
+/// A band of fewer dots than this from edge to edge is drawn as a line of that thickness.
+const THINNEST_BAND: usize = 4;
+/// A mean nearer to an edge than this, in dots, is not drawn.
+const CLEAR_OF_EDGE: usize = 2;
+
+/// Which dots of a curve are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stroke {
+    /// All of them, and the mean of a band.
+    Full,
+    /// Those in every other cell: the exact motion.
+    Dashed,
+    /// Single ones: the run before.
+    Dotted,
+}
+
+/// Draws `columns` on `dots`.
+pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: Stroke, ink: Ink) {
+    let (across, down) = dots.in_a_cell();
+    let height = dots.height();
+    if height == 0 {
+        return;
+    }
+    let row = |value: f64| {
+        let row = scale.from_top(value) * height as f64;
+        row.clamp(0.0, height as f64 - 1.0) as usize
+    };
+    let keeps = |x: usize, y: usize| match stroke {
+        Stroke::Full => true,
+        Stroke::Dashed => (x / across).is_multiple_of(2),
+        Stroke::Dotted => x.is_multiple_of(across.max(2)) && y.is_multiple_of((down / 2).max(1)),
+    };
+    let mut before: Option<(usize, usize)> = None;
+    for (x, column) in columns.iter().enumerate() {
+        let Some(column) = column.filter(|column| scale.meets(column.extent)) else {
+            before = None;
+            continue;
+        };
+        let (top, bottom) = (row(column.extent.max), row(column.extent.min));
+        let mut set = |from: usize, to: usize| {
+            for y in (from..=to).filter(|&y| keeps(x, y)) {
+                dots.set(x as f64, y as f64, ink);
+            }
+        };
+        if !column.is_band || bottom < top + THINNEST_BAND {
+            set(top, bottom);
+            before = None;
+            continue;
+        }
+        let (top_before, bottom_before) = before.unwrap_or((top, bottom));
+        let (from, to) = toward(top, top_before);
+        set(from, to);
+        let (from, to) = toward(bottom, bottom_before);
+        set(from, to);
+        let mean = row(column.mean);
+        let is_clear = mean >= top + CLEAR_OF_EDGE && mean + CLEAR_OF_EDGE <= bottom;
+        if stroke == Stroke::Full && is_clear && (x / across).is_multiple_of(2) {
+            set(mean, mean);
+        }
+        before = Some((top, bottom));
+    }
+}
+
+/// The rows from `row` to the one next to `before`, so that an edge has no gap.
+fn toward(row: usize, before: usize) -> (usize, usize) {
+    if before < row {
+        (before + 1, row)
+    } else {
+        (row, before.saturating_sub(1).max(row))
+    }
+}

@@ -1,0 +1,62 @@
+//! Where pushes act on a run: a bar under the time axis, with a word at it.
+
+/// What marks time with a push.
+pub const BAR: &str = "═";
+/// The word at it.
+pub const WORD: &str = "push";
+
+/// The columns at which [`WORD`] stands for the stretches of `pushed` columns: in the stretch, or beside it.
+pub fn words(pushed: &[bool]) -> Vec<usize> {
+    let mut places: Vec<usize> = Vec::new();
+    let mut begin = 0;
+    for stretch in pushed.chunk_by(|a, b| a == b) {
+        let end = begin + stretch.len();
+        if stretch.contains(&true) {
+            let free_from = places.last().map_or(0, |last| last + WORD.len());
+            places.extend(word(pushed, (begin, end), free_from));
+        }
+        begin = end;
+    }
+    places
+}
+
+/// The column of [`WORD`] for the pushed columns from `begin` to before `end`; before `free_from` there are others.
+fn word(pushed: &[bool], (begin, end): (usize, usize), free_from: usize) -> Option<usize> {
+    let length = WORD.len();
+    if end - begin >= length + 2 {
+        return Some(begin + (end - begin - length) / 2);
+    }
+    // With a free column at its end, lest it seem to belong to the next stretch.
+    let is_free = |from: usize, to: usize| {
+        let columns = pushed.get(from..to.min(pushed.len()));
+        columns.is_some_and(|columns| columns.len() >= length && !columns.contains(&true))
+    };
+    let before = begin.checked_sub(length);
+    let before = before.filter(|&at| at >= free_from && is_free(at.saturating_sub(1), begin));
+    match is_free(end, end + length + 1) {
+        true => Some(end),
+        false => before,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_word_stands_in_its_stretch_or_beside_it() {
+        let places = |picture: &str| {
+            let pushed: Vec<bool> = picture.chars().map(|sign| sign == '=').collect();
+            words(&pushed)
+        };
+        assert_eq!(places("..======...."), [3]);
+        assert_eq!(places(".==........."), [3]);
+        assert_eq!(places("........==.."), [4]);
+        assert!(places(".=.=.=.=.=.=").is_empty());
+        assert_eq!(places("==.....=...."), [2, 8]);
+        assert_eq!(places("==.....=..."), [2]);
+        assert_eq!(places("==....=....."), [7]);
+        assert!(places("===").is_empty());
+        assert!(places("").is_empty());
+    }
+}
