@@ -31,13 +31,13 @@ impl Scale {
 
     /// Round numbers around `extent`, at least `least` apart; they change seldom while the extent grows.
     pub fn around(extent: Extent, least: f64) -> Self {
-        let unit = nice_above((extent.max - extent.min).max(least)) / 4.0;
+        let unit = ladder::at_or_below((extent.max - extent.min).max(least) / 4.0);
         let (low, high) = ((extent.min / unit).floor(), (extent.max / unit).ceil());
         let missing = (least / unit - (high - low)).ceil().max(0.0);
         let below = (0.5 * missing).floor();
         Self {
-            low: (low - below) * unit,
-            high: (high + missing - below) * unit,
+            low: rounded((low - below) * unit, DIGITS),
+            high: rounded((high + missing - below) * unit, DIGITS),
         }
     }
 
@@ -64,9 +64,16 @@ impl Scale {
         ticks(self.low, self.high, most)
     }
 
-    /// Digits after the point that tell its ends and the quarters between them apart.
+    /// Digits after the point with which its ends are written: as they are, or to a hundredth of the range.
     pub fn decimals(&self) -> usize {
-        decimals((self.high - self.low) / 10.0)
+        let range = self.high - self.low;
+        let most = decimals(range / 100.0);
+        let is_exact = |digits: &usize| {
+            let unit = libm::exp10(-(*digits as f64));
+            let rest = |end: f64| (end / unit - (end / unit).round()).abs() * unit;
+            rest(self.low).max(rest(self.high)) < 1e-6 * range && unit < 0.5 * range
+        };
+        (0..most).find(is_exact).unwrap_or(most)
     }
 
     /// Both ends.
@@ -126,9 +133,11 @@ mod tests {
     #[test]
     fn a_calm_value_needs_few_digits() {
         let extent = Extent::of(29.999_999_75).and(Extent::of(30.000_000_02));
-        assert_eq!(Scale::around(extent, 0.02).in_words(), "29.990 .. 30.010");
+        assert_eq!(Scale::around(extent, 0.02).in_words(), "29.99 .. 30.01");
         let constant = Scale::around(Extent::of(30.0), 0.02);
-        assert_eq!(constant.in_words(), "29.990 .. 30.010");
+        assert_eq!(constant.in_words(), "29.99 .. 30.01");
+        let wide = Extent::of(31.4).and(Extent::of(57.2));
+        assert_eq!(Scale::around(wide, 0.02).in_words(), "30 .. 60");
     }
 
     #[test]

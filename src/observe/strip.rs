@@ -40,9 +40,9 @@ pub struct Column {
     pub extent: Extent,
     /// The mean of the steps in and about the column.
     pub mean: f64,
-    /// Whether the curve swings too fast here to be drawn swing by swing: a picture of its extremes and its mean tells
-    /// more.
-    pub is_band: bool,
+    /// Where the curve swings too fast to be drawn swing by swing: its extremes over a whole swing about the column. A
+    /// picture of them and of the mean tells more than one of all swings.
+    pub band: Option<Extent>,
 }
 
 impl Strip {
@@ -108,8 +108,12 @@ impl Strip {
     ) -> Vec<Option<Column>> {
         let mut pen = Pen::new(self.columns, curve, cuts);
         for block in recording.between(self.begin_s, self.end_s()) {
-            let (from_s, to_s) = (block.begin_s.max(self.begin_s), block.end_s);
-            pen.draw(block, self.place(from_s), self.place(to_s));
+            let first = self.place(block.begin_s.max(self.begin_s));
+            let last = match block.end_s <= self.end_s() {
+                true => self.place(block.end_s).min(self.columns.saturating_sub(1)),
+                false => self.place(block.end_s),
+            };
+            pen.draw(block, first.min(last), last);
         }
         pen.finish()
     }
@@ -185,6 +189,27 @@ impl<'a> Pen<'a> {
         self.cuts.get(next).is_some_and(|&cut| cut < to_s)
     }
 
+    /// The extremes of a whole swing about the column `index`, where the curve turns `turns` times in a column; `None` where
+    /// that is seldom.
+    fn band(&self, index: usize, turns: f64) -> Option<Extent> {
+        if turns <= MOST_TURNS {
+            return None;
+        }
+        // A swing has two turns: half of one on either side.
+        let reach = if turns < 2.0 {
+            (1.0 / turns).ceil() as usize
+        } else {
+            0
+        };
+        let first = index.saturating_sub(reach);
+        let drawn = self
+            .columns
+            .iter()
+            .skip(first)
+            .take(index + reach + 1 - first);
+        drawn.filter_map(|drawn| drawn.extent).reduce(Extent::and)
+    }
+
     fn finish(self) -> Vec<Option<Column>> {
         let about = |index: usize| {
             let first = index.saturating_sub(NEIGHBOURS / 2);
@@ -218,7 +243,7 @@ impl<'a> Pen<'a> {
             Some(Column {
                 extent,
                 mean: mean.clamp(extent.min, extent.max),
-                is_band: turns > MOST_TURNS * about(index).count() as f64,
+                band: self.band(index, turns / about(index).count() as f64),
             })
         };
         self.columns.iter().enumerate().map(column).collect()
@@ -364,10 +389,13 @@ mod tests {
         let sine = |step: u32| (f64::from(step) / period * std::f64::consts::TAU).sin();
         let values: Vec<f64> = (0..1000).map(sine).collect();
         let drawn = x(Strip::new(0.0, 1000.0, 100), &recorded(&values, 1.0));
+        for band in drawn.iter().flatten().filter_map(|column| column.band) {
+            assert!(band.max > 0.9 && band.min < -0.9, "{band:?} of {period}");
+        }
         drawn
             .iter()
             .flatten()
-            .filter(|column| column.is_band)
+            .filter(|column| column.band.is_some())
             .count()
     }
 
@@ -381,7 +409,7 @@ mod tests {
     fn a_slow_curve_is_no_band_and_its_mean_is_itself() {
         let values: Vec<f64> = (0..1000).map(f64::from).collect();
         let drawn = x(Strip::new(0.0, 1000.0, 100), &recorded(&values, 1.0));
-        assert!(drawn.iter().flatten().all(|column| !column.is_band));
+        assert!(drawn.iter().flatten().all(|column| column.band.is_none()));
         assert!((drawn[50].unwrap().mean - 504.5).abs() < 1.0);
     }
 

@@ -120,7 +120,7 @@ mod tests {
         let of = |begin_s, window_s, width| line(&Strip::new(begin_s, window_s, 2 * width), width);
         assert_eq!(of(0.0, 230.0, 25), "0   50   100   150  200 s");
         assert_eq!(of(0.0, 230.0, 12), "0      200 s");
-        assert_eq!(of(12.0, 0.5, 30), "12.0  12.1  12.2  12.3  12.4 s");
+        assert_eq!(of(12.0, 0.5, 30), "12.0     12.2         12.4 s");
         assert_eq!(of(0.0, 230.0, 4), "0 s");
         assert_eq!(of(0.0, 230.0, 1), "");
     }

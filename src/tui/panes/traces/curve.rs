@@ -43,14 +43,15 @@ pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: 
             before = None;
             continue;
         };
-        let (top, bottom) = (row(column.extent.max), row(column.extent.min));
+        let extent = column.band.unwrap_or(column.extent);
+        let (top, bottom) = (row(extent.max), row(extent.min));
         let mut set = |from: usize, to: usize| {
             for y in (from..=to).filter(|&y| keeps(x, y)) {
                 dots.set(x as f64, y as f64, ink);
             }
         };
-        if !column.is_band || bottom < top + THINNEST_BAND {
-            set(top, bottom);
+        if column.band.is_none() || bottom < top + THINNEST_BAND {
+            set(row(column.extent.max), row(column.extent.min));
             before = None;
             continue;
         }
