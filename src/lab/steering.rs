@@ -363,7 +363,9 @@ impl Lab {
     /// export. If there is none of these, it says how to leave, unless the key has already removed a message or a count.
     fn close(&mut self, has_cleared: bool) {
         if self.on_top.close() {
-        } else if !self.script.is_done() {
+            return;
+        }
+        if !self.script.is_done() {
             self.stop_script();
         } else if self.player.playback.steps_to_go().is_some() {
             self.carry_out_all(&[Command::Pause]);
@@ -371,11 +373,11 @@ impl Lab {
             self.carry_out_all(&[Command::Cursor(CursorTo::Nowhere)]);
         } else if self.view.filled {
             self.carry_out_all(&[Command::Fill(None)]);
-        } else if has_cleared {
-        } else if self.files.is_exporting() {
-            self.files.stop_export();
-        } else {
-            self.say("nothing to close; q leaves");
+        } else if !has_cleared {
+            match self.files.is_exporting() {
+                true => self.files.stop_export(),
+                false => self.say("nothing to close; q leaves"),
+            }
         }
     }
 

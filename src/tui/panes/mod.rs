@@ -1,7 +1,7 @@
 //! The panes: each borrows what it shows, and draws it on its area. None of them changes anything.
 //!
 //! [`PANES`] is the one table of panes. A new pane is a file with its `ROW`, that row's name in the table, and its id in
-//! [`screen`](crate::scenario::screen), by which files and commands name it.
+//! [`screen`], by which files and commands name it.
 
 pub mod browser;
 pub mod chrome;
