@@ -56,15 +56,16 @@ impl Readouts {
         health: &Health,
         advice: Option<&Advice>,
     ) -> Self {
-        let state = simulation.state();
+        let step = simulation.now();
+        let state = step.after();
         Self {
-            title: simulation.scenario().file.title.clone(),
-            scheme: simulation.motion().scheme.name,
+            title: step.scenario().file.title.clone(),
+            scheme: step.motion().scheme.name,
             scheme_kind: simulation.remark(),
-            time_step_s: simulation.motion().time_step_s,
-            sample: simulation.sample(),
+            time_step_s: step.motion().time_step_s,
+            sample: step.sample(),
             spin: state.momentum.dot(&state.axle()),
-            kappa: SymmetricTop::of(&simulation.scenario().body.mechanics).map(|top| top.kappa()),
+            kappa: SymmetricTop::of(&step.scenario().body.mechanics).map(|top| top.kappa()),
             health: *health,
             advice: advice.copied(),
             theory: monitor.theory(state.time_s),
@@ -85,12 +86,12 @@ impl Readouts {
                 self.nutation = monitor.instruments().nutation_period_s();
             }
             Source::Exact => {
-                let deviation = monitor.deviation(simulation);
+                let deviation = monitor.deviation(simulation.now());
                 self.health.deviation = deviation;
                 self.health.most_distance_m = deviation.map(|_| monitor.most_distance_m());
             }
             Source::Scenario | Source::State | Source::Scheme | Source::Theory | Source::Clock => {
-                let health = monitor.health(simulation);
+                let health = monitor.health(simulation.now());
                 *self = Self::new(simulation, monitor, &health, self.advice.as_ref());
             }
         }
