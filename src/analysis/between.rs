@@ -106,10 +106,10 @@ impl Between {
         );
         let spin = step.angular_velocity().norm();
         let axle_rate = length + pull.norm().sqrt();
-        let is_followed = match (motion.scheme.order, motion.scheme.name) {
+        let is_followed = match (motion.scheme.order, motion.scheme.turns_exactly) {
             (None, _) => axle_rate * motion.time_step_s < TOO_FAR_RAD,
-            (_, "strang" | "srkn11b") => axle_rate * motion.time_step_s < FOLLOWED_RAD,
-            _ => spin.max(axle_rate) * motion.time_step_s < FOLLOWED_RAD,
+            (Some(_), true) => axle_rate * motion.time_step_s < FOLLOWED_RAD,
+            (Some(_), false) => spin.max(axle_rate) * motion.time_step_s < FOLLOWED_RAD,
         };
         let is_free = pull.norm() == 0.0;
         let period = match is_free {

@@ -116,7 +116,7 @@ impl Readouts {
         let is_short = period_s.map(|period_s| 2.0 * self.time_step_s < period_s);
         // Turned by half a turn a step or more, the axle's swing about L is seen too seldom as well. The schemes that
         // turn the body exactly still follow the nutation of a known period that is longer.
-        let turns_exactly = !["report", "rk4"].contains(&self.scheme);
+        let turns_exactly = self.health.scheme.turns_exactly;
         let follows = self.turn_rad() < PI || (turns_exactly && period_s.is_some());
         match is_short {
             _ if !follows => Some(false),
