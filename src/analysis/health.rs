@@ -42,7 +42,7 @@ pub struct Health {
     pub swing_deg: Option<f64>,
     /// Angle between axle and L now, degrees.
     pub lag_deg: f64,
-    /// (E − E0 − W)/S, see [`Simulation::energy_drift`].
+    /// (E − E0 − W)/S, see [`Step::energy_drift`].
     pub energy_drift: Option<f64>,
     /// What S is; `None` where there is none.
     pub energy_unit: Option<EnergyUnit>,
