@@ -59,11 +59,10 @@ fn readouts(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("readouts");
     for (name, rest) in [("symmetric", ""), ("lopsided", LUMP)] {
         let mut simulation = Simulation::new(scenario(rest));
-        let mut monitor = Monitor::new(&simulation);
+        let mut monitor = Monitor::new(simulation.now());
         group.bench_function(format!("a step and its following, {name}"), |bencher| {
             bencher.iter(|| {
-                simulation.step().unwrap();
-                monitor.follow(black_box(&simulation));
+                monitor.follow(black_box(simulation.step().unwrap()));
             });
         });
         group.bench_function(
@@ -71,7 +70,7 @@ fn readouts(criterion: &mut Criterion) {
             |bencher| {
                 bencher.iter(|| {
                     simulation.step().unwrap();
-                    let health = monitor.health(black_box(&simulation));
+                    let health = monitor.health(black_box(simulation.now()));
                     let theory = monitor.theory(simulation.state().time_s);
                     let instruments = monitor.instruments();
                     black_box((

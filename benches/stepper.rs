@@ -1,8 +1,11 @@
-//! Nanoseconds a step, each with its record: the schemes on the report's 14 points, and the report's with more points.
+//! Nanoseconds a step, each with its record: the schemes on the report's 14 points, bare, followed by the monitor, and
+//! watched; and the report's with more points.
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use gyrolab::analysis::Monitor;
+use gyrolab::observe::live::LiveRun;
 use gyrolab::physics::scheme::SCHEMES;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Document;
@@ -30,8 +33,7 @@ fn schemes(criterion: &mut Criterion) {
         let mut simulation = simulation(scheme.name, 10);
         group.bench_function(scheme.name, |bencher| {
             bencher.iter(|| {
-                simulation.step().unwrap();
-                black_box(simulation.record())
+                black_box(simulation.step().unwrap());
             });
         });
     }
@@ -44,12 +46,34 @@ fn points(criterion: &mut Criterion) {
         group.throughput(Throughput::Elements(rim as u64 + 4));
         group.bench_function(BenchmarkId::from_parameter(rim + 4), |bencher| {
             bencher.iter(|| {
-                simulation.step().unwrap();
-                black_box(simulation.record())
+                black_box(simulation.step().unwrap());
             });
         });
     }
 }
 
-criterion_group!(benches, schemes, points);
+fn followed(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("step followed by the monitor, 14 points");
+    for scheme in SCHEMES {
+        let mut simulation = simulation(scheme.name, 10);
+        let mut monitor = Monitor::new(simulation.now());
+        group.bench_function(scheme.name, |bencher| {
+            bencher.iter(|| {
+                monitor.follow(simulation.step().unwrap());
+            });
+        });
+    }
+}
+
+fn watched(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("step of a watched run, 14 points");
+    for scheme in SCHEMES {
+        let mut run = LiveRun::new(Arc::clone(simulation(scheme.name, 10).scenario()));
+        group.bench_function(scheme.name, |bencher| {
+            bencher.iter(|| run.step().unwrap());
+        });
+    }
+}
+
+criterion_group!(benches, schemes, points, followed, watched);
 criterion_main!(benches);

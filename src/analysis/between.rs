@@ -2,9 +2,9 @@
 
 use super::swing::{Interpolation, Swing};
 use super::turns::{Line, Measured, ROUNDING, Turn, Turns};
-use crate::physics::observables::{self, Azimuth};
+use crate::physics::observables::Azimuth;
 use crate::physics::{LagrangeTop, SymmetricTop};
-use crate::run::Simulation;
+use crate::run::Step;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
@@ -84,17 +84,17 @@ impl Crossing {
 }
 
 impl Between {
-    /// Instruments for the run that `simulation` begins; `None` where its rows do not show the motion between them.
-    pub fn new(simulation: &Simulation) -> Option<Self> {
-        let body = &simulation.scenario().body.mechanics;
+    /// Instruments for the run that begins at `step`; `None` where its rows do not show the motion between them.
+    pub fn new(step: &Step) -> Option<Self> {
+        let body = &step.scenario().body.mechanics;
         let top = SymmetricTop::of(body)?;
-        let load = simulation.loads().on_axle(body, &top)?;
+        let load = step.loads().on_axle(body, &top)?;
         if load.x.hypot(load.y) > 1e-12 * load.z.abs() {
             return None;
         }
-        let (state, motion) = (simulation.state(), simulation.motion());
+        let (state, motion) = (step.after(), step.motion());
         let per_across = 1.0 / top.across;
-        let start = Row::of(simulation, per_across);
+        let start = Row::of(step, per_across);
         let pull = load * per_across;
         let (swing, length) = (start.swing, start.swing.momentum.norm());
         let exact = LagrangeTop::new(
@@ -104,12 +104,12 @@ impl Between {
             state.orientation,
             state.momentum,
         );
-        let spin = observables::angular_velocity(body, state).norm();
+        let spin = step.angular_velocity().norm();
         let axle_rate = length + pull.norm().sqrt();
-        let is_followed = match (motion.scheme.order, motion.scheme.name) {
+        let is_followed = match (motion.scheme.order, motion.scheme.turns_exactly) {
             (None, _) => axle_rate * motion.time_step_s < TOO_FAR_RAD,
-            (_, "strang" | "srkn11b") => axle_rate * motion.time_step_s < FOLLOWED_RAD,
-            _ => spin.max(axle_rate) * motion.time_step_s < FOLLOWED_RAD,
+            (Some(_), true) => axle_rate * motion.time_step_s < FOLLOWED_RAD,
+            (Some(_), false) => spin.max(axle_rate) * motion.time_step_s < FOLLOWED_RAD,
         };
         let is_free = pull.norm() == 0.0;
         let period = match is_free {
@@ -168,11 +168,11 @@ impl Between {
         })
     }
 
-    /// Takes in the step that `simulation` stands at.
+    /// Takes in `step`.
     #[inline]
-    pub fn follow(&mut self, simulation: &Simulation) {
+    pub fn follow(&mut self, step: &Step) {
         let before = self.now;
-        let now = Row::of(simulation, self.per_across);
+        let now = Row::of(step, self.per_across);
         self.now = now;
         let (a, b) = (&before.swing.axle, &now.swing.axle);
         let missed = self.missed;
@@ -395,15 +395,15 @@ impl Between {
 }
 
 impl Row {
-    fn of(simulation: &Simulation, per_across: f64) -> Self {
-        let state = simulation.state();
+    fn of(step: &Step, per_across: f64) -> Self {
+        let state = step.after();
         Self {
             time_s: state.time_s,
             swing: Swing {
                 axle: state.axle(),
                 momentum: state.momentum * per_across,
             },
-            azimuth: *simulation.azimuth(),
+            azimuth: *step.azimuth(),
         }
     }
 

@@ -1,7 +1,6 @@
 //! The least and the greatest of a run's numbers, over every step that it has taken, its start included.
 
-use crate::physics::observables;
-use crate::run::Simulation;
+use crate::run::Step;
 
 /// Where the heights of two tilts differ by less than this, the tilts themselves are compared.
 const NEAR: f64 = 1e-14;
@@ -22,13 +21,9 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// Of `simulation` where it stands.
-    pub fn new(simulation: &Simulation) -> Self {
-        let (tilt, z, height) = (
-            observables::tilt_deg(simulation.state()),
-            z_of(simulation),
-            height(simulation),
-        );
+    /// Of the run that stands at `step`.
+    pub fn new(step: &Step) -> Self {
+        let (tilt, z, height) = (step.tilt_deg(), step.position().z, height(step));
         Self {
             lowest_tilt_deg: tilt,
             highest_tilt_deg: tilt,
@@ -38,33 +33,28 @@ impl Extremes {
         }
     }
 
-    /// Takes in the step that `simulation` stands at.
+    /// Takes in `step`.
     #[inline]
-    pub fn follow(&mut self, simulation: &Simulation) {
-        let z = z_of(simulation);
+    pub fn follow(&mut self, step: &Step) {
+        let z = step.position().z;
         self.lowest_z_m = self.lowest_z_m.min(z);
         self.highest_z_m = self.highest_z_m.max(z);
         // An arc tangent at every step would cost as much as some schemes' step: it is taken only where the axle is
         // about as low or as high as it has ever been.
-        let height = height(simulation);
+        let height = height(step);
         let (least, greatest) = self.heights;
         if height > least + NEAR && height < greatest - NEAR {
             return;
         }
-        let tilt = observables::tilt_deg(simulation.state());
+        let tilt = step.tilt_deg();
         self.heights = (least.min(height), greatest.max(height));
         self.lowest_tilt_deg = self.lowest_tilt_deg.min(tilt);
         self.highest_tilt_deg = self.highest_tilt_deg.max(tilt);
     }
 }
 
-fn z_of(simulation: &Simulation) -> f64 {
-    let scenario = simulation.scenario();
-    observables::position(&scenario.body.mechanics, simulation.state(), scenario.trace).z
-}
-
 /// cos|cos| of the tilt, with no root to take: it falls as the tilt grows, by no more than the tilt grows (rad).
-fn height(simulation: &Simulation) -> f64 {
-    let axle = simulation.state().axle();
+fn height(step: &Step) -> f64 {
+    let axle = step.after().axle();
     axle.z * axle.z.abs() / axle.norm_squared()
 }

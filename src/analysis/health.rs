@@ -9,7 +9,7 @@ use super::trial::{Deviation, Trial};
 use crate::physics::loads::torque;
 use crate::physics::{SchemeInfo, SymmetricTop, observables};
 use crate::run::resample::resampled;
-use crate::run::{Clock, EnergyUnit, Simulation};
+use crate::run::{Clock, EnergyUnit, Step};
 use crate::scenario::{Edit, Scenario, rescale};
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
@@ -42,7 +42,7 @@ pub struct Health {
     pub swing_deg: Option<f64>,
     /// Angle between axle and L now, degrees.
     pub lag_deg: f64,
-    /// (E − E0 − W)/S, see [`Simulation::energy_drift`].
+    /// (E − E0 − W)/S, see [`Step::energy_drift`].
     pub energy_drift: Option<f64>,
     /// What S is; `None` where there is none.
     pub energy_unit: Option<EnergyUnit>,
@@ -105,18 +105,17 @@ pub enum Advice {
 }
 
 impl Health {
-    /// Of `simulation` as it stands; `deviation` and `most_distance_m` from the exact motion, whose nutation swings by
+    /// Of a run at `step`; `deviation` and `most_distance_m` from the exact motion, whose nutation swings by
     /// `swing_deg`.
     pub fn new(
-        simulation: &Simulation,
+        step: &Step,
         deviation: Option<Deviation>,
         most_distance_m: Option<f64>,
         swing_deg: Option<f64>,
     ) -> Self {
-        let scenario = simulation.scenario();
-        let (state, motion) = (simulation.state(), simulation.motion());
-        let omega = observables::angular_velocity(&scenario.body.mechanics, state);
-        let psi = length(&omega) * motion.time_step_s;
+        let scenario = step.scenario();
+        let (state, motion) = (step.after(), step.motion());
+        let psi = length(step.angular_velocity()) * motion.time_step_s;
         let axle = state.axle();
         // As a direction: the squares of a very large L leave the range of numbers.
         let towards = state.momentum / state.momentum.amax();
@@ -128,19 +127,19 @@ impl Health {
                 psi,
                 scenario.file.body.rim.as_ref().map_or(1, |rim| rim.points),
             ),
-            nutation: Nutation::of(simulation, psi),
+            nutation: Nutation::of(step, psi),
             swing_deg,
             lag_deg: if lag.is_finite() {
                 lag.to_degrees()
             } else {
                 0.0
             },
-            energy_drift: simulation.energy_drift(),
-            energy_unit: simulation.energy_unit(),
+            energy_drift: step.energy_drift(),
+            energy_unit: step.energy_unit(),
             deviation,
             most_distance_m,
             arm_m: scenario.arm_m(),
-            steps: simulation.step_number(),
+            steps: step.number(),
             can_be_rescaled: rescale::can_be_rescaled(&scenario.file),
         }
     }
@@ -194,15 +193,15 @@ impl Picture {
 }
 
 impl Nutation {
-    fn of(simulation: &Simulation, psi: f64) -> Option<Self> {
-        let scenario = simulation.scenario();
-        let (state, motion) = (simulation.state(), simulation.motion());
+    fn of(step: &Step, psi: f64) -> Option<Self> {
+        let scenario = step.scenario();
+        let (state, motion) = (step.after(), step.motion());
         let body = &scenario.body.mechanics;
         let top = SymmetricTop::of(body).filter(|_| motion.scheme.name == "report")?;
         let (kappa, momentum) = (top.kappa(), state.momentum.norm());
         let (sin, cos) = psi.sin_cos();
         let off_one = kappa * (1.0 - cos).hypot(sin);
-        let kick = torque(&state.orientation, &simulation.loads().moment(body)).norm()
+        let kick = torque(&state.orientation, &step.loads().moment(body)).norm()
             * motion.time_step_s
             / momentum;
         Some(Self {

@@ -18,7 +18,7 @@
 use super::between::Between;
 use super::rows::Rows;
 pub use super::turns::Measured;
-use crate::run::Simulation;
+use crate::run::Step;
 
 /// The instruments that follow a run; to be shown every step of it.
 #[derive(Clone, Debug)]
@@ -31,20 +31,20 @@ enum Sight {
 }
 
 impl Instruments {
-    /// Instruments that begin to follow `simulation` where it stands.
-    pub fn new(simulation: &Simulation) -> Self {
-        Self(match Between::new(simulation) {
+    /// Instruments that begin to follow a run at `step`.
+    pub fn new(step: &Step) -> Self {
+        Self(match Between::new(step) {
             Some(between) => Sight::Between(Box::new(between)),
-            None => Sight::Rows(Box::new(Rows::new(simulation))),
+            None => Sight::Rows(Box::new(Rows::new(step))),
         })
     }
 
-    /// Takes in the step that `simulation` stands at.
+    /// Takes in `step`.
     #[inline]
-    pub fn follow(&mut self, simulation: &Simulation) {
+    pub fn follow(&mut self, step: &Step) {
         match &mut self.0 {
-            Sight::Between(between) => between.follow(simulation),
-            Sight::Rows(rows) => rows.follow(simulation),
+            Sight::Between(between) => between.follow(step),
+            Sight::Rows(rows) => rows.follow(step),
         }
     }
 

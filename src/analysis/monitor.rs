@@ -7,7 +7,7 @@ use super::measure::Instruments;
 use super::theory::Theory;
 use super::trial::Deviation;
 use crate::physics::{State, SymmetricTop};
-use crate::run::{Simulation, Truth};
+use crate::run::{Step, Truth};
 use crate::scenario::Scenario;
 use std::sync::Arc;
 
@@ -25,17 +25,17 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// A monitor for the run that `simulation` begins.
-    pub fn new(simulation: &Simulation) -> Self {
-        let scenario = simulation.scenario();
+    /// A monitor for the run that begins at `step`.
+    pub fn new(step: &Step) -> Self {
+        let scenario = step.scenario();
         let truth = is_affordable(scenario).then(|| Truth::new(Arc::clone(scenario)));
         Self {
-            instruments: Instruments::new(simulation),
-            extremes: Extremes::new(simulation),
+            instruments: Instruments::new(step),
+            extremes: Extremes::new(step),
             truth,
             most_distance_m: 0.0,
             unheld: Vec::new(),
-            changes: simulation.changes(),
+            changes: step.changes(),
         }
     }
 
@@ -48,21 +48,21 @@ impl Monitor {
         self.truth.take_if(|_| !is_affordable(scenario));
     }
 
-    /// Takes in the step that `simulation` stands at; to be shown every step. Every one of them is held against the exact
-    /// motion: what leaves it and comes back between two looks has left it too.
+    /// Takes in `step`; to be shown every step. Every one of them is held against the exact motion: what leaves it and
+    /// comes back between two looks has left it too.
     #[inline]
-    pub fn follow(&mut self, simulation: &Simulation) {
-        self.measure(simulation);
-        self.hold(simulation.state());
+    pub fn follow(&mut self, step: &Step) {
+        self.measure(step);
+        self.hold(step.after());
     }
 
     /// The same, but for the exact motion: [`catch_up`](Self::catch_up) comes to that later, at the latest when health or
     /// theory is asked for. So the time that stepping takes can be told from it.
     #[inline]
-    pub fn follow_ahead(&mut self, simulation: &Simulation) {
-        self.measure(simulation);
+    pub fn follow_ahead(&mut self, step: &Step) {
+        self.measure(step);
         if self.truth.is_some() {
-            self.unheld.push(*simulation.state());
+            self.unheld.push(*step.after());
         }
     }
 
@@ -76,32 +76,32 @@ impl Monitor {
         self.unheld.clear();
     }
 
-    fn measure(&mut self, simulation: &Simulation) {
-        self.extremes.follow(simulation);
-        if simulation.changes() == self.changes {
-            self.instruments.follow(simulation);
+    fn measure(&mut self, step: &Step) {
+        self.extremes.follow(step);
+        if step.changes() == self.changes {
+            self.instruments.follow(step);
         } else {
-            self.changes = simulation.changes();
-            self.instruments = Instruments::new(simulation);
+            self.changes = step.changes();
+            self.instruments = Instruments::new(step);
         }
     }
 
-    /// Holds the run against the exact motion where it stands, and says how it is.
-    pub fn health(&mut self, simulation: &Simulation) -> Health {
-        let deviation = self.deviation(simulation);
-        let theory = self.theory(simulation.state().time_s);
+    /// Holds `step` against the exact motion, and says how the run is there.
+    pub fn health(&mut self, step: &Step) -> Health {
+        let deviation = self.deviation(step);
+        let theory = self.theory(step.time_s());
         Health::new(
-            simulation,
+            step,
             deviation,
             deviation.map(|_| self.most_distance_m),
             theory.map(|theory| theory.tilt_range_deg.1 - theory.tilt_range_deg.0),
         )
     }
 
-    /// How far off the exact motion `simulation` is where it stands; `None` where that would take too long.
-    pub fn deviation(&mut self, simulation: &Simulation) -> Option<Deviation> {
+    /// How far off the exact motion the run is at `step`; `None` where that would take too long.
+    pub fn deviation(&mut self, step: &Step) -> Option<Deviation> {
         self.catch_up();
-        self.hold(simulation.state())
+        self.hold(step.after())
     }
 
     fn hold(&mut self, state: &State) -> Option<Deviation> {

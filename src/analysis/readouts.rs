@@ -56,15 +56,16 @@ impl Readouts {
         health: &Health,
         advice: Option<&Advice>,
     ) -> Self {
-        let state = simulation.state();
+        let step = simulation.now();
+        let state = step.after();
         Self {
-            title: simulation.scenario().file.title.clone(),
-            scheme: simulation.motion().scheme.name,
+            title: step.scenario().file.title.clone(),
+            scheme: step.motion().scheme.name,
             scheme_kind: simulation.remark(),
-            time_step_s: simulation.motion().time_step_s,
-            sample: simulation.sample(),
+            time_step_s: step.motion().time_step_s,
+            sample: step.sample(),
             spin: state.momentum.dot(&state.axle()),
-            kappa: SymmetricTop::of(&simulation.scenario().body.mechanics).map(|top| top.kappa()),
+            kappa: SymmetricTop::of(&step.scenario().body.mechanics).map(|top| top.kappa()),
             health: *health,
             advice: advice.copied(),
             theory: monitor.theory(state.time_s),
@@ -85,12 +86,12 @@ impl Readouts {
                 self.nutation = monitor.instruments().nutation_period_s();
             }
             Source::Exact => {
-                let deviation = monitor.deviation(simulation);
+                let deviation = monitor.deviation(simulation.now());
                 self.health.deviation = deviation;
                 self.health.most_distance_m = deviation.map(|_| monitor.most_distance_m());
             }
             Source::Scenario | Source::State | Source::Scheme | Source::Theory | Source::Clock => {
-                let health = monitor.health(simulation);
+                let health = monitor.health(simulation.now());
                 *self = Self::new(simulation, monitor, &health, self.advice.as_ref());
             }
         }
@@ -115,7 +116,7 @@ impl Readouts {
         let is_short = period_s.map(|period_s| 2.0 * self.time_step_s < period_s);
         // Turned by half a turn a step or more, the axle's swing about L is seen too seldom as well. The schemes that
         // turn the body exactly still follow the nutation of a known period that is longer.
-        let turns_exactly = !["report", "rk4"].contains(&self.scheme);
+        let turns_exactly = self.health.scheme.turns_exactly;
         let follows = self.turn_rad() < PI || (turns_exactly && period_s.is_some());
         match is_short {
             _ if !follows => Some(false),

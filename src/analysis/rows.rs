@@ -3,7 +3,7 @@
 
 use super::turns::{Line, Measured, ROUNDING, Turn, Turns};
 use crate::physics::observables::Azimuth;
-use crate::run::Simulation;
+use crate::run::Step;
 use std::f64::consts::TAU;
 
 /// Fewer nutations than this do not say how much they differ from one another.
@@ -40,12 +40,12 @@ struct Look {
 }
 
 impl Look {
-    fn at(simulation: &Simulation) -> Self {
-        let state = simulation.state();
+    fn at(step: &Step) -> Self {
+        let state = step.after();
         Self {
             time_s: state.time_s,
             axle: state.axle().into(),
-            azimuth: *simulation.azimuth(),
+            azimuth: *step.azimuth(),
         }
     }
 
@@ -55,9 +55,9 @@ impl Look {
 }
 
 impl Rows {
-    /// Instruments for the run that `simulation` begins.
-    pub fn new(simulation: &Simulation) -> Self {
-        let look = Look::at(simulation);
+    /// Instruments for the run that begins at `step`.
+    pub fn new(step: &Step) -> Self {
+        let look = Look::at(step);
         Self {
             looks: [look; 3],
             seen: 1,
@@ -74,10 +74,10 @@ impl Rows {
         }
     }
 
-    /// Takes in the step that `simulation` stands at.
+    /// Takes in `step`.
     #[inline]
-    pub fn follow(&mut self, simulation: &Simulation) {
-        let look = Look::at(simulation);
+    pub fn follow(&mut self, step: &Step) {
+        let look = Look::at(step);
         let before = self.looks[2].axle;
         self.is_ambiguous |= before[0] * look.axle[0] + before[1] * look.axle[1] < 0.0;
         self.looks = [self.looks[1], self.looks[2], look];

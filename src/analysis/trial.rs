@@ -1,7 +1,7 @@
 //! A run played through beside the exact motion: how far it strays, and what of the constants of the motion it loses.
 
-use crate::physics::{State, observables};
-use crate::run::{NotFinite, Simulation, Truth};
+use crate::physics::State;
+use crate::run::{NotFinite, Simulation, Step, Truth};
 use crate::scenario::Scenario;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -102,7 +102,7 @@ impl Trial {
             let begin = Instant::now();
             while simulation.step_number() < next && trial.broke.is_none() {
                 match simulation.step() {
-                    Ok(()) => states.push(*simulation.state()),
+                    Ok(step) => states.push(*step.after()),
                     Err(error) => trial.broke = Some(error),
                 }
             }
@@ -111,7 +111,7 @@ impl Trial {
                 trial.hold(state, &mut truth, scale);
             }
             if next == next_look || trial.broke.is_some() {
-                trial.read_off(&simulation);
+                trial.read_off(simulation.now());
             }
             if trial.most_distance_m > limit_m || watch(simulation.step_number()).is_break() {
                 return None;
@@ -144,13 +144,11 @@ impl Trial {
         self.lz_drift = greater(self.lz_drift, (off.lz / scale).abs());
     }
 
-    fn read_off(&mut self, simulation: &Simulation) {
-        let body = &simulation.scenario().body.mechanics;
-        let omega = observables::angular_velocity(body, simulation.state()).norm();
-        self.most_turns = self
-            .most_turns
-            .max(omega * simulation.motion().time_step_s / TAU);
-        let drift = simulation.energy_drift().map(f64::abs);
+    fn read_off(&mut self, step: &Step) {
+        let omega = step.angular_velocity().norm();
+        let turns = omega * step.motion().time_step_s / TAU;
+        self.most_turns = self.most_turns.max(turns);
+        let drift = step.energy_drift().map(f64::abs);
         self.energy_drift = drift.map(|drift| drift.max(self.energy_drift.unwrap_or(0.0)));
     }
 }

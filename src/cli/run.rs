@@ -8,7 +8,7 @@ use crate::analysis::health::{Advice, advise};
 use crate::analysis::{Health, Monitor, Readouts};
 use crate::export::stream::{self, Ended};
 use crate::export::{CsvWriter, Destination, Summary};
-use crate::run::Simulation;
+use crate::run::{Simulation, Step};
 use crate::text::printable::Shown;
 use anyhow::Context;
 use clap::CommandFactory;
@@ -41,7 +41,7 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         .transpose()
         .with_context(|| cannot_write(output_path))?;
     let mut simulation = Simulation::new(Arc::clone(&scenario));
-    let mut monitor = Monitor::new(&simulation);
+    let mut monitor = Monitor::new(simulation.now());
     let every = args.every.get();
     let (ended, wall) = play(
         &mut simulation,
@@ -62,7 +62,7 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     if interruption.may_act_at_once() {
         return Ok(ExitCode::from(INTERRUPTED));
     }
-    let health = monitor.health(&simulation);
+    let health = monitor.health(simulation.now());
     let advice = advice(&health, &simulation);
     let readouts = Readouts::new(&simulation, &mut monitor, &health, advice.as_ref());
     report(args, &Summary::new(readouts, wall))?;
@@ -94,7 +94,7 @@ fn play(
     let mut meter = Meter::new();
     // Each step is followed at once and held against the exact motion after its block: that is no stepping.
     let monitor = RefCell::new(monitor);
-    let each = |simulation: &Simulation| monitor.borrow_mut().follow_ahead(simulation);
+    let each = |step: &Step| monitor.borrow_mut().follow_ahead(step);
     let ended = stream::play(simulation, steps, every, output, each, |progress| {
         monitor.borrow_mut().catch_up();
         meter.show(progress.step, progress.steps);

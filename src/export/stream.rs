@@ -1,7 +1,7 @@
 //! Plays a run to its end and writes its rows as it goes.
 
 use super::CsvWriter;
-use crate::run::{NotFinite, Sample, Simulation};
+use crate::run::{NotFinite, Sample, Simulation, Step};
 use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -33,7 +33,7 @@ pub enum Ended {
 }
 
 /// Plays `simulation` to the step `steps` and writes the present row, every `every`-th row and the last one to `csv`, if
-/// given. It calls `each` after every step, and `watch` after each block of steps; `watch` may stop it.
+/// given. It shows `each` every step, and calls `watch` after each block of steps; `watch` may stop it.
 ///
 /// Returns how the stream ended, and the time spent on stepping alone.
 ///
@@ -44,7 +44,7 @@ pub fn play<W: Write>(
     steps: u64,
     every: u64,
     mut csv: Option<&mut CsvWriter<W>>,
-    mut each: impl FnMut(&Simulation),
+    mut each: impl FnMut(&Step),
     mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
 ) -> io::Result<(Ended, Duration)> {
     let points = simulation.scenario().body.mechanics.points().len();
@@ -57,11 +57,11 @@ pub fn play<W: Write>(
     let mut ended = None;
     while ended.is_none() {
         let begin = Instant::now();
-        let result = take_block(simulation, steps, block, |simulation| {
-            each(simulation);
-            let step = simulation.step_number();
-            if csv.is_some() && (step.is_multiple_of(every) || step == steps) {
-                rows.push(simulation.sample());
+        let result = take_block(simulation, steps, block, |step| {
+            each(step);
+            let number = step.number();
+            if csv.is_some() && (number.is_multiple_of(every) || number == steps) {
+                rows.push(step.sample());
             }
         });
         stepping += begin.elapsed();
@@ -70,7 +70,7 @@ pub fn play<W: Write>(
         }
         ended = match result {
             Err(error) => {
-                write_last(simulation, every, rows.last(), csv.as_deref_mut())?;
+                write_last(simulation.now(), every, rows.last(), csv.as_deref_mut())?;
                 Some(Ended::NotFinite(error))
             }
             Ok(()) if simulation.step_number() >= steps => Some(Ended::Done),
@@ -92,27 +92,26 @@ fn take_block(
     simulation: &mut Simulation,
     steps: u64,
     block: usize,
-    mut after_each: impl FnMut(&Simulation),
+    mut each: impl FnMut(&Step),
 ) -> Result<(), NotFinite> {
     let end = steps.min(simulation.step_number() + block as u64);
     while simulation.step_number() < end {
-        simulation.step()?;
-        after_each(simulation);
+        each(simulation.step()?);
     }
     Ok(())
 }
 
 /// Writes the row of the last finite step, unless it is written already: it is the run's last row, whatever `every` is.
 fn write_last<W: Write>(
-    simulation: &Simulation,
+    last: &Step,
     every: u64,
     written: Option<&Sample>,
     csv: Option<&mut CsvWriter<W>>,
 ) -> io::Result<()> {
-    let step = simulation.step_number();
+    let step = last.number();
     let is_written = written.is_some_and(|row| row.step == step) || step.is_multiple_of(every);
     match csv {
-        Some(csv) if !is_written => csv.write(&simulation.sample()),
+        Some(csv) if !is_written => csv.write(&last.sample()),
         _ => Ok(()),
     }
 }

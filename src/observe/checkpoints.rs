@@ -27,6 +27,16 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
+    /// Of a run as it stands. Workings are left out: they may take much memory, and are found again by a step.
+    fn of(simulation: &Simulation, monitor: &Monitor) -> Self {
+        let mut simulation = simulation.clone();
+        simulation.keep_workings(false);
+        Self {
+            simulation,
+            monitor: monitor.clone(),
+        }
+    }
+
     /// The step it stands at.
     pub fn step(&self) -> u64 {
         self.simulation.step_number()
@@ -46,10 +56,7 @@ impl Checkpoints {
     pub fn new(simulation: &Simulation, monitor: &Monitor) -> Self {
         let points = simulation.scenario().body.mechanics.points().len();
         Self {
-            start: Checkpoint {
-                simulation: simulation.clone(),
-                monitor: monitor.clone(),
-            },
+            start: Checkpoint::of(simulation, monitor),
             later: Vec::new(),
             spacing: SPACING,
             most: (MEMORY / (PER_CHECKPOINT + PER_POINT * points)).max(FEWEST),
@@ -69,10 +76,7 @@ impl Checkpoints {
         if self.later.last().is_some_and(|last| last.step() >= step) || step == 0 {
             return; // this step is stored already
         }
-        self.later.push(Checkpoint {
-            simulation: simulation.clone(),
-            monitor: monitor.clone(),
-        });
+        self.later.push(Checkpoint::of(simulation, monitor));
         if self.later.len() > self.most {
             self.spacing *= 2;
             let spacing = self.spacing;

@@ -10,9 +10,9 @@ use super::path::Path;
 use super::recording::{Moment, Recording};
 use crate::analysis::readouts::Source;
 use crate::analysis::{Health, Instruments, Monitor, Readouts, Theory};
-use crate::run::{NotFinite, Simulation};
+use crate::physics::Workings;
+use crate::run::{NotFinite, Simulation, Step};
 use crate::scenario::Scenario;
-use nalgebra::Vector3;
 use std::cmp::Ordering;
 use std::sync::Arc;
 
@@ -27,7 +27,6 @@ pub struct LiveRun {
     simulation: Simulation,
     monitor: Monitor,
     checkpoints: Checkpoints,
-    traced: Vector3<f64>,
     now: Moment,
     recording: Recording,
     path: Path,
@@ -35,6 +34,9 @@ pub struct LiveRun {
     followed_to: u64,
     ahead: Option<Ahead>,
     overlay: Option<Overlay>,
+    keeps_workings: bool,
+    /// The workings that were asked for last without having been kept, and of which step they are.
+    explained: Option<(u64, Arc<Workings>)>,
 }
 
 /// The pictures of a run up to the furthest step it has been at, while it stands at an earlier one.
@@ -71,21 +73,22 @@ pub enum PlayEnd {
 impl LiveRun {
     /// The run of `scenario`, at step 0.
     pub fn new(scenario: Arc<Scenario>) -> Self {
-        let traced = scenario.body.mechanics.points()[scenario.trace].at;
-        let now = Moment::new(&scenario.start, &traced);
+        let reach = scenario.arm_m();
         let simulation = Simulation::new(scenario);
-        let monitor = Monitor::new(&simulation);
+        let monitor = Monitor::new(simulation.now());
+        let now = moment(simulation.now());
         let mut run = Self {
             checkpoints: Checkpoints::new(&simulation, &monitor),
             monitor,
             simulation,
-            traced,
             now,
             recording: Recording::default(),
-            path: Path::new(traced.norm()),
+            path: Path::new(reach),
             followed_to: 0,
             ahead: None,
             overlay: None,
+            keeps_workings: false,
+            explained: None,
         };
         run.recording.push(&run.now);
         run.path.follow(0, &run.now.position);
@@ -97,10 +100,10 @@ impl LiveRun {
     /// # Errors
     /// When the numbers stop being finite; the run then stays at the step before.
     pub fn step(&mut self) -> Result<(), NotFinite> {
-        self.simulation.step()?;
-        self.monitor.follow(&self.simulation);
+        let step = self.simulation.step()?;
+        self.monitor.follow(step);
+        self.now = moment(step);
         self.checkpoints.offer(&self.simulation, &self.monitor);
-        self.now = Moment::new(self.simulation.state(), &self.traced);
         self.keep();
         Ok(())
     }
@@ -196,7 +199,8 @@ impl LiveRun {
         let scenario = Arc::clone(self.simulation.scenario());
         (self.simulation, self.monitor) =
             (checkpoint.simulation.clone(), checkpoint.monitor.clone());
-        self.now = Moment::new(self.simulation.state(), &self.traced);
+        self.simulation.keep_workings(self.keeps_workings);
+        self.now = moment(self.simulation.now());
         self.adopt(&scenario);
     }
 
@@ -227,6 +231,7 @@ impl LiveRun {
     /// of later steps are dropped.
     pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
         self.ahead = None;
+        self.explained = None;
         self.checkpoints.cut_back(self.followed_to);
         if self.simulation.has_ended() {
             let here = self.simulation.step_number();
@@ -310,7 +315,7 @@ impl LiveRun {
 
     /// How reliable the run's numbers are at the present step.
     pub fn health(&mut self) -> Health {
-        self.monitor.health(&self.simulation)
+        self.monitor.health(self.simulation.now())
     }
 
     /// Every number that is read off it where it stands.
@@ -332,6 +337,33 @@ impl LiveRun {
     /// What has been measured on its steps.
     pub fn instruments(&self) -> &Instruments {
         self.monitor.instruments()
+    }
+
+    /// Whether the workings of every step to come are kept, as whoever shows them wants it while the run goes on.
+    pub fn keep_workings(&mut self, kept: bool) {
+        self.keeps_workings = kept;
+        self.simulation.keep_workings(kept);
+    }
+
+    /// What the scheme computed in the step taken last; `None` at step 0. Where the workings were not kept, that step is
+    /// taken a second time, on a copy of the run that comes from the last checkpoint before it.
+    pub fn workings(&mut self) -> Option<Arc<Workings>> {
+        let now = self.simulation.now();
+        let before = now.number().checked_sub(1)?;
+        if let Some(workings) = now.workings() {
+            return Some(Arc::clone(workings));
+        }
+        let known = self.explained.as_ref();
+        if let Some((_, workings)) = known.filter(|(step, _)| *step == before + 1) {
+            return Some(Arc::clone(workings));
+        }
+        let mut again = self.checkpoints.before(before).simulation.clone();
+        again.go_on_in(Arc::clone(now.scenario()));
+        again.step_to(before).ok()?;
+        again.keep_workings(true);
+        let workings = again.step().ok()?.workings()?;
+        self.explained = Some((before + 1, Arc::clone(workings)));
+        Some(Arc::clone(workings))
     }
 
     /// The run itself.
@@ -365,5 +397,14 @@ impl LiveRun {
     /// Its path from above.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+}
+
+/// What the pictures need of `step`.
+fn moment(step: &Step) -> Moment {
+    Moment {
+        time_s: step.time_s(),
+        position: *step.position(),
+        axle_height: step.after().axle().z,
     }
 }

@@ -11,9 +11,13 @@
 //! (1). Two lanes on every processor, added up in one fixed order, give every machine the same bits; four lanes would
 //! want more registers than the baseline x86-64 has, and are slower there.
 
-use super::{Body, Loads, PointForce, Scheme, State, Workings, rotation};
+use super::rotation::AxisAngle;
+use super::workings::{Listener, Nobody, Phase};
+use super::{Body, Loads, PointForce, Scheme, State};
 use nalgebra::{Matrix3, Vector3};
 use wide::f64x2;
+
+mod phases;
 
 const LANES: usize = 2;
 
@@ -26,13 +30,27 @@ struct Pair {
     mass: f64x2,
 }
 
+/// Masses times coordinates and times their products: of two points side by side, or summed over all pairs of points.
+#[derive(Clone, Copy, Debug)]
+struct Moments {
+    x: f64x2,
+    y: f64x2,
+    z: f64x2,
+    xx: f64x2,
+    yy: f64x2,
+    zz: f64x2,
+    xy: f64x2,
+    xz: f64x2,
+    yz: f64x2,
+}
+
 /// Sums over all points, world frame.
 #[derive(Clone, Copy, Debug)]
 struct Sums {
     /// Σ m X, kg m.
     first_moment: Vector3<f64>,
-    /// Σ m (|X|²E − XXᵀ), kg m².
-    inertia: Matrix3<f64>,
+    /// Σ m XXᵀ, kg m².
+    second_moment: Matrix3<f64>,
 }
 
 /// The report's scheme; see the module's text.
@@ -44,25 +62,17 @@ pub struct Report {
     pushes: Vec<PointForce>,
     /// From the positions as they stand: what the next step begins with.
     inertia: Matrix3<f64>,
-    last: Workings,
 }
 
 impl Report {
     /// The scheme for `body`.
     pub fn new(body: &Body) -> Self {
-        let nothing = Workings {
-            inertia: Matrix3::zeros(),
-            angular_velocity: Vector3::zeros(),
-            rotation: Matrix3::identity(),
-            torque: Vector3::zeros(),
-        };
         Self {
             body: body.clone(),
             points: Vec::with_capacity(body.points().len().div_ceil(LANES)),
             gravity: 0.0,
             pushes: Vec::new(),
             inertia: body.inertia(),
-            last: nothing,
         }
     }
 
@@ -77,16 +87,47 @@ impl Report {
         )
     }
 
-    /// Σ X × F, N m, from Σ m X and the pushed points: weight has no moment about z, so L_z keeps its bits.
-    fn torque(&self, first_moment: &Vector3<f64>) -> Vector3<f64> {
-        let gravity = Vector3::new(
+    /// The torque of the weight, N m, from Σ m X: it has no moment about z, so that L_z keeps its bits.
+    fn weight_torque(&self, first_moment: &Vector3<f64>) -> Vector3<f64> {
+        Vector3::new(
             -self.gravity * first_moment.y,
             self.gravity * first_moment.x,
             0.0,
-        );
-        self.pushes.iter().fold(gravity, |sum, push| {
-            sum + self.position(push.point).cross(&push.force)
-        })
+        )
+    }
+
+    /// X × F, N m.
+    fn push_torque(&self, push: &PointForce) -> Vector3<f64> {
+        self.position(push.point).cross(&push.force)
+    }
+
+    /// Σ X × F, N m, from Σ m X and the pushed points.
+    fn torque(&self, first_moment: &Vector3<f64>) -> Vector3<f64> {
+        let weight = self.weight_torque(first_moment);
+        let pushes = self.pushes.iter();
+        pushes.fold(weight, |sum, push| sum + self.push_torque(push))
+    }
+
+    #[inline]
+    fn advance<L: Listener>(&mut self, dt: f64, state: &mut State, listener: &mut L) {
+        let inertia = self.inertia;
+        listener.hear(|| self.inertia_phase());
+        let angular_velocity = solve(&inertia, &state.momentum);
+        listener.hear(|| phases::velocity_phase(&inertia, &state.momentum, &angular_velocity));
+        let turn = AxisAngle::new(&angular_velocity, dt);
+        let rotation = turn.map_or_else(Matrix3::identity, |turn| turn.matrix());
+        listener.hear(|| phases::axis_phase(&angular_velocity, dt, turn.as_ref()));
+        listener.hear(|| phases::rotation_phase(&rotation));
+        let before = L::LISTENS.then(|| self.points.clone());
+        let sums = turn_points(&mut self.points, &rotation);
+        state.orientation = rotation * state.orientation;
+        listener.hear(|| self.positions_phase(before.as_deref().unwrap_or_default()));
+        let torque = self.torque(&sums.first_moment);
+        listener.hear(|| self.torque_phase(&sums.first_moment, &torque));
+        let momentum = state.momentum;
+        state.momentum += dt * torque;
+        listener.hear(|| phases::momentum_phase(dt, &torque, &momentum, &state.momentum));
+        self.inertia = inertia_of(&sums.second_moment);
     }
 }
 
@@ -104,7 +145,7 @@ impl Scheme for Report {
             let [x, y, z, mass] = lanes.map(f64x2::new);
             self.points.push(Pair { x, y, z, mass });
         }
-        self.inertia = turn(&mut self.points, &Matrix3::identity()).inertia;
+        self.inertia = inertia_of(&sums(&self.points).second_moment);
     }
 
     fn load(&mut self, loads: &Loads) {
@@ -113,24 +154,11 @@ impl Scheme for Report {
     }
 
     fn step(&mut self, dt: f64, state: &mut State) {
-        let inertia = self.inertia;
-        let angular_velocity = solve(&inertia, &state.momentum);
-        let rotation = rotation::about(&angular_velocity, dt);
-        let sums = turn(&mut self.points, &rotation);
-        let torque = self.torque(&sums.first_moment);
-        state.orientation = rotation * state.orientation;
-        state.momentum += dt * torque;
-        self.inertia = sums.inertia;
-        self.last = Workings {
-            inertia,
-            angular_velocity,
-            rotation,
-            torque,
-        };
+        self.advance(dt, state, &mut Nobody);
     }
 
-    fn workings(&self) -> Option<Workings> {
-        Some(self.last)
+    fn explain(&mut self, dt: f64, state: &mut State, phases: &mut Vec<Phase>) {
+        self.advance(dt, state, phases);
     }
 
     fn boxed(&self) -> Box<dyn Scheme> {
@@ -155,37 +183,94 @@ fn solve(inertia: &Matrix3<f64>, momentum: &Vector3<f64>) -> Vector3<f64> {
 }
 
 /// Turns every point by `rotation` and adds up what the torque and the next inertia need.
-fn turn(points: &mut [Pair], rotation: &Matrix3<f64>) -> Sums {
+#[inline]
+fn turn_points(points: &mut [Pair], rotation: &Matrix3<f64>) -> Sums {
     let r = |row, column| f64x2::splat(rotation[(row, column)]);
     let (r00, r01, r02) = (r(0, 0), r(0, 1), r(0, 2));
     let (r10, r11, r12) = (r(1, 0), r(1, 1), r(1, 2));
     let (r20, r21, r22) = (r(2, 0), r(2, 1), r(2, 2));
-    let zero = f64x2::splat(0.0);
-    let [
-        mut sx,
-        mut sy,
-        mut sz,
-        mut xx,
-        mut yy,
-        mut zz,
-        mut xy,
-        mut xz,
-        mut yz,
-    ] = [zero; 9];
+    let mut moments = Moments::NONE;
     for pair in points {
         let x = r00 * pair.x + r01 * pair.y + r02 * pair.z;
         let y = r10 * pair.x + r11 * pair.y + r12 * pair.z;
         let z = r20 * pair.x + r21 * pair.y + r22 * pair.z;
-        let (mx, my, mz) = (pair.mass * x, pair.mass * y, pair.mass * z);
-        (sx, sy, sz) = (sx + mx, sy + my, sz + mz);
-        (xx, yy, zz) = (xx + mx * x, yy + my * y, zz + mz * z);
-        (xy, xz, yz) = (xy + mx * y, xz + mx * z, yz + my * z);
         (pair.x, pair.y, pair.z) = (x, y, z);
+        moments = moments.and(Moments::of(pair));
     }
-    let [xx, yy, zz, xy, xz, yz] = [xx, yy, zz, xy, xz, yz].map(add_up);
-    Sums {
-        first_moment: Vector3::new(add_up(sx), add_up(sy), add_up(sz)),
-        inertia: Matrix3::new(yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy),
+    moments.sums()
+}
+
+/// The same sums of the points as they stand.
+fn sums(points: &[Pair]) -> Sums {
+    let all = points.iter().map(Moments::of);
+    all.fold(Moments::NONE, Moments::and).sums()
+}
+
+/// Σ m (|X|²E − XXᵀ), kg m², from Σ m XXᵀ.
+fn inertia_of(second_moment: &Matrix3<f64>) -> Matrix3<f64> {
+    let s = |row, column| second_moment[(row, column)];
+    let (xx, yy, zz) = (s(0, 0), s(1, 1), s(2, 2));
+    let (xy, xz, yz) = (s(0, 1), s(0, 2), s(1, 2));
+    Matrix3::new(yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy)
+}
+
+impl Moments {
+    const NONE: Self = {
+        let zero = f64x2::ZERO;
+        Self {
+            x: zero,
+            y: zero,
+            z: zero,
+            xx: zero,
+            yy: zero,
+            zz: zero,
+            xy: zero,
+            xz: zero,
+            yz: zero,
+        }
+    };
+
+    #[inline]
+    fn of(pair: &Pair) -> Self {
+        let (x, y, z) = (pair.x, pair.y, pair.z);
+        let (mx, my, mz) = (pair.mass * x, pair.mass * y, pair.mass * z);
+        Self {
+            x: mx,
+            y: my,
+            z: mz,
+            xx: mx * x,
+            yy: my * y,
+            zz: mz * z,
+            xy: mx * y,
+            xz: mx * z,
+            yz: my * z,
+        }
+    }
+
+    #[inline]
+    fn and(self, more: Self) -> Self {
+        Self {
+            x: self.x + more.x,
+            y: self.y + more.y,
+            z: self.z + more.z,
+            xx: self.xx + more.xx,
+            yy: self.yy + more.yy,
+            zz: self.zz + more.zz,
+            xy: self.xy + more.xy,
+            xz: self.xz + more.xz,
+            yz: self.yz + more.yz,
+        }
+    }
+
+    #[inline]
+    fn sums(self) -> Sums {
+        let [x, y, z] = [self.x, self.y, self.z].map(add_up);
+        let [xx, yy, zz] = [self.xx, self.yy, self.zz].map(add_up);
+        let [xy, xz, yz] = [self.xy, self.xz, self.yz].map(add_up);
+        Sums {
+            first_moment: Vector3::new(x, y, z),
+            second_moment: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 //! equation is smooth off the rotations too, and pulls it back to a rotation once, at the end of the step: that
 //! changes the result by no more than the step's own error.
 
+use super::workings::{Changes, Listener, Nobody, Phase, Quantity};
 use super::{Body, Loads, Scheme, State, loads::torque, rotation};
 use nalgebra::{Matrix3, Vector3};
 
@@ -17,7 +18,11 @@ pub struct Rk4 {
 
 #[derive(Clone, Copy)]
 struct Slope {
+    /// Ω, rad/s.
+    angular_velocity: Vector3<f64>,
+    /// dQ/dt = \[Ω\]× Q, 1/s.
     orientation: Matrix3<f64>,
+    /// dL/dt, the torque, N m.
     momentum: Vector3<f64>,
 }
 
@@ -35,6 +40,7 @@ impl Rk4 {
     fn slope(&self, orientation: &Matrix3<f64>, momentum: &Vector3<f64>) -> Slope {
         let omega = orientation * (self.inverse_inertia * orientation.tr_mul(momentum));
         Slope {
+            angular_velocity: omega,
             orientation: rotation::crossed(&omega, orientation),
             momentum: torque(orientation, &self.moment),
         }
@@ -44,6 +50,92 @@ impl Rk4 {
         let orientation = state.orientation + slope.orientation * time;
         self.slope(&orientation, &(state.momentum + slope.momentum * time))
     }
+
+    #[inline]
+    fn advance<L: Listener>(&self, dt: f64, state: &mut State, listener: &mut L) {
+        let k1 = self.slope(&state.orientation, &state.momentum);
+        listener.hear(|| {
+            k1.phase(
+                "slope 1: at the beginning",
+                "Ω₁ = Q I₀⁻¹ Qᵀ L, Q₁′ = [Ω₁]× Q, L₁′ = τ(Q)",
+            )
+        });
+        let k2 = self.slope_after(state, &k1, 0.5 * dt);
+        listener.hear(|| {
+            k2.phase(
+                "slope 2: half way by slope 1",
+                "the same at Q + ½ dt Q₁′, L + ½ dt L₁′",
+            )
+        });
+        let k3 = self.slope_after(state, &k2, 0.5 * dt);
+        listener.hear(|| {
+            k3.phase(
+                "slope 3: half way by slope 2",
+                "the same at Q + ½ dt Q₂′, L + ½ dt L₂′",
+            )
+        });
+        let k4 = self.slope_after(state, &k3, dt);
+        listener.hear(|| {
+            k4.phase(
+                "slope 4: at the end by slope 3",
+                "the same at Q + dt Q₃′, L + dt L₃′",
+            )
+        });
+        let turned = k1.orientation + (k2.orientation + k3.orientation) * 2.0 + k4.orientation;
+        let torque = k1.momentum + (k2.momentum + k3.momentum) * 2.0 + k4.momentum;
+        let before = *state;
+        let bent = state.orientation + turned * (dt / 6.0);
+        state.orientation = rotation::straightened(&bent);
+        listener.hear(|| orientation_phase(dt, &before.orientation, &bent, &state.orientation));
+        state.momentum += torque * (dt / 6.0);
+        listener.hear(|| momentum_phase(dt, &before.momentum, &state.momentum));
+    }
+}
+
+impl Slope {
+    fn phase(&self, name: &'static str, formula: &'static str) -> Phase {
+        Phase::of(
+            name,
+            formula,
+            vec![
+                Quantity::new("Ω", "rad/s", self.angular_velocity),
+                Quantity::new("Q′", "1/s", self.orientation),
+                Quantity::new("L′", "N m", self.momentum),
+            ],
+        )
+    }
+}
+
+fn orientation_phase(
+    dt: f64,
+    from: &Matrix3<f64>,
+    bent: &Matrix3<f64>,
+    to: &Matrix3<f64>,
+) -> Phase {
+    Phase::of(
+        "new orientation",
+        "Q ← Q + dt/6 (Q₁′ + 2 Q₂′ + 2 Q₃′ + Q₄′), then made a rotation again",
+        vec![
+            Quantity::new("Q", "", *from),
+            Quantity::new("dt", "s", dt),
+            Quantity::new("Q + dt/6 (...)", "", *bent),
+            Quantity::new("new Q", "", *to),
+        ],
+    )
+    .changing(Changes::Orientation)
+}
+
+fn momentum_phase(dt: f64, from: &Vector3<f64>, to: &Vector3<f64>) -> Phase {
+    Phase::of(
+        "new momentum",
+        "L ← L + dt/6 (L₁′ + 2 L₂′ + 2 L₃′ + L₄′)",
+        vec![
+            Quantity::new("L", "J s", *from),
+            Quantity::new("dt", "s", dt),
+            Quantity::new("new L", "J s", *to),
+        ],
+    )
+    .changing(Changes::Momentum)
 }
 
 impl Scheme for Rk4 {
@@ -54,14 +146,11 @@ impl Scheme for Rk4 {
     }
 
     fn step(&mut self, dt: f64, state: &mut State) {
-        let k1 = self.slope(&state.orientation, &state.momentum);
-        let k2 = self.slope_after(state, &k1, 0.5 * dt);
-        let k3 = self.slope_after(state, &k2, 0.5 * dt);
-        let k4 = self.slope_after(state, &k3, dt);
-        let turned = k1.orientation + (k2.orientation + k3.orientation) * 2.0 + k4.orientation;
-        let torque = k1.momentum + (k2.momentum + k3.momentum) * 2.0 + k4.momentum;
-        state.orientation = rotation::straightened(&(state.orientation + turned * (dt / 6.0)));
-        state.momentum += torque * (dt / 6.0);
+        self.advance(dt, state, &mut Nobody);
+    }
+
+    fn explain(&mut self, dt: f64, state: &mut State, phases: &mut Vec<Phase>) {
+        self.advance(dt, state, phases);
     }
 
     fn boxed(&self) -> Box<dyn Scheme> {

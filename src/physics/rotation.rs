@@ -9,29 +9,69 @@ pub fn crossed(v: &Vector3<f64>, matrix: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::from_columns(&[0, 1, 2].map(|j| v.cross(&matrix.column(j))))
 }
 
-/// The rotation about `vector` by the angle |`vector`| · `time`: R = P + cos(E − P) + sin \[u\]×, P = uuᵀ, u the
-/// vector's direction (report, section 3). The zero vector turns nothing.
-pub fn about(vector: &Vector3<f64>, time: f64) -> Matrix3<f64> {
-    let length = vector.norm();
-    if length == 0.0 {
-        return Matrix3::identity();
+/// A rotation by an angle about an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisAngle {
+    /// The axis u, a unit vector.
+    pub axis: Vector3<f64>,
+    /// The angle, rad.
+    pub angle: f64,
+    /// Its sine.
+    pub sine: f64,
+    /// Its cosine.
+    pub cosine: f64,
+}
+
+impl AxisAngle {
+    /// About `vector` by the angle |`vector`| · `time`; `None` for the zero vector, which has no direction.
+    #[inline]
+    pub fn new(vector: &Vector3<f64>, time: f64) -> Option<Self> {
+        let length = vector.norm();
+        if length == 0.0 {
+            return None;
+        }
+        let angle = length * time;
+        let (sine, cosine) = trig::sin_cos(angle);
+        Some(Self {
+            axis: vector * (1.0 / length),
+            angle,
+            sine,
+            cosine,
+        })
     }
-    let (sin, cos) = trig::sin_cos(length * time);
-    let u = vector * (1.0 / length);
-    let (xx, yy, zz) = (u.x * u.x, u.y * u.y, u.z * u.z);
-    let (xy, xz, yz) = (u.x * u.y, u.x * u.z, u.y * u.z);
-    let (bxy, bxz, byz) = (xy - cos * xy, xz - cos * xz, yz - cos * yz);
-    Matrix3::new(
-        xx + cos * (1.0 - xx),
-        bxy - sin * u.z,
-        bxz + sin * u.y,
-        bxy + sin * u.z,
-        yy + cos * (1.0 - yy),
-        byz - sin * u.x,
-        bxz - sin * u.y,
-        byz + sin * u.x,
-        zz + cos * (1.0 - zz),
-    )
+
+    /// P = uuᵀ: what of a vector lies along the axis.
+    #[inline]
+    pub fn projection(&self) -> Matrix3<f64> {
+        let u = self.axis;
+        let (xy, xz, yz) = (u.x * u.y, u.x * u.z, u.y * u.z);
+        Matrix3::new(u.x * u.x, xy, xz, xy, u.y * u.y, yz, xz, yz, u.z * u.z)
+    }
+
+    /// R = P + cos(E − P) + sin \[u\]× (report, section 3).
+    #[inline]
+    pub fn matrix(&self) -> Matrix3<f64> {
+        let (u, sin, cos, p) = (self.axis, self.sine, self.cosine, self.projection());
+        let (xx, yy, zz) = (p[(0, 0)], p[(1, 1)], p[(2, 2)]);
+        let (xy, xz, yz) = (p[(0, 1)], p[(0, 2)], p[(1, 2)]);
+        let (bxy, bxz, byz) = (xy - cos * xy, xz - cos * xz, yz - cos * yz);
+        Matrix3::new(
+            xx + cos * (1.0 - xx),
+            bxy - sin * u.z,
+            bxz + sin * u.y,
+            bxy + sin * u.z,
+            yy + cos * (1.0 - yy),
+            byz - sin * u.x,
+            bxz - sin * u.y,
+            byz + sin * u.x,
+            zz + cos * (1.0 - zz),
+        )
+    }
+}
+
+/// The rotation about `vector` by the angle |`vector`| · `time`. The zero vector turns nothing.
+pub fn about(vector: &Vector3<f64>, time: f64) -> Matrix3<f64> {
+    AxisAngle::new(vector, time).map_or_else(Matrix3::identity, |turn| turn.matrix())
 }
 
 /// A rotation near `matrix`, which is off by the error of one time step: the axle's column made a unit vector, the

@@ -19,6 +19,9 @@ pub struct SchemeInfo {
     /// Whether it follows time between steps, so that a force which begins in mid-step is met where it begins. One
     /// that does not feels such a force's mean over the step.
     pub continuous: bool,
+    /// Whether it turns the body by its free motion exactly, however far that leads in one step. The others must turn it by
+    /// little in a step for their rows to show the motion.
+    pub turns_exactly: bool,
     make: fn(&Body) -> Box<dyn Scheme>,
 }
 
@@ -30,6 +33,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
         about: "the report's: rotate every point by Omega dt, then add dt times the torque at the new positions to L",
         source: "report, section 3",
         continuous: false,
+        turns_exactly: false,
         make: |body| Box::new(Report::new(body)),
     },
     SchemeInfo {
@@ -38,6 +42,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
         about: "classical Runge-Kutta on orientation and L, the orientation made orthogonal after each step",
         source: "Kutta 1901; Hairer, Norsett, Wanner, Solving ODEs I, section II.1",
         continuous: true,
+        turns_exactly: false,
         make: |body| Box::new(Rk4::new(body)),
     },
     SchemeInfo {
@@ -46,6 +51,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
         about: "symplectic splitting: half a kick by the torque, the free motion exactly, half a kick",
         source: "Strang, SIAM J. Numer. Anal. 5, 506 (1968); for the top: Reich, Fields Inst. Commun. 10, 181 (1996)",
         continuous: true,
+        turns_exactly: true,
         make: |body| Box::new(SplittingScheme::new(Kind::Strang, body)),
     },
     SchemeInfo {
@@ -54,6 +60,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
         about: "symplectic splitting of kicks and exact free motion in eleven stages, a Runge-Kutta-Nystrom composition",
         source: "Blanes and Moan, J. Comput. Appl. Math. 142, 313 (2002), table 3",
         continuous: true,
+        turns_exactly: true,
         make: |body| Box::new(SplittingScheme::new(Kind::Srkn11b, body)),
     },
     SchemeInfo {
@@ -62,6 +69,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
         about: "the true motion: elliptic functions for a symmetric body pushed on its axle, else an integration held to 1e-12",
         source: "Klein and Sommerfeld, Theorie des Kreisels, chapter VI; Whittaker, Analytical Dynamics, sections 71-72",
         continuous: true,
+        turns_exactly: true,
         make: |body| Box::new(Exact::new(body)),
     },
 ];

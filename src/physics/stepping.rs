@@ -1,6 +1,6 @@
 //! How a time step is taken: what every scheme must do.
 
-use super::{Loads, State, Workings};
+use super::{Loads, State, workings::Phase};
 
 /// A way to take the body one time step further.
 ///
@@ -16,11 +16,8 @@ pub trait Scheme: Send {
     /// Takes `state` `dt` seconds further, its time left as it is: time is the run's, which counts steps.
     fn step(&mut self, dt: f64, state: &mut State);
 
-    /// What the scheme computed on the way of the step it took last, where it goes that way: for the others it follows
-    /// from the step's two ends ([`Workings::between`]).
-    fn workings(&self) -> Option<Workings> {
-        None
-    }
+    /// The same step, to the last bit, with what is computed on the way added to `phases`.
+    fn explain(&mut self, dt: f64, state: &mut State, phases: &mut Vec<Phase>);
 
     /// What there is to say of how the run was computed, beyond the scheme's name.
     fn remark(&self) -> Option<String> {

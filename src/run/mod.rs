@@ -1,8 +1,9 @@
 //! A run: a scenario and its journal of edits, played forward from step 0.
 //!
 //! [`Simulation`] is the one road forward in time; the command line, the exporters, the tests and any screen all
-//! travel on it. [`clock`] says what time a step has, [`pushes`] which forces act on it, [`sample`] what is read off
-//! after it, [`energy`] what its drift is measured in. [`truth`] is the exact motion beside it, and [`resample`] the same run at another time step.
+//! travel on it. [`step`] is what it publishes of each time step. [`clock`] says what time a step has, [`pushes`] which
+//! forces act on it, [`sample`] what of it leaves the program, [`energy`] what its drift is measured in. [`truth`] is the
+//! exact motion beside it, and [`resample`] the same run at another time step.
 
 pub mod clock;
 pub mod energy;
@@ -10,10 +11,12 @@ pub mod pushes;
 pub mod resample;
 pub mod sample;
 pub mod simulation;
+pub mod step;
 pub mod truth;
 
 pub use clock::Clock;
 pub use energy::{EnergyScale, EnergyUnit};
 pub use sample::Sample;
 pub use simulation::{NotFinite, Simulation};
+pub use step::Step;
 pub use truth::Truth;

@@ -1,7 +1,5 @@
 //! What is read off a run at one step: the numbers of one CSV row.
 
-use crate::physics::observables::{self, Azimuth};
-use crate::physics::{Body, State};
 use nalgebra::Vector3;
 
 /// The state at one step as it leaves the program.
@@ -25,30 +23,4 @@ pub struct Sample {
     pub energy: f64,
     /// The number of edits of time step, scheme or gravity before this step.
     pub segment: u64,
-}
-
-impl Sample {
-    /// Reads `state`, at `step` of a run in `segment` under `gravity` (m/s²), whose traced point is `trace`.
-    pub fn new(
-        body: &Body,
-        trace: usize,
-        gravity: f64,
-        (step, segment): (u64, u64),
-        state: &State,
-        azimuth: &Azimuth,
-    ) -> Self {
-        let angular_velocity = observables::angular_velocity(body, state);
-        let kinetic = 0.5 * state.momentum.dot(&angular_velocity);
-        Self {
-            step,
-            time_s: state.time_s,
-            position: observables::position(body, state, trace),
-            momentum: state.momentum,
-            angular_velocity,
-            tilt_deg: observables::tilt_deg(state),
-            azimuth_deg: azimuth.degrees(),
-            energy: kinetic + gravity * observables::weight_height(body, state),
-            segment,
-        }
-    }
 }

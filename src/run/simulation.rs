@@ -1,9 +1,11 @@
 //! The one road forward in time.
 
 use super::pushes::{self, Counting, Stretch};
-use super::{Clock, EnergyScale, EnergyUnit, Sample};
+use super::step::{Derived, EnergyAccount};
+use super::{Clock, EnergyScale, Sample, Step};
 use crate::physics::observables::{self, Azimuth};
-use crate::physics::{Loads, PointForce, Scheme, State, StepRecord, Workings};
+use crate::physics::workings::Part;
+use crate::physics::{Loads, PointForce, Scheme, State, Workings};
 use crate::scenario::{Edit, Motion, Push, Scenario};
 use std::sync::Arc;
 
@@ -11,40 +13,25 @@ use std::sync::Arc;
 /// with the same bits.
 #[derive(Clone)]
 pub struct Simulation {
-    scenario: Arc<Scenario>,
+    /// The step it stands at, as it is published.
+    now: Step,
     scheme: Box<dyn Scheme>,
-    motion: Motion,
     pushes: Arc<[Push]>,
-    loads: Loads,
     /// The pushes of the step to come, before they are known to differ from the loads.
     acting: Vec<PointForce>,
     clock: Clock,
     counting: Counting,
-    step: u64,
-    segment: u64,
     edits_made: usize,
     /// The step of the next edit; the last step there could be where there is none.
     next_edit: u64,
-    before: State,
-    state: State,
-    azimuth: Azimuth,
-    energy: EnergyAccount,
     ended: Option<NotFinite>,
-    /// How often the forces have changed.
-    changes: u64,
+    /// The forces that were replaced last, and those of which step they were.
+    replaced: Loads,
+    replaced_at: Option<u64>,
     /// While |L|² is below this, every number read off a finite state is finite too.
     safe_below: f64,
-}
-
-/// What the energy would be if the scheme made no error.
-#[derive(Clone, Copy, Debug)]
-struct EnergyAccount {
-    /// Energy at the start, J.
-    start: f64,
-    /// Work of pushes and of edits of gravity since then, J.
-    work: f64,
-    /// What its error is measured in; `None` where there is nothing to measure it by.
-    scale: Option<EnergyScale>,
+    /// Whether the workings of every step are kept.
+    keeps_workings: bool,
 }
 
 /// The numbers of a run are no longer finite.
@@ -78,57 +65,95 @@ impl Simulation {
         };
         Self {
             scheme,
-            motion,
             pushes: scenario.pushes.iter().copied().collect(),
             acting: Vec::with_capacity(scenario.pushes.len()),
-            loads,
             clock: Clock::new(motion.time_step_s),
             counting: counting(&scenario),
-            step: 0,
-            segment: 0,
             edits_made: 0,
             next_edit: step_of_edit(&scenario, 0),
-            before: state,
-            state,
-            azimuth: Azimuth::start(&state.axle()),
-            energy,
             ended: None,
-            changes: 0,
+            replaced: Loads::default(),
+            replaced_at: None,
             safe_below: safe_below(&scenario, motion.gravity),
-            scenario,
+            keeps_workings: false,
+            now: Step {
+                number: 0,
+                segment: 0,
+                motion,
+                loads,
+                changes: 0,
+                before: state,
+                after: state,
+                azimuth: Azimuth::start(&state.axle()),
+                energy,
+                workings: None,
+                derived: Derived::default(),
+                scenario,
+            },
         }
     }
 
-    /// Takes the run one time step further.
+    /// Takes the run one time step further and publishes that step.
     ///
     /// # Errors
-    /// When the numbers stop being finite. The run then stays at the step before, and so it does at every further
-    /// call.
-    pub fn step(&mut self) -> Result<(), NotFinite> {
+    /// When the numbers stop being finite. The run then stays at the step before, which it publishes as it did, and so
+    /// it does at every further call.
+    #[inline]
+    pub fn step(&mut self) -> Result<&Step, NotFinite> {
+        self.take_step()?;
+        Ok(&self.now)
+    }
+
+    fn take_step(&mut self) -> Result<(), NotFinite> {
         if let Some(end) = self.ended {
             return Err(end);
         }
-        let undo = (self.motion, self.energy, self.segment);
-        if self.next_edit == self.step {
+        let now = &self.now;
+        let undo = (now.motion, now.energy, now.segment, now.changes);
+        if self.next_edit == now.number {
             self.make_due_edits();
         }
-        self.before = self.state;
-        let work = self.advance();
-        self.state.time_s = self.clock.time_s(self.step + 1);
-        if !self.can_be_read() {
-            // This step's edits have led nowhere: the run is read as it stood before them.
-            (self.motion, self.energy, self.segment) = undo;
-            self.state = self.before;
+        let before = self.now.after;
+        self.now.derived = Derived::default();
+        let mut workings = self.keeps_workings.then(Workings::default);
+        let work = self.advance(workings.as_mut());
+        let now = &mut self.now;
+        now.after.time_s = self.clock.time_s(now.number + 1);
+        // Far inside the range nothing can leave it: only what comes near the edge is looked at number by number.
+        let is_safe = now.after.momentum.norm_squared() < self.safe_below;
+        if !now.after.is_finite() || !(is_safe || now.can_be_read()) {
+            // This step's edits and forces have led nowhere: the run is read as it stood before them.
+            if self.replaced_at == Some(now.number) {
+                now.loads.clone_from(&self.replaced);
+            }
+            (now.motion, now.energy, now.segment, now.changes) = undo;
+            now.after = before;
+            now.derived = Derived::default();
             let end = NotFinite {
-                step: self.step + 1,
+                step: now.number + 1,
             };
             self.ended = Some(end);
             return Err(end);
         }
-        self.energy.work += work;
-        self.step += 1;
-        self.azimuth.follow(&self.state.axle());
+        now.before = before;
+        now.energy.work += work;
+        now.number += 1;
+        now.workings = workings.map(Arc::new);
+        now.azimuth.follow(&now.after.axle());
         Ok(())
+    }
+
+    /// The step it stands at.
+    #[inline]
+    pub fn now(&self) -> &Step {
+        &self.now
+    }
+
+    /// Whether the [workings](Step::workings) of the steps to come are kept; if not, those of the present one go too.
+    /// They change no bit of the run, but it takes a multiple of the time.
+    pub fn keep_workings(&mut self, kept: bool) {
+        self.keeps_workings = kept;
+        self.now.workings.take_if(|_| !kept);
     }
 
     /// Steps until the run stands at `step`.
@@ -136,7 +161,7 @@ impl Simulation {
     /// # Errors
     /// When the numbers stop being finite before that.
     pub fn step_to(&mut self, step: u64) -> Result<(), NotFinite> {
-        while self.step < step {
+        while self.now.number < step {
             self.step()?;
         }
         Ok(())
@@ -145,7 +170,9 @@ impl Simulation {
     /// Goes on in `scenario` from here. It must have the same past: what differs in it acts on the steps to come, and the
     /// steps taken so far are those it would have led to. A run that has [ended](Self::has_ended) cannot go on.
     pub fn go_on_in(&mut self, scenario: Arc<Scenario>) {
-        self.edits_made = scenario.edits.partition_point(|edit| edit.step < self.step);
+        self.edits_made = scenario
+            .edits
+            .partition_point(|edit| edit.step < self.now.number);
         self.next_edit = step_of_edit(&scenario, self.edits_made);
         let made = self
             .edits_made
@@ -153,7 +180,7 @@ impl Simulation {
             .map(|last| &scenario.edits[last]);
         let pushes = made.map_or(&scenario.pushes, |edit| &edit.pushes);
         self.pushes = pushes.iter().copied().collect();
-        self.scenario = scenario;
+        self.now.scenario = scenario;
     }
 
     /// Whether the numbers of the next step are not finite.
@@ -161,75 +188,92 @@ impl Simulation {
         self.ended.is_some()
     }
 
-    /// Whether every number read off the state is finite: squares leave the range of numbers before L itself does. A
-    /// finite energy means a finite Omega too.
-    fn can_be_read(&self) -> bool {
-        let body = &self.scenario.body.mechanics;
-        if !self.state.is_finite() {
-            return false;
-        }
-        // Far inside the range nothing can leave it: only what comes near the edge is looked at number by number.
-        if self.state.momentum.norm_squared() < self.safe_below {
-            return true;
-        }
-        let potential = self.motion.gravity * observables::weight_height(body, &self.state);
-        let energy = observables::kinetic_energy(body, &self.state) + potential;
-        let traced = observables::position(body, &self.state, self.scenario.trace);
-        energy.is_finite() && traced.iter().all(|c| c.is_finite())
-    }
-
     /// Takes the state through the coming step and returns the work the pushes did on the way, J.
-    fn advance(&mut self) -> f64 {
+    fn advance(&mut self, mut workings: Option<&mut Workings>) -> f64 {
+        let time_step_s = self.now.motion.time_step_s;
         if self.pushes.is_empty() {
-            self.scheme.step(self.motion.time_step_s, &mut self.state);
+            self.take_part(time_step_s, workings);
             return 0.0;
         }
-        let mut stretch = Stretch::step(self.step + 1, &self.clock);
+        let mut stretch = Stretch::step(self.now.number + 1, &self.clock);
         let mut work = 0.0;
         let end = stretch.end;
-        if self.motion.scheme.continuous {
+        if self.now.motion.scheme.continuous {
             while let Some(change) = pushes::next_change(&*self.pushes, self.counting, &stretch) {
                 stretch.end = change;
-                work += self.advance_under_push(&stretch, change - stretch.begin);
+                let length = change - stretch.begin;
+                work += self.advance_under_push(&stretch, length, workings.as_deref_mut());
                 (stretch.begin, stretch.end) = (change, end);
             }
         }
-        let whole = stretch.begin == self.clock.time_s(self.step);
+        let whole = stretch.begin == self.clock.time_s(self.now.number);
         let length = if whole {
-            self.motion.time_step_s
+            time_step_s
         } else {
             end - stretch.begin
         };
-        work + self.advance_under_push(&stretch, length)
+        work + self.advance_under_push(&stretch, length, workings)
     }
 
-    fn advance_under_push(&mut self, stretch: &Stretch, length: f64) -> f64 {
+    fn advance_under_push(
+        &mut self,
+        stretch: &Stretch,
+        length: f64,
+        workings: Option<&mut Workings>,
+    ) -> f64 {
         pushes::acting(&*self.pushes, self.counting, stretch, &mut self.acting);
-        if self.acting != self.loads.pushes {
-            self.loads.pushes.clone_from(&self.acting);
-            self.changes += 1;
-            self.scheme.load(&self.loads);
+        if self.acting != self.now.loads.pushes {
+            self.change_loads();
+            self.now.loads.pushes.clone_from(&self.acting);
+            self.scheme.load(&self.now.loads);
         }
-        let before = self.state;
-        self.scheme.step(length, &mut self.state);
-        let body = &self.scenario.body.mechanics;
+        let before = self.now.after;
+        self.take_part(length, workings);
+        let now = &self.now;
+        let body = &now.scenario.body.mechanics;
         let at = |state: &State, push: &PointForce| observables::position(body, state, push.point);
-        let moved =
-            |push: &PointForce| push.force.dot(&(at(&self.state, push) - at(&before, push)));
-        self.loads.pushes.iter().map(moved).sum()
+        let moved = |push: &PointForce| push.force.dot(&(at(&now.after, push) - at(&before, push)));
+        now.loads.pushes.iter().map(moved).sum()
+    }
+
+    /// Lets the scheme take the state `length_s` further under the present loads.
+    #[inline]
+    fn take_part(&mut self, length_s: f64, workings: Option<&mut Workings>) {
+        let state = &mut self.now.after;
+        match workings {
+            None => self.scheme.step(length_s, state),
+            Some(workings) => {
+                let mut phases = Vec::new();
+                self.scheme.explain(length_s, state, &mut phases);
+                workings.parts.push(Part {
+                    length_s,
+                    loads: self.now.loads.clone(),
+                    phases,
+                });
+            }
+        }
+    }
+
+    /// Counts a change of the loads, and keeps those of the step before, in case the coming one leads nowhere.
+    fn change_loads(&mut self) {
+        if self.replaced_at != Some(self.now.number) {
+            self.replaced.clone_from(&self.now.loads);
+            self.replaced_at = Some(self.now.number);
+        }
+        self.now.changes += 1;
     }
 
     /// Carries out the edits made at this step.
     fn make_due_edits(&mut self) {
-        let scenario = Arc::clone(&self.scenario);
+        let scenario = Arc::clone(&self.now.scenario);
         let first = self.edits_made;
         while let Some(edit) = scenario
             .edits
             .get(self.edits_made)
-            .filter(|edit| edit.step == self.step)
+            .filter(|edit| edit.step == self.now.number)
         {
             self.make_edit(edit);
-            self.segment += u64::from(edit.touches.segment);
+            self.now.segment += u64::from(edit.touches.segment);
             self.edits_made += 1;
         }
         let made = &scenario.edits[first..self.edits_made];
@@ -242,59 +286,49 @@ impl Simulation {
     }
 
     fn make_edit(&mut self, edit: &Edit) {
-        let body = &self.scenario.body.mechanics;
+        self.change_loads();
+        let now = &mut self.now;
+        let body = &now.scenario.body.mechanics;
         if edit.touches.time_step {
-            self.clock.change(self.step, edit.motion.time_step_s);
-            self.counting = Counting::in_seconds(&self.scenario);
+            self.clock.change(now.number, edit.motion.time_step_s);
+            self.counting = Counting::in_seconds(&now.scenario);
         }
-        let lift = edit.motion.gravity - self.motion.gravity;
-        self.energy.work += lift * observables::weight_height(body, &self.state);
-        if edit.motion.scheme != self.motion.scheme {
+        let lift = edit.motion.gravity - now.motion.gravity;
+        now.energy.work += lift * observables::weight_height(body, &now.after);
+        if edit.motion.scheme != now.motion.scheme {
             self.scheme = edit.motion.scheme.make(body);
-            self.scheme.start(&self.state);
+            self.scheme.start(&now.after);
         }
-        self.motion = edit.motion;
-        self.loads.gravity = self.motion.gravity;
-        self.safe_below = safe_below(&self.scenario, self.motion.gravity);
-        self.loads.pushes.clear();
-        self.changes += 1;
-        self.scheme.load(&self.loads);
+        now.motion = edit.motion;
+        now.loads.gravity = now.motion.gravity;
+        self.safe_below = safe_below(&now.scenario, now.motion.gravity);
+        now.loads.pushes.clear();
+        self.scheme.load(&now.loads);
     }
 
     /// The scenario that is being run.
     pub fn scenario(&self) -> &Arc<Scenario> {
-        &self.scenario
+        &self.now.scenario
     }
 
     /// The number of the step it stands at.
     pub fn step_number(&self) -> u64 {
-        self.step
+        self.now.number
     }
 
     /// The state it stands at.
     pub fn state(&self) -> &State {
-        &self.state
-    }
-
-    /// The axle's azimuth, counted on through full turns.
-    pub fn azimuth(&self) -> &Azimuth {
-        &self.azimuth
-    }
-
-    /// How often the forces have changed so far, edits of the time step and the scheme counted in: what is measured
-    /// across such a change is the motion of neither side.
-    pub fn changes(&self) -> u64 {
-        self.changes
+        &self.now.after
     }
 
     /// The forces of the step taken last (at step 0: gravity alone).
     pub fn loads(&self) -> &Loads {
-        &self.loads
+        &self.now.loads
     }
 
     /// Gravity, scheme and time step of the step taken last (at step 0: of the first).
     pub fn motion(&self) -> &Motion {
-        &self.motion
+        &self.now.motion
     }
 
     /// What the scheme has to say of how the run was computed, beyond its name.
@@ -302,45 +336,9 @@ impl Simulation {
         self.scheme.remark()
     }
 
-    /// The whole of the step taken last; `None` at step 0.
-    pub fn record(&self) -> Option<StepRecord> {
-        let body = &self.scenario.body.mechanics;
-        (self.step > 0).then(|| StepRecord {
-            step: self.step,
-            time_step_s: self.motion.time_step_s,
-            before: self.before,
-            workings: self.scheme.workings().unwrap_or_else(|| {
-                Workings::between(body, &self.before, &self.state, self.motion.time_step_s)
-            }),
-            after: self.state,
-        })
-    }
-
     /// The numbers of this step, as they leave the program.
     pub fn sample(&self) -> Sample {
-        let body = &self.scenario.body.mechanics;
-        let counters = (self.step, self.segment);
-        Sample::new(
-            body,
-            self.scenario.trace,
-            self.motion.gravity,
-            counters,
-            &self.state,
-            &self.azimuth,
-        )
-    }
-
-    /// (E − E₀ − W)/S: the energy that only the scheme's error can have made, W the work of pushes and of edits of
-    /// gravity, S as [`EnergyScale`] has it; `None` where there is no S, or the drift is beyond the range of numbers.
-    pub fn energy_drift(&self) -> Option<f64> {
-        let gained = self.sample().energy - self.energy.start - self.energy.work;
-        let drift = gained / self.energy.scale?.size;
-        drift.is_finite().then_some(drift)
-    }
-
-    /// What the energy drift is measured in; `None` where there is nothing to measure it by.
-    pub fn energy_unit(&self) -> Option<EnergyUnit> {
-        self.energy.scale.map(|scale| scale.unit)
+        self.now.sample()
     }
 
     /// The first step at or after `time_s` (s), edits of the time step counted in.

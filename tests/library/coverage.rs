@@ -15,10 +15,10 @@ fn preset(name: &str, set: &[&str]) -> Arc<Scenario> {
 
 fn measured(scenario: &Arc<Scenario>) -> [Option<Measured>; 2] {
     let mut simulation = Simulation::new(Arc::clone(scenario));
-    let mut instruments = Instruments::new(&simulation);
+    let mut instruments = Instruments::new(simulation.now());
     while simulation.step_number() < scenario.steps {
         simulation.step().unwrap();
-        instruments.follow(&simulation);
+        instruments.follow(simulation.now());
     }
     [
         instruments.precession_rad_per_s(),
@@ -124,7 +124,7 @@ fn random(seed: u64) -> Option<Case> {
         let document = Document::parse("x.toml", &text).unwrap();
         Arc::new(document.scenario().unwrap())
     };
-    let theory = Monitor::new(&Simulation::new(build(0.01, 1))).theory(0.0)?;
+    let theory = Monitor::new(Simulation::new(build(0.01, 1)).now()).theory(0.0)?;
     let truth = [theory.precession?, theory.nutation_period_s?];
     let per_nutation = log_between(dice, 2.2, 300.0);
     let steps = (log_between(dice, 0.3, 100.0) * per_nutation).max(2.0) as u64;

@@ -22,11 +22,11 @@ fn health(scenario: Scenario) -> Health {
 
 fn health_at(scenario: Scenario, step: u64) -> Health {
     let mut simulation = Simulation::new(Arc::new(scenario));
-    let mut monitor = Monitor::new(&simulation);
+    let mut monitor = Monitor::new(simulation.now());
     while simulation.step_number() < step && simulation.step().is_ok() {
-        monitor.follow(&simulation);
+        monitor.follow(simulation.now());
     }
-    monitor.health(&simulation)
+    monitor.health(simulation.now())
 }
 
 #[test]
@@ -342,7 +342,9 @@ fn the_picture_is_what_one_step_shows() {
         simulation.step().unwrap();
         let spoke = simulation.state().orientation.column(0).into_owned();
         let seems = spoke.y.atan2(spoke.x);
-        let shown = Monitor::new(&simulation).health(&simulation).picture;
+        let shown = Monitor::new(simulation.now())
+            .health(simulation.now())
+            .picture;
         let expected = match seems {
             _ if seems < 0.0 => Picture::Backwards,
             _ if (seems - psi).abs() > 1e-9 => Picture::TooSlow,
@@ -482,7 +484,7 @@ fn distances_are_those_from_the_reference_motions() {
     ] {
         let scenario = reference_top(momentum);
         let mut simulation = Simulation::new(Arc::new(scenario));
-        let mut monitor = Monitor::new(&simulation);
+        let mut monitor = Monitor::new(simulation.now());
         let mut compared = 0;
         for line in table.lines().skip(1) {
             let row: Vec<f64> = line.split(',').map(|x| x.parse().unwrap()).collect();
@@ -493,7 +495,11 @@ fn distances_are_those_from_the_reference_motions() {
             simulation.step_to(step as u64).unwrap();
             let axle = simulation.state().axle();
             let known = nalgebra::Vector3::new(row[1], row[2], row[3]);
-            let distance = monitor.health(&simulation).deviation.unwrap().distance_m;
+            let distance = monitor
+                .health(simulation.now())
+                .deviation
+                .unwrap()
+                .distance_m;
             assert!(
                 (distance - 1.5 * (axle - known).norm()).abs() < 1e-12,
                 "at {} s",

@@ -2,6 +2,7 @@
 
 use crate::support::scenarios::parse;
 use gyrolab::export::{CsvWriter, stream};
+use gyrolab::physics::workings::Value;
 use gyrolab::physics::{Loads, SchemeInfo};
 use gyrolab::run::{Sample, Simulation};
 use gyrolab::scenario::Document;
@@ -200,10 +201,15 @@ fn orientation_and_momentum_pass_from_scheme_to_scheme() {
 /// pushes cause a torque.
 fn pushed_steps(motion: &str, edits: &[(u64, &str)]) -> Vec<(u64, f64)> {
     let mut simulation = simulation(&format!("gravity_m_per_s2 = 0\n{motion}\n"), edits);
+    simulation.keep_workings(true);
     let mut pushed = Vec::new();
     while simulation.step_number() < simulation.scenario().steps {
-        simulation.step().unwrap();
-        let torque = simulation.record().unwrap().workings.torque.norm();
+        let workings = simulation.step().unwrap().workings().unwrap();
+        let phase = workings.phases().find(|phase| phase.name == "torque");
+        let Some(&Value::Vector(torque)) = phase.unwrap().value("τ") else {
+            panic!("a torque is a vector");
+        };
+        let torque = torque.norm();
         if torque > 0.0 {
             let one = simulation
                 .sample()
@@ -323,7 +329,7 @@ fn the_energy_drift_leaves_out_the_work_of_pushes_and_of_edits_of_gravity() {
     let mut largest = 0.0f64;
     for step in 1..=8000 {
         simulation.step_to(step).unwrap();
-        let drift = simulation.energy_drift().unwrap();
+        let drift = simulation.now().energy_drift().unwrap();
         assert!(drift.abs() < 1e-9, "step {step}: {drift:e}");
         largest = largest.max((simulation.sample().energy - start).abs() / weight);
     }
@@ -382,7 +388,7 @@ fn an_edit_that_leads_nowhere_is_not_made() {
     simulation.step_to(50).unwrap();
     let (sample, drift, motion) = (
         simulation.sample(),
-        simulation.energy_drift(),
+        simulation.now().energy_drift(),
         *simulation.motion(),
     );
     for _ in 0..3 {
@@ -390,7 +396,7 @@ fn an_edit_that_leads_nowhere_is_not_made() {
         assert_eq!(
             (
                 simulation.sample(),
-                simulation.energy_drift(),
+                simulation.now().energy_drift(),
                 *simulation.motion()
             ),
             (sample, drift, motion)

@@ -32,3 +32,4 @@ mod theory;
 mod truth;
 mod undo;
 mod workbench;
+mod workings;

@@ -96,12 +96,12 @@ fn every_preset_does_what_it_expects() {
 fn readouts(name: &str) -> Readouts {
     let scenario = preset_named(name, &[]);
     let mut simulation = Simulation::new(Arc::new(scenario));
-    let mut monitor = Monitor::new(&simulation);
+    let mut monitor = Monitor::new(simulation.now());
     while simulation.step_number() < simulation.scenario().steps {
         simulation.step().unwrap();
-        monitor.follow(&simulation);
+        monitor.follow(simulation.now());
     }
-    let health = monitor.health(&simulation);
+    let health = monitor.health(simulation.now());
     Readouts::new(&simulation, &mut monitor, &health, None)
 }
 

@@ -29,13 +29,13 @@ fn preset(name: &str, set: &[&str]) -> Scenario {
 fn played(scenario: &Scenario) -> (Readouts, Vec<gyrolab::run::Sample>) {
     let scenario = Arc::new(scenario.clone());
     let mut simulation = Simulation::new(Arc::clone(&scenario));
-    let mut monitor = Monitor::new(&simulation);
+    let mut monitor = Monitor::new(simulation.now());
     let mut rows = vec![simulation.sample()];
     while simulation.step_number() < scenario.steps && simulation.step().is_ok() {
-        monitor.follow(&simulation);
+        monitor.follow(simulation.now());
         rows.push(simulation.sample());
     }
-    let health = monitor.health(&simulation);
+    let health = monitor.health(simulation.now());
     let readouts = Readouts::new(&simulation, &mut monitor, &health, None);
     (readouts, rows)
 }

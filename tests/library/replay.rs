@@ -53,7 +53,7 @@ fn bits(simulation: &Simulation) -> Vec<u64> {
         state.time_s,
         sample.azimuth_deg,
         sample.energy,
-        simulation.energy_drift().unwrap_or(0.0),
+        simulation.now().energy_drift().unwrap_or(0.0),
     ];
     let mut bits: Vec<_> = numbers.chain(rest).map(f64::to_bits).collect();
     bits.push(sample.segment);

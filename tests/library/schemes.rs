@@ -148,7 +148,7 @@ fn drifts(side_kg: &str, scheme: &str, time_step_s: f64) -> Vec<f64> {
         let mut worst = 0.0_f64;
         while simulation.step_number() < tenth * TENTH {
             simulation.step_to(simulation.step_number() + 25).unwrap();
-            worst = worst.max(simulation.energy_drift().unwrap().abs());
+            worst = worst.max(simulation.now().energy_drift().unwrap().abs());
         }
         worst
     });

@@ -18,16 +18,16 @@ fn preset(name: &str, set: &[&str]) -> Arc<Scenario> {
 
 fn theory(scenario: &Arc<Scenario>, time_s: f64) -> Option<Theory> {
     let simulation = Simulation::new(Arc::clone(scenario));
-    Monitor::new(&simulation).theory(time_s)
+    Monitor::new(simulation.now()).theory(time_s)
 }
 
 /// A run to its end, and what has followed it.
 fn followed(scenario: &Arc<Scenario>) -> (Simulation, Monitor) {
     let mut simulation = Simulation::new(Arc::clone(scenario));
-    let mut monitor = Monitor::new(&simulation);
+    let mut monitor = Monitor::new(simulation.now());
     while simulation.step_number() < scenario.steps {
         simulation.step().unwrap();
-        monitor.follow(&simulation);
+        monitor.follow(simulation.now());
     }
     (simulation, monitor)
 }
@@ -158,7 +158,7 @@ fn theory_is_that_of_the_textbook() {
 #[test]
 fn steady_roots_are_those_of_the_present_tilt() {
     // 6.6 cos(tilt) w^2 - 60 w + 49 = 0.
-    let mut monitor = Monitor::new(&Simulation::new(preset("cusps", &[])));
+    let mut monitor = Monitor::new(Simulation::new(preset("cusps", &[])).now());
     let mut truth = Truth::new(preset("cusps", &[]));
     for time in [0.0, 0.41, 0.82252109, 5.0] {
         let theory = monitor.theory(time).unwrap();
@@ -289,7 +289,7 @@ const SIDEWAYS: &str = "push.0={point='top',force_N=[20,10,0],from_s=2,for_s=4}"
 fn under_a_sideways_push_theory_is_about_the_tilted_vertical() {
     let scenario = preset("cusps", &[SIDEWAYS]);
     let simulation = Simulation::new(Arc::clone(&scenario));
-    let mut monitor = Monitor::new(&simulation);
+    let mut monitor = Monitor::new(simulation.now());
     let during = monitor.theory(3.0).unwrap();
     let load = nalgebra::Vector3::new(30.0, 15.0, -49.0);
     close("load", during.load, load.norm(), 1e-12);
@@ -333,7 +333,7 @@ fn under_a_sideways_push_theory_is_about_the_tilted_vertical() {
 
 fn summary(scenario: &Arc<Scenario>) -> Summary {
     let (simulation, mut monitor) = followed(scenario);
-    let health: Health = monitor.health(&simulation);
+    let health: Health = monitor.health(simulation.now());
     let readouts = Readouts::new(&simulation, &mut monitor, &health, None);
     Summary::new(readouts, Duration::from_secs(1))
 }
@@ -509,10 +509,10 @@ fn uncertainty_is_that_of_repeated_measurements() {
     for scenario in [aliased, lopsided] {
         let mut simulation = Simulation::new(Arc::clone(&scenario));
         let halves = [1, 2].map(|half| {
-            let mut monitor = Monitor::new(&simulation);
+            let mut monitor = Monitor::new(simulation.now());
             while simulation.step_number() < half * scenario.steps / 2 {
                 simulation.step().unwrap();
-                monitor.follow(&simulation);
+                monitor.follow(simulation.now());
             }
             let instruments = monitor.instruments();
             [

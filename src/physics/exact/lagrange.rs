@@ -32,8 +32,10 @@
 //! Source: F. Klein and A. Sommerfeld, Ueber die Theorie des Kreisels, chapter VI; E. T. Whittaker, A Treatise on the
 //! Analytical Dynamics of Particles and Rigid Bodies, sections 71-72. The forms used here were derived afresh.
 
+use super::phases;
 use super::theta::{Harmonics, Lattice, Parity, Wave, Zero};
 use super::turning::{Start, Turning};
+use crate::physics::workings::{Listener, Nobody};
 use core::f64::consts::TAU;
 use nalgebra::{Complex, Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
@@ -111,14 +113,22 @@ impl LagrangeTop {
 
     /// Orientation (body to world components) and L (J s, world frame) at `t` s after the start; `t` may be negative.
     pub fn at(&self, t: f64) -> (Matrix3<f64>, Vector3<f64>) {
+        self.at_heard(t, &mut Nobody)
+    }
+
+    /// The same, with each phase told to `listener`.
+    pub fn at_heard<L: Listener>(&self, t: f64, listener: &mut L) -> (Matrix3<f64>, Vector3<f64>) {
         let (alpha, beta, spin) = self.parts_at(t);
         let norm2 = alpha.norm_sqr() + beta.norm_sqr();
+        listener.hear(|| phases::parameters(t, [alpha, beta], norm2));
         let level = spin * (2.0 * self.across / norm2);
         let turn = self.vertical.as_ref() * Quaternion::new(alpha.re, beta.re, beta.im, alpha.im);
-        (
-            rotation_matrix(&turn, 1.0 / norm2),
-            self.vertical * Vector3::new(level.re, level.im, self.momentum_vertical),
-        )
+        let orientation = rotation_matrix(&turn, 1.0 / norm2);
+        listener.hear(|| phases::orientation(&turn, &orientation));
+        let in_frame = Vector3::new(level.re, level.im, self.momentum_vertical);
+        let momentum = self.vertical * in_frame;
+        listener.hear(|| phases::momentum(&in_frame, &momentum));
+        (orientation, momentum)
     }
 
     /// Time from one lowest tilt to the next, s. None where nothing returns: a free top, the separatrix, a body at rest.

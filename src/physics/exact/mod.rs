@@ -8,6 +8,7 @@
 
 mod elliptic;
 mod lagrange;
+mod phases;
 mod scheme;
 mod taylor;
 mod theta;
@@ -18,6 +19,7 @@ pub use scheme::Exact;
 pub use taylor::AccurateMotion;
 
 use super::symmetry::SymmetricTop;
+use super::workings::{Listener, Nobody};
 use super::{Body, Loads, State};
 use nalgebra::{Matrix3, Vector3};
 
@@ -69,10 +71,19 @@ impl ExactMotion {
     /// The state at `time_s`, s. In closed form any time costs the same; an integration goes there from the time asked
     /// for last.
     pub fn at(&mut self, time_s: f64) -> State {
+        self.at_heard(time_s, &mut Nobody)
+    }
+
+    /// The same, with each phase told to `listener`.
+    pub fn at_heard<L: Listener>(&mut self, time_s: f64, listener: &mut L) -> State {
         let t = time_s - self.begin_s;
         let (orientation, momentum) = match &mut self.solution {
-            Solution::Closed(top) => top.at(t),
-            Solution::Integrated(motion) => motion.advance(t),
+            Solution::Closed(top) => top.at_heard(t, listener),
+            Solution::Integrated(motion) => {
+                let now = motion.advance(t);
+                listener.hear(|| phases::integrated(t, motion.centre_s(), &now));
+                now
+            }
             Solution::None => (
                 Matrix3::from_element(f64::NAN),
                 Vector3::from_element(f64::NAN),

@@ -1,6 +1,7 @@
 //! The exact motion as a scheme: the time step only says where the rows stand.
 
 use super::{ExactMotion, Kind};
+use crate::physics::workings::{Listener, Nobody, Phase};
 use crate::physics::{Body, Loads, Scheme, State};
 
 /// Exact motion, anew from every change of the loads; see [`super`].
@@ -52,19 +53,9 @@ impl Exact {
             kinds: (false, false),
         }
     }
-}
 
-impl Scheme for Exact {
-    fn start(&mut self, _: &State) {
-        self.motion = None;
-    }
-
-    fn load(&mut self, loads: &Loads) {
-        self.loads.clone_from(loads);
-        self.motion = None;
-    }
-
-    fn step(&mut self, dt: f64, state: &mut State) {
+    #[inline]
+    fn advance<L: Listener>(&mut self, dt: f64, state: &mut State, listener: &mut L) {
         let motion = self.motion.get_or_insert_with(|| {
             self.pace = Pace::default();
             ExactMotion::new(
@@ -80,8 +71,27 @@ impl Scheme for Exact {
             Kind::Closed => self.kinds.0 = true,
             Kind::Integrated => self.kinds.1 = true,
         }
-        let now = motion.at(self.pace.advance(dt));
+        let now = motion.at_heard(self.pace.advance(dt), listener);
         (state.orientation, state.momentum) = (now.orientation, now.momentum);
+    }
+}
+
+impl Scheme for Exact {
+    fn start(&mut self, _: &State) {
+        self.motion = None;
+    }
+
+    fn load(&mut self, loads: &Loads) {
+        self.loads.clone_from(loads);
+        self.motion = None;
+    }
+
+    fn step(&mut self, dt: f64, state: &mut State) {
+        self.advance(dt, state, &mut Nobody);
+    }
+
+    fn explain(&mut self, dt: f64, state: &mut State, phases: &mut Vec<Phase>) {
+        self.advance(dt, state, phases);
     }
 
     fn remark(&self) -> Option<String> {

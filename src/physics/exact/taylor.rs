@@ -92,6 +92,11 @@ impl AccurateMotion {
         )
     }
 
+    /// The time about which the series was expanded that gave the state asked for last, s.
+    pub fn centre_s(&self) -> f64 {
+        self.time
+    }
+
     /// One step; false if time would stand still.
     fn step_towards(&mut self, t: f64) -> bool {
         let next = self.time + self.radius.copysign(t - self.time);

@@ -14,12 +14,14 @@ use nalgebra::{Matrix3, Vector3};
 use super::State;
 use crate::physics::loads::torque;
 use crate::physics::trig::sin_cos;
+use crate::physics::workings::{Listener, Nobody};
 use free_body::{FreeBody, SymmetricBody, orthonormal};
 use principal::ROUNDING;
 use turn::Turn;
 
 pub mod free_body;
 mod jacobi;
+mod phases;
 mod principal;
 mod scheme;
 mod turn;
@@ -116,9 +118,15 @@ impl Splitting {
     /// of a sum sets it.
     #[inline]
     pub fn step(&self, state: &mut State, h: f64) {
+        self.step_heard(state, h, &mut Nobody);
+    }
+
+    /// The same, with each phase told to `listener`.
+    #[inline]
+    pub fn step_heard<L: Listener>(&self, state: &mut State, h: f64, listener: &mut L) {
         match &self.top {
-            Top::Axle(top) => top.step(self.stages, state, h),
-            Top::Any(top) => top.step(self.stages, state, h),
+            Top::Axle(top) => top.step(self.stages, state, h, listener),
+            Top::Any(top) => top.step(self.stages, state, h, listener),
         }
         state.time_s += h;
     }
@@ -145,23 +153,45 @@ struct AxleTop {
 
 impl AxleTop {
     #[inline]
-    fn step(&self, stages: &[(f64, f64)], state: &mut State, h: f64) {
+    fn step<L: Listener>(
+        &self,
+        stages: &[(f64, f64)],
+        state: &mut State,
+        h: f64,
+        listener: &mut L,
+    ) {
         let mut axle: Vector3<f64> = state.orientation.column(2).into();
         let mut momentum = state.momentum;
-        let mut side = self.spun(&state.orientation, axle.dot(&momentum) * h);
+        let impulse = axle.dot(&momentum) * h;
+        let mut side = self.spun(&state.orientation, impulse);
+        listener.hear(|| phases::spin(self.body.excess * impulse, &side));
         // The rounding that the last step left in the length; found here, it is ready long before it is needed.
         let to_unit = inverse_length(&axle);
         for &(kick, free) in stages {
-            momentum += axle.cross(&(self.force * (kick * h)));
+            let change = axle.cross(&(self.force * (kick * h)));
+            momentum += change;
+            listener.hear(|| phases::axle_kick(kick * h, &self.force, &axle, &change, &momentum));
             let turn = Turn::new(momentum * (self.body.across * (free * h)));
             axle = turn.of(axle);
             side = turn.of(side);
+            listener.hear(|| phases::axle_turn(free * h, &turn, &axle, &side));
         }
         axle *= to_unit;
-        state.momentum = momentum + axle.cross(&(self.force * (stages[0].0 * h)));
+        let change = axle.cross(&(self.force * (stages[0].0 * h)));
+        state.momentum = momentum + change;
+        listener.hear(|| {
+            phases::axle_kick(
+                stages[0].0 * h,
+                &self.force,
+                &axle,
+                &change,
+                &state.momentum,
+            )
+        });
         side -= axle * axle.dot(&side);
         side *= inverse_length(&side);
         state.orientation = Matrix3::from_columns(&[side, axle.cross(&side), axle]);
+        listener.hear(|| phases::put_together(&axle, &side, &state.orientation));
     }
 
     /// The body's x axis after the spin in excess of the turning about L; `impulse` is L.axle times the time.
@@ -186,14 +216,29 @@ struct AnyTop {
 }
 
 impl AnyTop {
-    fn step(&self, stages: &[(f64, f64)], state: &mut State, h: f64) {
+    fn step<L: Listener>(
+        &self,
+        stages: &[(f64, f64)],
+        state: &mut State,
+        h: f64,
+        listener: &mut L,
+    ) {
         for &(kick, free) in stages {
-            state.momentum += torque(&state.orientation, &self.moment) * (kick * h);
+            self.kick(kick * h, state, listener);
             self.body
                 .advance(&mut state.orientation, &state.momentum, free * h);
+            listener.hear(|| phases::free_motion(free * h, &state.momentum, &state.orientation));
         }
         state.orientation = orthonormal(&state.orientation);
-        state.momentum += torque(&state.orientation, &self.moment) * (stages[0].0 * h);
+        listener.hear(|| phases::orthonormal(&state.orientation));
+        self.kick(stages[0].0 * h, state, listener);
+    }
+
+    #[inline]
+    fn kick<L: Listener>(&self, duration_s: f64, state: &mut State, listener: &mut L) {
+        let torque = torque(&state.orientation, &self.moment);
+        state.momentum += torque * duration_s;
+        listener.hear(|| phases::kick(duration_s, &torque, &state.momentum));
     }
 }
 

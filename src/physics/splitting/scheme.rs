@@ -1,6 +1,7 @@
 //! A composition as a scheme.
 
 use super::{Kind, Splitting};
+use crate::physics::workings::Phase;
 use crate::physics::{Body, Loads, Scheme, State};
 
 /// A splitting of one kind for one body; see [`super`].
@@ -32,6 +33,10 @@ impl Scheme for SplittingScheme {
 
     fn step(&mut self, dt: f64, state: &mut State) {
         self.splitting.step(state, dt);
+    }
+
+    fn explain(&mut self, dt: f64, state: &mut State, phases: &mut Vec<Phase>) {
+        self.splitting.step_heard(state, dt, phases);
     }
 
     fn boxed(&self) -> Box<dyn Scheme> {

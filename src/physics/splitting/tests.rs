@@ -245,7 +245,7 @@ fn axle_and_any_top_agree() {
         let (mut quick, mut slow) = (tilted([2.0, -5.0, 30.0]), tilted([2.0, -5.0, 30.0]));
         for _ in 0..steps {
             scheme.step(&mut quick, h);
-            general.step(kind.stages(), &mut slow, h);
+            general.step(kind.stages(), &mut slow, h, &mut Nobody);
         }
         assert!(
             distance(&quick, &slow) < 1e-13,

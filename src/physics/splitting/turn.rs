@@ -32,6 +32,11 @@ impl Turn {
         }
     }
 
+    /// Axis times angle, rad.
+    pub fn vector(&self) -> Vector3<f64> {
+        self.vector
+    }
+
     /// The vector turned.
     #[inline]
     pub fn of(&self, v: Vector3<f64>) -> Vector3<f64> {

@@ -1,0 +1,171 @@
+//! The phases of a step of the report's scheme, with their numbers.
+
+use super::{LANES, Moments, Pair, Report, sums};
+use crate::physics::rotation::AxisAngle;
+use crate::physics::workings::{Changes, Phase, Quantity, Table};
+use nalgebra::{Matrix3, Vector3};
+use wide::f64x2;
+
+impl Report {
+    /// Every point as (its index, its mass in kg, where it is), of `points`.
+    fn each<'a>(
+        &self,
+        points: &'a [Pair],
+    ) -> impl Iterator<Item = (usize, f64, [f64; 3], [f64; 9])> + use<'a> {
+        let count = self.body.points().len();
+        (0..count).map(|index| {
+            let (pair, lane) = (&points[index / LANES], index % LANES);
+            let of = |lanes: f64x2| lanes.to_array()[lane];
+            let m = Moments::of(pair);
+            let moments = [m.x, m.y, m.z, m.xx, m.yy, m.zz, m.xy, m.xz, m.yz];
+            let at = [pair.x, pair.y, pair.z].map(of);
+            (index, of(pair.mass), at, moments.map(of))
+        })
+    }
+
+    pub(super) fn inertia_phase(&self) -> Phase {
+        let mut table = Table::new(&[
+            ("m", "kg"),
+            ("x", "m"),
+            ("y", "m"),
+            ("z", "m"),
+            ("m x²", "kg m²"),
+            ("m y²", "kg m²"),
+            ("m z²", "kg m²"),
+            ("m x y", "kg m²"),
+            ("m x z", "kg m²"),
+            ("m y z", "kg m²"),
+        ]);
+        for (point, mass, [x, y, z], [_, _, _, xx, yy, zz, xy, xz, yz]) in self.each(&self.points) {
+            table.add(point, [mass, x, y, z, xx, yy, zz, xy, xz, yz]);
+        }
+        let sums = sums(&self.points);
+        Phase::of(
+            "inertia",
+            "I = Σ m (|X|² E − X Xᵀ) = (Sxx + Syy + Szz) E − S, S = Σ m X Xᵀ",
+            vec![
+                Quantity::new("X", "", table),
+                Quantity::new("S", "kg m²", sums.second_moment),
+                Quantity::new("I", "kg m²", self.inertia),
+            ],
+        )
+    }
+
+    pub(super) fn positions_phase(&self, before: &[Pair]) -> Phase {
+        let mut table = Table::new(&[
+            ("x", "m"),
+            ("y", "m"),
+            ("z", "m"),
+            ("new x", "m"),
+            ("new y", "m"),
+            ("new z", "m"),
+        ]);
+        let both = self.each(before).zip(self.each(&self.points));
+        for ((point, _, [x, y, z], _), (_, _, [new_x, new_y, new_z], _)) in both {
+            table.add(point, [x, y, z, new_x, new_y, new_z]);
+        }
+        Phase::of(
+            "new positions",
+            "X ← R X, point by point",
+            vec![Quantity::new("X", "", table)],
+        )
+        .changing(Changes::Orientation)
+    }
+
+    pub(super) fn torque_phase(&self, first_moment: &Vector3<f64>, torque: &Vector3<f64>) -> Phase {
+        let mut points = Table::new(&[("m x", "kg m"), ("m y", "kg m"), ("m z", "kg m")]);
+        for (point, _, _, [x, y, z, ..]) in self.each(&self.points) {
+            points.add(point, [x, y, z]);
+        }
+        let mut pushes = Table::new(&[
+            ("Fx", "N"),
+            ("Fy", "N"),
+            ("Fz", "N"),
+            ("(X × F)x", "N m"),
+            ("(X × F)y", "N m"),
+            ("(X × F)z", "N m"),
+        ]);
+        for push in &self.pushes {
+            let (force, torque) = (push.force, self.push_torque(push));
+            let row = [force.x, force.y, force.z, torque.x, torque.y, torque.z];
+            pushes.add(push.point, row);
+        }
+        Phase::of(
+            "torque",
+            "τ = Σ X × F at the new positions: the weight's (−g Σ m y, g Σ m x, 0), and each push's",
+            vec![
+                Quantity::new("m X", "", points),
+                Quantity::new("Σ m X", "kg m", *first_moment),
+                Quantity::new("g", "m/s²", self.gravity),
+                Quantity::new("τ of the weight", "N m", self.weight_torque(first_moment)),
+                Quantity::new("F", "", pushes),
+                Quantity::new("τ", "N m", *torque),
+            ],
+        )
+    }
+}
+
+pub(super) fn velocity_phase(
+    inertia: &Matrix3<f64>,
+    momentum: &Vector3<f64>,
+    omega: &Vector3<f64>,
+) -> Phase {
+    Phase::of(
+        "angular velocity",
+        "Ω = I⁻¹ L",
+        vec![
+            Quantity::new("I", "kg m²", *inertia),
+            Quantity::new("L", "J s", *momentum),
+            Quantity::new("Ω", "rad/s", *omega),
+        ],
+    )
+}
+
+/// The axis about which the step turns, and its projection: zeros where nothing turns.
+pub(super) fn axis_phase(omega: &Vector3<f64>, dt: f64, turn: Option<&AxisAngle>) -> Phase {
+    let (axis, angle, projection) = match turn {
+        Some(turn) => (turn.axis, turn.angle, turn.projection()),
+        None => (Vector3::zeros(), 0.0, Matrix3::zeros()),
+    };
+    let (sine, cosine) = turn.map_or((0.0, 1.0), |turn| (turn.sine, turn.cosine));
+    Phase::of(
+        "axis and angle",
+        "u = Ω/|Ω|, P = u uᵀ, angle = |Ω| dt",
+        vec![
+            Quantity::new("Ω", "rad/s", *omega),
+            Quantity::new("dt", "s", dt),
+            Quantity::new("u", "", axis),
+            Quantity::new("angle", "rad", angle),
+            Quantity::new("sin", "", sine),
+            Quantity::new("cos", "", cosine),
+            Quantity::new("P", "", projection),
+        ],
+    )
+}
+
+pub(super) fn rotation_phase(rotation: &Matrix3<f64>) -> Phase {
+    Phase::of(
+        "rotation",
+        "R = P + cos(|Ω| dt) (E − P) + sin(|Ω| dt) [u]×",
+        vec![Quantity::new("R", "", *rotation)],
+    )
+}
+
+pub(super) fn momentum_phase(
+    dt: f64,
+    torque: &Vector3<f64>,
+    from: &Vector3<f64>,
+    to: &Vector3<f64>,
+) -> Phase {
+    Phase::of(
+        "new momentum",
+        "L ← L + dt τ",
+        vec![
+            Quantity::new("L", "J s", *from),
+            Quantity::new("dt", "s", dt),
+            Quantity::new("τ", "N m", *torque),
+            Quantity::new("new L", "J s", *to),
+        ],
+    )
+    .changing(Changes::Momentum)
+}

@@ -1,0 +1,206 @@
+//! What a scheme computes on the way of one time step, phase by phase, for whoever wants to see it.
+//!
+//! A scheme tells its phases to a [`Listener`]. Its step is written once, for any listener: the plain step is the one
+//! that [nobody](Nobody) listens to, and costs nothing more, the explained step is the one that fills a list of
+//! [phases](Phase). So the numbers shown are the very numbers that made the step.
+
+use super::Loads;
+use nalgebra::{Matrix3, Vector3};
+
+/// The workings of one time step.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Workings {
+    /// Its parts in the order of time. There is one where no force changes during the step; a scheme that follows time
+    /// between steps takes a step in which a push begins or ends in several.
+    pub parts: Vec<Part>,
+}
+
+/// The part of a time step during which no force changes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Its length, s.
+    pub length_s: f64,
+    /// The forces that act during it.
+    pub loads: Loads,
+    /// What the scheme computed, in this order.
+    pub phases: Vec<Phase>,
+}
+
+/// One phase of a time step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Phase {
+    /// What it is called: "inertia".
+    pub name: &'static str,
+    /// What is computed, as a line of Unicode text.
+    pub formula: &'static str,
+    /// What of the state it changes.
+    pub changes: Changes,
+    /// The numbers, those that are used first and the result last.
+    pub quantities: Vec<Quantity>,
+}
+
+/// What of the state a phase changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Changes {
+    /// Nothing: it computes what a later phase uses.
+    Nothing,
+    /// How the body stands.
+    Orientation,
+    /// Its angular momentum.
+    Momentum,
+    /// Both.
+    Both,
+}
+
+/// A number, vector, matrix or table with its symbol.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// As it stands in the formula; vectors and matrices are in the world frame.
+    pub symbol: &'static str,
+    /// Its unit; empty for a pure number, and for a table, whose columns have their own.
+    pub unit: &'static str,
+    /// Its value.
+    pub value: Value,
+}
+
+/// What a quantity is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// A vector.
+    Vector(Vector3<f64>),
+    /// A matrix.
+    Matrix(Matrix3<f64>),
+    /// Numbers of single points.
+    Table(Table),
+}
+
+/// Numbers of points of the body, a row a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// Symbol and unit of each column.
+    pub columns: &'static [(&'static str, &'static str)],
+    /// The index of each row's point in the body.
+    pub points: Vec<usize>,
+    /// The numbers, row by row.
+    pub cells: Vec<f64>,
+}
+
+/// Takes in the phases of a step.
+pub trait Listener {
+    /// Whether it takes in anything.
+    const LISTENS: bool;
+
+    /// Takes in the next phase, which is made only where it is listened to.
+    fn hear(&mut self, phase: impl FnOnce() -> Phase);
+}
+
+/// The listener of a plain step.
+#[derive(Clone, Copy, Debug)]
+pub struct Nobody;
+
+impl Listener for Nobody {
+    const LISTENS: bool = false;
+
+    #[inline(always)]
+    fn hear(&mut self, _: impl FnOnce() -> Phase) {}
+}
+
+impl Listener for Vec<Phase> {
+    const LISTENS: bool = true;
+
+    fn hear(&mut self, phase: impl FnOnce() -> Phase) {
+        self.push(phase());
+    }
+}
+
+impl Workings {
+    /// All phases in the order in which they were computed.
+    pub fn phases(&self) -> impl DoubleEndedIterator<Item = &Phase> {
+        self.parts.iter().flat_map(|part| &part.phases)
+    }
+}
+
+impl Phase {
+    /// A phase that changes nothing of the state.
+    pub fn of(name: &'static str, formula: &'static str, quantities: Vec<Quantity>) -> Self {
+        Self {
+            name,
+            formula,
+            changes: Changes::Nothing,
+            quantities,
+        }
+    }
+
+    /// The same, but for what it changes.
+    pub fn changing(self, changes: Changes) -> Self {
+        Self { changes, ..self }
+    }
+
+    /// The quantity with that symbol.
+    pub fn value(&self, symbol: &str) -> Option<&Value> {
+        let mut quantities = self.quantities.iter();
+        let found = quantities.find(|quantity| quantity.symbol == symbol);
+        found.map(|quantity| &quantity.value)
+    }
+}
+
+impl Quantity {
+    /// `value` under its `symbol`, in `unit`.
+    pub fn new(symbol: &'static str, unit: &'static str, value: impl Into<Value>) -> Self {
+        Self {
+            symbol,
+            unit,
+            value: value.into(),
+        }
+    }
+}
+
+impl Table {
+    /// An empty table of these columns: symbol and unit of each.
+    pub fn new(columns: &'static [(&'static str, &'static str)]) -> Self {
+        Self {
+            columns,
+            points: Vec::new(),
+            cells: Vec::new(),
+        }
+    }
+
+    /// Adds a row for the point of this index, as long as there are columns.
+    pub fn add<const COLUMNS: usize>(&mut self, point: usize, row: [f64; COLUMNS]) {
+        debug_assert_eq!(COLUMNS, self.columns.len());
+        self.points.push(point);
+        self.cells.extend(row);
+    }
+
+    /// The rows, each with the index of its point.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        let rows = self.cells.chunks_exact(self.columns.len().max(1));
+        self.points.iter().copied().zip(rows)
+    }
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<Vector3<f64>> for Value {
+    fn from(vector: Vector3<f64>) -> Self {
+        Self::Vector(vector)
+    }
+}
+
+impl From<Matrix3<f64>> for Value {
+    fn from(matrix: Matrix3<f64>) -> Self {
+        Self::Matrix(matrix)
+    }
+}
+
+impl From<Table> for Value {
+    fn from(table: Table) -> Self {
+        Self::Table(table)
+    }
+}

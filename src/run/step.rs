@@ -1,0 +1,173 @@
+//! One time step of a run, whole: everything that shows, measures, explains or exports a step reads this.
+
+use super::{EnergyScale, EnergyUnit, Sample};
+use crate::physics::observables::{self, Azimuth};
+use crate::physics::{Loads, State, Workings};
+use crate::scenario::{Motion, Scenario};
+use nalgebra::Vector3;
+use std::cell::OnceCell;
+use std::sync::Arc;
+
+/// The step at which a run stands, as the [simulation](super::Simulation) publishes it. What is read off it is computed
+/// when it is first asked for, and once, however many ask.
+#[derive(Clone, Debug)]
+pub struct Step {
+    pub(super) scenario: Arc<Scenario>,
+    pub(super) number: u64,
+    pub(super) segment: u64,
+    pub(super) motion: Motion,
+    pub(super) loads: Loads,
+    pub(super) changes: u64,
+    pub(super) before: State,
+    pub(super) after: State,
+    pub(super) azimuth: Azimuth,
+    pub(super) energy: EnergyAccount,
+    pub(super) workings: Option<Arc<Workings>>,
+    pub(super) derived: Derived,
+}
+
+/// What the energy would be if the scheme made no error.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EnergyAccount {
+    /// Energy at the start, J.
+    pub start: f64,
+    /// Work of pushes and of edits of gravity since then, J.
+    pub work: f64,
+    /// What its error is measured in; `None` where there is nothing to measure it by.
+    pub scale: Option<EnergyScale>,
+}
+
+/// What has been read off the state so far.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Derived {
+    position: OnceCell<Vector3<f64>>,
+    angular_velocity: OnceCell<Vector3<f64>>,
+    tilt_deg: OnceCell<f64>,
+    energy: OnceCell<f64>,
+}
+
+impl Step {
+    /// The scenario whose step it is.
+    pub fn scenario(&self) -> &Arc<Scenario> {
+        &self.scenario
+    }
+
+    /// Its number: step 1 leads from the start to t = dt. 0 at the start, where no step has been taken.
+    pub fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// The number of edits of time step, scheme or gravity before it.
+    pub fn segment(&self) -> u64 {
+        self.segment
+    }
+
+    /// Gravity, scheme and time step with which it was taken (at the start: those of the first).
+    pub fn motion(&self) -> &Motion {
+        &self.motion
+    }
+
+    /// The forces that acted on it, those at its end if they changed (at the start: gravity alone).
+    pub fn loads(&self) -> &Loads {
+        &self.loads
+    }
+
+    /// How often the forces have changed so far, edits of the time step and the scheme counted in: what is measured
+    /// across such a change is the motion of neither side.
+    pub fn changes(&self) -> u64 {
+        self.changes
+    }
+
+    /// The state before it; `None` at the start.
+    pub fn before(&self) -> Option<&State> {
+        (self.number > 0).then_some(&self.before)
+    }
+
+    /// The state after it.
+    pub fn after(&self) -> &State {
+        &self.after
+    }
+
+    /// Time after it, s.
+    pub fn time_s(&self) -> f64 {
+        self.after.time_s
+    }
+
+    /// What the scheme computed on the way; `None` at the start, and where nobody has
+    /// [asked for it](super::Simulation::keep_workings).
+    pub fn workings(&self) -> Option<&Arc<Workings>> {
+        self.workings.as_ref()
+    }
+
+    /// The axle's azimuth after it, counted on through full turns.
+    pub fn azimuth(&self) -> &Azimuth {
+        &self.azimuth
+    }
+
+    /// The traced point, world frame, m.
+    #[inline]
+    pub fn position(&self) -> &Vector3<f64> {
+        let body = &self.scenario.body.mechanics;
+        let read = || observables::position(body, &self.after, self.scenario.trace);
+        self.derived.position.get_or_init(read)
+    }
+
+    /// ω = I⁻¹L after it, world frame, rad/s.
+    #[inline]
+    pub fn angular_velocity(&self) -> &Vector3<f64> {
+        let body = &self.scenario.body.mechanics;
+        let read = || observables::angular_velocity(body, &self.after);
+        self.derived.angular_velocity.get_or_init(read)
+    }
+
+    /// Angle of the axle from +z, degrees.
+    #[inline]
+    pub fn tilt_deg(&self) -> f64 {
+        let read = || observables::tilt_deg(&self.after);
+        *self.derived.tilt_deg.get_or_init(read)
+    }
+
+    /// Kinetic energy and that of the weight, from the pivot, J.
+    #[inline]
+    pub fn energy(&self) -> f64 {
+        *self.derived.energy.get_or_init(|| {
+            let kinetic = 0.5 * self.after.momentum.dot(self.angular_velocity());
+            let body = &self.scenario.body.mechanics;
+            kinetic + self.motion.gravity * observables::weight_height(body, &self.after)
+        })
+    }
+
+    /// (E − E₀ − W)/S: the energy that only the scheme's error can have made, W the work of pushes and of edits of
+    /// gravity, S as [`EnergyScale`] has it; `None` where there is no S, or the drift is beyond the range of numbers.
+    pub fn energy_drift(&self) -> Option<f64> {
+        let gained = self.energy() - self.energy.start - self.energy.work;
+        let drift = gained / self.energy.scale?.size;
+        drift.is_finite().then_some(drift)
+    }
+
+    /// What the energy drift is measured in; `None` where there is nothing to measure it by.
+    pub fn energy_unit(&self) -> Option<EnergyUnit> {
+        self.energy.scale.map(|scale| scale.unit)
+    }
+
+    /// Its numbers as they leave the program.
+    pub fn sample(&self) -> Sample {
+        Sample {
+            step: self.number,
+            time_s: self.after.time_s,
+            position: *self.position(),
+            momentum: self.after.momentum,
+            angular_velocity: *self.angular_velocity(),
+            tilt_deg: self.tilt_deg(),
+            azimuth_deg: self.azimuth.degrees(),
+            energy: self.energy(),
+            segment: self.segment,
+        }
+    }
+
+    /// Whether every number read off the state is finite: squares leave the range of numbers before L itself does. A
+    /// finite energy means a finite Omega too.
+    pub(super) fn can_be_read(&self) -> bool {
+        self.energy().is_finite() && self.position().iter().all(|c| c.is_finite())
+    }
+}

@@ -1,0 +1,467 @@
+//! What a step publishes: its two ends, what is read off it, and the workings, which are the numbers that made it.
+
+use crate::support::scenarios::parse;
+use gyrolab::observe::live::LiveRun;
+use gyrolab::physics::scheme::SCHEMES;
+use gyrolab::physics::workings::{Changes, Phase, Table, Value};
+use gyrolab::physics::{observables, rotation};
+use gyrolab::run::{Simulation, Step};
+use gyrolab::scenario::{Document, Scenario};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+use std::sync::Arc;
+
+/// A wheel of seven points, of which `lump_kg` hangs off the axle, so that the number of points is odd; pushes that begin
+/// in mid-step, and edits of everything that an edit may touch.
+fn eventful(scheme: &str, lump_kg: f64) -> Arc<Scenario> {
+    let text = format!(
+        "title = 'x'
+[body.rim]
+points = 4
+radius_m = 0.8
+height_m = 0.9
+point_mass_kg = 0.5
+[[body.point]]
+name = 'top'
+at_m = [0, 0, 1.4]
+mass_kg = 0.25
+[[body.point]]
+name = 'foot'
+at_m = [0, 0, 0]
+mass_kg = 0
+[[body.point]]
+name = 'lump'
+at_m = [0.3, 0.2, 0.7]
+mass_kg = {lump_kg}
+[start]
+tilt_deg = 40
+momentum_Js = [1, -2, 20]
+[motion]
+scheme = '{scheme}'
+time_step_s = 0.01
+steps = 60
+[[push]]
+point = 'top'
+force_N = [3, -4, 5]
+from_s = 0.045
+for_s = 0.1
+[[push]]
+point = 'top'
+force_N = [0, 2, 0]
+first_step = 3
+steps = 9
+[[edit]]
+step = 20
+set = {{ 'motion.gravity_m_per_s2' = 4 }}
+[[edit]]
+step = 30
+set = {{ 'motion.time_step_s' = 0.02 }}
+"
+    );
+    Arc::new(parse(&text))
+}
+
+/// Every step of `scenario`, each shown to `look` with its workings.
+fn each_step(scenario: &Arc<Scenario>, mut look: impl FnMut(&Step)) {
+    let mut run = Simulation::new(Arc::clone(scenario));
+    run.keep_workings(true);
+    for _ in 0..scenario.steps {
+        look(run.step().unwrap());
+    }
+}
+
+/// The scenario with a lump and the one without.
+fn both(scheme: &str) -> [Arc<Scenario>; 2] {
+    [eventful(scheme, 0.75), eventful(scheme, 0.0)]
+}
+
+fn number(phase: &Phase, symbol: &str) -> f64 {
+    match phase.value(symbol) {
+        Some(&Value::Number(number)) => number,
+        other => panic!("{} {symbol}: {other:?}", phase.name),
+    }
+}
+
+fn vector(phase: &Phase, symbol: &str) -> Vector3<f64> {
+    match phase.value(symbol) {
+        Some(&Value::Vector(vector)) => vector,
+        other => panic!("{} {symbol}: {other:?}", phase.name),
+    }
+}
+
+fn matrix(phase: &Phase, symbol: &str) -> Matrix3<f64> {
+    match phase.value(symbol) {
+        Some(&Value::Matrix(matrix)) => matrix,
+        other => panic!("{} {symbol}: {other:?}", phase.name),
+    }
+}
+
+fn table<'a>(phase: &'a Phase, symbol: &str) -> &'a Table {
+    match phase.value(symbol) {
+        Some(Value::Table(table)) => table,
+        other => panic!("{} {symbol}: {other:?}", phase.name),
+    }
+}
+
+/// The sum of one column as the report's scheme adds it up: every second point from the first, every second from the
+/// second, and both.
+fn column_sum(table: &Table, column: usize) -> f64 {
+    let half = |first: usize| {
+        let rows = table.rows().skip(first).step_by(2);
+        rows.fold(0.0, |sum, (_, row)| sum + row[column])
+    };
+    half(0) + half(1)
+}
+
+#[test]
+fn keeping_the_workings_changes_no_bit_of_the_run() {
+    for scheme in SCHEMES {
+        for scenario in both(scheme.name) {
+            let mut plain = Simulation::new(Arc::clone(&scenario));
+            each_step(&scenario, |step| {
+                let plain = plain.step().unwrap();
+                assert_eq!(step.sample(), plain.sample(), "{}", scheme.name);
+                assert_eq!(step.after(), plain.after(), "{}", scheme.name);
+                assert!(step.workings().is_some() && plain.workings().is_none());
+            });
+        }
+    }
+}
+
+#[test]
+fn the_parts_of_a_step_are_as_long_as_the_step() {
+    for scheme in SCHEMES {
+        for scenario in both(scheme.name) {
+            let mut most_parts = 0;
+            each_step(&scenario, |step| {
+                let workings = step.workings().unwrap();
+                let length: f64 = workings.parts.iter().map(|part| part.length_s).sum();
+                assert!((length - step.motion().time_step_s).abs() < 1e-15);
+                assert_eq!(&workings.parts.last().unwrap().loads, step.loads());
+                assert!(workings.parts.iter().all(|part| !part.phases.is_empty()));
+                most_parts = most_parts.max(workings.parts.len());
+            });
+            // The push of 0.045 s begins in mid-step; a scheme that knows whole steps only feels its mean.
+            assert_eq!(most_parts, if scheme.continuous { 2 } else { 1 });
+        }
+    }
+}
+
+#[test]
+fn the_reports_step_follows_from_its_workings_to_the_last_bit() {
+    for scenario in both("report") {
+        let mut positions: Option<Vec<f64>> = None;
+        each_step(&scenario, |step| {
+            let workings = step.workings().unwrap();
+            let phases: Vec<_> = workings.phases().collect();
+            let names: Vec<_> = phases.iter().map(|phase| phase.name).collect();
+            assert_eq!(
+                names,
+                [
+                    "inertia",
+                    "angular velocity",
+                    "axis and angle",
+                    "rotation",
+                    "new positions",
+                    "torque",
+                    "new momentum"
+                ]
+            );
+            let [inertia, velocity, axis, turn, moved, torque, momentum] = phases[..] else {
+                panic!("seven phases")
+            };
+            let (before, after) = (step.before().unwrap(), step.after());
+            let (dt, gravity) = (step.motion().time_step_s, step.motion().gravity);
+
+            // 1. The inertia from each point's contribution.
+            let points = table(inertia, "X");
+            let [xx, yy, zz, xy, xz, yz] = [4, 5, 6, 7, 8, 9].map(|c| column_sum(points, c));
+            let summed = Matrix3::new(yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy);
+            assert_eq!(matrix(inertia, "I"), summed);
+            let body = &scenario.body.mechanics;
+            for ((index, row), point) in points.rows().zip(body.points()) {
+                let at = before.orientation * point.at;
+                assert!((at - Vector3::new(row[1], row[2], row[3])).amax() < 1e-13);
+                assert_eq!((row[0], row[4]), (point.mass, row[0] * row[1] * row[1]));
+                assert_eq!(body.points()[index], *point);
+            }
+
+            // 2. and 3. Ω, u and the angle.
+            let omega = vector(velocity, "Ω");
+            assert_eq!(matrix(velocity, "I"), summed);
+            assert_eq!(vector(velocity, "L"), before.momentum);
+            let off = summed * omega - before.momentum;
+            assert!(off.amax() < 1e-14 * before.momentum.amax(), "{off}");
+            let (u, angle, p) = (vector(axis, "u"), number(axis, "angle"), matrix(axis, "P"));
+            assert_eq!(angle, omega.norm() * dt);
+            assert_eq!(u, omega * (1.0 / omega.norm()));
+            assert_eq!(p, u * u.transpose());
+
+            // 4. R, and the positions that it leads to.
+            let r = matrix(turn, "R");
+            assert_eq!(r, rotation::about(&omega, dt));
+            let (sine, cosine) = (number(axis, "sin"), number(axis, "cos"));
+            let by_formula = p + cosine * (Matrix3::identity() - p) + sine * u.cross_matrix();
+            assert!((r - by_formula).amax() < 1e-15);
+            assert_eq!(after.orientation, r * before.orientation);
+            let both: Vec<_> = table(moved, "X").rows().map(|(_, row)| row).collect();
+            for (row, (_, at)) in both.iter().zip(points.rows()) {
+                assert_eq!(row[..3], at[1..4]);
+                for i in 0..3 {
+                    let turned = r[(i, 0)] * row[0] + r[(i, 1)] * row[1] + r[(i, 2)] * row[2];
+                    assert_eq!(row[3 + i], turned);
+                }
+            }
+            let from: Vec<_> = both.iter().flat_map(|row| row[..3].to_vec()).collect();
+            let to: Vec<_> = both.iter().flat_map(|row| row[3..].to_vec()).collect();
+            assert!(positions.replace(to).is_none_or(|last| last == from));
+
+            // 5. The torque at the new positions, and the new L.
+            let moments = table(torque, "m X");
+            let first = Vector3::new(0, 1, 2).map(|c: usize| column_sum(moments, c));
+            assert_eq!(vector(torque, "Σ m X"), first);
+            let weight = Vector3::new(-gravity * first.y, gravity * first.x, 0.0);
+            assert_eq!(vector(torque, "τ of the weight"), weight);
+            let mut sum = weight;
+            for (point, row) in table(torque, "F").rows() {
+                let force = Vector3::new(row[0], row[1], row[2]);
+                let at = Vector3::from_column_slice(&both[point][3..]);
+                assert_eq!(row[3..], at.cross(&force).as_slice()[..]);
+                sum += at.cross(&force);
+            }
+            let forces = table(torque, "F").rows().count();
+            assert_eq!(forces, step.loads().pushes.len());
+            assert_eq!(vector(torque, "τ"), sum);
+            assert_eq!(vector(momentum, "new L"), before.momentum + dt * sum);
+            assert_eq!(after.momentum, before.momentum + dt * sum);
+        });
+    }
+}
+
+#[test]
+fn what_the_phases_say_they_change_is_what_changes() {
+    for scheme in SCHEMES {
+        for scenario in both(scheme.name) {
+            each_step(&scenario, |step| {
+                let workings = step.workings().unwrap();
+                let phases = || workings.phases().rev();
+                let last = |changes: Changes| {
+                    move |phase: &&Phase| [changes, Changes::Both].contains(&phase.changes)
+                };
+                let turned = phases().find(last(Changes::Orientation)).unwrap();
+                match turned.value("new Q") {
+                    Some(Value::Matrix(q)) => assert_eq!(*q, step.after().orientation),
+                    _ => assert_eq!(turned.name, "new positions"),
+                }
+                let kicked = phases().find(last(Changes::Momentum)).unwrap();
+                assert_eq!(
+                    vector(kicked, "new L"),
+                    step.after().momentum,
+                    "{}",
+                    scheme.name
+                );
+            });
+        }
+    }
+}
+
+#[test]
+fn the_runge_kutta_step_follows_from_its_slopes() {
+    for scenario in both("rk4") {
+        each_step(&scenario, |step| {
+            let workings = step.workings().unwrap();
+            let (mut q, mut momentum) = {
+                let before = step.before().unwrap();
+                (before.orientation, before.momentum)
+            };
+            for part in &workings.parts {
+                let [k1, k2, k3, k4, orientation, kick] = &part.phases[..] else {
+                    panic!("six phases")
+                };
+                let sixth = part.length_s / 6.0;
+                let torque = |phase| vector(phase, "L′");
+                let torques = torque(k1) + (torque(k2) + torque(k3)) * 2.0 + torque(k4);
+                momentum += torques * sixth;
+                let rate = |phase| matrix(phase, "Q′");
+                let turned = rate(k1) + (rate(k2) + rate(k3)) * 2.0 + rate(k4);
+                assert_eq!(rate(k1), rotation::crossed(&vector(k1, "Ω"), &q));
+                q = rotation::straightened(&(q + turned * sixth));
+                assert_eq!(matrix(orientation, "new Q"), q);
+                assert_eq!(vector(kick, "new L"), momentum);
+            }
+            assert_eq!(
+                (q, momentum),
+                (step.after().orientation, step.after().momentum)
+            );
+        });
+    }
+}
+
+#[test]
+fn the_splitting_step_follows_from_its_kicks() {
+    for (scheme, kicks) in [("strang", 2), ("srkn11b", 12)] {
+        for scenario in both(scheme) {
+            each_step(&scenario, |step| {
+                let mut momentum = step.before().unwrap().momentum;
+                for part in &step.workings().unwrap().parts {
+                    let phases = || part.phases.iter();
+                    let (mut axle, mut duration_s, mut count) = (Vector3::zeros(), 0.0, 0);
+                    for phase in phases() {
+                        match phase.name {
+                            "kick" => {
+                                let h = number(phase, "h");
+                                momentum += match phase.value("τ") {
+                                    Some(Value::Vector(torque)) => torque * h,
+                                    _ => {
+                                        axle = vector(phase, "a");
+                                        axle.cross(&(vector(phase, "Σ s F") * h))
+                                    }
+                                };
+                                assert_eq!(vector(phase, "new L"), momentum);
+                                duration_s += h;
+                                count += 1;
+                            }
+                            "free motion" if phase.value("w").is_some() => {
+                                let turned = rotation::about(&vector(phase, "w"), 1.0) * axle;
+                                assert!((turned - vector(phase, "new a")).amax() < 1e-14);
+                            }
+                            "new orientation" => {
+                                let (a, e) = (vector(phase, "a"), vector(phase, "e"));
+                                let q = Matrix3::from_columns(&[e, a.cross(&e), a]);
+                                assert_eq!(q, matrix(phase, "new Q"));
+                            }
+                            _ => {}
+                        }
+                    }
+                    assert_eq!(count, kicks, "{scheme}");
+                    assert!((duration_s - part.length_s).abs() < 1e-15);
+                    let free = phases().filter(|phase| phase.name == "free motion");
+                    let free_s: f64 = free.map(|phase| number(phase, "h")).sum();
+                    assert!((free_s - part.length_s).abs() < 1e-15);
+                }
+                assert_eq!(momentum, step.after().momentum, "{scheme}");
+            });
+        }
+    }
+}
+
+#[test]
+fn the_exact_motion_says_how_it_was_found() {
+    let [lopsided, symmetric] = both("exact");
+    each_step(&lopsided, |step| {
+        let workings = step.workings().unwrap();
+        let names: Vec<_> = workings.phases().map(|phase| phase.name).collect();
+        assert!(
+            names.iter().all(|name| *name == "Taylor series"),
+            "{names:?}"
+        );
+    });
+    each_step(&symmetric, |step| {
+        let workings = step.workings().unwrap();
+        for part in &workings.parts {
+            let [parameters, orientation, momentum] = &part.phases[..] else {
+                panic!("three phases")
+            };
+            let squares = ["Re α", "Im α", "Re β", "Im β"].map(|s| number(parameters, s).powi(2));
+            let (sum, norm2) = (
+                squares.iter().sum::<f64>(),
+                number(parameters, "|α|² + |β|²"),
+            );
+            assert!((sum / norm2 - 1.0).abs() < 1e-15);
+            let [w, i, j, k] = ["q₀", "q₁", "q₂", "q₃"].map(|s| number(orientation, s));
+            let turn = UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k));
+            let q = turn.to_rotation_matrix().into_inner();
+            assert!((q - matrix(orientation, "new Q")).amax() < 2e-15);
+            let sizes =
+                ["L along the load's vertical", "new L"].map(|s| vector(momentum, s).norm());
+            assert!((sizes[0] / sizes[1] - 1.0).abs() < 1e-15);
+        }
+    });
+}
+
+#[test]
+fn a_step_reads_as_its_state_does() {
+    for scheme in SCHEMES {
+        let scenario = eventful(scheme.name, 0.75);
+        let body = &scenario.body.mechanics;
+        let mut last = scenario.start;
+        assert_eq!(Simulation::new(Arc::clone(&scenario)).now().before(), None);
+        each_step(&scenario, |step| {
+            let after = step.after();
+            let omega = observables::angular_velocity(body, after);
+            assert_eq!(step.before(), Some(&last));
+            assert_eq!(*step.angular_velocity(), omega);
+            assert_eq!(
+                *step.position(),
+                observables::position(body, after, scenario.trace)
+            );
+            assert_eq!(step.tilt_deg(), observables::tilt_deg(after));
+            let height = observables::weight_height(body, after);
+            let energy = observables::kinetic_energy(body, after) + step.motion().gravity * height;
+            assert_eq!(step.energy(), energy);
+            // Asked again, it says the same.
+            assert_eq!(step.sample(), step.sample());
+            last = *after;
+        });
+    }
+}
+
+#[test]
+fn where_the_numbers_end_the_last_step_is_published_as_it_was() {
+    // The push of step 4, and an edit before it, lead out of the range of numbers.
+    let text = "title = 'x'\n[body.rim]\npoints = 4\nradius_m = 0.8\nheight_m = 1\npoint_mass_kg = 0.5\n\
+                [[body.point]]\nname = 'top'\nat_m = [0, 0, 1]\nmass_kg = 1\n\
+                [start]\nmomentum_Js = [0, 1, 30]\n[motion]\ntime_step_s = 0.1\nsteps = 9\n\
+                [[push]]\npoint = 'top'\nforce_N = [1, 0, 0]\nfirst_step = 2\nsteps = 2\n\
+                [[push]]\npoint = 'top'\nforce_N = [1e308, 1e308, 1e308]\nfirst_step = 4\nsteps = 9\n\
+                [[edit]]\nstep = 3\nset = { 'motion.gravity_m_per_s2' = 2 }\n";
+    for scheme in SCHEMES {
+        let mut document = Document::parse("x.toml", text).unwrap();
+        document
+            .set(&format!("motion.scheme={}", scheme.name))
+            .unwrap();
+        let mut run = Simulation::new(Arc::new(document.scenario().unwrap()));
+        run.step_to(3).unwrap();
+        let (sample, loads, motion) = (run.sample(), run.loads().clone(), *run.motion());
+        let (before, changes) = (run.now().before().copied(), run.now().changes());
+        assert_eq!(loads.pushes.len(), 1);
+        for _ in 0..2 {
+            assert_eq!(run.step().unwrap_err().step, 4, "{}", scheme.name);
+            let now = run.now();
+            assert_eq!(now.sample(), sample, "{}", scheme.name);
+            assert_ne!(now.before(), Some(now.after()));
+            assert_eq!((now.before().copied(), now.changes()), (before, changes));
+            assert_eq!(
+                (now.loads(), now.motion()),
+                (&loads, &motion),
+                "{}",
+                scheme.name
+            );
+        }
+    }
+}
+
+#[test]
+fn a_watched_run_gives_the_workings_of_any_step_kept_or_not() {
+    for scheme in SCHEMES {
+        let scenario = eventful(scheme.name, 0.75);
+        let mut known = vec![None];
+        each_step(&scenario, |step| known.push(step.workings().cloned()));
+        let mut run = LiveRun::new(Arc::clone(&scenario));
+        for (step, known) in known.iter().enumerate() {
+            // Some are asked for when they are past, the others are kept as the run goes.
+            run.keep_workings(step % 3 == 1);
+            if step > 0 {
+                run.step().unwrap();
+            }
+            assert_eq!(run.simulation().now().workings().is_some(), step % 3 == 1);
+            assert_eq!(&run.workings(), known, "{} step {step}", scheme.name);
+            assert_eq!(&run.workings(), known, "{} step {step}", scheme.name);
+        }
+        run.keep_workings(true);
+        run.set_out_for(25);
+        while run.destination().is_some() {
+            run.step().unwrap();
+        }
+        assert_eq!(run.workings(), known[25], "{}", scheme.name);
+    }
+}
