@@ -41,14 +41,15 @@ pub struct Journal {
 pub struct Entry {
     /// The step at which the user acted.
     pub step: u64,
-    /// What the user did.
-    pub act: Act,
     /// Whether the entry is an edit that the opened file contained.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     from_file: bool,
     /// Whether it is one more nudge of the same value: undo takes it back together with the entry before it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     is_chained: bool,
+    /// What the user did. It must stay the last field: TOML writes it as a table, and the serializer of `toml` moves the
+    /// whole text that follows for each value that it meets after a table.
+    pub act: Act,
 }
 
 /// What can be done to a run without beginning a new one.
@@ -448,6 +449,19 @@ mod tests {
             "an act at the last step is included"
         );
         assert_eq!(journal.later_than(15), 1);
+    }
+
+    #[test]
+    fn the_act_is_written_last() {
+        let entry = Entry {
+            step: 3,
+            from_file: true,
+            is_chained: true,
+            act: gravity(1.0),
+        };
+        let text = serde_json::to_string(&entry).unwrap();
+        assert!(text.find("\"act\"") > text.find("\"is_chained\""), "{text}");
+        assert!(text.find("\"act\"") > text.find("\"from_file\""), "{text}");
     }
 
     #[test]
