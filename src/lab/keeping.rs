@@ -206,7 +206,7 @@ impl Lab {
         confined: Option<&Confined>,
         view: impl FnOnce(&Scenario) -> View,
     ) -> Result<Self, Unreadable> {
-        let work: KeptWork = read("the run", &content.work)?;
+        let mut work: KeptWork = read("the run", &content.work)?;
         if !FORMS.contains(&work.form) {
             return Err(Unreadable(
                 "it was kept by another version of gyrolab".to_owned(),
@@ -215,9 +215,8 @@ impl Lab {
         let place: KeptPlace = read("the place in it", &content.place)?;
         let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
         work.history.check().map_err(unreadable)?;
+        let scenario = work.history.scenario().map_err(unreadable)?;
         let present = work.history.present();
-        let scenario = present.journal.scenario().map_err(unreadable)?;
-        let scenario = Arc::new(scenario);
         let mut view = view(&scenario);
         view.focus = view
             .kept_as(&place.focus)

@@ -133,7 +133,7 @@ impl Work {
         set: &Table,
         acts: Vec<Act>,
         is_again: bool,
-    ) -> Result<Scenario, String> {
+    ) -> Result<Arc<Scenario>, String> {
         let before = (!acts.is_empty()).then(|| self.history.clone());
         let history = self.change();
         let begun = match is_again {
@@ -161,7 +161,7 @@ impl Work {
         acts: Vec<Act>,
         is_again: bool,
         steps: u64,
-    ) -> Result<Option<Scenario>, String> {
+    ) -> Result<Option<Arc<Scenario>>, String> {
         let before = (acts.len() > 1).then(|| self.history.clone());
         let history = self.change();
         let mut done = None;
@@ -190,8 +190,8 @@ impl Work {
     fn or_back_to(
         &mut self,
         before: Option<History>,
-        done: Result<Scenario, Problems>,
-    ) -> Result<Scenario, String> {
+        done: Result<Arc<Scenario>, Problems>,
+    ) -> Result<Arc<Scenario>, String> {
         done.map_err(|problems| {
             if let Some(before) = before {
                 *self.change() = before;
@@ -215,8 +215,8 @@ impl Work {
         let Some(turned) = turned else {
             return Ok(None);
         };
-        let scenario = self.journal().scenario();
-        let scenario = Arc::new(scenario.map_err(|problems| problems.in_one_line())?);
+        let scenario = self.history.scenario();
+        let scenario = scenario.map_err(|problems| problems.in_one_line())?;
         Ok(Some(match turned {
             Reversal::SameRun { step, act } => {
                 if scenario.steps != steps {
