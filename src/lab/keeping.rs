@@ -8,7 +8,7 @@ use crate::observe::camera::Camera;
 use crate::observe::pace::Speed;
 use crate::scenario::{Document, Problems, Scenario};
 use crate::storage::confined::Confined;
-use crate::storage::session::Content;
+use crate::storage::session::{Content, Text};
 use crate::text::printable::Shown;
 use crate::work::history::History;
 use crate::work::next_push::NextPush;
@@ -315,13 +315,13 @@ impl KeptScript {
     }
 }
 
-/// `history` as a session keeps it.
-pub(super) fn written(history: &History) -> Arc<str> {
+/// `history` as a session keeps it. The text is written by the thread that first reads it.
+pub(super) fn written(history: &History) -> Text {
     let work = KeptWork {
         form: FORM,
         history: history.clone(),
     };
-    toml::to_string(&work).unwrap_or_default().into()
+    Text::later(move || toml::to_string(&work).unwrap_or_default())
 }
 
 /// Checks that `text` can be read as a `T` and would be written in the same way again.

@@ -4,6 +4,7 @@
 use super::keeping;
 use crate::run::Clock;
 use crate::scenario::{Document, Problems, Scenario};
+use crate::storage::session::Text;
 use crate::work::changed;
 use crate::work::history::{History, Reversal, RunRecord};
 use crate::work::journal::{Act, Journal};
@@ -20,7 +21,7 @@ pub struct Work {
     /// How the present run differs from that scenario, in words; `None` where it does not.
     changed_from_file: Option<String>,
     /// The history as the session keeps it; `None` where the history has changed since it was written.
-    kept: Option<Arc<str>>,
+    kept: Option<Text>,
 }
 
 /// The direction in the history: back with undo, on with redo.
@@ -99,10 +100,10 @@ impl Work {
     }
 
     /// The history as the session keeps it.
-    pub(super) fn kept(&mut self) -> Arc<str> {
+    pub(super) fn kept(&mut self) -> Text {
         let history = &self.history;
         let kept = self.kept.get_or_insert_with(|| keeping::written(history));
-        Arc::clone(kept)
+        kept.clone()
     }
 
     /// The history, to be changed.
@@ -334,7 +335,7 @@ mod tests {
     fn the_kept_text_follows_every_change() {
         let mut work = work();
         let first = work.kept();
-        assert!(Arc::ptr_eq(&first, &work.kept()));
+        assert_eq!(first, work.kept());
         work.act(40, vec![time_step(0.05)], false, 2300).unwrap();
         let second = work.kept();
         assert_ne!(first, second);
