@@ -25,7 +25,7 @@ fn browsing() -> (TempDir, Desk) {
     }
     std::fs::write(folder.path().join("long.toml"), text).unwrap();
     let mut desk = Desk::open("method-2");
-    desk.lab.work_in(folder.path());
+    desk.lab.files_mut().work_in(folder.path());
     desk.type_text("o/long.toml");
     (folder, desk)
 }
@@ -48,11 +48,14 @@ fn wait_until(desk: &mut Desk, is_so: impl Fn(&Desk) -> bool) {
 fn it_opens_when_it_has_been_read() {
     let (_folder, mut desk) = browsing();
     enter(&mut desk);
-    assert!(desk.lab.browser().is_loading(), "the key has not waited");
-    assert_eq!(desk.lab.run().scenario().edits.len(), 0);
-    wait_until(&mut desk, |desk| desk.lab.mode() == Mode::Lab);
-    assert_eq!(desk.lab.run().scenario().edits.len(), 40_000);
-    assert!(desk.lab.playback().is_running());
+    assert!(
+        desk.lab.on_top().browser().is_loading(),
+        "the key has not waited"
+    );
+    assert_eq!(desk.lab.player().run().scenario().edits.len(), 0);
+    wait_until(&mut desk, |desk| desk.lab.on_top().mode() == Mode::Lab);
+    assert_eq!(desk.lab.player().run().scenario().edits.len(), 40_000);
+    assert!(desk.lab.player().playback().is_running());
 }
 
 #[test]
@@ -60,9 +63,9 @@ fn esc_means_that_it_is_not_opened() {
     let (_folder, mut desk) = browsing();
     enter(&mut desk);
     app::press(Key::Esc, &mut desk.lab);
-    assert_eq!(desk.lab.mode(), Mode::Browser);
-    wait_until(&mut desk, |desk| !desk.lab.browser().is_loading());
+    assert_eq!(desk.lab.on_top().mode(), Mode::Browser);
+    wait_until(&mut desk, |desk| !desk.lab.on_top().browser().is_loading());
     desk.wait(5);
-    assert_eq!(desk.lab.run().scenario().edits.len(), 0);
-    assert_eq!(desk.lab.mode(), Mode::Browser);
+    assert_eq!(desk.lab.player().run().scenario().edits.len(), 0);
+    assert_eq!(desk.lab.on_top().mode(), Mode::Browser);
 }

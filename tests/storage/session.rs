@@ -316,7 +316,7 @@ fn what_the_reader_refuses_is_put_aside_too_and_none_is_lost() {
     kept(&folder, "good", "");
     age(&only(&folder, ".work"), 100);
     kept(&folder, "bad", "");
-    let found = resume(&folder, |content| match content.work.to_string() {
+    let found = resume(&folder, |content| match &*content.work {
         "bad" => Err("line 3: no such key".to_owned()),
         work => Ok(work.to_owned()),
     })
@@ -450,7 +450,7 @@ fn the_end_promises_only_what_the_disk_has() {
 fn a_work_that_cannot_be_read_back_does_not_take_the_place_of_one_that_can() {
     let (_outer, folder) = folder();
     let session = Session::begin(&folder).unwrap();
-    session.check_with(|content| match content.work.to_string() {
+    session.check_with(|content| match &*content.work {
         "bad" => Err("the run is too deep".to_owned()),
         _ => Ok(()),
     });
