@@ -84,7 +84,7 @@ impl Scenario {
     pub(crate) fn add_push(
         &mut self,
         origin: &str,
-        push: PushFile,
+        push: &PushFile,
     ) -> Option<Result<(), Problems>> {
         let place = self.pushes.len();
         let adds = |edit: &super::Edit| edit.pushes.len() > place;
@@ -93,9 +93,9 @@ impl Scenario {
         }
         let key = format!("push.{place}");
         let checked = || {
-            let table = Value::try_from(&push).map_err(|error| vec![unwritable(&error)])?;
+            let table = Value::try_from(push).map_err(|error| vec![unwritable(&error)])?;
             match keys::check_part(&table, &key) {
-                problems if problems.is_empty() => parts::push(&push, &self.body, &key),
+                problems if problems.is_empty() => parts::push(push, &self.body, &key),
                 problems => Err(problems),
             }
         };

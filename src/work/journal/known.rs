@@ -174,7 +174,7 @@ impl Journal {
             match &entry.act {
                 Act::Describe(_) => {}
                 Act::Push(push) => {
-                    if let Err(problems) = scenario.add_push(ORIGIN, push.clone())? {
+                    if let Err(problems) = scenario.add_push(ORIGIN, push)? {
                         return refused(problems);
                     }
                 }
