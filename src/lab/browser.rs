@@ -31,6 +31,8 @@ pub struct Browser {
     selected: usize,
     /// The selected entry and its preview.
     preview: Option<(Entry, Preview)>,
+    /// Whether the selected entry is to be opened as soon as it has been read.
+    is_chosen: bool,
     loader: Loader,
 }
 
@@ -58,7 +60,33 @@ impl Browser {
         self.open = name.to_owned();
         self.filter.clear();
         self.preview = None;
+        self.is_chosen = false;
         self.refilter();
+    }
+
+    /// Reads the selected file again and chooses it to be opened: [`take_chosen`](Self::take_chosen) gives what it holds.
+    pub(super) fn choose(&mut self) {
+        self.is_chosen = true;
+        if let Some((entry, preview)) = &mut self.preview
+            && !matches!(preview, Preview::Loading)
+        {
+            *preview = self.loader.ask(&entry.name);
+        }
+    }
+
+    /// What is chosen is no longer to be opened. Returns whether anything was chosen.
+    pub(super) fn forget_chosen(&mut self) -> bool {
+        std::mem::take(&mut self.is_chosen)
+    }
+
+    /// The file that was chosen to be opened and what it holds, once it has been read.
+    pub(super) fn take_chosen(&mut self) -> Option<(String, Preview)> {
+        let (entry, preview) = self.preview.as_ref()?;
+        if !self.is_chosen || matches!(preview, Preview::Loading) {
+            return None;
+        }
+        self.is_chosen = false;
+        Some((entry.name.clone(), preview.clone()))
     }
 
     /// The entries whose names contain the filter.
@@ -163,6 +191,7 @@ impl Browser {
         if self.preview.as_ref().map(|(of, _)| of) == choice.as_ref() {
             return;
         }
+        self.is_chosen = false;
         self.preview = choice.map(|entry| {
             let preview = match entry.is_file {
                 true => self.loader.ask(&entry.name),

@@ -45,7 +45,7 @@ impl Lab {
         // The new run begins as the old one moves at the step on the screen, even if that is on its way to another step.
         let here = self.player.playback.step_number();
         self.work.leave_at(here, self.values.next_push());
-        let scenario = Arc::new(self.work.begin_with(set, acts, is_again)?);
+        let scenario = self.work.begin_with(set, acts, is_again)?;
         self.values.suit(&scenario);
         self.player.begin(scenario);
         self.scenario_has_changed();
@@ -91,7 +91,6 @@ impl Lab {
         let Some(scenario) = self.work.act(step, acts, is_again, steps)? else {
             return Ok(None);
         };
-        let scenario = Arc::new(scenario);
         match is_described {
             true => self.player.playback.describe_as(&scenario),
             false => self.player.playback.go_on_in(&scenario),

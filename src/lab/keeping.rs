@@ -8,7 +8,7 @@ use crate::observe::camera::Camera;
 use crate::observe::pace::Speed;
 use crate::scenario::{Document, Problems, Scenario};
 use crate::storage::confined::Confined;
-use crate::storage::session::Content;
+use crate::storage::session::{Content, Text};
 use crate::text::printable::Shown;
 use crate::work::history::History;
 use crate::work::next_push::NextPush;
@@ -206,7 +206,7 @@ impl Lab {
         confined: Option<&Confined>,
         view: impl FnOnce(&Scenario) -> View,
     ) -> Result<Self, Unreadable> {
-        let work: KeptWork = read("the run", &content.work)?;
+        let mut work: KeptWork = read("the run", &content.work)?;
         if !FORMS.contains(&work.form) {
             return Err(Unreadable(
                 "it was kept by another version of gyrolab".to_owned(),
@@ -215,9 +215,8 @@ impl Lab {
         let place: KeptPlace = read("the place in it", &content.place)?;
         let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
         work.history.check().map_err(unreadable)?;
+        let scenario = work.history.scenario().map_err(unreadable)?;
         let present = work.history.present();
-        let scenario = present.journal.scenario().map_err(unreadable)?;
-        let scenario = Arc::new(scenario);
         let mut view = view(&scenario);
         view.focus = view
             .kept_as(&place.focus)
@@ -316,13 +315,13 @@ impl KeptScript {
     }
 }
 
-/// `history` as a session keeps it.
-pub(super) fn written(history: &History) -> Arc<str> {
+/// `history` as a session keeps it. The text is written by the thread that first reads it.
+pub(super) fn written(history: &History) -> Text {
     let work = KeptWork {
         form: FORM,
         history: history.clone(),
     };
-    toml::to_string(&work).unwrap_or_default().into()
+    Text::later(move || toml::to_string(&work).unwrap_or_default())
 }
 
 /// Checks that `text` can be read as a `T` and would be written in the same way again.

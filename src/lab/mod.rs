@@ -132,6 +132,7 @@ impl Lab {
             self.halted(halt);
         }
         self.changed |= self.on_top.take_news();
+        self.open_what_was_read();
         self.follow_export();
         self.go_on_with_script(halt);
         if self.changed && self.player.is_due(now, self.view.window_s) {

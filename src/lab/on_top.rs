@@ -5,6 +5,7 @@ use super::action::FieldEdit;
 use super::browser::{Browser, MOST_TYPED};
 use super::dialog::Dialog;
 use super::notice::Notice;
+use super::preview::Preview;
 use std::path::Path;
 use std::time::Duration;
 
@@ -181,6 +182,20 @@ impl OnTop {
         self.browser.take_news()
     }
 
+    /// Reads the selected file and chooses it to be opened: [`take_chosen`](Self::take_chosen) returns what it holds.
+    pub(super) fn choose(&mut self) {
+        self.browser.choose();
+    }
+
+    /// The file that was chosen to be opened and what it holds, once it has been read. Where the browser no longer has
+    /// the keys, the choice is forgotten.
+    pub(super) fn take_chosen(&mut self) -> Option<(String, Preview)> {
+        if !matches!(self.mode, Mode::Browser | Mode::Filter) {
+            self.browser.forget_chosen();
+        }
+        self.browser.take_chosen()
+    }
+
     /// Opens the help on top of the present mode, or closes it.
     pub(super) fn toggle_help(&mut self) {
         self.help_scroll = 0;
@@ -201,6 +216,7 @@ impl OnTop {
                 self.browser.clear_filter();
                 self.mode = Mode::Browser;
             }
+            Mode::Browser if self.browser.forget_chosen() => {}
             Mode::Browser => self.close_browser(),
             Mode::Dialog => drop(self.take_dialog()),
         }

@@ -4,6 +4,7 @@
 use super::keeping;
 use crate::run::Clock;
 use crate::scenario::{Document, Problems, Scenario};
+use crate::storage::session::Text;
 use crate::work::changed;
 use crate::work::history::{History, Reversal, RunRecord};
 use crate::work::journal::{Act, Journal};
@@ -20,7 +21,7 @@ pub struct Work {
     /// How the present run differs from that scenario, in words; `None` where it does not.
     changed_from_file: Option<String>,
     /// The history as the session keeps it; `None` where the history has changed since it was written.
-    kept: Option<Arc<str>>,
+    kept: Option<Text>,
 }
 
 /// The direction in the history: back with undo, on with redo.
@@ -99,10 +100,10 @@ impl Work {
     }
 
     /// The history as the session keeps it.
-    pub(super) fn kept(&mut self) -> Arc<str> {
+    pub(super) fn kept(&mut self) -> Text {
         let history = &self.history;
         let kept = self.kept.get_or_insert_with(|| keeping::written(history));
-        Arc::clone(kept)
+        kept.clone()
     }
 
     /// The history, to be changed.
@@ -133,7 +134,7 @@ impl Work {
         set: &Table,
         acts: Vec<Act>,
         is_again: bool,
-    ) -> Result<Scenario, String> {
+    ) -> Result<Arc<Scenario>, String> {
         let before = (!acts.is_empty()).then(|| self.history.clone());
         let history = self.change();
         let begun = match is_again {
@@ -161,7 +162,7 @@ impl Work {
         acts: Vec<Act>,
         is_again: bool,
         steps: u64,
-    ) -> Result<Option<Scenario>, String> {
+    ) -> Result<Option<Arc<Scenario>>, String> {
         let before = (acts.len() > 1).then(|| self.history.clone());
         let history = self.change();
         let mut done = None;
@@ -190,8 +191,8 @@ impl Work {
     fn or_back_to(
         &mut self,
         before: Option<History>,
-        done: Result<Scenario, Problems>,
-    ) -> Result<Scenario, String> {
+        done: Result<Arc<Scenario>, Problems>,
+    ) -> Result<Arc<Scenario>, String> {
         done.map_err(|problems| {
             if let Some(before) = before {
                 *self.change() = before;
@@ -215,8 +216,8 @@ impl Work {
         let Some(turned) = turned else {
             return Ok(None);
         };
-        let scenario = self.journal().scenario();
-        let scenario = Arc::new(scenario.map_err(|problems| problems.in_one_line())?);
+        let scenario = self.history.scenario();
+        let scenario = scenario.map_err(|problems| problems.in_one_line())?;
         Ok(Some(match turned {
             Reversal::SameRun { step, act } => {
                 if scenario.steps != steps {
@@ -334,7 +335,7 @@ mod tests {
     fn the_kept_text_follows_every_change() {
         let mut work = work();
         let first = work.kept();
-        assert!(Arc::ptr_eq(&first, &work.kept()));
+        assert_eq!(first, work.kept());
         work.act(40, vec![time_step(0.05)], false, 2300).unwrap();
         let second = work.kept();
         assert_ne!(first, second);

@@ -8,6 +8,7 @@ use super::parts::{body, motion, pushes};
 use super::problem::{Found, Problem, listed};
 use super::start::start;
 use crate::physics::{State, observables};
+use std::sync::Arc;
 
 /// Makes a scenario of `file`.
 ///
@@ -28,7 +29,7 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
         return Err(vec![Problem::at("start", rule)].into());
     }
     Ok(Scenario {
-        body,
+        body: Arc::new(body),
         trace,
         start,
         motion,

@@ -4,11 +4,13 @@ use super::keys;
 use super::problem::Problem;
 use toml::Value;
 
-/// Writes `value` at the dotted `key`; numbers lead into arrays, and the one past the end adds an element.
+const NOT_DOTTED: &str = "is not a dotted key such as motion.time_step_s";
+
+/// The names and numbers of the dotted `key`.
 ///
 /// # Errors
-/// When the key leads into something that is neither table nor array, or past an array's end.
-pub fn set_key(table: &mut toml::Table, key: &str, value: Value) -> Result<(), Problem> {
+/// When one of them is empty, or there are more than any key has.
+pub(super) fn names(key: &str) -> Result<Vec<&str>, Problem> {
     // The deepest key is body.point.N.at_m.N. Tables nested without bound would exhaust the stack.
     const DEEPEST: usize = 5;
     let names: Vec<&str> = key.split('.').collect();
@@ -16,14 +18,25 @@ pub fn set_key(table: &mut toml::Table, key: &str, value: Value) -> Result<(), P
         let rule = format!("leads deeper than any key: at most {DEEPEST} names and numbers");
         return Err(Problem::at(key, rule));
     }
-    let (last, way) = match names.split_last() {
-        Some((last, way)) if names.iter().all(|name| !name.is_empty()) => (*last, way),
-        _ => {
-            return Err(Problem::at(
-                key,
-                "is not a dotted key such as motion.time_step_s",
-            ));
-        }
+    match names.iter().all(|name| !name.is_empty()) {
+        true => Ok(names),
+        false => Err(Problem::at(key, NOT_DOTTED)),
+    }
+}
+
+/// The rule that a number beyond the end of an array of `length` elements breaks.
+pub(super) fn past_the_end(length: usize) -> String {
+    format!("leads past the end: the array has {length} elements, numbered from 0")
+}
+
+/// Writes `value` at the dotted `key`; numbers lead into arrays, and the one past the end adds an element.
+///
+/// # Errors
+/// When the key leads into something that is neither table nor array, or past an array's end.
+pub fn set_key(table: &mut toml::Table, key: &str, value: Value) -> Result<(), Problem> {
+    let names = names(key)?;
+    let Some((last, way)) = names.split_last() else {
+        return Err(Problem::at(key, NOT_DOTTED));
     };
     let mut path = String::new();
     let mut inside = Place::Table(table);
@@ -70,9 +83,8 @@ impl<'a> Place<'a> {
                 if index == length {
                     array.push(empty);
                 }
-                let rule =
-                    format!("leads past the end: the array has {length} elements, numbered from 0");
-                array.get_mut(index).ok_or_else(|| Problem::at(path, rule))
+                let past = || Problem::at(path, past_the_end(length));
+                array.get_mut(index).ok_or_else(past)
             }
         }
     }

@@ -1,28 +1,24 @@
 //! The journal of a run file: each `[[edit]]` held against the same rules as the scenario it changes.
 
-use super::dotted::{find, number_of_push, set_key};
+use super::dotted::{names, number_of_push, past_the_end, set_key};
 use super::file::{EditFile, MotionFile, PushFile, ScenarioFile};
 use super::keys::{self, EDITABLE_MOTION, Effect, KEYS};
-use super::model::{Body, Edit, Motion, Touches};
+use super::model::{Body, Edit, Motion, Scenario, Touches};
 use super::parts::{motion, push};
 use super::problem::{Problem, nearest};
-use super::pushes::Pushes;
+use super::pushes::{Push, PushFiles, Pushes};
+use std::collections::BTreeMap;
 use toml::{Table, Value};
 
-/// The part of a file that edits may change.
-#[derive(serde::Serialize)]
-struct Editable<'a> {
-    motion: &'a MotionFile,
-    push: &'a [PushFile],
-}
-
-/// Motion and pushes as the edits so far have made them: an edit costs what it changes, however much there is.
-struct Journal<'a> {
+/// Motion and pushes as the edits so far have made them. One more edit costs what it changes, however many there are.
+pub(super) struct Progress<'a> {
     body: &'a Body,
-    /// As the file would say it.
-    table: Table,
     motion: Motion,
+    /// Length of the run in steps; no edit changes it.
+    steps: u64,
     pushes: Pushes,
+    /// The pushes as a file would give them.
+    written: PushFiles,
     /// The step of the edit before.
     last: u64,
 }
@@ -33,30 +29,56 @@ pub(super) fn edits(
     body: &Body,
     pushes: &Pushes,
 ) -> Result<Vec<Edit>, Vec<Problem>> {
-    if file.edit.is_empty() {
-        return Ok(Vec::new());
-    }
-    let unwritable = |error: toml::ser::Error| vec![Problem::at("motion", error.to_string())];
-    let editable = Editable {
-        motion: &file.motion,
-        push: &file.push,
-    };
-    let mut journal = Journal {
-        body,
-        table: Table::try_from(&editable).map_err(unwritable)?,
-        motion: motion(&file.motion),
-        pushes: pushes.clone(),
-        last: 0,
-    };
+    let mut progress = Progress::at_start(file, body, pushes);
     let entries = file.edit.iter().enumerate();
     entries
-        .map(|(index, entry)| journal.edit(entry, &format!("edit.{index}")))
+        .map(|(index, entry)| progress.edit(entry, &format!("edit.{index}")))
         .collect()
 }
 
-impl Journal<'_> {
+impl<'a> Progress<'a> {
+    /// Before the first edit of `file`, whose pushes are `pushes`.
+    pub(super) fn at_start(file: &ScenarioFile, body: &'a Body, pushes: &Pushes) -> Self {
+        Self {
+            body,
+            motion: motion(&file.motion),
+            steps: file.motion.steps,
+            pushes: pushes.clone(),
+            written: match file.edit.is_empty() {
+                true => PushFiles::default(),
+                false => file.push.iter().cloned().collect(),
+            },
+            last: 0,
+        }
+    }
+
+    /// After the last edit of `scenario`, which has been checked.
+    pub(super) fn after(scenario: &'a Scenario) -> Self {
+        let start = Self {
+            body: &scenario.body,
+            motion: scenario.motion,
+            steps: scenario.file.motion.steps,
+            pushes: scenario.pushes.clone(),
+            written: PushFiles::default(),
+            last: 0,
+        };
+        match scenario.edits.last() {
+            None => Self {
+                written: scenario.file.push.iter().cloned().collect(),
+                ..start
+            },
+            Some(edit) => Self {
+                motion: edit.motion,
+                pushes: edit.pushes.clone(),
+                written: edit.written.clone(),
+                last: edit.step,
+                ..start
+            },
+        }
+    }
+
     /// The edit `entry`, which stands at the key `here`.
-    fn edit(&mut self, entry: &EditFile, here: &str) -> Result<Edit, Vec<Problem>> {
+    pub(super) fn edit(&mut self, entry: &EditFile, here: &str) -> Result<Edit, Vec<Problem>> {
         if entry.step < self.last {
             let rule = format!(
                 "comes before the edit above it (step {}): edits stand in the order of their steps",
@@ -66,22 +88,24 @@ impl Journal<'_> {
             let problem = Problem::with_value(format!("{here}.step"), &step, rule);
             return Err(vec![problem]);
         }
-        self.last = entry.step;
         let mut touches = Touches {
             time_step: false,
             segment: false,
         };
-        let mut set_pushes = Vec::new();
-        for (key, value) in &entry.set {
+        let mut set = Set::default();
+        for (key, value) in entry.set.iter() {
             let inside = |problem: Problem| vec![moved(problem, here, key)];
             may_edit(key, value).map_err(inside)?;
-            set_key(&mut self.table, key, value.clone()).map_err(inside)?;
+            match key.strip_prefix("motion.") {
+                Some(name) => {
+                    let written = set.motion.get_or_insert_with(|| self.motion_table());
+                    written.insert(name.to_owned(), value.clone());
+                }
+                None => self.set_push(&mut set.pushes, key, value).map_err(inside)?,
+            }
             touches.time_step |= key == "motion.time_step_s";
             touches.segment |= key.starts_with("motion.");
-            set_pushes.extend(number_of_push(key));
         }
-        set_pushes.sort_unstable();
-        set_pushes.dedup();
         let inside = |problems: Vec<Problem>| -> Vec<Problem> {
             let moved = |problem: Problem| {
                 let key = problem.key.clone();
@@ -89,16 +113,14 @@ impl Journal<'_> {
             };
             problems.into_iter().map(moved).collect()
         };
-        self.check(touches, &set_pushes).map_err(inside)?;
-        if touches.segment {
-            let file: MotionFile = read(&self.table, "motion").map_err(inside)?;
-            self.motion = motion(&file);
-        }
-        for &place in &set_pushes {
-            let key = format!("push.{place}");
-            let file: PushFile = read(&self.table, &key).map_err(inside)?;
-            let push = push(&file, self.body, &key).map_err(inside)?;
+        let (motion_now, pushes_now) = set.read(self.body).map_err(inside)?;
+        self.last = entry.step;
+        self.motion = motion_now.unwrap_or(self.motion);
+        let mut set_pushes = Vec::with_capacity(pushes_now.len());
+        for (place, file, push) in pushes_now {
             self.pushes.put(place, push);
+            self.written.put(place, file);
+            set_pushes.push(place);
         }
         Ok(Edit {
             step: entry.step,
@@ -106,32 +128,108 @@ impl Journal<'_> {
             pushes: self.pushes.clone(),
             set_pushes,
             touches,
+            written: self.written.clone(),
         })
     }
 
-    /// Holds against the keys what has been set: the rest has been.
-    fn check(&self, touches: Touches, set_pushes: &[usize]) -> Result<(), Vec<Problem>> {
-        let motion = touches.segment.then(|| "motion".to_owned());
-        let pushes = set_pushes.iter().map(|place| format!("push.{place}"));
-        let problems: Vec<_> = motion
-            .into_iter()
-            .chain(pushes)
-            .filter_map(|key| Some(keys::check_part(find(&self.table, &key)?, &key)))
-            .flatten()
-            .collect();
-        match problems.is_empty() {
-            true => Ok(()),
-            false => Err(problems),
+    /// `[motion]` as a file would give it.
+    fn motion_table(&self) -> Table {
+        Table::from_iter([
+            (
+                "gravity_m_per_s2".to_owned(),
+                Value::Float(self.motion.gravity),
+            ),
+            (
+                "scheme".to_owned(),
+                Value::String(self.motion.scheme.name.to_owned()),
+            ),
+            (
+                "time_step_s".to_owned(),
+                Value::Float(self.motion.time_step_s),
+            ),
+            (
+                "steps".to_owned(),
+                Value::Integer(i64::try_from(self.steps).unwrap_or(i64::MAX)),
+            ),
+        ])
+    }
+
+    /// Writes `value` at the dotted `key` into the push that it belongs to. `set` has the pushes that this edit has
+    /// written before.
+    fn set_push(
+        &self,
+        set: &mut BTreeMap<usize, Value>,
+        key: &str,
+        value: &Value,
+    ) -> Result<(), Problem> {
+        let names = names(key)?;
+        let added = set.last_key_value().map_or(0, |(place, _)| place + 1);
+        let length = self.written.len().max(added);
+        let place = number_of_push(key);
+        if let Some(place) = place.filter(|&place| place > length) {
+            return Err(Problem::at(format!("push.{place}"), past_the_end(length)));
         }
+        // The one push in a table of its own, where its number is 0.
+        let there = place.and_then(|place| {
+            let written = || Value::try_from(self.written.get(place)?).ok();
+            set.remove(&place).or_else(written)
+        });
+        let mut alone =
+            Table::from_iter([("push".to_owned(), Value::Array(there.into_iter().collect()))]);
+        let first = if place.is_some() { "0" } else { names[1] };
+        let key_alone = [&["push", first], &names[2..]].concat().join(".");
+        set_key(&mut alone, &key_alone, value.clone())?;
+        if let (Some(place), Some(Value::Array(pushes))) = (place, alone.remove("push")) {
+            set.extend(pushes.into_iter().next().map(|push| (place, push)));
+        }
+        Ok(())
     }
 }
 
-/// The part of `table` at `key`, which has been held against the keys.
-fn read<T: serde::de::DeserializeOwned>(table: &Table, key: &str) -> Result<T, Vec<Problem>> {
-    let part = find(table, key).cloned();
-    let part = part.unwrap_or_else(|| Value::Table(Table::new()));
-    part.try_into()
-        .map_err(|error: toml::de::Error| vec![Problem::at(key, error.message().to_owned())])
+/// The tables that one edit changes, as it leaves them.
+#[derive(Default)]
+struct Set {
+    motion: Option<Table>,
+    /// The pushes, by their places.
+    pushes: BTreeMap<usize, Value>,
+}
+
+impl Set {
+    /// Holds the tables against the keys and reads them.
+    fn read(self, body: &Body) -> Result<Read, Vec<Problem>> {
+        let table = self.motion.map(Value::Table);
+        let mut problems = match &table {
+            Some(table) => keys::check_part(table, "motion"),
+            None => Vec::new(),
+        };
+        for (place, push) in &self.pushes {
+            problems.extend(keys::check_part(push, &format!("push.{place}")));
+        }
+        if !problems.is_empty() {
+            return Err(problems);
+        }
+        let motion_now = match table {
+            Some(table) => Some(motion(&read::<MotionFile>(table, "motion")?)),
+            None => None,
+        };
+        let mut pushes = Vec::with_capacity(self.pushes.len());
+        for (place, value) in self.pushes {
+            let key = format!("push.{place}");
+            let file: PushFile = read(value, &key)?;
+            let push = push(&file, body, &key)?;
+            pushes.push((place, file, push));
+        }
+        Ok((motion_now, pushes))
+    }
+}
+
+/// The motion, where the edit changes it, and the pushes that it sets, each with its place.
+type Read = (Option<Motion>, Vec<(usize, PushFile, Push)>);
+
+/// `table` at `key`, which has been held against the keys.
+fn read<T: serde::de::DeserializeOwned>(table: Value, key: &str) -> Result<T, Vec<Problem>> {
+    let read = table.try_into();
+    read.map_err(|error: toml::de::Error| vec![Problem::at(key, error.message().to_owned())])
 }
 
 /// `problem` at the edit that caused it.

@@ -1,6 +1,7 @@
 //! The shape of scenario and run files, as serde reads and writes them. What each key means is in [`super::keys`].
 
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A scenario file; with `gyrolab` and any number of edits, a run file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -184,5 +185,5 @@ pub struct ExpectedFile {
 #[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct EditFile {
     pub step: u64,
-    pub set: toml::Table,
+    pub set: Arc<toml::Table>,
 }

@@ -10,6 +10,7 @@ pub mod document;
 pub mod dotted;
 mod edits;
 pub mod file;
+pub(crate) mod growing;
 pub mod keys;
 mod kind;
 mod model;

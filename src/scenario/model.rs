@@ -2,9 +2,10 @@
 
 use super::file::ScenarioFile;
 use super::problem::{Problem, nearest};
-use super::pushes::{Push, Pushes};
+use super::pushes::{Push, PushFiles, Pushes};
 use crate::physics::{self, SchemeInfo, State};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// A scenario, or a run with its edits, whose numbers have been checked.
 #[derive(Clone, Debug)]
@@ -12,7 +13,7 @@ pub struct Scenario {
     /// The file it came from, as it is written again.
     pub file: ScenarioFile,
     /// What turns, with the names of its points.
-    pub body: Body,
+    pub body: Arc<Body>,
     /// Index of the point whose path is shown.
     pub trace: usize,
     /// Orientation and momentum at t = 0.
@@ -61,6 +62,8 @@ pub struct Edit {
     pub set_pushes: Vec<usize>,
     /// What it set.
     pub touches: Touches,
+    /// The pushes from then on, as a file would give them.
+    pub(crate) written: PushFiles,
 }
 
 /// Which parts of the motion an edit set.

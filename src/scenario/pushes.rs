@@ -1,6 +1,7 @@
 //! A push, and the list of pushes that a run has at one time. The lists before and after an edit share the pushes that
 //! the edit does not change, so that a run of many pushes and many edits takes no more memory than its file.
 
+use super::file::PushFile;
 use nalgebra::Vector3;
 use std::ops::Index;
 
@@ -71,6 +72,55 @@ impl Pushes {
         if !self.0.set_mut(place, push) {
             self.0.push_back_mut(push);
         }
+    }
+
+    /// Drops all from `place` on.
+    pub(super) fn cut_back(&mut self, place: usize) {
+        while self.0.len() > place {
+            self.0.drop_last_mut();
+        }
+    }
+}
+
+/// The pushes of a [`Pushes`] as a file would give them, as cheap to clone and to change.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct PushFiles(rpds::VectorSync<PushFile>);
+
+impl PushFiles {
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// The one at `place`, from 0.
+    pub(super) fn get(&self, place: usize) -> Option<&PushFile> {
+        self.0.get(place)
+    }
+
+    /// All of them in order.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &PushFile> {
+        self.0.iter()
+    }
+
+    /// Puts `push` at `place`, or after the last where there is none at `place`.
+    pub(super) fn put(&mut self, place: usize, push: PushFile) {
+        match self.0.get(place) {
+            Some(_) => _ = self.0.set_mut(place, push),
+            None => self.0.push_back_mut(push),
+        }
+    }
+
+    /// Drops all from `place` on.
+    pub(super) fn cut_back(&mut self, place: usize) {
+        while self.0.len() > place {
+            self.0.drop_last_mut();
+        }
+    }
+}
+
+impl FromIterator<PushFile> for PushFiles {
+    fn from_iter<I: IntoIterator<Item = PushFile>>(pushes: I) -> Self {
+        Self(pushes.into_iter().collect())
     }
 }
 

@@ -18,8 +18,11 @@ pub enum Release {
     Suspend,
 }
 
-/// How long all hooks together may delay the end of the process.
+/// How long all hooks together may delay the shell that suspends the process.
 const PATIENCE: Duration = Duration::from_millis(600);
+/// How long they may delay the end of the process. On a busy machine a hook may need seconds until it runs at all; only a
+/// disk that no longer answers makes the user wait for the whole of it.
+const LAST_PATIENCE: Duration = Duration::from_secs(5);
 
 type Hook = Arc<dyn Fn(Release) + Send + Sync>;
 
@@ -38,14 +41,20 @@ pub struct Registered {
 }
 
 /// Registers `hook`, which is called on a thread of its own before the terminal is given back. It may be called more than
-/// once, and while the lab is still running. It should take no longer than half a second.
+/// once, and while the lab is still running. It should give up after half a second where the process is suspended, and
+/// after four seconds where it ends.
 pub fn hook(hook: impl Fn(Release) + Send + Sync + 'static) -> Registered {
     REGISTRY.add(Arc::new(hook))
 }
 
-/// Calls every hook and waits until all have returned, but at most 0.6 s: a hook must not keep the process from ending.
+/// Calls every hook and waits until all have returned, but at most 0.6 s where the process is suspended and 5 s where it
+/// ends: a hook must not keep it from that.
 pub fn run_hooks(release: Release) {
-    REGISTRY.run_hooks(release, PATIENCE);
+    let patience = match release {
+        Release::Exit => LAST_PATIENCE,
+        Release::Suspend => PATIENCE,
+    };
+    REGISTRY.run_hooks(release, patience);
 }
 
 impl Registry {

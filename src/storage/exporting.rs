@@ -18,7 +18,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 /// How long the end of the process waits for an export to remove its temporary file.
-const PATIENCE: Duration = Duration::from_millis(300);
+const PATIENCE: Duration = Duration::from_secs(4);
 
 /// An export in progress, or a finished one. Dropping it cancels an export in progress and removes its temporary file.
 pub struct Exporting {

@@ -12,11 +12,13 @@
 mod format;
 mod own;
 mod slot;
+mod text;
 mod writer;
 
 pub use slot::{Check, Content, KeptAside};
+pub use text::Text;
 
-use super::at_exit::{self, Registered};
+use super::at_exit::{self, Registered, Release};
 use crate::text::printable::Shown;
 use etcetera::{BaseStrategy, base_strategy::Xdg};
 use slot::Slot;
@@ -27,8 +29,10 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, SystemTime};
 use writer::Shared;
 
-/// How long a flush may hold up the end of the process.
+/// How long a flush may hold up the loop, or the shell that suspends the process.
 const PATIENCE: Duration = Duration::from_millis(400);
+/// How long it may hold up the end of the process.
+const LAST_PATIENCE: Duration = Duration::from_secs(4);
 
 /// The session of this process. No other process can take it while this value lives; dropping it saves the session and
 /// frees it.
@@ -236,8 +240,11 @@ impl Session {
             name,
             shared,
             writer: Some(writer),
-            _at_end: at_exit::hook(move |_| {
-                at_end.flush(PATIENCE);
+            _at_end: at_exit::hook(move |release| {
+                at_end.flush(match release {
+                    Release::Exit => LAST_PATIENCE,
+                    Release::Suspend => PATIENCE,
+                });
             }),
         })
     }
@@ -258,8 +265,7 @@ impl Session {
         self.shared.state().check = Some(check);
     }
 
-    /// Saves at once, and gives up after 0.4 s so that a signal handler's thread and a panic may call it; the session's
-    /// exit hook calls it too. Returns whether saving was attempted in that time; [`trouble`](Self::trouble) tells whether
+    /// Saves at once, and gives up after 0.4 s so that a signal handler's thread and a panic may call it. Returns whether saving was attempted in that time; [`trouble`](Self::trouble) tells whether
     /// it failed.
     pub fn flush(&self) -> bool {
         self.shared.flush(PATIENCE)

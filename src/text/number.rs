@@ -9,17 +9,29 @@ const LARGE: f64 = 1e9;
 /// Digits after the point of a number that is written with an exponent where decimals were asked for.
 const MOST_DIGITS: usize = 6;
 
-/// `number` with `decimals` digits after the point: `0.886033`.
+/// `number` with `decimals` digits after the point: `0.886033`. What is rounded to zero has no sign: `0.000000`.
 pub fn fixed(number: f64, decimals: usize) -> String {
     if number.abs() < LARGE {
-        return format!("{number:.decimals$}");
+        return without_minus_zero(format!("{number:.decimals$}"));
     }
     exponent(number, decimals.min(MOST_DIGITS))
 }
 
-/// As [`fixed`], with its sign: `+0.1160`.
+/// `text` without the sign of a zero: a negative number that is rounded to 0 is written as 0 is.
+fn without_minus_zero(text: String) -> String {
+    match text.strip_prefix('-') {
+        Some(rest) if rest.chars().all(|c| matches!(c, '0' | '.')) => rest.to_owned(),
+        _ => text,
+    }
+}
+
+/// As [`fixed`], with its sign: `+0.1160`, `+0.0000`.
 pub fn signed(number: f64, decimals: usize) -> String {
-    with_sign(number, fixed(number, decimals))
+    let text = fixed(number, decimals);
+    match number.is_finite() && !text.starts_with('-') {
+        true => format!("+{text}"),
+        false => text,
+    }
 }
 
 /// `number` with an exponent and `digits` digits after the point: `2.4e-9`.
@@ -67,7 +79,8 @@ pub fn rounded(number: f64, digits: usize) -> f64 {
 /// with an exponent and three decimals.
 pub fn decimal(number: f64) -> String {
     match number.abs() {
-        size if size < 1e6 => (libm::round(number * 1e6) / 1e6).to_string(),
+        // Adding 0 makes 0 of -0.
+        size if size < 1e6 => (libm::round(number * 1e6) / 1e6 + 0.0).to_string(),
         _ => exponent(number, 3),
     }
 }
@@ -107,6 +120,19 @@ pub fn times(ratio: f64) -> String {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn what_is_rounded_to_zero_has_no_minus() {
+        for number in [-0.0, -1e-300, -4e-7] {
+            assert_eq!(fixed(number, 6), "0.000000");
+            assert_eq!(signed(number, 6), "+0.000000");
+            assert_eq!(decimal(number), "0");
+        }
+        assert_eq!(fixed(-6e-7, 6), "-0.000001");
+        assert_eq!(signed(-6e-7, 6), "-0.000001");
+        assert_eq!(fixed(-0.4, 0), "0");
+        assert_eq!(fixed(-10.0, 0), "-10");
+    }
 
     const WAYS: [fn(f64) -> String; 9] = [
         |n| fixed(n, 9),

@@ -6,6 +6,7 @@ use super::next_push::NextPush;
 use crate::run::Clock;
 use crate::scenario::{Problems, Scenario};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use toml::Table;
 
 /// The most earlier runs that are kept.
@@ -58,10 +59,10 @@ pub enum Reversal {
 
 impl History {
     /// A history whose only run is that of `scenario`, opened as `name`.
-    pub fn new(name: &str, scenario: &Scenario) -> Self {
+    pub fn new(name: &str, scenario: &Arc<Scenario>) -> Self {
         Self {
             past: Vec::new(),
-            present: RunRecord::new(name, Journal::of(scenario.file.clone()), scenario),
+            present: RunRecord::new(name, Journal::of_checked(scenario), scenario),
             undone: Vec::new(),
         }
     }
@@ -74,6 +75,14 @@ impl History {
         let runs = self.past.iter().chain(&self.undone);
         runs.map(|run| &run.journal)
             .try_for_each(|journal| journal.scenario().map(drop))
+    }
+
+    /// The checked scenario of the present run.
+    ///
+    /// # Errors
+    /// As [`Journal::scenario`].
+    pub fn scenario(&mut self) -> Result<Arc<Scenario>, Problems> {
+        self.present.journal.check()
     }
 
     /// The present run.
@@ -89,8 +98,8 @@ impl History {
     }
 
     /// Leaves the present run and begins that of `scenario`, opened as `name`.
-    pub fn begin(&mut self, name: &str, scenario: &Scenario) {
-        let journal = Journal::of(scenario.file.clone());
+    pub fn begin(&mut self, name: &str, scenario: &Arc<Scenario>) {
+        let journal = Journal::of_checked(scenario);
         self.begin_run(RunRecord::new(name, journal, scenario));
     }
 
@@ -119,7 +128,7 @@ impl History {
     ///
     /// # Errors
     /// Why the act is refused; the history is then unchanged.
-    pub fn act(&mut self, step: u64, act: Act) -> Result<Scenario, Problems> {
+    pub fn act(&mut self, step: u64, act: Act) -> Result<Arc<Scenario>, Problems> {
         let scenario = self.present.journal.act(step, act)?;
         self.undone.clear();
         Ok(scenario)
@@ -129,7 +138,7 @@ impl History {
     ///
     /// # Errors
     /// Why the act is refused; the history is then unchanged.
-    pub fn act_again(&mut self, step: u64, act: Act) -> Result<Scenario, Problems> {
+    pub fn act_again(&mut self, step: u64, act: Act) -> Result<Arc<Scenario>, Problems> {
         let scenario = self.present.journal.act_again(step, act)?;
         self.undone.clear();
         Ok(scenario)
@@ -140,7 +149,7 @@ impl History {
     ///
     /// # Errors
     /// Why the values are refused; the history is then unchanged.
-    pub fn begin_with(&mut self, set: &Table) -> Result<Scenario, Problems> {
+    pub fn begin_with(&mut self, set: &Table) -> Result<Arc<Scenario>, Problems> {
         let left = &self.present;
         let (journal, scenario) = left.journal.begun_with(left.left_at, set)?;
         self.begin_run(RunRecord::new(&left.name, journal, &scenario));
@@ -152,7 +161,7 @@ impl History {
     ///
     /// # Errors
     /// Why the values are refused; the history is then unchanged.
-    pub fn begin_again_with(&mut self, set: &Table) -> Result<Scenario, Problems> {
+    pub fn begin_again_with(&mut self, set: &Table) -> Result<Arc<Scenario>, Problems> {
         let Some(left) = self.past.last() else {
             return self.begin_with(set);
         };
@@ -217,8 +226,8 @@ mod tests {
         Table::from_iter([(key.to_owned(), Value::Float(value))])
     }
 
-    fn opened(name: &str) -> Scenario {
-        Document::open(name).unwrap().scenario().unwrap()
+    fn opened(name: &str) -> Arc<Scenario> {
+        Arc::new(Document::open(name).unwrap().scenario().unwrap())
     }
 
     fn leave(history: &mut History, step: u64) {

@@ -5,7 +5,6 @@ use rustix::fs::{CWD, FileType, Mode, mknodat};
 use std::fs;
 use std::os::unix::fs::{chown, symlink};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -16,7 +15,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 
 fn content(work: &str, place: &str) -> Content {
     Content {
-        work: Arc::from(work),
+        work: work.into(),
         place: place.to_owned(),
     }
 }

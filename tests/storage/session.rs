@@ -1,13 +1,12 @@
 //! Sessions on the disk, used by processes that run, quit and are killed.
 
 use gyrolab::storage::at_exit::{self, Release};
-use gyrolab::storage::session::{Content, Found, Session, list, resume, resume_named};
+use gyrolab::storage::session::{Content, Found, Session, Text, list, resume, resume_named};
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, Stdio};
-use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 use tempfile::TempDir;
@@ -20,7 +19,7 @@ const CHILD: &str = "GYROLAB_TEST_SESSION";
 
 fn content(work: &str, place: &str) -> Content {
     Content {
-        work: Arc::from(work),
+        work: work.into(),
         place: place.to_owned(),
     }
 }
@@ -129,9 +128,9 @@ fn an_empty_or_missing_folder_has_no_session() {
 fn the_last_content_is_resumed_and_the_session_continues() {
     let (_outer, folder) = folder();
     let session = Session::begin(&folder).unwrap();
-    let work: Arc<str> = Arc::from("the run: ω\nand its journal\n");
+    let work = Text::from("the run: ω\nand its journal\n");
     for step in 0..1000 {
-        let (work, place) = (Arc::clone(&work), format!("step {step}"));
+        let (work, place) = (work.clone(), format!("step {step}"));
         session.note(Content { work, place });
     }
     closed(session);
@@ -218,10 +217,10 @@ fn the_newest_that_is_not_in_use_is_taken() {
     written(&middle);
     age(&file_of(&folder, "1middle"), 200);
     kept(&folder, "new", "");
-    assert_eq!(newest(&folder).unwrap().work.as_ref(), "new");
+    assert_eq!(newest(&folder).unwrap().work.to_string(), "new");
     let new = any(&folder).resumed.unwrap();
     assert_eq!(
-        newest(&folder).unwrap().work.as_ref(),
+        newest(&folder).unwrap().work.to_string(),
         "old",
         "two are in use"
     );
@@ -292,7 +291,10 @@ fn what_is_damaged_is_put_aside_and_told_of() {
             .find(|path| *path != before);
         damage(&newest.unwrap());
         let found = any(&folder);
-        assert_eq!(found.resumed.unwrap().what.work.as_ref(), "the one before");
+        assert_eq!(
+            found.resumed.unwrap().what.work.to_string(),
+            "the one before"
+        );
         let [aside] = found.kept_aside.as_slice() else {
             panic!("{:?}", found.kept_aside);
         };
@@ -314,7 +316,7 @@ fn what_the_reader_refuses_is_put_aside_too_and_none_is_lost() {
     kept(&folder, "good", "");
     age(&only(&folder, ".work"), 100);
     kept(&folder, "bad", "");
-    let found = resume(&folder, |content| match content.work.as_ref() {
+    let found = resume(&folder, |content| match &*content.work {
         "bad" => Err("line 3: no such key".to_owned()),
         work => Ok(work.to_owned()),
     })
@@ -448,7 +450,7 @@ fn the_end_promises_only_what_the_disk_has() {
 fn a_work_that_cannot_be_read_back_does_not_take_the_place_of_one_that_can() {
     let (_outer, folder) = folder();
     let session = Session::begin(&folder).unwrap();
-    session.check_with(|content| match content.work.as_ref() {
+    session.check_with(|content| match &*content.work {
         "bad" => Err("the run is too deep".to_owned()),
         _ => Ok(()),
     });
@@ -487,7 +489,7 @@ fn sessions_have_short_names_that_stay() {
     );
     let found = resume_named(&folder, "1", |content| Ok(content.clone())).unwrap();
     let resumed = found.resumed.unwrap();
-    assert_eq!(resumed.what.work.as_ref(), "first");
+    assert_eq!(resumed.what.work.to_string(), "first");
     assert_eq!(resumed.session.name(), "1");
     let found = resume_named(&folder, "2", |_| Ok(())).unwrap();
     assert!(found.resumed.is_none());
@@ -631,7 +633,7 @@ fn the_processes_that_use_newer_sessions_are_reported() {
     newer.note(content("newer", ""));
     written(&newer);
     let found = any(&folder);
-    assert_eq!(found.resumed.unwrap().what.work.as_ref(), "old");
+    assert_eq!(found.resumed.unwrap().what.work.to_string(), "old");
     assert_eq!(found.in_use_by, [std::process::id()]);
     closed(newer);
     assert!(any(&folder).in_use_by.is_empty());

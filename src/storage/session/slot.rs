@@ -13,6 +13,7 @@
 //! written. The ID of a new session is one more than the largest number in the folder; older versions had longer IDs with
 //! hyphens.
 
+use super::text::Text;
 use super::{format, own};
 use crate::text::printable::Shown;
 use signal_hook::consts::SIGXFSZ;
@@ -32,8 +33,8 @@ const PATIENCE: Duration = Duration::from_millis(200);
 /// The content of a session, as two texts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Content {
-    /// What changes seldom, such as the runs and their journals. It may be long and is written only when it has changed.
-    pub work: Arc<str>,
+    /// What changes seldom, such as the runs and their journals. It may be long and is saved only when it has changed.
+    pub work: Text,
     /// What changes all the time, such as the step at which the lab stands. It is short.
     pub place: String,
 }
@@ -165,7 +166,7 @@ pub(super) fn stored(folder: &Path, id: &str) -> Result<Stored, String> {
         Err(reason) => (None, Some(reason)),
     };
     let content = Content {
-        work: Arc::from(work),
+        work: Text::from(work),
         place: place.unwrap_or_else(|| carried.to_owned()),
     };
     Ok(Stored {
@@ -307,9 +308,7 @@ impl Slot {
 
     fn save_changes(&mut self, content: &Content, check: Option<Check>) -> io::Result<()> {
         match &self.written {
-            Some(written) if is_same(&written.work, &content.work) => {
-                self.save_place(&content.place)
-            }
+            Some(written) if written.work == content.work => self.save_place(&content.place),
             _ => {
                 check.map_or(Ok(()), |check| check(content).map_err(io::Error::other))?;
                 self.save_work(content)
@@ -407,9 +406,4 @@ impl Slot {
     pub(super) fn is_empty(&self) -> bool {
         self.written.is_none() && self.revision == 0
     }
-}
-
-/// Whether two works are equal. Comparing the pointers settles nearly every case without comparing the texts.
-fn is_same(one: &Arc<str>, other: &Arc<str>) -> bool {
-    Arc::ptr_eq(one, other) || one == other
 }

@@ -2,7 +2,7 @@
 
 use super::slot::{Check, Content, Slot};
 use std::io;
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -42,7 +42,7 @@ impl Shared {
         if state
             .noted
             .as_ref()
-            .is_some_and(|old| Arc::ptr_eq(&old.work, &content.work) && old.place == content.place)
+            .is_some_and(|old| old.work.is_clone_of(&content.work) && old.place == content.place)
         {
             return;
         }

@@ -3,9 +3,11 @@
 //! Format 1 stored only the entries in force; each contained the entries that it had dropped, and these contained
 //! theirs.
 
+use super::known::Checked;
 use super::{Act, Entry, Journal};
 use crate::scenario::file::ScenarioFile;
 use serde::Deserialize;
+use std::sync::Arc;
 
 /// A journal in either format.
 #[derive(Deserialize)]
@@ -13,7 +15,7 @@ use serde::Deserialize;
 pub(super) struct Stored {
     base: ScenarioFile,
     #[serde(default)]
-    log: Vec<Entry>,
+    log: Vec<Arc<Entry>>,
     /// Format 1: the entries in force.
     #[serde(default)]
     done: Vec<Nested>,
@@ -42,15 +44,16 @@ impl From<Stored> for Journal {
         let mut log = stored.log;
         log.extend(in_order_of_doing(stored.done));
         Self {
-            base: stored.base,
+            base: Arc::new(stored.base),
             log,
             undone: stored.undone.into_iter().map(Nested::alone).collect(),
+            checked: Checked::default(),
         }
     }
 }
 
 /// All entries in the order in which the user did them, found by undoing one entry after another.
-fn in_order_of_doing(mut done: Vec<Nested>) -> Vec<Entry> {
+fn in_order_of_doing(mut done: Vec<Nested>) -> Vec<Arc<Entry>> {
     let mut log = Vec::new();
     while let Some(mut entry) = done.pop() {
         let dropped = std::mem::take(&mut entry.dropped);
@@ -72,13 +75,13 @@ impl Nested {
     }
 
     /// The entry without the entries that it dropped.
-    fn alone(self) -> Entry {
-        Entry {
+    fn alone(self) -> Arc<Entry> {
+        Arc::new(Entry {
             step: self.step,
             act: self.act,
             from_file: self.from_file,
             is_chained: self.is_chained,
-        }
+        })
     }
 }
 
@@ -175,10 +178,10 @@ mod tests {
                         before.act(step, &act, is_chained && !is_first);
                     }
                 }
-                let alone = |entries: &[Nested]| -> Vec<Entry> {
+                let alone = |entries: &[Nested]| -> Vec<Arc<Entry>> {
                     entries.iter().cloned().map(Nested::alone).collect()
                 };
-                let done: Vec<Entry> = journal.in_force().into_iter().cloned().collect();
+                let done: Vec<Arc<Entry>> = journal.in_force().into_iter().cloned().collect();
                 prop_assert_eq!(done, alone(&before.done));
                 let stored = Stored {
                     base: file.clone(),

@@ -1,0 +1,223 @@
+//! A run: a scenario, and the journal of what the user did to it at which step.
+//!
+//! Everything else, any earlier state and any export, is computed again from these two. An act done at a step has its
+//! effect from the next step on. When the user goes back and acts at an earlier step, the entries at later steps are
+//! dropped. Undo takes the last entry back; redo does it again.
+//!
+//! The journal lists all acts in the order in which the user did them. Which entries are in force is computed from their
+//! steps: an entry that a newer one dropped stays in the list, and is in force again once the newer one is undone.
+
+//!
+//! `entry` is one act; `run_file` tells which are in force and what run file they make; `known` checks that file, by
+//! what has changed in it; `next_run` begins another run from it; `stored` reads a journal from a session file.
+
+mod entry;
+mod known;
+mod next_run;
+mod run_file;
+mod stored;
+
+pub use crate::scenario::dotted::number_of_push;
+pub use entry::{Act, Entry};
+
+use crate::scenario::file::{EditFile, PushFile, ScenarioFile};
+use crate::scenario::{Problems, Scenario, growing};
+use known::Checked;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use toml::{Table, Value};
+
+/// A scenario and what the user did to it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "stored::Stored")]
+pub struct Journal {
+    /// The scenario before the first act.
+    base: Arc<ScenarioFile>,
+    /// All acts in the order in which the user did them, dropped ones included.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    log: Vec<Arc<Entry>>,
+    /// Undone entries, the one undone last at the end: redo takes it first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    undone: Vec<Arc<Entry>>,
+    /// What is known of the scenarios that it leads to.
+    #[serde(skip)]
+    checked: Checked,
+}
+
+impl Journal {
+    /// The journal of a run file: the file without its edits is the base, and each edit is an entry.
+    pub fn of(mut file: ScenarioFile) -> Self {
+        let entry = |edit: EditFile| {
+            Arc::new(Entry {
+                step: edit.step,
+                act: Act::Edit(Arc::unwrap_or_clone(edit.set)),
+                from_file: true,
+                is_chained: false,
+            })
+        };
+        Self {
+            log: std::mem::take(&mut file.edit)
+                .into_iter()
+                .map(entry)
+                .collect(),
+            base: Arc::new(file),
+            undone: Vec::new(),
+            checked: Checked::default(),
+        }
+    }
+
+    /// The journal of the run file of `scenario`.
+    pub fn of_checked(scenario: &Arc<Scenario>) -> Self {
+        let mut journal = Self::of(scenario.file.clone());
+        journal.is_checked_as(scenario);
+        journal
+    }
+
+    /// The scenario before the first act.
+    pub fn base(&self) -> &ScenarioFile {
+        &self.base
+    }
+
+    /// The run file: the base with all entries in force.
+    pub fn file(&self) -> ScenarioFile {
+        self.file_with(&self.in_force())
+    }
+
+    /// The scenario as it was when its number of steps was set last: by the opened file, or by a later `motion.steps`.
+    ///
+    /// # Errors
+    /// As [`scenario`](Self::scenario).
+    pub fn when_steps_were_set(&self) -> Result<Arc<Scenario>, Problems> {
+        let sets_steps = |entry: &Entry| match &entry.act {
+            Act::Describe(set) => set.contains_key("motion.steps"),
+            Act::Edit(_) | Act::Push(_) => entry.from_file,
+        };
+        let entries = self.in_force();
+        let last = entries.iter().rposition(|entry| sets_steps(entry));
+        self.scenario_of(&entries[..last.map_or(0, |last| last + 1)])
+    }
+
+    /// The run file of the run up to `step`: it has that many steps (at least one), and no later entry.
+    pub fn file_until(&self, step: u64) -> ScenarioFile {
+        let mut file = self.file_with(&self.in_force_by(step));
+        file.motion.steps = step.max(1);
+        file
+    }
+
+    /// How many entries in force stand at steps later than `step`.
+    pub fn later_than(&self, step: u64) -> usize {
+        let entries = self.in_force();
+        entries
+            .iter()
+            .filter(|entry| entry.is_later_than(step))
+            .count()
+    }
+
+    /// Does `act` at `step` and returns the run's new scenario.
+    ///
+    /// # Errors
+    /// Why the act is refused; the journal is then unchanged.
+    pub fn act(&mut self, step: u64, act: Act) -> Result<Arc<Scenario>, Problems> {
+        self.enter(step, act, false)
+    }
+
+    /// Does `act` at `step` as one more nudge of the value that the last entry set: undo takes all nudges of this chain
+    /// back at once.
+    ///
+    /// # Errors
+    /// As [`act`](Self::act).
+    pub fn act_again(&mut self, step: u64, act: Act) -> Result<Arc<Scenario>, Problems> {
+        self.enter(step, act, !self.log.is_empty())
+    }
+
+    fn enter(&mut self, step: u64, act: Act, is_chained: bool) -> Result<Arc<Scenario>, Problems> {
+        let before = self.check()?;
+        if let Act::Describe(set) = &act {
+            let head = growing::head(&before.file);
+            set.iter().try_for_each(|(key, value)| {
+                growing::may_describe("scenario", &head, key, value.clone())
+            })?;
+        }
+        let act = match act {
+            Act::Push(push) => push_with_new_number(&before, push),
+            act => act,
+        };
+        self.checked.cut_back(self.log.len());
+        self.log.push(Arc::new(Entry {
+            step,
+            act,
+            from_file: false,
+            is_chained,
+        }));
+        let scenario = self.check();
+        match &scenario {
+            Ok(_) => self.undone.clear(),
+            Err(_) => drop(self.log.pop()),
+        }
+        scenario
+    }
+
+    /// Takes the last entry back, or all nudges of its chain. Entries that they had dropped are in force again. Returns the
+    /// step of the first entry taken back and the act of the last one; `None` where there is no entry.
+    pub fn undo(&mut self) -> Option<(u64, Act)> {
+        let last = self.log.last()?.act.clone();
+        loop {
+            let entry = self.log.pop()?;
+            let (step, is_chained) = (entry.step, entry.is_chained);
+            self.undone.push(entry);
+            if !is_chained {
+                let _ = self.check(); // what is wrong is told when the scenario is asked for
+                return Some((step, last));
+            }
+        }
+    }
+
+    /// Does again what was undone last: an entry, or all nudges of a chain. Returns the step of the first of them and the
+    /// act of the last one; `None` where nothing is undone.
+    pub fn redo(&mut self) -> Option<(u64, Act)> {
+        let first = self.undone.last()?.step;
+        loop {
+            let entry = self.undone.pop()?;
+            let act = entry.act.clone();
+            self.log.push(entry);
+            if !self.undone.last().is_some_and(|next| next.is_chained) {
+                let _ = self.check();
+                return Some((first, act));
+            }
+        }
+    }
+
+    /// Drops what was undone: it can no longer be redone.
+    pub fn forget_undone(&mut self) {
+        self.undone.clear();
+    }
+
+    /// How many entries in force were done at `step` or earlier, descriptions of any step included.
+    pub fn count_by(&self, step: u64) -> usize {
+        self.in_force_by(step).len()
+    }
+
+    /// How many pushes the run has at `step`, past and future ones: those of the scenario, and those that the user has
+    /// added at `step` or earlier.
+    pub fn pushes_by(&self, step: u64) -> usize {
+        let mut added = self.in_force();
+        added.retain(|entry| entry.step <= step && matches!(entry.act, Act::Push(_)));
+        self.base.push.len() + added.len()
+    }
+}
+
+/// The act that adds `push` to `scenario`: a `[[push]]` table. Where edits have added pushes, one more table would change
+/// their numbers, so the push is then added by one more edit.
+fn push_with_new_number(scenario: &Scenario, push: PushFile) -> Act {
+    let set = scenario.edits.iter().flat_map(|edit| &edit.set_pushes);
+    match (set.max(), Table::try_from(&push)) {
+        (Some(last), Ok(table)) if *last >= scenario.pushes.len() => {
+            let key = format!("push.{}", last + 1);
+            Act::Edit(Table::from_iter([(key, Value::Table(table))]))
+        }
+        _ => Act::Push(push),
+    }
+}
+
+#[cfg(test)]
+mod tests;

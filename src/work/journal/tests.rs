@@ -1,0 +1,348 @@
+//! Journals by themselves, and their checks against the check of the whole run file.
+
+use super::*;
+use crate::scenario::{Document, presets};
+use proptest::prelude::*;
+
+fn journal(name: &str) -> Journal {
+    Journal::of(Document::open(name).unwrap().scenario().unwrap().file)
+}
+
+fn push(from_s: f64) -> Act {
+    Act::Push(pushed(from_s))
+}
+
+fn pushed(from_s: f64) -> PushFile {
+    PushFile {
+        point: "top".to_owned(),
+        force_N: [10.0, 0.0, 0.0],
+        first_step: None,
+        steps: None,
+        from_s: Some(from_s),
+        for_s: Some(1.0),
+        accumulates: None,
+    }
+}
+
+fn gravity(value: f64) -> Act {
+    Act::set("motion.gravity_m_per_s2", Value::Float(value))
+}
+
+#[test]
+fn an_act_drops_entries_at_later_steps_until_it_is_undone() {
+    let mut journal = journal("method-2");
+    journal.act(10, gravity(1.0)).unwrap();
+    journal.act(50, push(5.0)).unwrap();
+    journal
+        .act(60, Act::set("title", Value::String("Mine".to_owned())))
+        .unwrap();
+    journal.act(20, gravity(2.0)).unwrap();
+    let file = journal.file();
+    assert_eq!(
+        (file.edit.len(), file.push.len(), file.title.as_str()),
+        (2, 0, "Mine")
+    );
+    assert_eq!(journal.undo().unwrap().0, 20);
+    let file = journal.file();
+    assert_eq!((file.edit.len(), file.push.len()), (1, 1));
+    journal.redo().unwrap();
+    assert_eq!(
+        (journal.file().edit.len(), journal.file().push.len()),
+        (2, 0)
+    );
+    assert_eq!(journal.file_until(15).edit.len(), 1);
+    assert_eq!(
+        journal.file_until(20).edit.len(),
+        2,
+        "an act at the last step is included"
+    );
+    assert_eq!(journal.later_than(15), 1);
+}
+
+#[test]
+fn the_act_is_written_last() {
+    let entry = Entry {
+        step: 3,
+        from_file: true,
+        is_chained: true,
+        act: gravity(1.0),
+    };
+    let text = serde_json::to_string(&entry).unwrap();
+    assert!(text.find("\"act\"") > text.find("\"is_chained\""), "{text}");
+    assert!(text.find("\"act\"") > text.find("\"from_file\""), "{text}");
+}
+
+#[test]
+fn a_description_belongs_to_every_step() {
+    let mut journal = journal("method-2");
+    let title = Act::set("title", Value::String("Mine".to_owned()));
+    journal.act(500, title).unwrap();
+    assert_eq!(journal.file_until(100).title, "Mine");
+    let begun = journal.begun_with(
+        100,
+        &Table::from_iter([("start.tilt_deg".to_owned(), Value::Float(3.0))]),
+    );
+    assert_eq!(begun.unwrap().1.file.title, "Mine");
+}
+
+#[test]
+fn undo_restores_the_edits_of_the_file() {
+    let edits = "[[edit]]\nstep = 60\nset = { 'motion.gravity_m_per_s2' = 1 }\n".repeat(2);
+    let text = format!("{}\n{edits}", presets::find("method-2").unwrap().text);
+    let file = Document::parse("edited", &text)
+        .unwrap()
+        .scenario()
+        .unwrap()
+        .file;
+    let mut journal = Journal::of(file.clone());
+    let title = Act::set("title", Value::String(file.title.clone()));
+    journal.act(70, title).unwrap();
+    journal.act(50, gravity(2.0)).unwrap();
+    journal.undo();
+    assert_eq!(journal.file(), file);
+}
+
+#[test]
+fn pushes_added_at_one_step_keep_their_order() {
+    let own = "[[push]]\npoint = 'top'\nforce_N = [0, 0, -1]\nfor_s = 1\n".repeat(8);
+    let added = "[[edit]]\nstep = 5\nset = { 'push.8' = \
+                 { point = 'top', force_N = [0, 0, -1], for_s = 1 } }\n";
+    let text = presets::find("method-2").unwrap().text;
+    let document = Document::parse("pushed", &format!("{text}\n{own}{added}")).unwrap();
+    let mut journal = Journal::of(document.scenario().unwrap().file);
+    for count in 10..13 {
+        let scenario = journal.act(20, push(2.0)).unwrap();
+        assert_eq!(scenario.edits.last().unwrap().pushes.len(), count);
+    }
+}
+
+#[test]
+fn redo_does_not_panic_in_a_journal_edited_by_hand() {
+    let mut journal = journal("method-2");
+    journal.act(5, gravity(3.0)).unwrap();
+    journal.act(3, gravity(4.0)).unwrap();
+    journal.undo();
+    journal.log.clear();
+    assert!(journal.redo().is_some());
+}
+
+#[test]
+fn undo_takes_all_nudges_of_a_chain_back() {
+    let mut journal = journal("method-2");
+    journal.act(5, push(0.5)).unwrap();
+    journal.act(10, gravity(1.0)).unwrap();
+    journal.act_again(12, gravity(2.0)).unwrap();
+    journal.act_again(14, gravity(3.0)).unwrap();
+    let whole = journal.file();
+    assert_eq!(journal.undo(), Some((10, gravity(3.0))));
+    assert_eq!(
+        (journal.file().edit.len(), journal.file().push.len()),
+        (0, 1)
+    );
+    assert_eq!(journal.redo(), Some((10, gravity(3.0))));
+    assert_eq!(journal.file(), whole);
+    assert_eq!(journal.redo(), None);
+}
+
+#[test]
+fn edits_at_one_step_are_joined_unless_the_file_had_them_apart() {
+    let mut journal = journal("method-2");
+    journal.act(10, gravity(1.0)).unwrap();
+    journal.act(10, gravity(2.0)).unwrap();
+    journal
+        .act(
+            10,
+            Act::set("motion.scheme", Value::String("rk4".to_owned())),
+        )
+        .unwrap();
+    assert_eq!(journal.file().edit.len(), 1);
+    assert_eq!(journal.file().edit[0].set.len(), 2);
+    let mut file = journal.file();
+    file.edit.push(EditFile {
+        step: 10,
+        set: Arc::new(Table::from_iter([(
+            "motion.gravity_m_per_s2".to_owned(),
+            Value::Float(3.0),
+        )])),
+    });
+    assert_eq!(Journal::of(file.clone()).file(), file);
+}
+
+#[test]
+fn a_new_push_keeps_the_numbers_of_pushes_that_edits_added() {
+    let mut file = journal("method-2").file();
+    let added = "[edit]\npoint = 'top'\nforce_N = [0, 1, 0]\nfor_s = 2"
+        .parse::<Table>()
+        .unwrap();
+    file.edit.push(EditFile {
+        step: 3,
+        set: Arc::new(Table::from_iter([(
+            "push.0".to_owned(),
+            added["edit"].clone(),
+        )])),
+    });
+    let mut journal = Journal::of(file);
+    let scenario = journal.act(9, push(0.9)).unwrap();
+    assert_eq!(scenario.edits.last().unwrap().pushes.len(), 2);
+    assert_eq!(scenario.edits[0].pushes.len(), 1);
+    assert_eq!(scenario.pushes.len(), 0);
+}
+
+#[test]
+fn a_new_run_begins_with_the_settings_of_the_old_one() {
+    let mut journal = journal("wobble-push");
+    journal
+        .act(40, Act::set("motion.time_step_s", Value::Float(0.05)))
+        .unwrap();
+    journal.act(50, push(4.5)).unwrap();
+    journal
+        .act(55, Act::set("push.1.force_N.0", Value::Float(3.0)))
+        .unwrap();
+    journal.act(60, gravity(1.6)).unwrap();
+    let (begun, scenario) = journal
+        .begun_with(
+            60,
+            &Table::from_iter([("start.tilt_deg".to_owned(), Value::Float(10.0))]),
+        )
+        .unwrap();
+    assert_eq!(
+        (scenario.motion.time_step_s, scenario.motion.gravity),
+        (0.05, 1.6)
+    );
+    assert_eq!((scenario.pushes.len(), scenario.edits.len()), (1, 0));
+    let push = &begun.base().push[0];
+    assert_eq!(
+        (push.from_s, push.for_s),
+        (Some(0.0), Some(20.0)),
+        "the push keeps its times in seconds"
+    );
+    let (_, earlier) = journal
+        .begun_with(
+            39,
+            &Table::from_iter([("start.tilt_deg".to_owned(), Value::Float(10.0))]),
+        )
+        .unwrap();
+    assert_eq!(earlier.motion.time_step_s, 0.1);
+}
+
+/// One act of a random kind; most are accepted.
+fn random_act(kind: u8, value: u8) -> Act {
+    let number = f64::from(value);
+    match kind % 10 {
+        0 | 1 => gravity(number),
+        2 => Act::set("motion.time_step_s", Value::Float(number / 64.0 - 0.1)),
+        3 => Act::set("motion.steps", Value::Integer(i64::from(value) * 10)),
+        4 => {
+            let bell = if value.is_multiple_of(5) { "\u{7}" } else { "" };
+            Act::set("title", Value::String(format!("title {value}{bell}")))
+        }
+        5 | 6 => push(number / 10.0),
+        7 => {
+            let key = format!("push.{}.force_N.{}", value % 4, value % 5);
+            Act::set(&key, Value::Float(number))
+        }
+        8 => {
+            let mut table = Table::try_from(pushed(1.0)).unwrap();
+            if value.is_multiple_of(7) {
+                table.remove("for_s"); // which makes it no push
+            }
+            Act::set(&format!("push.{}", value % 6), Value::Table(table))
+        }
+        _ => Act::set(
+            "push.0.point",
+            Value::String(["top", "nobody"][usize::from(value % 2)].to_owned()),
+        ),
+    }
+}
+
+proptest! {
+    /// Kinds 0 to 9 are acts, 10 to 12 are undo, 13 and 14 redo. A debug build compares each result with the check of the
+    /// whole run file; the test does so itself for the last one.
+    #[test]
+    fn what_an_act_changes_is_checked_as_the_whole_run_file_is(
+        preset in 0..3usize,
+        from_file in prop::collection::vec((0..30u64, 0..2u8, 0..40u8), 0..6),
+        ways in prop::collection::vec((0..15u8, 0..40u64, 0..40u8), 1..30)
+    ) {
+        let name = ["method-2", "wobble-push", "loops"][preset];
+        let mut file = journal(name).file();
+        let mut last = 0;
+        for (step, kind, value) in from_file {
+            let Act::Edit(set) = random_act(kind, value) else { continue };
+            last += step;
+            file.edit.push(EditFile { step: last, set: Arc::new(set) });
+        }
+        let scenario = Arc::new(Document::check_file("the run", file).unwrap());
+        let mut journal = Journal::of_checked(&scenario);
+        let (mut accepted, mut refused) = (0, 0);
+        for (kind, step, value) in ways {
+            match kind {
+                10..=12 => drop(journal.undo()),
+                13 | 14 => drop(journal.redo()),
+                _ => {
+                    let act = random_act(kind, value);
+                    let mut whole = Journal { checked: Checked::default(), ..journal.clone() };
+                    let before = journal.clone();
+                    let is_chained = value % 4 == 0;
+                    let result = match is_chained {
+                        true => journal.act_again(step, act.clone()),
+                        false => journal.act(step, act.clone()),
+                    };
+                    let again = match is_chained {
+                        true => whole.act_again(step, act),
+                        false => whole.act(step, act),
+                    };
+                    prop_assert_eq!(&journal, &whole);
+                    prop_assert!(result.is_ok() || journal == before);
+                    match result.is_ok() {
+                        true => accepted += 1,
+                        false => refused += 1,
+                    }
+                    known::assert_same(&result, &again);
+                }
+            }
+            let whole = Document::check_file("the run", journal.file()).map(Arc::new);
+            known::assert_same(&journal.scenario(), &whole);
+        }
+        prop_assert!(accepted + refused < 31);
+    }
+}
+
+/// An act costs what it adds: nothing of the edits before it is read again.
+#[test]
+fn an_act_shares_the_edits_before_it() {
+    let mut file = journal("method-2").file();
+    let one = |step| EditFile {
+        step,
+        set: Arc::new(Table::from_iter([(
+            "motion.gravity_m_per_s2".to_owned(),
+            Value::Float(1.0),
+        )])),
+    };
+    file.edit = (0..2000).map(one).collect();
+    let before = Arc::new(Document::check_file("the run", file).unwrap());
+    let mut journal = Journal::of_checked(&before);
+    let shared = |one: &Scenario, other: &Scenario| {
+        let pairs = one.file.edit.iter().zip(&other.file.edit);
+        pairs
+            .filter(|(one, other)| Arc::ptr_eq(&one.set, &other.set))
+            .count()
+    };
+    let after = journal.act(1500, gravity(3.0)).unwrap();
+    assert_eq!((shared(&before, &after), after.edits.len()), (1501, 1502));
+    let pushed = journal.act(1600, push(200.0)).unwrap();
+    assert_eq!((shared(&before, &pushed), pushed.edits.len()), (1501, 1502));
+    assert_eq!(pushed.edits[7].pushes.len(), 1);
+    let named = journal
+        .act(0, Act::set("title", Value::String("Mine".to_owned())))
+        .unwrap();
+    assert_eq!(shared(&before, &named), 1501);
+    assert_eq!(journal.undo().map(|(step, _)| step), Some(0));
+    assert!(Arc::ptr_eq(&journal.scenario().unwrap(), &pushed));
+    journal.undo();
+    assert!(Arc::ptr_eq(&journal.scenario().unwrap(), &after));
+    journal.undo();
+    assert!(Arc::ptr_eq(&journal.scenario().unwrap(), &before));
+    journal.redo();
+    assert!(Arc::ptr_eq(&journal.scenario().unwrap(), &after));
+}
