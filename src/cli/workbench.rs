@@ -1,13 +1,15 @@
 //! `gyrolab` and `gyrolab show`: the lab, live or as one picture.
 
-use super::args::{Changes, Color, Look, Markers, Screen, ShowArgs, WorkbenchArgs};
+use super::args::{Changes, Cli, Color, Look, Markers, Screen, ShowArgs, WorkbenchArgs};
+use super::progress::{self, Meter};
 use super::scenario::change;
-use super::sessions;
+use super::{INTERRUPTED, print, sessions, tell};
 use crate::lab::command;
 use crate::lab::view::View;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use crate::lab::{Lab, Summary};
+use crate::run::NotFinite;
 use crate::scenario::{Document, Scenario};
 use crate::storage::confined::Confined;
 use crate::storage::exporting;
@@ -18,11 +20,13 @@ use crate::tui::panes;
 use crate::tui::screen;
 use crate::tui::surroundings::{self, ColourChoice};
 use anyhow::Context;
+use clap::CommandFactory;
 use std::io::{self, IsTerminal, Write};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// What is opened where nothing is named.
 const DEFAULT: &str = "method-2";
@@ -33,6 +37,10 @@ const PATIENCE: Duration = Duration::from_secs(3);
 /// Opens the lab; without a terminal shows its picture instead.
 pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     let name = args.scenario.as_deref().unwrap_or(DEFAULT);
+    anyhow::ensure!(
+        Cli::command().find_subcommand(name).is_none(),
+        "{name} is a command, and commands come before their options: gyrolab {name} ..."
+    );
     let confined = args.folder.as_deref().map(confined_to).transpose()?;
     if let Some(folder) = &confined {
         folder
@@ -45,12 +53,11 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             args.resume.is_none(),
             "--resume needs a terminal to come back to"
         );
-        writeln!(
-            io::stderr(),
-            "gyrolab: no terminal, so this is the picture that gyrolab show {} prints",
-            printable(name)
-        )?;
-        return print(Picture {
+        tell(format_args!(
+            "gyrolab: there is no terminal to open the lab on, so its picture {} is printed",
+            moment(args)
+        ));
+        return print_picture(Picture {
             confined,
             name,
             changes: &args.changes,
@@ -84,6 +91,16 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// Which moment of the run a picture shows.
+fn moment(args: &WorkbenchArgs) -> String {
+    match (&args.commands, args.at) {
+        (Some(file), _) if file == Path::new("-") => "after the commands on stdin".to_owned(),
+        (Some(file), _) => format!("after the commands in {}", Shown(file)),
+        (None, Some(step)) => format!("at step {step}"),
+        (None, None) => "at the end of the run".to_owned(),
+    }
+}
+
 fn confined_to(folder: &Path) -> anyhow::Result<Confined> {
     Confined::enter(folder).with_context(|| format!("--folder {}", Shown(folder)))
 }
@@ -107,11 +124,10 @@ fn tell_of_session(session: Result<Session, String>, folder: Option<&Path>) -> a
             )),
             printable(&title)
         )?,
-        Err(reason) => writeln!(
-            io::stderr(),
+        Err(reason) => tell(format_args!(
             "gyrolab: there is no session to come back to: {}",
             printable(&reason)
-        )?,
+        )),
     }
     Ok(())
 }
@@ -121,7 +137,9 @@ fn new(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
     let theme = theme(args.look);
     let mut lab = lab(name, &args.changes, args.look.markers, theme, !args.paused)?;
     if let Some(step) = args.at {
-        lab.begin_at(step).with_context(|| name.to_owned())?;
+        // No signal is caught yet: one that ends the process here has nothing to put right.
+        let arrived = go_to(&mut lab, step, |_, _| ControlFlow::Continue(()));
+        arrived.with_context(|| name.to_owned())?;
     }
     Ok(lab)
 }
@@ -261,7 +279,7 @@ fn tell_of_exports(lab: &Lab) -> io::Result<()> {
         let path = Shown(&written.path);
         writeln!(
             stdout,
-            "{path}: {} rows\n  {}",
+            "{path}: {} rows; to fetch it, on your own computer:\n  {}",
             written.rows,
             exporting::scp_line(&written.path)
         )?;
@@ -271,7 +289,7 @@ fn tell_of_exports(lab: &Lab) -> io::Result<()> {
 
 /// Prints the lab's picture at the end of a run, or after commands.
 pub(super) fn show(args: &ShowArgs) -> anyhow::Result<ExitCode> {
-    print(Picture {
+    print_picture(Picture {
         confined: None,
         name: args.scenario.as_deref().unwrap_or(DEFAULT),
         changes: &args.changes,
@@ -295,7 +313,7 @@ struct Picture<'a> {
     markers: Option<Markers>,
 }
 
-fn print(wanted: Picture<'_>) -> anyhow::Result<ExitCode> {
+fn print_picture(wanted: Picture<'_>) -> anyhow::Result<ExitCode> {
     let plain = Theme {
         colour: false,
         background: Background::Dark,
@@ -309,19 +327,59 @@ fn print(wanted: Picture<'_>) -> anyhow::Result<ExitCode> {
         Some(_) => 0,
         None => lab.player().run().scenario().steps,
     };
-    let ended = lab.begin_at(wanted.at.unwrap_or(end));
+    let (_, interruption) = progress::open(None, false)?;
+    let go_on = |_, _| match interruption.has_come() {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    };
+    let ended = go_to(&mut lab, wanted.at.unwrap_or(end), go_on);
     let mut done = Ok(());
     if let (Ok(()), Some(commands)) = (&ended, commands) {
         lab.take_commands(commands);
-        done = lab.finish_script();
+        let mut meter = Meter::new();
+        done = lab.finish_script_while(|step, of| {
+            meter.show(step, of);
+            go_on(step, of)
+        });
+        meter.clear();
+    }
+    if interruption.may_act_at_once() {
+        return Ok(ExitCode::from(INTERRUPTED));
     }
     let picture = screen::text(&lab, false, wanted.size);
-    let mut stdout = io::stdout().lock();
-    stdout.write_all(picture.as_bytes())?;
-    stdout.flush()?;
+    print(&picture)?;
     ended.with_context(|| wanted.name.to_owned())?; // the picture up to there is shown all the same
     done.map_err(anyhow::Error::msg)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Plays from the start to `step`, a part at a time and while `go_on` says so, with progress where that takes long and
+/// stderr is a terminal.
+///
+/// # Errors
+/// Where the numbers stop being finite on the way.
+fn go_to(
+    lab: &mut Lab,
+    step: u64,
+    mut go_on: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<(), NotFinite> {
+    const LOOK: Duration = Duration::from_millis(100);
+    let mut meter = Meter::new();
+    let mut part = 1_u64;
+    loop {
+        let (here, begin) = (lab.player().playback().step_number(), Instant::now());
+        let arrived = lab.begin_at(here.saturating_add(part).min(step));
+        let here = lab.player().playback().step_number();
+        if arrived.is_err() || here >= step || go_on(here, step).is_break() {
+            meter.clear();
+            return arrived;
+        }
+        meter.show(here, step);
+        part = match begin.elapsed() < LOOK {
+            true => part.saturating_mul(2),
+            false => (part / 2).max(1),
+        };
+    }
 }
 
 /// A lab with what `name` names, changed.

@@ -360,7 +360,7 @@ impl Lab {
     }
 
     /// Closes or stops one thing: what lies on top, the script, the steps asked for, the pane that fills the screen, the
-    /// export. If there is none of these, it says how to leave, unless the key has already removed a message or a count.
+    /// export. Then it turns from the parameters back to the run. If there is none of these, it says how to leave, unless the key has already removed a message or a count.
     fn close(&mut self, has_cleared: bool) {
         if self.on_top.close() {
         } else if !self.script.is_done() {
@@ -374,7 +374,7 @@ impl Lab {
         } else if has_cleared {
         } else if self.files.is_exporting() {
             self.files.stop_export();
-        } else {
+        } else if !self.view.leave_parameters() {
             self.say("nothing to close; q leaves");
         }
     }

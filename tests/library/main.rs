@@ -31,4 +31,5 @@ mod textbook;
 mod theory;
 mod truth;
 mod undo;
+mod words;
 mod workbench;
