@@ -9,6 +9,7 @@ mod progress;
 mod run;
 mod scenario;
 mod sessions;
+mod show;
 mod workbench;
 
 use crate::text::printable::{is_steering, printable_lines};
@@ -45,7 +46,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
     };
     match command {
         Command::Run(args) => run::run(&args),
-        Command::Show(args) => workbench::show(&args),
+        Command::Show(args) => show::show(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Presets { name } => info::presets(name.as_deref()),
         Command::Sessions { folder } => sessions::list(folder.as_deref()),

@@ -39,7 +39,7 @@ fn a_file_that_takes_long_to_read_does_not_hold_up_the_browser() {
     let (done, result) = mpsc::channel();
     thread::spawn(move || {
         let mut stage = Stage::open("method-2", &[], SMALL);
-        stage.lab.work_in(folder.path());
+        stage.lab.files_mut().work_in(folder.path());
         stage.press("o");
         std::fs::remove_file(&path).unwrap();
         mknodat(CWD, &path, FileType::Fifo, Mode::from_raw_mode(0o600), 0).unwrap();
