@@ -242,7 +242,7 @@ impl Source {
     pub fn words(self) -> &'static str {
         match self {
             Self::Scenario => "the scenario",
-            Self::State => "the last step",
+            Self::State => "the run's last step",
             Self::EveryStep => "every step of the run, its start included",
             Self::Measured => "measured on the steps since the forces last changed",
             Self::Scheme => "a formula for the scheme at this time step",

@@ -19,7 +19,7 @@ impl fmt::Display for Picture {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Right => "it shows as it is",
-            Self::Strobed => "its points are taken for one another, a strobe's picture",
+            Self::Strobed => "its points are taken for one another, as under a strobe light",
             Self::TooSlow => "it seems to turn too slowly",
             Self::Backwards => "it seems to turn backwards",
             Self::Unknown => "further than numbers reach",
@@ -53,7 +53,7 @@ fn sentence(health: &Health, advice: Option<&Advice>) -> String {
                 format!(" (in a step the wheel turns {})", health.picture)
             }
             _ => format!(
-                " (the wheel turns {} times a step: {})",
+                "; only a picture of the turning wheel would mislead, which turns {} times a step: {}",
                 short(health.turns_per_step),
                 health.picture
             ),
@@ -80,7 +80,7 @@ fn lost_nutation(health: &Health) -> Option<String> {
     };
     let (verb, percent) = change(&nutation);
     Some(format!(
-        "not its nutation, a swing of {swing} degrees, which should last: the scheme {verb} it by {percent} % a step, so that it {now}"
+        "its nutation does not hold, a swing of {swing} degrees that should last: the scheme {verb} it by {percent} % a step, so that it {now}"
     ))
 }
 

@@ -53,7 +53,7 @@ pub(super) enum Command {
     Schemes,
     /// Validate scenario files, run files, the headers of CSVs, and files of commands
     Check {
-        /// Files to look at
+        /// Files to look at; a preset is none
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
     },

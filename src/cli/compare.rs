@@ -1,9 +1,9 @@
 //! `gyrolab compare`: schemes and time steps against the exact motion.
 
-use super::INTERRUPTED;
 use super::args::CompareArgs;
 use super::progress::{self, Meter};
 use super::scenario::scenario_of;
+use super::{INTERRUPTED, print};
 use crate::analysis::compare::{Row, Table, compare as table_of};
 use crate::analysis::cost::is_affordable;
 use crate::export::Destination;
@@ -15,7 +15,8 @@ use crate::scenario::Scenario;
 use crate::scenario::rescale::MOST_STEPS;
 use crate::text::number::{short, shortest};
 use anyhow::{Context, bail};
-use std::io::{self, Write};
+use std::collections::HashSet;
+use std::io::Write;
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -59,19 +60,20 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     if interruption.may_act_at_once() {
         return Ok(ExitCode::from(INTERRUPTED));
     }
-    let mut stdout = io::stdout().lock();
     let table = Table {
         rows: &rows,
         energy_unit: EnergyScale::of(&scenario).map(|scale| scale.unit),
     };
-    write!(stdout, "{}\n\n{table}", heading(&scenario))?;
-    stdout.flush()?;
-    Ok(ExitCode::SUCCESS)
+    print(&format!("{}\n\n{table}", heading(&scenario)))
 }
 
 fn schemes(args: &CompareArgs) -> Vec<&'static SchemeInfo> {
     let chosen = args.schemes.iter().chain(&args.scenario.changes.scheme);
-    let chosen: Vec<_> = chosen.filter_map(|name| SchemeInfo::find(name)).collect();
+    let mut seen = HashSet::new(); // one that is named twice is compared once
+    let chosen: Vec<_> = chosen
+        .filter(|name| seen.insert(name.as_str()))
+        .filter_map(|name| SchemeInfo::find(name))
+        .collect();
     match chosen.is_empty() {
         true => SCHEMES
             .iter()

@@ -1,6 +1,7 @@
 //! The commands that tell: presets, schemes, keys, readouts, check, completions, man.
 
 use super::args::Cli;
+use super::{print, tell};
 use crate::analysis::readouts::READOUTS;
 use crate::lab::command::{self, COMMANDS};
 use crate::physics::scheme::SCHEMES;
@@ -13,19 +14,9 @@ use crate::text::printable::{Shown, printable, printable_lines};
 use anyhow::{Context, bail};
 use clap::CommandFactory;
 use std::fmt::Write as _;
-use std::io::{self, Write as _};
-use std::path::PathBuf;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-
-/// Prints `text` on stdout; a reader that has gone is the caller's to forgive.
-fn print(text: &str) -> anyhow::Result<ExitCode> {
-    let mut stdout = io::stdout().lock();
-    stdout
-        .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush())
-        .context("cannot write to stdout")?;
-    Ok(ExitCode::SUCCESS)
-}
 
 pub(super) fn presets(name: Option<&str>) -> anyhow::Result<ExitCode> {
     let Some(name) = name else {
@@ -99,7 +90,7 @@ pub(super) fn readouts() -> anyhow::Result<ExitCode> {
         writeln!(text, "{}{unit}", readout.name)?;
         writeln!(text, "    {}; from: {source}", readout.meaning)?;
     }
-    text.push_str("\nA name alone is the value at the run's last step; predicted_... is theory's, measured_... the run's own.\n");
+    text.push_str("\nBehind \"from:\" stands where each number comes from; predicted_... is theory's, measured_... the run's own.\n");
     text.push_str("gyrolab run SCENARIO --json gives all of them; null is a number that there is not, or that cannot be stated.\n");
     print(&text)
 }
@@ -112,12 +103,25 @@ pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
                 print(&format!("{}: {described}\n", Shown(file)))?;
             }
             Err(problems) => {
-                refuse(&problems)?;
+                tell(printable_lines(&problems.to_string()));
+                if let Some(hint) = hint_of_preset(file) {
+                    tell(hint);
+                }
                 code = ExitCode::FAILURE;
             }
         }
     }
     Ok(code)
+}
+
+/// What to do instead where `file`, which is not there, is the name of a preset.
+fn hint_of_preset(file: &Path) -> Option<String> {
+    let name = presets::find(file.to_str()?)?.name;
+    (!file.exists()).then(|| {
+        format!(
+            "gyrolab check takes files, and {name} is a preset: gyrolab run {name} runs it, gyrolab presets {name} prints it"
+        )
+    })
 }
 
 /// What is in `document`, in words: commands, or else a scenario.
@@ -146,10 +150,6 @@ fn described(scenario: &Scenario) -> String {
     )
 }
 
-fn refuse(problems: &Problems) -> io::Result<()> {
-    writeln!(io::stderr(), "{}", printable_lines(&problems.to_string()))
-}
-
 pub(super) fn completions(shell: clap_complete::Shell) -> anyhow::Result<ExitCode> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "gyrolab", &mut script);
@@ -162,7 +162,7 @@ fn commands_page() -> String {
     let mut page = ".SH \"FILES OF COMMANDS\"\n\
         A file for \\-\\-do is a list of [[do]] tables with one command each, carried out in order:\n.PP\n.nf\n\
         [[do]]\nset = { \"motion.time_step_s\" = 0.05 }\n\n[[do]]\ngo_to = \"60 s\"\n.fi\n\
-        .PP\nThe next begins when the one before is done. Conditions hold numbers, the names of the CSV's columns and \
+        .PP\nThe next begins when the one before is done. Refusals count the commands from 0: do.0 is the first. Conditions hold numbers, the names of the CSV's columns and \
         of the scenario's keys, + \\- * / ( ), abs, comparisons, and, or.\n"
         .to_owned();
     for row in COMMANDS {

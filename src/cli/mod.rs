@@ -9,13 +9,16 @@ mod progress;
 mod run;
 mod scenario;
 mod sessions;
+mod show;
 mod workbench;
 
 use crate::text::printable::{is_steering, printable_lines};
+use anyhow::Context;
 use args::{Cli, Command};
 use clap::Parser;
 use std::ffi::OsString;
-use std::io;
+use std::fmt::Display;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 /// Ended by the user's Ctrl-C, as shells count it.
@@ -43,7 +46,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
     };
     match command {
         Command::Run(args) => run::run(&args),
-        Command::Show(args) => workbench::show(&args),
+        Command::Show(args) => show::show(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Presets { name } => info::presets(name.as_deref()),
         Command::Sessions { folder } => sessions::list(folder.as_deref()),
@@ -59,24 +62,48 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
 /// Prints what clap has to say instead of going on: help, or why it takes no such arguments. clap repeats the arguments
 /// as they are: where one holds a character that could steer a terminal, the text is printed escaped and without colours.
 fn misused(error: &clap::Error) -> ExitCode {
-    use io::Write;
     let is_hostile = |argument: OsString| argument.to_string_lossy().contains(is_steering);
     let text = error.render().to_string();
     let plain = printable_lines(&text);
+    let is_help = !error.use_stderr();
     let printed = match (std::env::args_os().any(is_hostile), error.use_stderr()) {
         (false, _) => error.print(),
         (true, true) => io::stderr().write_all(plain.as_bytes()),
         (true, false) => io::stdout().write_all(plain.as_bytes()),
     };
-    let _ = printed; // where even that cannot be written there is nobody to tell
-    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+    match printed.context(NO_STDOUT) {
+        Err(error) if is_help && !is_closed_pipe(&error) => {
+            complain(&error);
+            ExitCode::FAILURE
+        }
+        _ => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
+    }
 }
 
-/// Says on stderr what went wrong; where even that cannot be written there is nobody to tell.
+/// What is said where stdout takes no more.
+const NO_STDOUT: &str = "cannot write to stdout";
+
+/// Prints `text` on stdout.
+///
+/// # Errors
+/// When it cannot be written; that a reader has gone is the caller's to forgive.
+fn print(text: &str) -> anyhow::Result<ExitCode> {
+    let mut stdout = io::stdout().lock();
+    let printed = stdout.write_all(text.as_bytes());
+    printed.and_then(|()| stdout.flush()).context(NO_STDOUT)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Says `text` on stderr. Where that cannot be written there is nobody to tell, and what was to be done is done all the
+/// same.
+fn tell(text: impl Display) {
+    let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// Says on stderr what went wrong.
 fn complain(error: &anyhow::Error) {
-    use io::Write;
     let error = format!("{error:#}");
-    let _ = writeln!(io::stderr(), "gyrolab: {}", printable_lines(&error));
+    tell(format_args!("gyrolab: {}", printable_lines(&error)));
 }
 
 /// Whether the reader of our output has gone, as in `gyrolab run ... -o - | head`: that is no failure.

@@ -115,6 +115,7 @@ impl Meter {
             bar.with_style(style.progress_chars("=> "))
                 .with_elapsed(self.begin.elapsed())
         });
+        bar.set_length(steps); // a file of commands goes to one step after the other
         bar.set_position(step);
     }
 

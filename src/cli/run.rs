@@ -3,7 +3,7 @@
 use super::args::{Cli, RunArgs};
 use super::progress::{self, Interruption, Meter};
 use super::scenario::scenario_of;
-use super::{INTERRUPTED, complain};
+use super::{INTERRUPTED, complain, print, tell};
 use crate::analysis::health::{Advice, advise};
 use crate::analysis::{Health, Monitor, Readouts};
 use crate::export::stream::{self, Ended};
@@ -14,7 +14,7 @@ use anyhow::Context;
 use clap::CommandFactory;
 use clap::error::ErrorKind;
 use std::cell::RefCell;
-use std::io::{self, Write};
+use std::io;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
@@ -110,15 +110,14 @@ fn play(
 /// The summary: on stdout, or on stderr where stdout or a file has the rows.
 fn report(args: &RunArgs, summary: &Summary) -> anyhow::Result<()> {
     if args.output.is_some() {
-        writeln!(io::stderr(), "{summary}")?;
+        tell(summary);
     }
-    let mut stdout = io::stdout().lock();
     if args.json {
-        writeln!(stdout, "{}", serde_json::to_string(summary)?)?;
+        print(&format!("{}\n", serde_json::to_string(summary)?))?;
     } else if args.output.is_none() {
-        writeln!(stdout, "{summary}")?;
+        print(&format!("{summary}\n"))?;
     }
-    Ok(stdout.flush()?)
+    Ok(())
 }
 
 /// What would mend the run, sought only where it is not to be believed.

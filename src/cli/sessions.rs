@@ -1,11 +1,12 @@
 //! `gyrolab sessions`: what `--resume NAME` can come back to.
 
+use super::{print, tell};
 use crate::lab::Lab;
 use crate::storage::confined::Confined;
 use crate::storage::session::{self, Listed};
 use crate::text::printable::{Shown, printable};
 use anyhow::Context;
-use std::io::{self, Write};
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, SystemTime};
@@ -16,11 +17,10 @@ pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
     let folder = folder_of(confined.as_ref()).map_err(anyhow::Error::msg)?;
     let sessions = session::list(&folder)?;
     if sessions.is_empty() {
-        writeln!(
-            io::stderr(),
+        tell(format_args!(
             "gyrolab: there are no sessions in {}",
             Shown(&folder)
-        )?;
+        ));
         return Ok(ExitCode::SUCCESS);
     }
     let now = SystemTime::now();
@@ -31,16 +31,15 @@ pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
         .collect();
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
     let widths: Vec<_> = (0..4).map(|column| width(column).unwrap_or(0)).collect();
-    let mut stdout = io::stdout().lock();
+    let mut text = String::new();
     for [name, written, step, in_use, run] in &rows {
         let (a, b, c, d) = (widths[0], widths[1], widths[2], widths[3]);
         writeln!(
-            stdout,
+            text,
             "{name:<a$}  {written:<b$}  {step:>c$}  {in_use:<d$}  {run}"
         )?;
     }
-    stdout.flush()?;
-    Ok(ExitCode::SUCCESS)
+    print(&text)
 }
 
 /// Where sessions are kept: the user's own, or those of a confined lab.

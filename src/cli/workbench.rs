@@ -1,8 +1,9 @@
 //! `gyrolab` and `gyrolab show`: the lab, live or as one picture.
 
-use super::args::{Changes, Color, Look, Markers, Screen, ShowArgs, WorkbenchArgs};
+use super::args::{Changes, Cli, Color, Look, Markers, Screen, WorkbenchArgs};
 use super::scenario::change;
-use super::sessions;
+use super::show::{Picture, go_to, print_picture};
+use super::{sessions, tell};
 use crate::lab::command;
 use crate::lab::view::View;
 use crate::lab::view::markers::Marker;
@@ -15,17 +16,18 @@ use crate::storage::session::{self, KeptAside, Session};
 use crate::text::printable::{Shown, printable};
 use crate::tui::app;
 use crate::tui::panes;
-use crate::tui::screen;
 use crate::tui::surroundings::{self, ColourChoice};
 use anyhow::Context;
+use clap::CommandFactory;
 use std::io::{self, IsTerminal, Write};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 
 /// What is opened where nothing is named.
-const DEFAULT: &str = "method-2";
+pub(super) const DEFAULT: &str = "method-2";
 
 /// How long the end waits for the disk before it says that the session is not kept.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -33,6 +35,10 @@ const PATIENCE: Duration = Duration::from_secs(3);
 /// Opens the lab; without a terminal shows its picture instead.
 pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     let name = args.scenario.as_deref().unwrap_or(DEFAULT);
+    anyhow::ensure!(
+        Cli::command().find_subcommand(name).is_none(),
+        "{name} is a command, and commands come before their options: gyrolab {name} ..."
+    );
     let confined = args.folder.as_deref().map(confined_to).transpose()?;
     if let Some(folder) = &confined {
         folder
@@ -45,12 +51,11 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             args.resume.is_none(),
             "--resume needs a terminal to come back to"
         );
-        writeln!(
-            io::stderr(),
-            "gyrolab: no terminal, so this is the picture that gyrolab show {} prints",
-            printable(name)
-        )?;
-        return print(Picture {
+        tell(format_args!(
+            "gyrolab: there is no terminal to open the lab on, so its picture {} is printed",
+            moment(args)
+        ));
+        return print_picture(Picture {
             confined,
             name,
             changes: &args.changes,
@@ -84,6 +89,16 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// Which moment of the run a picture shows.
+fn moment(args: &WorkbenchArgs) -> String {
+    match (&args.commands, args.at) {
+        (Some(file), _) if file == Path::new("-") => "after the commands on stdin".to_owned(),
+        (Some(file), _) => format!("after the commands in {}", Shown(file)),
+        (None, Some(step)) => format!("at step {step}"),
+        (None, None) => "at the end of the run".to_owned(),
+    }
+}
+
 fn confined_to(folder: &Path) -> anyhow::Result<Confined> {
     Confined::enter(folder).with_context(|| format!("--folder {}", Shown(folder)))
 }
@@ -107,11 +122,10 @@ fn tell_of_session(session: Result<Session, String>, folder: Option<&Path>) -> a
             )),
             printable(&title)
         )?,
-        Err(reason) => writeln!(
-            io::stderr(),
+        Err(reason) => tell(format_args!(
             "gyrolab: there is no session to come back to: {}",
             printable(&reason)
-        )?,
+        )),
     }
     Ok(())
 }
@@ -121,7 +135,9 @@ fn new(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
     let theme = theme(args.look);
     let mut lab = lab(name, &args.changes, args.look.markers, theme, !args.paused)?;
     if let Some(step) = args.at {
-        lab.begin_at(step).with_context(|| name.to_owned())?;
+        // No signal is caught yet: one that ends the process here has nothing to put right.
+        let arrived = go_to(&mut lab, step, |_, _| ControlFlow::Continue(()));
+        arrived.with_context(|| name.to_owned())?;
     }
     Ok(lab)
 }
@@ -261,7 +277,7 @@ fn tell_of_exports(lab: &Lab) -> io::Result<()> {
         let path = Shown(&written.path);
         writeln!(
             stdout,
-            "{path}: {} rows\n  {}",
+            "{path}: {} rows; to fetch it, on your own computer:\n  {}",
             written.rows,
             exporting::scp_line(&written.path)
         )?;
@@ -269,63 +285,8 @@ fn tell_of_exports(lab: &Lab) -> io::Result<()> {
     Ok(())
 }
 
-/// Prints the lab's picture at the end of a run, or after commands.
-pub(super) fn show(args: &ShowArgs) -> anyhow::Result<ExitCode> {
-    print(Picture {
-        confined: None,
-        name: args.scenario.as_deref().unwrap_or(DEFAULT),
-        changes: &args.changes,
-        at: args.at,
-        commands: args.commands.as_deref(),
-        size: args.size,
-        markers: args.markers,
-    })
-}
-
-/// What a picture is to show.
-struct Picture<'a> {
-    /// The folder that its commands do not leave, if there is one.
-    confined: Option<Confined>,
-    name: &'a str,
-    changes: &'a Changes,
-    at: Option<u64>,
-    commands: Option<&'a Path>,
-    /// Columns and lines.
-    size: (u16, u16),
-    markers: Option<Markers>,
-}
-
-fn print(wanted: Picture<'_>) -> anyhow::Result<ExitCode> {
-    let plain = Theme {
-        colour: false,
-        background: Background::Dark,
-    };
-    let commands = wanted.commands.map(command::open).transpose()?;
-    let mut lab = lab(wanted.name, wanted.changes, wanted.markers, plain, false)?;
-    if let Some(folder) = wanted.confined {
-        lab.files_mut().confine(folder);
-    }
-    let end = match commands {
-        Some(_) => 0,
-        None => lab.player().run().scenario().steps,
-    };
-    let ended = lab.begin_at(wanted.at.unwrap_or(end));
-    let mut done = Ok(());
-    if let (Ok(()), Some(commands)) = (&ended, commands) {
-        lab.take_commands(commands);
-        done = lab.finish_script();
-    }
-    let picture = screen::text(&lab, false, wanted.size);
-    let mut stdout = io::stdout().lock();
-    stdout.write_all(picture.as_bytes())?;
-    stdout.flush()?;
-    ended.with_context(|| wanted.name.to_owned())?; // the picture up to there is shown all the same
-    done.map_err(anyhow::Error::msg)?;
-    Ok(ExitCode::SUCCESS)
-}
-
 /// A lab with what `name` names, changed.
-fn lab(
+pub(super) fn lab(
     name: &str,
     changes: &Changes,
     markers: Option<Markers>,

@@ -39,7 +39,7 @@ pub enum UnderWay {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     /// The file exists and may not be replaced.
-    #[error("{0} exists: force = true replaces it")]
+    #[error("{0} exists: force = true replaces it, as in {{ path = \"FILE\", force = true }}")]
     Exists(PathBuf),
     /// Any other reason, in words.
     #[error("{0}")]

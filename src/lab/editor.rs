@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn the_selection_stays_on_its_line() {
-        let mut editor = editor(&[("start", "tilt"), ("motion", "dt"), ("push 1", "steps")]);
+        let mut editor = editor(&[("start", "tilt"), ("motion", "dt"), ("push 0", "steps")]);
         assert!(editor.select("motion", "dt"));
         editor.set_lines(vec![
             line("body", "dt"),

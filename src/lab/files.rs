@@ -21,6 +21,8 @@ pub struct Files {
     /// The folder outside of which nothing is read or written, if there is one.
     confined: Option<Confined>,
     exporting: Option<Exporting>,
+    /// Why the last export failed, until somebody asks for it.
+    failure: Option<String>,
     written: Vec<Written>,
 }
 
@@ -86,6 +88,7 @@ impl Files {
         self.admit(path)?;
         let begun = Exporting::begin(Arc::clone(scenario), path, every, force);
         self.exporting = Some(begun.map_err(refusal)?);
+        self.failure = None;
         Ok(Done::saying("the export goes on in the background").going_on(UnderWay::Exporting))
     }
 
@@ -106,8 +109,21 @@ impl Files {
                 self.written.push(written);
                 text
             }
-            Err(reason) => reason,
+            Err(reason) => {
+                self.failure = Some(reason.clone());
+                reason
+            }
         })
+    }
+
+    /// Why the last export failed, if it did; it is given once.
+    pub(super) fn take_failure(&mut self) -> Option<String> {
+        self.failure.take()
+    }
+
+    /// Ends the export under way; what it has written is removed.
+    pub(super) fn drop_export(&mut self) {
+        self.exporting = None;
     }
 
     /// The progress of the export, in words.

@@ -7,12 +7,16 @@ use super::command::{self, Command, Commands, Place, Placed};
 use crate::observe::playback::Halt;
 use indicatif::HumanCount;
 use std::collections::VecDeque;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How often to look whether an export is complete while there is nothing else to do.
 const LOOK: Duration = Duration::from_millis(2);
+
+/// How long steps are taken before the caller is asked whether to go on.
+const PART: Duration = Duration::from_millis(100);
 
 /// The commands that are not carried out yet.
 #[derive(Clone, Debug, Default)]
@@ -125,11 +129,31 @@ impl Lab {
     /// # Errors
     /// Which command was refused, and why; the commands after it are not carried out.
     pub fn finish_script(&mut self) -> Result<(), String> {
+        self.finish_script_while(|_, _| ControlFlow::Continue(()))
+    }
+
+    /// As [`finish_script`](Self::finish_script), and calls `go_on` several times a second with the step that the run is
+    /// at and the one at which it stops: what is left of the commands is dropped when that breaks.
+    ///
+    /// # Errors
+    /// As [`finish_script`](Self::finish_script).
+    pub fn finish_script_while(
+        &mut self,
+        mut go_on: impl FnMut(u64, u64) -> ControlFlow<()>,
+    ) -> Result<(), String> {
         self.release_script();
         while !self.script.is_done() {
-            let halt = self.player.playback.finish();
-            if let Some(halt) = halt {
-                self.halted(halt);
+            let begin = Instant::now();
+            let playback = &mut self.player.playback;
+            let halt = playback.finish_part(|| begin.elapsed() > PART);
+            match halt {
+                Some(halt) => self.halted(halt),
+                None if go_on(playback.step_number(), playback.stops_at()).is_break() => {
+                    self.files.drop_export();
+                    self.script.drop_all();
+                    break;
+                }
+                None => {}
             }
             if self.files.is_exporting() {
                 thread::sleep(LOOK);
@@ -141,7 +165,13 @@ impl Lab {
             self.go_on_with_script(halt);
         }
         self.read_now();
-        self.script.failed.take().map_or(Ok(()), Err)
+        match self.script.failed.take() {
+            Some(text) => {
+                self.on_top.notice_mut().take_back(); // the caller says it
+                Err(text)
+            }
+            None => Ok(()),
+        }
     }
 
     /// Lets a script from a session go on, as soon as the run is back at the step where it was left.
@@ -191,12 +221,13 @@ impl Lab {
     ///
     /// # Errors
     /// Why it has failed.
-    fn is_complete(&self, under_way: UnderWay, halt: Option<Halt>) -> Result<bool, String> {
+    fn is_complete(&mut self, under_way: UnderWay, halt: Option<Halt>) -> Result<bool, String> {
         let is_on = match under_way {
             UnderWay::Going => self.player.playback.steps_to_go().is_some(),
             UnderWay::Playing => self.player.playback.is_running_until(),
             UnderWay::Waiting(until) => return Ok(self.now >= until),
-            UnderWay::Exporting => return Ok(!self.files.is_exporting()),
+            UnderWay::Exporting if self.files.is_exporting() => return Ok(false),
+            UnderWay::Exporting => return self.files.take_failure().map_or(Ok(true), Err),
         };
         match (is_on, halt, under_way) {
             (true, ..) => Ok(false),

@@ -399,8 +399,9 @@ impl Lab {
         self.tell_answer(answer);
     }
 
-    /// Closes or stops one thing: what lies on top, the script, the steps asked for, the pane that fills the screen, the
-    /// export. If there is none of these, it says how to leave, unless the key has already removed a message or a count.
+    /// Closes or stops one thing: what lies on top, the script, the steps asked for, the cursor, the pane that fills the
+    /// screen, the export. Then it turns from the parameters back to the run. If there is none of these, it says how to
+    /// leave, unless the key has already removed a message or a count.
     fn close(&mut self, has_cleared: bool) {
         if self.on_top.close() {
             return;
@@ -413,11 +414,12 @@ impl Lab {
             self.carry_out_all(&[Command::Cursor(CursorTo::Nowhere)]);
         } else if self.view.filled {
             self.carry_out_all(&[Command::Fill(None)]);
-        } else if !has_cleared {
-            match self.files.is_exporting() {
-                true => self.files.stop_export(),
-                false => self.say("nothing to close; q leaves"),
-            }
+        } else if has_cleared {
+            // The key has done something already.
+        } else if self.files.is_exporting() {
+            self.files.stop_export();
+        } else if !self.view.leave_parameters() {
+            self.say("nothing to close; q leaves");
         }
     }
 

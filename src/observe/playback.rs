@@ -198,8 +198,13 @@ impl Playback {
     /// Plays to the requested step, or until the condition holds, however long that takes. Returns why the playback
     /// stopped; `None` if nothing was requested.
     pub fn finish(&mut self) -> Option<Halt> {
+        self.finish_part(|| false)
+    }
+
+    /// As [`finish`](Self::finish), but only until `enough` returns true: then `None`, and there is more to play.
+    pub fn finish_part(&mut self, enough: impl FnMut() -> bool) -> Option<Halt> {
         if self.hurries || self.until.is_some() {
-            self.play(f64::INFINITY, Duration::ZERO, || false)
+            self.play(f64::INFINITY, Duration::ZERO, enough)
         } else {
             None
         }
@@ -235,6 +240,11 @@ impl Playback {
         self.stop = self.step_number().saturating_add(MOST_UNTIL);
         self.until = Some(condition);
         true
+    }
+
+    /// The step at which it stops by itself.
+    pub fn stops_at(&self) -> u64 {
+        self.stop
     }
 
     /// Whether it plays until a condition holds.

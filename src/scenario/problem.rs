@@ -210,17 +210,30 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
             )
         })
         .min_by_key(|(distance, _)| *distance);
-    // A name that lacks its unit ("radius" for "radius_m") is near however long the unit.
-    let begins = known
-        .clone()
-        .find(|name| !lower.is_empty() && name.to_lowercase().starts_with(&lower));
+    // A name that lacks its unit ("radius" for "radius_m", "L_z" for "Lz_Js") is near however long the unit.
+    let bare = letters(wrong);
+    let is_bare = |name: &&str| !bare.is_empty() && letters(name).starts_with(&bare);
+    let begins = known.clone().find(is_bare);
     match (begins, near) {
-        (Some(name), _) => format!("did you mean {}?", brief(name, LONGEST)),
+        (Some(name), _) => return format!("did you mean {}?", brief(name, LONGEST)),
         (None, Some((distance, name))) if distance <= furthest(name) => {
-            format!("did you mean {name}?")
+            return format!("did you mean {name}?");
         }
-        _ => format!("there is {}", listed(known)),
+        _ => {}
     }
+    // Of "precession" all that have to do with it.
+    let has_it = |name: &&str| bare.len() > 2 && letters(name).contains(&bare);
+    let having_it = known.clone().filter(has_it);
+    match having_it.clone().next() {
+        Some(_) => format!("there is {}", listed(having_it)),
+        None => format!("there is {}", listed(known)),
+    }
+}
+
+/// The letters and digits of `name`, in lower case.
+fn letters(name: &str) -> String {
+    let all = name.chars().filter(|c| c.is_alphanumeric());
+    all.flat_map(char::to_lowercase).collect()
 }
 
 #[cfg(test)]
@@ -239,10 +252,38 @@ mod tests {
             nearest("radius", known.into_iter()),
             "did you mean radius_m?"
         );
+        let readouts = [
+            "t_s",
+            "Lx_Js",
+            "Lz_Js",
+            "L_axle_Js",
+            "predicted_lowest_tilt_deg",
+        ];
+        for (wrong, near) in [
+            ("L_z", "did you mean Lz_Js?"),
+            ("lz", "did you mean Lz_Js?"),
+            ("l_z_js", "did you mean Lz_Js?"),
+            ("Laxle", "did you mean L_axle_Js?"),
+            ("tilt", "there is predicted_lowest_tilt_deg"),
+        ] {
+            assert_eq!(nearest(wrong, readouts.into_iter()), near, "{wrong}");
+        }
         assert_eq!(
             nearest("colour", known.into_iter()),
             "there is radius_m, height_m, points"
         );
+    }
+
+    #[test]
+    fn beyond_the_first_hundred_problems_are_counted_without_being_made() {
+        let (mut found, mut made) = (Found::default(), 0);
+        for _ in 0..1000 {
+            found.add(|| {
+                made += 1;
+                Problem::at("key", "is wrong")
+            });
+        }
+        assert_eq!((found.list.len(), found.more, made), (100, 900, 100));
     }
 
     #[test]

@@ -17,7 +17,10 @@ pub fn changed(before: &Scenario, now: &Scenario) -> Option<String> {
     if changes.is_empty() || look_at(before) != look_at(now) {
         return None;
     }
-    Some(format!("changed from the file: {}", changes.join(", ")))
+    Some(format!(
+        "differs from what was opened: {}",
+        changes.join(", ")
+    ))
 }
 
 fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {

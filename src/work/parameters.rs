@@ -19,7 +19,8 @@ pub struct Parameter {
     pub key: String,
     /// Its row in the table of keys; a component of a vector has the vector's row.
     pub spec: &'static Key,
-    /// Heading under which it is listed: `scenario`, `body`, `point top`, `start`, `motion`, `push 1`, `view`.
+    /// Heading under which it is listed: `scenario`, `body`, `point top`, `start`, `motion`, `push 0`, `view`. Pushes
+    /// and points without a name are numbered from 0, as in their keys.
     pub group: String,
     /// Short name of at most 12 characters.
     pub label: String,
@@ -212,16 +213,15 @@ fn is_offered(place: &str, table: &Table) -> bool {
 
 fn group(place: &str, table: &Table) -> String {
     let names: Vec<&str> = place.split('.').collect();
-    let number = |index: &str| index.parse().map_or(0, |index: usize| index + 1);
     match names[..] {
         [_] => "scenario".to_owned(),
         ["body", "point", index, ..] => {
             let name = find(table, &format!("body.point.{index}.name")).and_then(Value::as_str);
-            name.map_or(format!("point {}", number(index)), |name| {
+            name.map_or(format!("point {index}"), |name| {
                 format!("point {}", brief(name, 40))
             })
         }
-        ["push", index, ..] => format!("push {}", number(index)),
+        ["push", index, ..] => format!("push {index}"),
         [table, ..] => table.to_owned(),
         [] => String::new(),
     }

@@ -614,6 +614,16 @@ fn the_sentence_names_the_right_cause() {
         "{sentence}"
     );
     assert!(!sentence.contains("nutation"), "{sentence}");
+    // One that is a hair off steady has a nutation, too small to put the traced point off.
+    let [step, steps, scheme] = coarse;
+    let (sentence, _) = told(
+        "steady-slow",
+        &[step, steps, scheme, "start.tilt_deg=30.01"],
+    );
+    assert!(
+        sentence.contains("the error that the scheme report makes at this time step has added up"),
+        "{sentence}"
+    );
     let (sentence, _) = told("cusps", &coarse);
     assert!(
         sentence.contains("the scheme damps the nutation by"),
@@ -624,8 +634,15 @@ fn the_sentence_names_the_right_cause() {
     let (sentence, _) = told("fast-top", &fine);
     assert!(
         sentence.starts_with("The numbers hold: the traced point has kept within")
-            && sentence.contains("but not its nutation, a swing of 0.0744 degrees")
+            && sentence.contains("but its nutation does not hold, a swing of 0.0744 degrees")
             && sentence.ends_with("so that it is gone."),
+        "{sentence}"
+    );
+    // Nor is there one in a steady precession whose traced point holds.
+    let fewer = ["motion.time_step_s=0.001", "motion.steps=5000", report];
+    let (sentence, _) = told("steady-slow", &fewer);
+    assert!(
+        sentence.starts_with("The numbers hold") && !sentence.contains("nutation"),
         "{sentence}"
     );
     let gone = |name: &str, set: &[&str]| {

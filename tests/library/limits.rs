@@ -103,6 +103,10 @@ fn many_pushes_with_many_edits_are_what_their_edits_make_of_them() {
         assert_eq!(edit.pushes.get(index + 1), scenario.pushes.get(index + 1));
         assert_eq!(edit.pushes[0], scenario.edits[0].pushes[0]);
     }
+    // Pushes that an edit does not change are kept once, not once for each edit.
+    let [first, last] = [&scenario.edits[0], &scenario.edits[COUNT / 2]].map(|edit| &edit.pushes);
+    let is_shared = |place: usize| std::ptr::eq(&raw const first[place], &raw const last[place]);
+    assert!((COUNT / 2 + 1..COUNT).all(is_shared));
 }
 
 #[test]

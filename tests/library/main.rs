@@ -32,5 +32,6 @@ mod textbook;
 mod theory;
 mod truth;
 mod undo;
+mod words;
 mod workbench;
 mod workings;

@@ -123,13 +123,13 @@ fn every_value_of_a_file_is_listed_in_groups() {
         "point side",
         "start",
         "motion",
+        "push 0",
         "push 1",
-        "push 2",
         "view",
     ];
     assert_eq!(groups, all);
     assert_eq!(
-        keys(&scenario, "push 1"),
+        keys(&scenario, "push 0"),
         [
             "push.0.point",
             "push.0.force_N.0",
@@ -141,7 +141,7 @@ fn every_value_of_a_file_is_listed_in_groups() {
         ]
     );
     assert_eq!(
-        keys(&scenario, "push 2"),
+        keys(&scenario, "push 1"),
         [
             "push.1.point",
             "push.1.force_N.0",

@@ -342,8 +342,8 @@ const LINES: [(&str, &str, &str, &str, &str, bool); 22] = [
     ("motion.scheme", "motion", "scheme", "report", "", true),
     ("motion.time_step_s", "motion", "dt", "0.1", "s", false),
     ("motion.steps", "motion", "steps", "2300", "", false),
-    ("push.0.point", "push 1", "point", "top", "", false),
-    ("push.0.force_N.2", "push 1", "Fz", "-100.0", "N", false),
+    ("push.0.point", "push 0", "point", "top", "", false),
+    ("push.0.force_N.2", "push 0", "Fz", "-100.0", "N", false),
     ("view.speed", "view", "speed", "20.0", "", false),
     (
         "view.look_at",

@@ -5,8 +5,10 @@ use gyrolab::analysis::health::{Advice, advise};
 use gyrolab::analysis::{Monitor, Readouts};
 use gyrolab::export::Column;
 use gyrolab::run::Simulation;
+use gyrolab::scenario::Scenario;
 use gyrolab::scenario::presets::PRESETS;
 use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -94,7 +96,10 @@ fn every_preset_does_what_it_expects() {
 
 /// The readouts at the end of the preset `name`.
 fn readouts(name: &str) -> Readouts {
-    let scenario = preset_named(name, &[]);
+    readouts_of(preset_named(name, &[]))
+}
+
+fn readouts_of(scenario: Scenario) -> Readouts {
     let mut simulation = Simulation::new(Arc::new(scenario));
     let mut monitor = Monitor::new(simulation.now());
     while simulation.step_number() < simulation.scenario().steps {
@@ -109,6 +114,151 @@ fn readouts(name: &str) -> Readouts {
 fn words(name: &str) -> String {
     let file = preset_named(name, &[]).file;
     file.about.unwrap() + &file.view.unwrap().look_at.unwrap()
+}
+
+/// A figure in a text of the preset `name`: `before` it, the number with so many decimals, and `after` it.
+fn figure(name: &str, before: &str, number: f64, decimals: usize, after: &str) {
+    let text = words(name).replace('\n', " ");
+    let wanted = format!("{before}{number:.decimals$}{after}");
+    assert!(text.contains(&wanted), "{name}: no {wanted:?} in {text}");
+}
+
+#[test]
+fn every_figure_in_the_texts_is_that_of_the_run() {
+    let of = |name: &str| {
+        let readouts = readouts(name);
+        move |readout: &str| readouts.number(readout).unwrap()
+    };
+    const HIGHEST: &str = "measured_highest_tilt_deg";
+    const PERIOD: &str = "predicted_nutation_period_s";
+    const PRECESSION: &str = "predicted_precession_rad_per_s";
+    const MEASURED: &str = "measured_precession_rad_per_s";
+    let cusps = of("cusps");
+    figure("cusps", "tilt 30 to ", cusps(HIGHEST), 2, " degrees");
+    figure("cusps", "one arch in ", cusps(PERIOD), 4, " s");
+    figure("loops", "tilt 30 to ", of("loops")(HIGHEST), 2, " degrees");
+    figure("waves", "tilt 30 to ", of("waves")(HIGHEST), 2, " degrees");
+    let falling = of("falling");
+    figure(
+        "falling",
+        "From 10 degrees down to ",
+        falling(HIGHEST),
+        2,
+        " and back",
+    );
+    figure("falling", "and back in ", falling(PERIOD), 2, " s");
+    let fast = of("fast-top");
+    figure(
+        "fast-top",
+        "mgl/L3 = ",
+        fast("fast_top_precession_rad_per_s"),
+        3,
+        " rad/s",
+    );
+    figure(
+        "fast-top",
+        "Precession of ",
+        fast(PRECESSION).to_degrees(),
+        1,
+        " degrees a second",
+    );
+    let swing = fast("predicted_highest_tilt_deg") - fast("predicted_lowest_tilt_deg");
+    figure("fast-top", "swings by ", swing, 3, " degrees");
+    let unstable = of("sleeping-unstable");
+    figure(
+        "sleeping-unstable",
+        "is below ",
+        unstable("sleeping_limit_Js"),
+        2,
+        ".",
+    );
+    figure(
+        "sleeping-unstable",
+        "it sinks to ",
+        unstable(HIGHEST),
+        0,
+        " and rises again",
+    );
+    figure("sleeping-unstable", "every ", unstable(PERIOD), 1, " s");
+    figure(
+        "sleeping-unstable",
+        "then sinks to ",
+        unstable(HIGHEST),
+        2,
+        " degrees",
+    );
+    let sleeping = of("sleeping");
+    figure(
+        "sleeping",
+        "L3 above ",
+        sleeping("sleeping_limit_Js"),
+        2,
+        ".",
+    );
+    figure(
+        "sleeping",
+        "between 1 and ",
+        sleeping(HIGHEST),
+        2,
+        " degrees",
+    );
+    figure(
+        "steady-slow",
+        "circle at ",
+        of("steady-slow")(MEASURED),
+        4,
+        " rad/s",
+    );
+    figure(
+        "steady-fast",
+        "one, at ",
+        of("steady-fast")(MEASURED),
+        3,
+        " rad/s",
+    );
+    let free = of("torque-free");
+    figure("torque-free", "|L|/I1 = ", free(MEASURED), 2, " rad/s");
+    figure("torque-free", "fixed at ", free(HIGHEST), 0, " degrees");
+    let first = of("method-1");
+    figure("method-1", "every ", first(PERIOD), 5, " s");
+    let faster = of("method-1-steeper")("turns_per_step") / first("turns_per_step");
+    figure(
+        "method-1-steeper",
+        " ",
+        100.0 * (faster - 1.0),
+        1,
+        " % faster",
+    );
+    let slow = of("method-2-slow");
+    let turn_s = TAU / slow(PRECESSION);
+    figure("method-2-slow", "a turn takes ", turn_s, 0, " s");
+    let thousands = turn_s / slow("time_step_s") / 1000.0;
+    figure("method-2-slow", "is ", thousands, 0, ",000 of these");
+    let turned = slow("t_s") * slow(PRECESSION).to_degrees();
+    figure("method-2-slow", "its circle, ", turned, 0, " degrees");
+    let second = of("method-2");
+    figure("method-2", "turns ", second("turns_per_step"), 2, " times");
+    figure("method-2", "one turn in ", TAU / second(MEASURED), 1, " s");
+    let push = of("wobble-push");
+    let percent = |z: f64| 100.0 * (z / 0.8 - 1.0);
+    figure(
+        "wobble-push",
+        "",
+        -percent(push("measured_lowest_z_m")),
+        0,
+        " % down",
+    );
+    figure(
+        "wobble-push",
+        "",
+        percent(push("measured_highest_z_m")),
+        0,
+        " % up",
+    );
+    let truth = readouts_of(preset_named("wobble-push", &["motion.scheme=exact"]));
+    let truth = |name: &str| truth.number(name).unwrap();
+    let swing = truth("measured_highest_z_m") - truth("measured_lowest_z_m");
+    figure("wobble-push", "true one is ", 100.0 * swing / 0.8, 2, " %");
 }
 
 #[test]

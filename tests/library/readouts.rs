@@ -247,6 +247,17 @@ fn a_strobed_nutation_is_named_with_theory_or_without() {
         // The axle goes round L 60/6.6 rad in a second, faster or slower than the body turns.
         assert_eq!(resolved(&free("0.36")), false, "{scheme}");
         assert!(resolved(&free("0.001")).is_null(), "{scheme}");
+        // A flat body's axle goes round L faster than the body turns: 3.6 rad a step, and 2.7.
+        let flat = [
+            "motion.gravity_m_per_s2=0",
+            "body.rim.height_m=0.3",
+            "start.momentum_Js=[10,0,59]",
+            "start.momentum_frame=world",
+            "motion.time_step_s=0.125",
+            "motion.steps=20",
+            &scheme,
+        ];
+        assert_eq!(resolved(&preset("cusps", &flat)), false, "{scheme}");
         let method_2 = preset("method-2", &[&scheme, "motion.steps=200"]);
         assert_eq!(resolved(&method_2), false, "{scheme}");
     }

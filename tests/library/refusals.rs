@@ -339,7 +339,7 @@ fn no_key_is_left_out() {
 #[test]
 fn a_scenario_without_its_tables() {
     check_refusal("", 0, "start: is missing", "[start]").unwrap();
-    check_refusal("", 0, "motion: is missing", "[motion]").unwrap();
+    check_refusal("", 0, "motion: is missing", "at the end of the file").unwrap();
     check_refusal("", 0, "title: is missing", "name of the scenario").unwrap();
     check_refusal("# nothing\n\n", 0, "title: is missing", "").unwrap();
     let bare =

@@ -52,7 +52,7 @@ fn a_push_that_an_edit_of_the_file_adds_is_listed() {
             .editor()
             .lines()
             .iter()
-            .any(|l| l.group == "push 1")
+            .any(|l| l.group == "push 0")
     );
     desk.commands("go_to = 10");
     assert!(
@@ -61,7 +61,7 @@ fn a_push_that_an_edit_of_the_file_adds_is_listed() {
             .editor()
             .lines()
             .iter()
-            .any(|l| l.group == "push 1")
+            .any(|l| l.group == "push 0")
     );
 }
 

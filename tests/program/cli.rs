@@ -869,6 +869,14 @@ fn check_looks_at_every_file() {
         stdout(&output).contains("good.toml: good"),
         "the good one after the bad ones is looked at too"
     );
+    let output = lab.run(&["check", "cusps"]);
+    failed(
+        &output,
+        &[
+            "check takes files, and cusps is a preset",
+            "gyrolab run cusps",
+        ],
+    );
 }
 
 #[test]
@@ -909,6 +917,33 @@ fn the_talk_about_a_run_does_not_depend_on_stderr_being_open() {
     drop(child.stderr.take());
     assert!(child.wait().unwrap().success());
     assert_eq!(steps(&lab.read("a.csv")).len(), 4);
+}
+
+#[test]
+fn talk_that_cannot_be_written_ends_nothing() {
+    let lab = Ground::new();
+    for (command, words) in [
+        ("run method-2 --steps 5 -o -", "step,t_s"),
+        ("method-2 --at 3", "Method 2"),
+        ("sessions", ""),
+    ] {
+        let output = lab.shell(&format!("$G {command} </dev/null 2>/dev/full"));
+        assert_eq!(output.status.code(), Some(0), "{command}");
+        assert!(stdout(&output).contains(words), "{command}");
+    }
+    for command in [
+        "--help",
+        "--version",
+        "show cusps --at 1",
+        "run cusps --steps 1",
+        "schemes",
+    ] {
+        let output = lab.shell(&format!("$G {command} </dev/null >/dev/full"));
+        failed(
+            &output,
+            &["gyrolab: cannot write to stdout: No space left on device"],
+        );
+    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! `--do` and `check` on files of commands, by the program itself.
 
+use crate::support::ground::Ground;
 use std::fs;
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
@@ -91,6 +92,10 @@ fn what_is_refused_is_told_and_the_picture_up_to_there_shown() {
         ),
         "{talk}"
     );
+    assert!(
+        !picture.contains("nothing to do again"),
+        "it is said once: {picture}"
+    );
     fs::write(folder.path().join("demo.toml"), "[[do]]\nstp = 5\n").unwrap();
     let (picture, talk, code) = run(&folder, &["show", "--do", "demo.toml"]);
     assert_eq!((picture.as_str(), code), ("", Some(1)));
@@ -102,6 +107,41 @@ fn what_is_refused_is_told_and_the_picture_up_to_there_shown() {
     assert_eq!(code, Some(1));
     assert!(talk.contains("none.toml: cannot be read"), "{talk}");
     assert_eq!(run(&folder, &["show"]).2, Some(2));
+}
+
+/// A limit on the size of files does for a full disk.
+#[test]
+fn an_export_that_fails_on_the_way_ends_the_commands() {
+    let ground = Ground::new();
+    let text = "[[do]]\nstep = 2000\n[[do]]\nexport = \"run.csv\"\n[[do]]\nstep = 5\n";
+    ground.write("demo.toml", text);
+    let shown = ground.shell("ulimit -f 64; $G show --do demo.toml");
+    let talk = String::from_utf8(shown.stderr).unwrap();
+    assert_eq!(shown.status.code(), Some(1), "{talk}");
+    let wanted = "demo.toml:3: export: cannot write ";
+    assert!(
+        talk.contains(wanted) && talk.contains("the command after it"),
+        "{talk}"
+    );
+    assert_eq!(ground.files(), ["demo.toml"]);
+}
+
+/// A step that is never reached, and a condition that never holds: a signal ends the wait.
+#[test]
+fn a_signal_ends_show_with_130_and_leaves_nothing() {
+    let ground = Ground::new();
+    ground.write("far.toml", "[[do]]\ngo_to = \"1e12 s\"\n");
+    ground.write("never.toml", "[[do]]\nset = { \"motion.steps\" = 9000000000000 }\n[[do]]\nexport = { path = \"run.csv\", to_step = 9000000000000 }\n");
+    for script in [
+        "$G show cusps --at 18000000000000000000",
+        "$G show --do far.toml",
+    ] {
+        let output = ground.shell(&format!("timeout --preserve-status -s INT 2 {script}"));
+        assert_eq!(output.status.code(), Some(130), "{script}");
+    }
+    let script = "timeout --preserve-status -s TERM 2 $G show --do never.toml";
+    assert_eq!(ground.shell(script).status.code(), Some(130));
+    assert_eq!(ground.files(), ["far.toml", "never.toml"]);
 }
 
 #[test]

@@ -290,6 +290,26 @@ fn a_file_is_written_whole_and_not_written_over() {
 }
 
 #[test]
+fn a_scheme_that_is_named_twice_is_compared_once() {
+    let rows = |schemes: &str| {
+        let usual = [
+            "compare",
+            "torque-free",
+            "--duration",
+            "0.01",
+            "-o",
+            "-",
+            "--schemes",
+        ];
+        let output = Ground::new().run(&[&usual[..], &[schemes]].concat());
+        assert!(output.status.success());
+        let csv = String::from_utf8(output.stdout).unwrap();
+        csv.lines().filter(|line| !line.starts_with('#')).count()
+    };
+    assert_eq!(rows("report,rk4,report"), rows("report,rk4"));
+}
+
+#[test]
 fn wrong_usage_is_refused() {
     let lab = Ground::new();
     for (args, expected) in [

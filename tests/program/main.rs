@@ -11,5 +11,6 @@ mod commands;
 mod compare;
 mod escapes;
 mod journeys;
+mod readme;
 mod sessions;
 mod terminal;

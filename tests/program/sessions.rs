@@ -53,6 +53,17 @@ fn on_a_full_disk_the_trouble_stays_and_nothing_is_promised() {
 }
 
 #[test]
+fn a_command_behind_its_options_is_told_where_it_belongs() {
+    let output = Ground::new().run(&["--folder", ".", "sessions"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(
+        said,
+        "gyrolab: sessions is a command, and commands come before their options: gyrolab sessions ...\n"
+    );
+}
+
+#[test]
 fn sessions_are_listed_and_one_is_taken_by_its_name() {
     let ground = Ground::new();
     for (preset, step) in [("cusps", "20"), ("method-2", "30")] {

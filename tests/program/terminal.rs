@@ -349,7 +349,17 @@ fn gyrolab(args: &[&str]) -> std::process::Output {
 fn without_a_terminal_it_shows_the_picture_and_says_so() {
     let shown = gyrolab(&["cusps"]);
     assert!(shown.status.success());
-    assert!(String::from_utf8_lossy(&shown.stderr).contains("no terminal"));
+    let said = String::from_utf8_lossy(&shown.stderr).into_owned();
+    assert!(
+        said.contains("no terminal") && said.contains("at the end of the run"),
+        "{said}"
+    );
+    let early = gyrolab(&["cusps", "--at", "3"]);
+    let said = String::from_utf8_lossy(&early.stderr).into_owned();
+    assert!(
+        said.contains("no terminal") && said.contains("at step 3"),
+        "{said}"
+    );
     let same = gyrolab(&["show", "cusps"]);
     assert_eq!(shown.stdout, same.stdout);
     assert!(same.stderr.is_empty());

@@ -259,6 +259,17 @@ impl View {
         self.focus = pane;
     }
 
+    /// Moves the focus from the parameters to the first other pane that can have it; returns whether it did.
+    pub fn leave_parameters(&mut self) -> bool {
+        let mut others = self.focusable().into_iter();
+        let other = others.find(|&pane| pane != Pane::PARAMETERS);
+        let (true, Some(other)) = (self.focus == Pane::PARAMETERS, other) else {
+            return false;
+        };
+        self.turn_to(other);
+        true
+    }
+
     /// Moves the focus to the first pane that can have it, if the one in focus no longer can.
     pub fn keep_focus(&mut self) {
         self.keep_focus_among(&self.focusable());

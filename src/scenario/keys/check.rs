@@ -61,7 +61,9 @@ fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Foun
         problems.add(|| {
             let rule = match key {
                 Some(key) => format!("is missing ({})", key.about),
-                None => format!("is missing: add a table [{missing}]"),
+                None => format!(
+                    "is missing: add a table [{missing}], at the end of the file for instance; gyrolab keys lists what it holds"
+                ),
             };
             Problem::at(join(path, missing), rule)
         });
