@@ -121,7 +121,7 @@ impl Lab {
             })),
             Action::GoToCursor => match self.view.cursor {
                 Some(step) => one(Command::GoTo(Place::Step(step))),
-                None => Err("Left and Right set the cursor first".to_owned()),
+                None => Ok(None),
             },
             Action::Pan(direction) => one(self.panned(direction, times)),
             Action::Magnify(more) => one(self.magnified(if more { times } else { -times })),
@@ -190,7 +190,7 @@ impl Lab {
             Action::TogglePause => self.stop_script(),
             Action::GoTo => self.on_top.open_dialog(Dialog::go_to()),
             Action::ChoosePush => self.turn_to_next_push(),
-            Action::Parameters => self.turn_to_parameters(),
+            Action::Parameters | Action::GoToCursor => self.turn_to_parameters(),
             Action::Edit if self.view.focus != Pane::PARAMETERS => self.turn_to_parameters(),
             Action::Edit => {
                 if let Some(dialog) = Dialog::value(&self.values) {
@@ -258,7 +258,6 @@ impl Lab {
             | Action::FillScreen
             | Action::StepCursor(_)
             | Action::ToTurn(_)
-            | Action::GoToCursor
             | Action::Pan(_)
             | Action::Magnify(_)
             | Action::WholeView => {} // commands

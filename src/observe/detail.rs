@@ -142,7 +142,7 @@ mod tests {
             ("cusps", 2000),
             ("loops", 2000),
             ("method-1", 900),
-            ("wobble-push", 100),
+            ("wobble-push", 180),
         ] {
             let (run, readouts) = at(preset, steps);
             let detail = Detail::new(&run, &readouts, &Wanted::following(230.0), None);

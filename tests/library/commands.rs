@@ -200,6 +200,10 @@ fn every_row_of_the_table_is_written_under_its_name() {
         speed = 'top'
         look_at = 'the dip'
         window_s = 60
+        detail_s = 0.5
+        since_s = 12.5
+        magnify = 4
+        cursor = 'next turn'
         exact = true
         show = ['traces', '3d']
         hide = ['health']
@@ -560,6 +564,7 @@ fn what_view_holds_is_what_the_commands_do() {
         ("hide", "['parameters']", (200, 50)),
         ("fill", "'above'", (80, 24)),
         ("window_s", "7.0", (80, 24)),
+        ("detail_s", "2.0", (80, 24)),
         ("exact", "true", (80, 24)),
         ("camera", "{ yaw_deg = 90.0 }", (200, 50)),
         ("look_at", "'the dip'", (80, 24)),

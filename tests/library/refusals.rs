@@ -194,6 +194,7 @@ const TABLE: &[(usize, &str, usize, &str, &str)] = &[
     (27, "steps = 0", 27, "push.0.steps (0) must be 1 or more", ""),
     (30, "speed = 0", 30, "view.speed (0) must be greater than zero", ""),
     (30, "window_s = -1", 30, "view.window_s (-1) must be greater than zero", ""),
+    (30, "detail_s = 0", 30, "view.detail_s (0) must be greater than zero", ""),
     (30, "exact = 3", 30, "view.exact (3) must be true or false", "not a number"),
     (30, "show = \"x\"", 30, "view.show (\"x\") must be a list", "not text"),
     (30, "hide = [\"x\"]", 30, "view.hide ([\"x\"]) each must be one of", "health"),

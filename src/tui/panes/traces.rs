@@ -84,7 +84,7 @@ const KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Char('>')], Action::StepCursor(Direction::Right), "", "the cursor one step to the right"),
     row(&[Mode::Lab], &[Key::Char('(')], Action::ToTurn(Direction::Left), "", "the cursor to the last turn of the tilt before it"),
     row(&[Mode::Lab], &[Key::Char(')')], Action::ToTurn(Direction::Right), "", "the cursor to the next turn of the tilt"),
-    row(&[Mode::Lab], &[Key::Enter], Action::GoToCursor, "", "go to the step at the cursor"),
+    row(&[Mode::Lab], &[Key::Enter], Action::GoToCursor, "", "go to the step at the cursor; without one, to the values"),
     row(&[Mode::Lab], &[Key::Char('w')], Action::WiderWindow, "", "show twice the time"),
     row(&[Mode::Lab], &[Key::Char('W')], Action::NarrowerWindow, "zoom", "show half the time"),
     row(&[Mode::Lab], &[Key::Char('[')], Action::Pan(Direction::Left), "pan", "show earlier times"),
