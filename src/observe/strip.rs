@@ -13,8 +13,11 @@ const ROUNDING: f64 = 1e-6;
 /// The longest window, s: small enough that adding it to a time does not overflow.
 const LONGEST_S: f64 = f64::MAX / 4.0;
 
-/// Columns over which the turns of a curve are counted to tell whether its swings can be drawn one by one.
-const NEIGHBOURS: usize = 5;
+/// Columns on either side over which the turns of a curve are counted to tell whether its swings can be drawn one by one.
+const NEIGHBOURS: usize = 2;
+
+/// Turns on either side over which the mean of a band is taken, so that parts of a swing do not show in it.
+const MEAN_TURNS: f64 = 8.0;
 
 /// From so many turns in a column on, swings cannot be drawn one by one: a swing has two turns, and needs five columns.
 const MOST_TURNS: f64 = 0.4;
@@ -38,7 +41,7 @@ pub struct Strip {
 pub struct Column {
     /// The extremes of all steps in the column, and of the straight lines to the steps before and after.
     pub extent: Extent,
-    /// The mean of the steps in and about the column.
+    /// The mean of the steps in the column; of a band, over a few swings about it.
     pub mean: f64,
     /// Where the curve swings too fast to be drawn swing by swing: its extremes over a whole swing about the column. A
     /// picture of them and of the mean tells more than one of all swings.
@@ -189,61 +192,70 @@ impl<'a> Pen<'a> {
         self.cuts.get(next).is_some_and(|&cut| cut < to_s)
     }
 
-    /// The extremes of a whole swing about the column `index`, where the curve turns `turns` times in a column; `None` where
-    /// that is seldom.
-    fn band(&self, index: usize, turns: f64) -> Option<Extent> {
-        if turns <= MOST_TURNS {
-            return None;
-        }
-        // A swing has two turns: half of one on either side.
-        let reach = if turns < 2.0 {
-            (1.0 / turns).ceil() as usize
-        } else {
-            0
-        };
+    /// The columns that have something, up to `reach` columns from the column `index`, and how far away they are.
+    fn about(&self, index: usize, reach: usize) -> impl Iterator<Item = (usize, &Drawn)> {
         let first = index.saturating_sub(reach);
-        let drawn = self
-            .columns
-            .iter()
-            .skip(first)
-            .take(index + reach + 1 - first);
-        drawn.filter_map(|drawn| drawn.extent).reduce(Extent::and)
+        let columns = self.columns.iter().enumerate();
+        let columns = columns.take(index + reach + 1).skip(first);
+        let columns = columns.filter(|(_, drawn)| drawn.extent.is_some());
+        columns.map(move |(column, drawn)| (column.abs_diff(index), drawn))
+    }
+
+    /// How often the curve turns in a column about the column `index`; where it is carried along by slow motion, how often
+    /// the tilt does, which swings with every nutation.
+    fn turns(&self, index: usize) -> f64 {
+        let about = || self.about(index, NEIGHBOURS).map(|(_, drawn)| drawn);
+        let columns = about().count().max(1) as f64;
+        let turns: f64 = about().map(|drawn| drawn.turns).sum();
+        let turns_of_tilt: f64 = about().map(|drawn| drawn.turns_of_tilt).sum();
+        let tilt = about().filter_map(|drawn| drawn.tilt).reduce(Extent::and);
+        match tilt {
+            Some(tilt) if tilt.max - tilt.min > LEAST_SWING_DEG => {
+                turns.max(turns_of_tilt) / columns
+            }
+            _ => turns / columns,
+        }
+    }
+
+    /// The mean of the steps about the column `index`, those further away than `reach` left out and those near to it
+    /// counted more: the whole swings and the parts of swings that are within reach then weigh about the same on both sides.
+    fn mean(&self, index: usize, reach: usize) -> Option<f64> {
+        let weigh = |(away, drawn): (usize, &Drawn)| {
+            let weight = (reach + 1 - away) as f64;
+            (weight * drawn.sum, weight * drawn.moments)
+        };
+        let sums = self.about(index, reach).map(weigh);
+        let (sum, moments) = sums.fold((0.0, 0.0), |all, one| (all.0 + one.0, all.1 + one.1));
+        (moments > 0.0).then(|| sum / moments)
     }
 
     fn finish(self) -> Vec<Option<Column>> {
-        let about = |index: usize| {
-            let first = index.saturating_sub(NEIGHBOURS / 2);
-            let drawn = self
-                .columns
-                .iter()
-                .skip(first)
-                .take(index + NEIGHBOURS / 2 + 1 - first);
-            drawn.filter(|drawn| drawn.extent.is_some())
-        };
         let column = |(index, drawn): (usize, &Drawn)| {
             let extent = drawn.extent?;
-            let moments: f64 = about(index).map(|drawn| drawn.moments).sum();
-            let sum: f64 = about(index).map(|drawn| drawn.sum).sum();
-            let turns: f64 = about(index).map(|drawn| drawn.turns).sum();
-            let turns_of_tilt: f64 = about(index).map(|drawn| drawn.turns_of_tilt).sum();
-            let tilt = about(index)
-                .filter_map(|drawn| drawn.tilt)
-                .reduce(Extent::and);
-            let swings = tilt.is_some_and(|tilt| tilt.max - tilt.min > LEAST_SWING_DEG);
-            let turns = if swings {
-                turns.max(turns_of_tilt)
+            let turns = self.turns(index);
+            if turns <= MOST_TURNS {
+                let mean = self.mean(index, 0).unwrap_or(extent.min);
+                return Some(Column {
+                    extent,
+                    mean: mean.clamp(extent.min, extent.max),
+                    band: None,
+                });
+            }
+            // A swing has two turns: half of one on either side.
+            let reach = if turns < 2.0 {
+                (1.0 / turns).ceil() as usize
             } else {
-                turns
+                0
             };
-            let mean = if moments > 0.0 {
-                sum / moments
-            } else {
-                extent.min
-            };
+            let extents = self
+                .about(index, reach)
+                .filter_map(|(_, drawn)| drawn.extent);
+            let band = extents.fold(extent, Extent::and);
+            let mean = self.mean(index, (MEAN_TURNS / turns) as usize);
             Some(Column {
                 extent,
-                mean: mean.clamp(extent.min, extent.max),
-                band: self.band(index, turns / about(index).count() as f64),
+                mean: mean.map_or(extent.min, |mean| mean.clamp(band.min, band.max)),
+                band: Some(band),
             })
         };
         self.columns.iter().enumerate().map(column).collect()

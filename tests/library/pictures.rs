@@ -251,7 +251,7 @@ fn the_edges_of_a_band_are_the_extremes_of_the_steps() {
         let band = column.band.unwrap();
         assert!(band.min <= min && max <= band.max);
         assert_eq!((column.extent.min, column.extent.max), (min, max));
-        assert!(min < column.mean && column.mean < max);
+        assert!(band.min < column.mean && column.mean < band.max);
     }
 }
 

@@ -204,7 +204,7 @@ impl Traces<'_> {
         let mut groups = Vec::new();
         for (curves, strip) in parts.into_iter().filter(|(curves, _)| !curves.is_empty()) {
             let is_last = curves.last() == CHOICES[choice].last();
-            let share = rows * curves.len() as u16 / (choice as u16 + 1);
+            let share = (rows * curves.len() as u16).div_ceil(choice as u16 + 1);
             let height = match is_last {
                 true => inside.bottom() - y,
                 false => share + 1,
