@@ -1,6 +1,6 @@
 //! The window of time in which the fast motion is drawn swing by swing, while the others show the slow motion.
 //!
-//! It is about ten swings of the tilt long and begins where the tilt is greatest. While the run is played so fast that
+//! It is about ten swings of the tilt long and begins where the tilt is greatest; where only x swings, it is chosen by x. While the run is played so fast that
 //! the window would pass before anyone had seen it, it stands still, and is taken anew now and then: of a motion that
 //! repeats itself it then shows the same picture.
 
@@ -18,9 +18,11 @@ const PAGE: f64 = 0.25;
 /// The least window, time steps.
 const LEAST_STEPS: f64 = 10.0;
 
-/// A window of time, and the swing that it was chosen for.
+/// A window of time, and the curve that it shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detail {
+    /// The tilt, or x where the tilt does not swing and x does.
+    pub curve: Curve,
     /// Time at its left edge, s.
     pub begin_s: f64,
     /// Its length, s.
@@ -55,7 +57,10 @@ impl Wanted {
 impl Detail {
     /// The window for `run` with these `readouts`; `before` is the last one.
     pub fn new(run: &LiveRun, readouts: &Readouts, wanted: &Wanted, before: Option<&Self>) -> Self {
-        let swing_s = swing_s(readouts);
+        let (curve, swing_s) = match swing_s(readouts) {
+            None => of_x(run.recording(), wanted.long_s),
+            some => (Curve::Tilt, some),
+        };
         let least_s = LEAST_STEPS * readouts.time_step_s;
         let window_s = wanted.window_s.unwrap_or_else(|| {
             let before_s = before.map(|before| before.window_s);
@@ -75,9 +80,10 @@ impl Detail {
         };
         let begin_s = match wanted.about_s {
             Some(_) => begin_s,
-            None => highest_tilt_s(run.recording(), begin_s, swing_s),
+            None => highest_s(run.recording(), curve, begin_s, swing_s),
         };
         Self {
+            curve,
             begin_s: begin_s.max(0.0),
             window_s,
         }
@@ -98,6 +104,21 @@ fn swing_s(readouts: &Readouts) -> Option<f64> {
         .filter(|swing_s| *swing_s > 0.0 && swing_s.is_finite())
 }
 
+/// What is shown where the tilt does not swing: x with its period, s, where that is short beside `long_s` (s).
+fn of_x(recording: &Recording, long_s: f64) -> (Curve, Option<f64>) {
+    let Some(whole) = recording.whole() else {
+        return (Curve::Tilt, None);
+    };
+    let since_s = (whole.end_s - long_s).max(0.0);
+    let blocks = recording.since(since_s);
+    let turns: u32 = blocks.map(|block| block.turns(Curve::X)).sum();
+    let swing_s = 2.0 * (whole.end_s - since_s) / f64::from(turns);
+    match turns > 2 && MOST_SWINGS * swing_s < long_s {
+        true => (Curve::X, Some(swing_s)),
+        false => (Curve::Tilt, None),
+    }
+}
+
 /// A length of 1, 2 or 5 times a power of ten for swings of `swing_s`; `before_s` as long as that is right (all s).
 fn length_s(swing_s: Option<f64>, before_s: Option<f64>) -> Option<f64> {
     let swing_s = swing_s?;
@@ -110,14 +131,15 @@ fn length_s(swing_s: Option<f64>, before_s: Option<f64>) -> Option<f64> {
     Some(before_s.filter(holds).unwrap_or_else(chosen))
 }
 
-/// The time of the greatest tilt between `begin_s - swing_s` and `begin_s` (s); before the first swing the beginning.
-fn highest_tilt_s(recording: &Recording, begin_s: f64, swing_s: f64) -> f64 {
+/// The time between `begin_s - swing_s` and `begin_s` (s) at which `curve` is highest; before the first swing the
+/// beginning.
+fn highest_s(recording: &Recording, curve: Curve, begin_s: f64, swing_s: f64) -> f64 {
     if begin_s <= swing_s || swing_s <= 0.0 {
         return begin_s;
     }
     let blocks = recording.between(begin_s - swing_s, begin_s);
     let highest = blocks
-        .map(|block| (block.extent(Curve::Tilt).max, block.begin_s))
+        .map(|block| (block.extent(curve).max, block.begin_s))
         .max_by(|a, b| a.0.total_cmp(&b.0));
     highest.map_or(begin_s, |(_, time_s)| time_s)
 }
@@ -186,6 +208,17 @@ mod tests {
                 tilt(detail.begin_s)
             );
         }
+    }
+
+    #[test]
+    fn where_only_x_swings_it_is_x_that_is_shown() {
+        let (run, readouts) = at("torque-free", 20_000);
+        let detail = Detail::new(&run, &readouts, &Wanted::following(20.0), None);
+        assert_eq!(detail.curve, Curve::X);
+        let strip = super::super::strip::Strip::new(detail.begin_s, detail.window_s, 100);
+        let columns = strip.columns(run.recording(), Curve::X, &[]);
+        assert!(columns.iter().flatten().all(|column| column.band.is_none()));
+        assert!(detail.window_s < 10.0, "{}", detail.window_s);
     }
 
     #[test]

@@ -201,8 +201,8 @@ impl<'a> Pen<'a> {
         columns.map(move |(column, drawn)| (column.abs_diff(index), drawn))
     }
 
-    /// How often the curve turns in a column about the column `index`; where it is carried along by slow motion, how often
-    /// the tilt does, which swings with every nutation.
+    /// How often the curve turns in a column about the column `index`; where slow motion carries it along and the tilt,
+    /// which swings with every nutation, turns more than once in a column: how often the tilt does.
     fn turns(&self, index: usize) -> f64 {
         let about = || self.about(index, NEIGHBOURS).map(|(_, drawn)| drawn);
         let columns = about().count().max(1) as f64;
@@ -210,7 +210,7 @@ impl<'a> Pen<'a> {
         let turns_of_tilt: f64 = about().map(|drawn| drawn.turns_of_tilt).sum();
         let tilt = about().filter_map(|drawn| drawn.tilt).reduce(Extent::and);
         match tilt {
-            Some(tilt) if tilt.max - tilt.min > LEAST_SWING_DEG => {
+            Some(tilt) if tilt.max - tilt.min > LEAST_SWING_DEG && turns_of_tilt > columns => {
                 turns.max(turns_of_tilt) / columns
             }
             _ => turns / columns,

@@ -81,6 +81,7 @@ fn traces(run: &LiveRun, ghost: Option<&Ghost>, window_s: Option<f64>, marker: M
 fn undivided(run: &LiveRun, view: &View) -> Detail {
     let long = Strip::following(run.now().time_s, view.window_s, 1);
     Detail {
+        curve: Curve::Tilt,
         begin_s: long.begin_s,
         window_s: long.window_s,
     }
@@ -215,6 +216,7 @@ fn fast_and_slow_motion_are_both_seen() {
     let now = run("wobble-push", &[], "", 460);
     let view = &view(&now, Marker::Braille);
     let detail = &Detail {
+        curve: Curve::Tilt,
         begin_s: 20.0,
         window_s: 20.0,
     };
@@ -527,7 +529,7 @@ proptest! {
         let around = Rect::new(0, 0, width + 6, height + 6);
         let inside = Rect::new(3, 3, width, height);
         let (run, view, ghost) = (&now, &view, Some(&ghost));
-        let detail = &Detail { begin_s, window_s: share * window_s };
+        let detail = &Detail { curve: Curve::Tilt, begin_s, window_s: share * window_s };
         for pane in 0..3 {
             let mut buf = Buffer::filled(around, Cell::new("#"));
             match pane {

@@ -47,14 +47,6 @@ const Z_LEAST: f64 = 0.05;
 const TILT_LEAST: f64 = 0.02;
 /// Least reach of x and y, of the same distance.
 const PLANE_LEAST: f64 = 1e-4;
-/// The strips that are shown where there is room for one, two, three and all of them, from the top.
-const CHOICES: [&[Curve]; 4] = [
-    &[Curve::Tilt],
-    &[Curve::Tilt, Curve::X],
-    &[Curve::Tilt, Curve::X, Curve::Z],
-    &[Curve::Tilt, Curve::X, Curve::Y, Curve::Z],
-];
-
 /// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
     id: Pane::TRACES,
@@ -109,8 +101,8 @@ pub struct Traces<'a> {
 }
 
 /// Strips one above the other over the same time, and the axis below them.
-struct Group<'a> {
-    curves: &'a [Curve],
+struct Group {
+    curves: Vec<Curve>,
     area: Rect,
     /// Columns beside the strips for their values; none where these stand on a line above each.
     beside: u16,
@@ -181,7 +173,7 @@ impl Traces<'_> {
     }
 
     /// The strips that there is room for, and where they stand.
-    fn groups(&self, inside: Rect, beside: u16) -> Vec<Group<'static>> {
+    fn groups(&self, inside: Rect, beside: u16) -> Vec<Group> {
         let across = self.view.marker.dots().0;
         let columns = (inside.width - beside) as usize * across;
         let long = match self.view.since_s {
@@ -193,18 +185,16 @@ impl Traces<'_> {
         let least = if beside > 0 { 1 } else { STRIP };
         let axes = 1 + u16::from(is_magnified);
         let strips = inside.height.saturating_sub(axes) / least;
-        let Some(choice) = (strips as usize).min(CHOICES.len()).checked_sub(1) else {
-            return Vec::new();
-        };
-        let curves = CHOICES[choice];
-        let split = usize::from(is_magnified).min(curves.len());
-        let parts = [(&curves[..split], detail), (&curves[split..], long)];
+        let shown = self.shown(strips as usize);
+        let split = usize::from(is_magnified).min(shown.len());
+        let (upper, lower) = shown.split_at(split);
+        let parts = [(upper, detail), (lower, long)];
         let rows = inside.height - axes;
         let mut y = inside.y;
         let mut groups = Vec::new();
         for (curves, strip) in parts.into_iter().filter(|(curves, _)| !curves.is_empty()) {
-            let is_last = curves.last() == CHOICES[choice].last();
-            let share = (rows * curves.len() as u16).div_ceil(choice as u16 + 1);
+            let is_last = curves.last() == shown.last();
+            let share = (rows * curves.len() as u16).div_ceil(shown.len() as u16);
             let height = match is_last {
                 true => inside.bottom() - y,
                 false => share + 1,
@@ -216,7 +206,7 @@ impl Traces<'_> {
             };
             y += height;
             groups.push(Group {
-                curves,
+                curves: curves.to_vec(),
                 area,
                 beside,
                 strip,
@@ -225,7 +215,20 @@ impl Traces<'_> {
         groups
     }
 
-    fn group(&self, group: &Group<'_>, marks: &Marks, buf: &mut Buffer) {
+    /// The curves that are shown where there is room for `most` strips, from the top: the one of the fast motion, and then
+    /// the others in their order. Where there is no room for all, z goes before y, and x before both.
+    fn shown(&self, most: usize) -> Vec<Curve> {
+        let first = self.detail.curve;
+        let by_worth = [Curve::X, Curve::Z, Curve::Tilt, Curve::Y];
+        let others = by_worth.into_iter().filter(|curve| *curve != first);
+        let chosen: Vec<_> = others.take(most.saturating_sub(1)).collect();
+        let others = Curve::ALL
+            .into_iter()
+            .filter(|curve| chosen.contains(curve));
+        std::iter::once(first).take(most).chain(others).collect()
+    }
+
+    fn group(&self, group: &Group, marks: &Marks, buf: &mut Buffer) {
         let count = group.curves.len() as u16;
         let rows = group.area.height.saturating_sub(1);
         let (share, spare) = (rows / count, rows % count);
@@ -253,7 +256,7 @@ impl Traces<'_> {
     }
 
     /// One strip with its name and its values.
-    fn strip(&self, curve: Curve, group: &Group<'_>, marks: &Marks, area: Rect, buf: &mut Buffer) {
+    fn strip(&self, curve: Curve, group: &Group, marks: &Marks, area: Rect, buf: &mut Buffer) {
         let is_detail = group.strip.window_s < 0.999 * self.view.window_s;
         let scale = self.magnified(curve, self.scale(curve, is_detail.then_some(&group.strip)));
         let theme = &self.view.theme;
@@ -329,7 +332,7 @@ impl Traces<'_> {
     }
 
     /// The cursor: a line at its time, and the value there where it does not stand above the strip.
-    fn cursor(&self, curve: Curve, group: &Group<'_>, area: Rect, buf: &mut Buffer) {
+    fn cursor(&self, curve: Curve, group: &Group, area: Rect, buf: &mut Buffer) {
         let Some((column, value)) = self.at_cursor(curve, &group.strip) else {
             return;
         };
