@@ -1,18 +1,29 @@
 //! The path of the traced point from above, x to the right and y up: a true circle at every size.
+//!
+//! What there is to see: where the point is, and the shape of its last swings behind it, as a line; the turn before them
+//! and all that came before, dotted more and more sparsely, denser where the point dwelt.
 
 use super::{PaneRow, Width, frame, write};
+use crate::analysis::Readouts;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, View};
+use crate::observe::ages::{Age, Ages};
+use crate::observe::camera::Zoom;
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::overlay::Overlay;
 use crate::observe::path::Path;
+use crate::run::Clock;
 use crate::text::ladder::at_or_below;
 use crate::tui::dots::{Dots, Ink};
+use crate::tui::keymap::ZOOM_KEYS;
 use crate::tui::theme::Role;
+use crate::tui::trail::Trail;
+use nalgebra::{Vector2, Vector3};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
+use std::f64::consts::TAU;
 
 /// Dots that are drawn of the exact motion and of the run before, and out of how many: without colours, dashes and
 /// dots tell them from the run.
@@ -34,6 +45,11 @@ const LEAST: f64 = 1e-6;
 /// The radius shown grows by this factor's exponential, or not at all.
 const STEP: f64 = 0.05;
 
+/// Where gravity turns L by less than this in the whole run, rad, the path is a circle about L and the picture is too.
+const STANDING: f64 = 0.35;
+/// A point that is nearer to the axle than this part of its distance from the pivot is on it.
+const ON_AXLE: f64 = 1e-6;
+
 /// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
     id: Pane::FROM_ABOVE,
@@ -42,10 +58,15 @@ pub const ROW: PaneRow = PaneRow {
     rank: 1,
     least: (27, 18),
     draw: |lab, area, buf| {
-        let (run, ghost, view) = (lab.player().run(), lab.player().ghost(), lab.view());
-        FromAbove { run, ghost, view }.render(area, buf);
+        FromAbove {
+            run: lab.player().run(),
+            ghost: lab.player().ghost(),
+            view: lab.view(),
+            readouts: Some(&lab.player().reading().readouts),
+        }
+        .render(area, buf);
     },
-    keys: &[],
+    keys: ZOOM_KEYS,
 };
 
 /// The view from above on a run.
@@ -56,12 +77,19 @@ pub struct FromAbove<'a> {
     pub ghost: Option<&'a Ghost>,
     /// How it is looked at.
     pub view: &'a View,
+    /// What was read off the run and what theory says of it, where that is known: by it the path is recent or old.
+    pub readouts: Option<&'a Readouts>,
 }
 
 impl Widget for FromAbove<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
-        let inside = frame(ROW.title, area, self.view.focus == ROW.id, theme, buf);
+        let zoom = self.view.zoom.above;
+        let title = match zoom == 1.0 {
+            true => ROW.title.to_owned(),
+            false => format!("{} ×{zoom}", ROW.title),
+        };
+        let inside = frame(&title, area, self.view.focus == ROW.id, theme, buf);
         if inside.height < 2 || inside.width == 0 {
             return;
         }
@@ -69,7 +97,7 @@ impl Widget for FromAbove<'_> {
             height: inside.height - 1,
             ..inside
         };
-        let plan = Plan::new(picture, self.radius(), self.view);
+        let plan = self.plan(picture);
         self.path(&plan, picture, buf);
         self.pushes(&plan, picture, buf);
         self.marks(&plan, picture, buf);
@@ -83,17 +111,45 @@ impl Widget for FromAbove<'_> {
 }
 
 impl FromAbove<'_> {
-    fn radius(&self) -> f64 {
+    /// The middle and the scale of the picture.
+    fn plan(&self, picture: Rect) -> Plan {
+        let middle = self.circled().unwrap_or_default();
         let exact = self.run.overlay().map(Overlay::path);
         let before = self.ghost.map(Ghost::path);
         let paths = [Some(self.run.path()), exact, before];
-        let radius = paths
-            .into_iter()
-            .flatten()
-            .map(Path::radius)
-            .fold(LEAST, f64::max);
+        let about = |path: &Path| match middle == Vector2::zeros() {
+            true => path.radius(),
+            false => path.radius_about(middle.x, middle.y).max(middle.norm()),
+        };
+        let radius = paths.into_iter().flatten().map(about).fold(LEAST, f64::max);
         // In steps of 5 %: the picture shall not breathe with every millimetre.
-        libm::exp((libm::log(radius) / STEP).ceil() * STEP) * 1.02
+        let radius = libm::exp((libm::log(radius) / STEP).ceil() * STEP) * 1.02;
+        let zoom = self.view.zoom.above;
+        let half = radius / zoom;
+        let middle = match zoom > 1.0 {
+            true => self
+                .run
+                .now()
+                .position
+                .xy()
+                .map(|at| Zoom::middle(at, half)),
+            false => middle,
+        };
+        Plan::new(picture, middle, half, self.view.marker)
+    }
+
+    /// The place from above around which the axle circles: where the line of L is, at the height of the traced point, as
+    /// long as gravity cannot turn L noticeably within the run; `None` where the circle is about the vertical.
+    fn circled(&self) -> Option<Vector2<f64>> {
+        let scenario = self.run.scenario();
+        let momentum = scenario.start.momentum;
+        let axis = momentum.try_normalize(f64::MIN_POSITIVE)?;
+        let at = scenario.body.mechanics.points()[scenario.trace].at;
+        let torque = scenario.motion.gravity * scenario.body.mechanics.first_moment().norm();
+        let turn = torque.abs() / momentum.norm() * Clock::end_s(scenario);
+        let is_steady = scenario.pushes.is_empty() && scenario.edits.is_empty() && turn < STANDING;
+        let place = axis.xy() * at.norm();
+        (is_steady && is_on_axle(&at) && place.norm() > 0.0).then_some(place)
     }
 
     fn path(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
@@ -108,15 +164,26 @@ impl FromAbove<'_> {
                 dots.set(x, y, Ink::Ghost);
             }
         }
+        let mut trail = Trail::new(&dots, false);
+        for (x, y) in self.run.path().dots() {
+            trail.dot(plan.dot(x, y), Age::Old);
+        }
+        let ages = self.readouts.map_or(Ages::UNKNOWN, Ages::of);
+        let ages = ages.on_picture(TAU * self.run.path().radius() * plan.across);
+        let now = self.run.now();
+        let to_dot = |at: &Vector3<f64>| plan.dot(at.x, at.y);
+        trail.follow(
+            self.run.recording(),
+            &ages,
+            (now.time_s, &now.position),
+            to_dot,
+        );
+        trail.draw(&mut dots);
         if let Some(overlay) = self.run.overlay() {
             let exact = overlay.path().dots().map(|(x, y)| plan.dot(x, y));
             for (x, y) in on_and_off(exact, DASH) {
                 dots.set(x, y, Ink::Faint(Role::Exact));
             }
-        }
-        for (x, y) in self.run.path().dots() {
-            let (x, y) = plan.dot(x, y);
-            dots.set(x, y, Ink::Strong(Role::Path));
         }
         dots.render(&self.view.theme, buf);
     }
@@ -161,20 +228,19 @@ impl FromAbove<'_> {
             theme.style(Role::Y),
             buf,
         );
-        write(
-            picture,
-            plan.cell(0.0, 0.0),
-            "+",
-            theme.style(Role::Quiet),
-            buf,
-        );
+        if plan.shows(0.0, 0.0) {
+            let pivot = plan.cell(0.0, 0.0);
+            write(picture, pivot, "+", theme.style(Role::Quiet), buf);
+        }
         let at = self.run.now().position;
         let here = plan.cell(at.x, at.y);
         let mut mark = "o";
         if let Some(overlay) = self.run.overlay() {
             let at = overlay.now().position;
             let exact = plan.cell(at.x, at.y);
-            write(picture, exact, "e", theme.style(Role::Exact), buf);
+            if plan.shows(at.x, at.y) {
+                write(picture, exact, "e", theme.style(Role::Exact), buf);
+            }
             mark = if exact == here { "*" } else { mark };
         }
         write(picture, here, mark, theme.style(Role::Focus), buf);
@@ -198,7 +264,7 @@ impl FromAbove<'_> {
             None if self.ghost.is_some() => {
                 &["o now, dotted: the other run", "o now, dotted: other"]
             }
-            None => &["o now"],
+            None => &["o now, dotted: before", "o now"],
         };
         let place = |legend: &&str| {
             area.width
@@ -212,6 +278,10 @@ impl FromAbove<'_> {
             write(area, (x, 0), legend, theme.style(Role::Quiet), buf);
         }
     }
+}
+
+fn is_on_axle(at: &Vector3<f64>) -> bool {
+    at.xy().norm() <= ON_AXLE * at.norm()
 }
 
 /// The head of an arrow that points to the right by `x` and up by `y`.
@@ -238,8 +308,10 @@ fn upright((x, y): (u16, u16), up: f64, picture: Rect) -> ((u16, u16), &'static 
     ((place, y), sign)
 }
 
-/// From metres to dots and cells, the pivot in the middle.
+/// From metres to dots and cells.
 struct Plan {
+    /// What is in the middle of the picture, m.
+    middle: Vector2<f64>,
     width: f64,
     height: f64,
     /// Dots in a metre, across and down.
@@ -251,18 +323,19 @@ struct Plan {
 }
 
 impl Plan {
-    fn new(picture: Rect, radius_m: f64, view: &View) -> Self {
-        let (in_x, in_y) = view.marker.dots();
+    fn new(picture: Rect, middle: Vector2<f64>, radius_m: f64, marker: Marker) -> Self {
+        let (in_x, in_y) = marker.dots();
         let (width, height) = (
             picture.width as f64 * in_x as f64,
             picture.height as f64 * in_y as f64,
         );
         // A dot is `aspect` times as wide as high: this is what keeps circles round.
-        let aspect = view.marker.dot_aspect();
+        let aspect = marker.dot_aspect();
         let down = (0.5 * height).min(0.5 * width * aspect) / radius_m;
         let across = down / aspect;
         let cell_width_m = in_x as f64 / across;
         Self {
+            middle,
             width,
             height,
             across,
@@ -275,9 +348,15 @@ impl Plan {
 
     fn dot(&self, x: f64, y: f64) -> (f64, f64) {
         (
-            0.5 * self.width + x * self.across,
-            0.5 * self.height - y * self.down,
+            0.5 * self.width + (x - self.middle.x) * self.across,
+            0.5 * self.height - (y - self.middle.y) * self.down,
         )
+    }
+
+    /// Whether this place is in the picture.
+    fn shows(&self, x: f64, y: f64) -> bool {
+        let (column, row) = self.dot(x, y);
+        (0.0..self.width).contains(&column) && (0.0..self.height).contains(&row)
     }
 
     fn cell(&self, x: f64, y: f64) -> (u16, u16) {
