@@ -380,10 +380,16 @@ fn the_point_stays_in_the_picture_however_large_it_is() {
                 readouts: None,
             };
             let picture = drawn(pane, ROUND);
-            // Not at the edge, where it would be put if it were outside.
-            let lines: Vec<_> = picture.lines().skip(2).collect();
-            let inner = &lines[..lines.len() - 3];
-            let is_here = |line: &&str| line.chars().skip(2).take(31).any(|sign| sign == 'o');
+            // Where it is enlarged, not at the edge either, where it would be put if it were outside.
+            let edge = usize::from(zoom > 1.0);
+            let lines: Vec<_> = picture.lines().skip(1 + edge).collect();
+            let inner = &lines[..lines.len() - 2 - edge];
+            let is_here = |line: &&str| {
+                line.chars()
+                    .skip(1 + edge)
+                    .take(34 - 2 * edge)
+                    .any(|sign| sign == 'o')
+            };
             assert!(inner.iter().any(is_here), "{steps} ×{zoom}\n{picture}");
         }
     }

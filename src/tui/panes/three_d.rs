@@ -120,7 +120,7 @@ impl Widget for ThreeD<'_> {
         for (sign, role, cell) in masses {
             write(picture, cell, sign, theme.style(role), buf);
         }
-        let mut taken = Vec::with_capacity(cells.len());
+        let mut taken: Vec<_> = here.into_iter().collect();
         for (name, role, cell) in cells.iter().rev() {
             let cell = beside(*cell, columns(name) as u16, &taken, picture);
             write(picture, cell, name, theme.style(*role), buf);
