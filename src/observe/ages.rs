@@ -31,6 +31,8 @@ pub struct Ages {
     pub turn_s: f64,
     /// The time of one swing, s.
     pub swing_s: Option<f64>,
+    /// Whether the swings cover each other on the picture.
+    pub are_crowded: bool,
 }
 
 /// The age of a part of a path, the oldest first.
@@ -50,6 +52,7 @@ impl Ages {
         recent_s: f64::INFINITY,
         turn_s: f64::INFINITY,
         swing_s: None,
+        are_crowded: false,
     };
 
     /// The ages of the motion that `readouts` tell of: by what was measured, or else by what theory predicts.
@@ -80,6 +83,7 @@ impl Ages {
             recent_s: graded(recent_s),
             turn_s: graded(turn_s.unwrap_or(TURN * recent_s)),
             swing_s,
+            are_crowded: false,
         }
     }
 
@@ -93,6 +97,7 @@ impl Ages {
         let swings = (RECENT_SWINGS * apart / CLOSEST_DOTS).max(LEAST_SWINGS);
         Self {
             recent_s: self.recent_s.min(graded(swings * swing_s)),
+            are_crowded: apart < CLOSEST_DOTS,
             ..self
         }
     }

@@ -92,7 +92,9 @@ impl Trail {
             (Age::Recent, recent),
         ] {
             let since = ages.since(age, now_s);
-            let blocks = recording.since(since).filter(|block| block.end_s >= since);
+            let blocks = recording
+                .since(since)
+                .filter(|block| block.end_s >= since && block.end_s <= now_s);
             let mut last: Option<(f64, f64)> = None;
             for at in blocks.map(|block| &block.end).chain([now]) {
                 let at = to_dot(at);

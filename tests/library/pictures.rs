@@ -88,12 +88,12 @@ fn undivided(run: &LiveRun, view: &View) -> Detail {
 
 fn from_above(run: &LiveRun, ghost: Option<&Ghost>, marker: Marker) -> String {
     let view = &view(run, marker);
-    let readouts = None;
+    let reading = None;
     let pane = FromAbove {
         run,
         ghost,
         view,
-        readouts,
+        reading,
     };
     drawn(pane, ROUND)
 }
@@ -274,7 +274,7 @@ fn a_push_that_acts_is_an_arrow() {
             ThreeD {
                 run: &now,
                 view,
-                readouts: None,
+                reading: None,
             },
             ROUND,
         );
@@ -289,7 +289,7 @@ fn a_push_that_acts_is_an_arrow() {
             ThreeD {
                 run: &over,
                 view,
-                readouts: None,
+                reading: None,
             },
             ROUND
         )
@@ -334,7 +334,7 @@ fn a_circle_is_round_to_a_dot() {
                 run: &run,
                 ghost: None,
                 view: &view,
-                readouts: None,
+                reading: None,
             };
             let picture = drawn(pane, size);
             let dots = braille(&picture);
@@ -377,7 +377,7 @@ fn the_point_stays_in_the_picture_however_large_it_is() {
                 run: &run,
                 ghost: None,
                 view: &view,
-                readouts: None,
+                reading: None,
             };
             let picture = drawn(pane, ROUND);
             // Where it is enlarged, not at the edge either, where it would be put if it were outside.
@@ -409,7 +409,7 @@ fn the_nearer_mass_is_drawn_over_the_farther_one() {
         let pane = ThreeD {
             run: &run,
             view,
-            readouts: None,
+            reading: None,
         };
         drawn(pane, (60, 24))
     };
@@ -676,8 +676,8 @@ proptest! {
         view.window_s = window_s;
         let around = Rect::new(0, 0, width + 6, height + 6);
         let inside = Rect::new(3, 3, width, height);
-        let read = now.readouts();
-        let (run, view, ghost, readouts) = (&now, &view, Some(&ghost), Some(&read));
+        let read = Reading::new(&mut now, &Pace::new(1.0, false));
+        let (run, view, ghost, reading) = (&now, &view, Some(&ghost), Some(&read));
         let detail = &Detail { begin_s, window_s: share * window_s };
         for pane in 0..3 {
             let mut buf = Buffer::filled(around, Cell::new("#"));
@@ -687,13 +687,13 @@ proptest! {
                     run,
                     ghost,
                     view,
-                    readouts,
+                    reading,
                 }
                 .render(inside, &mut buf),
                 _ => ThreeD {
                     run,
                     view,
-                    readouts,
+                    reading,
                 }.render(inside, &mut buf),
             }
             for position in around.positions().filter(|position| !inside.contains(*position)) {

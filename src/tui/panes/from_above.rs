@@ -4,7 +4,6 @@
 //! and all that came before, dotted more and more sparsely, denser where the point dwelt.
 
 use super::{PaneRow, Width, frame, write};
-use crate::analysis::Readouts;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, View};
 use crate::observe::ages::{Age, Ages};
@@ -13,6 +12,8 @@ use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::overlay::Overlay;
 use crate::observe::path::Path;
+use crate::observe::reading::Reading;
+use crate::observe::recording::Moment;
 use crate::run::Clock;
 use crate::text::ladder::at_or_below;
 use crate::tui::dots::{Dots, Ink};
@@ -50,6 +51,9 @@ const STANDING: f64 = 0.35;
 /// A point that is nearer to the axle than this part of its distance from the pivot is on it.
 const ON_AXLE: f64 = 1e-6;
 
+/// Swings larger than this, dots, cover each other if they are close.
+const LARGE_SWING: f64 = 4.0;
+
 /// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
     id: Pane::FROM_ABOVE,
@@ -62,7 +66,7 @@ pub const ROW: PaneRow = PaneRow {
             run: lab.player().run(),
             ghost: lab.player().ghost(),
             view: lab.view(),
-            readouts: Some(&lab.player().reading().readouts),
+            reading: Some(lab.player().reading()),
         }
         .render(area, buf);
     },
@@ -77,8 +81,8 @@ pub struct FromAbove<'a> {
     pub ghost: Option<&'a Ghost>,
     /// How it is looked at.
     pub view: &'a View,
-    /// What was read off the run and what theory says of it, where that is known: by it the path is recent or old.
-    pub readouts: Option<&'a Readouts>,
+    /// The latest reading of the run, if it is read at all: by it the path is recent or old.
+    pub reading: Option<&'a Reading>,
 }
 
 impl Widget for FromAbove<'_> {
@@ -126,16 +130,13 @@ impl FromAbove<'_> {
         let radius = libm::exp((libm::log(radius) / STEP).ceil() * STEP) * 1.02;
         let zoom = self.view.zoom.above;
         let half = radius / zoom;
-        let middle = match zoom > 1.0 {
-            true => self
-                .run
-                .now()
-                .position
-                .xy()
-                .map(|at| Zoom::middle(at, half)),
-            false => middle,
-        };
-        Plan::new(picture, middle, half, self.view.marker)
+        let plan = Plan::new(picture, middle, half, self.view.marker);
+        if zoom <= 1.0 {
+            return plan;
+        }
+        let at = self.now(plan.across).position.xy();
+        let middle = at.map(|at| Zoom::middle(at, half));
+        Plan { middle, ..plan }
     }
 
     /// The place from above around which the axle circles: where the line of L is, at the height of the traced point, as
@@ -150,6 +151,32 @@ impl FromAbove<'_> {
         let is_steady = scenario.pushes.is_empty() && scenario.edits.is_empty() && turn < STANDING;
         let place = axis.xy() * at.norm();
         (is_steady && is_on_axle(&at) && place.norm() > 0.0).then_some(place)
+    }
+
+    /// The ages of the path where a metre is `across` dots.
+    fn ages(&self, across: f64) -> Ages {
+        let ages = self.reading.map(|reading| Ages::of(&reading.readouts));
+        let turn_dots = TAU * self.run.path().radius() * across;
+        ages.unwrap_or(Ages::UNKNOWN).on_picture(turn_dots)
+    }
+
+    /// The moment that is shown: the present one, or that of the latest reading where the swings cover each other and the
+    /// eye cannot follow them anyway. They would have to be sent with every frame.
+    fn now(&self, across: f64) -> Moment {
+        let scenario = self.run.scenario();
+        let traced = scenario.body.mechanics.points()[scenario.trace].at;
+        match self.reading {
+            Some(reading) if self.ages(across).are_crowded => {
+                let extremes = &reading.readouts.extremes;
+                let swing_deg = extremes.highest_tilt_deg - extremes.lowest_tilt_deg;
+                let swing_dots = swing_deg.to_radians() * traced.norm() * across;
+                match swing_dots > LARGE_SWING {
+                    true => Moment::new(&reading.state, &traced),
+                    false => *self.run.now(),
+                }
+            }
+            _ => *self.run.now(),
+        }
     }
 
     fn path(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
@@ -168,9 +195,8 @@ impl FromAbove<'_> {
         for (x, y) in self.run.path().dots() {
             trail.dot(plan.dot(x, y), Age::Old);
         }
-        let ages = self.readouts.map_or(Ages::UNKNOWN, Ages::of);
-        let ages = ages.on_picture(TAU * self.run.path().radius() * plan.across);
-        let now = self.run.now();
+        let ages = self.ages(plan.across);
+        let now = self.now(plan.across);
         let to_dot = |at: &Vector3<f64>| plan.dot(at.x, at.y);
         trail.follow(
             self.run.recording(),
@@ -232,7 +258,7 @@ impl FromAbove<'_> {
             let pivot = plan.cell(0.0, 0.0);
             write(picture, pivot, "+", theme.style(Role::Quiet), buf);
         }
-        let at = self.run.now().position;
+        let at = self.now(plan.across).position;
         let here = plan.cell(at.x, at.y);
         let mut mark = "o";
         if let Some(overlay) = self.run.overlay() {

@@ -4,15 +4,14 @@
 //! goes where it goes. The weight g makes a torque τ about the pivot; L changes by dL along it, and the axle follows L.
 
 use super::{PaneRow, Width, frame, write};
-use crate::analysis::Readouts;
 use crate::lab::view::{Pane, View};
 use crate::observe::ages::Ages;
 use crate::observe::camera::Zoom;
 use crate::observe::live::LiveRun;
 use crate::observe::overlay::Overlay;
+use crate::observe::reading::Reading;
 use crate::observe::recording::Curve;
-use crate::physics::observables::angular_velocity;
-use crate::physics::{State, loads};
+use crate::physics::{State, loads, observables};
 use crate::text::wrap::columns;
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::keymap::ZOOM_KEYS;
@@ -65,7 +64,7 @@ pub const ROW: PaneRow = PaneRow {
         ThreeD {
             run: lab.player().run(),
             view: lab.view(),
-            readouts: Some(&lab.player().reading().readouts),
+            reading: Some(lab.player().reading()),
         }
         .render(area, buf);
     },
@@ -78,8 +77,9 @@ pub struct ThreeD<'a> {
     pub run: &'a LiveRun,
     /// How it is looked at.
     pub view: &'a View,
-    /// What was read off the run, where that is known: by it the path is recent or old.
-    pub readouts: Option<&'a Readouts>,
+    /// The latest reading of the run, if it is read at all: the scene is that of its time, and by it the path is recent or
+    /// old. A wheel that turns changes most of the picture; sent with every frame it would load a slow line.
+    pub reading: Option<&'a Reading>,
 }
 
 /// A letter at a place.
@@ -113,7 +113,7 @@ impl Widget for ThreeD<'_> {
             .iter()
             .map(|(name, role, at)| (*name, *role, scene.cell(at)))
             .collect();
-        let here = self.run.now().position;
+        let here = self.position();
         let here = scene.shows(&here).then(|| scene.cell(&here));
         scene.draw(&mut dots);
         dots.render(theme, buf);
@@ -195,6 +195,18 @@ fn is_near(depth: f64, middle: f64, radius: f64) -> Option<bool> {
 }
 
 impl ThreeD<'_> {
+    /// The state that is shown.
+    fn state(&self) -> &State {
+        let state = self.reading.map(|reading| &reading.state);
+        state.unwrap_or_else(|| self.run.simulation().state())
+    }
+
+    /// Where the traced point is then.
+    fn position(&self) -> Vector3<f64> {
+        let scenario = self.run.scenario();
+        observables::position(&scenario.body.mechanics, self.state(), scenario.trace)
+    }
+
     /// What there must be room for: wherever the body comes as it precesses at the tilts that it has had, L, and the ground.
     fn shown(&self) -> Shown {
         let shape = Shape::of(self.run);
@@ -216,7 +228,7 @@ impl ThreeD<'_> {
                 circles.extend(sides.map(circle));
             }
         }
-        let momentum = self.run.simulation().state().momentum;
+        let momentum = self.state().momentum;
         if let Some(axis) = momentum.try_normalize(f64::MIN_POSITIVE) {
             let angle = libm::acos(axis.z.clamp(-1.0, 1.0)).to_degrees() / (3.0 * TILT_DEG);
             for angle in [angle.floor(), angle.ceil()] {
@@ -259,7 +271,7 @@ impl ThreeD<'_> {
     /// The middle of the wheel, or the axle's top where there is none.
     fn wheel(&self, shape: &Shape) -> Vector3<f64> {
         let height = shape.rim.map_or(shape.axle.1, |(_, height, _)| height);
-        self.run.simulation().state().axle() * height
+        self.state().axle() * height
     }
 
     /// The horizontal plane of the pivot, with the directions of x and y on it, and the vertical.
@@ -290,16 +302,13 @@ impl ThreeD<'_> {
 
     fn path(&self, scene: &Scene, dots: &mut Dots) {
         let mut trail = Trail::new(dots, true);
-        let now = self.run.now();
-        let ages = self.readouts.map_or(Ages::UNKNOWN, Ages::of);
+        let now = (self.state().time_s, &self.position());
+        let ages = self
+            .reading
+            .map_or(Ages::UNKNOWN, |reading| Ages::of(&reading.readouts));
         let ages = ages.on_picture(TAU * self.run.path().radius() * scene.scale.0);
         let to_dot = |at: &Vector3<f64>| scene.dot(at);
-        trail.follow(
-            self.run.recording(),
-            &ages,
-            (now.time_s, &now.position),
-            to_dot,
-        );
+        trail.follow(self.run.recording(), &ages, now, to_dot);
         trail.draw(dots);
         for block in self
             .run
@@ -315,7 +324,7 @@ impl ThreeD<'_> {
     /// The axle from the pivot to its top, hub, spokes and rim, and what joins free masses to the axle.
     fn body(&self, scene: &mut Scene) {
         let shape = Shape::of(self.run);
-        let state = self.run.simulation().state();
+        let state = self.state();
         let axle = state.axle();
         scene.line(
             &(axle * shape.axle.0),
@@ -359,7 +368,7 @@ impl ThreeD<'_> {
     /// The masses, the nearest last: a larger sign is nearer.
     fn masses(&self, scene: &Scene) -> Vec<(&'static str, Role, (u16, u16))> {
         let shape = Shape::of(self.run);
-        let state = self.run.simulation().state();
+        let state = self.state();
         let middle = scene.depth(&self.wheel(&shape));
         let mut masses: Vec<Vector3<f64>> = Vec::new();
         let mut radius = shape.reach();
@@ -389,7 +398,7 @@ impl ThreeD<'_> {
     /// L and Ω from the pivot, the weight at the centre of mass, its torque at the pivot, and at the tip of L where it goes.
     fn vectors(&self, scene: &mut Scene) -> Vec<Label> {
         let simulation = self.run.simulation();
-        let state = simulation.state();
+        let state = self.state();
         let body = &self.run.scenario().body.mechanics;
         let reach = Shape::of(self.run).reach();
         let direction = |vector: &Vector3<f64>| vector.try_normalize(f64::MIN_POSITIVE);
@@ -404,7 +413,7 @@ impl ThreeD<'_> {
             let centre = state.orientation * body.first_moment() / body.mass();
             arrow("g", Role::Push, centre, down * (WEIGHT * reach));
         }
-        if let Some(along) = direction(&angular_velocity(body, state)) {
+        if let Some(along) = direction(&observables::angular_velocity(body, state)) {
             arrow("Ω", Role::Y, pivot, along * (OMEGA * reach));
         }
         let momentum = direction(&state.momentum).map(|along| along * (MOMENTUM * reach));
@@ -423,7 +432,7 @@ impl ThreeD<'_> {
     /// The direction of the torque of all forces about the pivot, where there is one.
     fn torque(&self) -> Option<Vector3<f64>> {
         let simulation = self.run.simulation();
-        let (state, body) = (simulation.state(), &self.run.scenario().body.mechanics);
+        let (state, body) = (self.state(), &self.run.scenario().body.mechanics);
         let torque = loads::torque(&state.orientation, &simulation.loads().moment(body));
         let largest = simulation.loads().gravity.abs() * body.first_moment().norm();
         torque.try_normalize((NO_TORQUE * largest).max(f64::MIN_POSITIVE))
@@ -436,7 +445,7 @@ impl ThreeD<'_> {
         let length = PUSH * Shape::of(self.run).reach();
         let mut labels = Vec::new();
         for push in simulation.loads().pushes.iter().take(MOST_PUSHES) {
-            let from = simulation.state().orientation * points[push.point].at;
+            let from = self.state().orientation * points[push.point].at;
             if let Some(direction) = push.force.try_normalize(f64::MIN_POSITIVE) {
                 let tip = from + direction * length;
                 scene.arrow(&from, &tip, Ink::Strong(Role::Push));
