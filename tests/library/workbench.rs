@@ -92,7 +92,6 @@ fn a_teacher_stops_steps_and_goes_on() {
 #[test]
 fn round_pictures_are_zoomed_where_they_have_the_focus() {
     let mut stage = Stage::open("cusps", &[], SMALL);
-    stage.press("z").shows("no key z here");
     stage
         .press("\tz")
         .shows("from above ×2")
