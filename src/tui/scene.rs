@@ -146,7 +146,7 @@ impl Scene {
                     depth,
                     ink,
                     hides,
-                })
+                });
             };
             speck(at);
             if let Some((x, y)) = beside {
