@@ -67,6 +67,12 @@ pub enum Action {
     WholeView,
     /// Halves the time that the traces show.
     NarrowerWindow,
+    /// Shows the round picture in focus larger.
+    ZoomIn,
+    /// Shows the round picture in focus smaller.
+    ZoomOut,
+    /// Shows the whole of the round picture in focus.
+    ZoomToWhole,
     /// Changes to the next kind of dots.
     NextMarker,
     /// Turns the colours on or off.

@@ -181,6 +181,10 @@ impl Lab {
                 self.view.camera = *camera;
                 Ok(Done::SILENT)
             }
+            Command::Zoom(zoom) => {
+                self.view.zoom = *zoom;
+                Ok(Done::SILENT)
+            }
         }
     }
 

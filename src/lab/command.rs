@@ -11,7 +11,7 @@ mod write;
 pub use table::{COMMANDS, Row};
 
 use crate::lab::view::{Pane, Part};
-use crate::observe::camera::Camera;
+use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
@@ -108,6 +108,8 @@ pub enum Command {
     Fill(Option<Pane>),
     /// The direction from which the 3-D view is seen.
     Camera(Camera),
+    /// How large the round pictures show what they show.
+    Zoom(Zoom),
 }
 
 /// The values of a push that a command gives. The push to come has the others.

@@ -4,8 +4,9 @@ use super::command::{self, Command, Commands, Place};
 use super::view::{Part, View};
 use super::work::Work;
 use super::{Lab, Script, UnderWay};
-use crate::observe::camera::Camera;
+use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
+use crate::scenario::file::ZoomFile;
 use crate::scenario::{Document, Problems, Scenario};
 use crate::storage::confined::Confined;
 use crate::storage::session::{Content, Text};
@@ -17,7 +18,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// The version of this format, and the versions that can be read. Version 1 had other journals; in version 2 the place
-/// had neither panes nor what is hidden, nor camera, line and script.
+/// had neither panes nor what is hidden, nor camera, zoom, line and script.
 const FORM: u32 = 3;
 const FORMS: std::ops::RangeInclusive<u32> = 1..=FORM;
 
@@ -57,6 +58,8 @@ struct KeptPlace {
     next_push: NextPush,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     camera: Option<KeptCamera>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    zoom: Option<ZoomFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     script: Option<KeptScript>,
 }
@@ -156,6 +159,10 @@ impl Lab {
                 yaw_deg: self.view.camera.yaw_deg,
                 pitch_deg: self.view.camera.pitch_deg,
             }),
+            zoom: Some(ZoomFile {
+                above: Some(self.view.zoom.above),
+                three_d: Some(self.view.zoom.three_d),
+            }),
             script: self.kept_script(),
         }
     }
@@ -234,6 +241,9 @@ impl Lab {
             && (-90.0..=90.0).contains(&pitch_deg)
         {
             view.camera = Camera { yaw_deg, pitch_deg };
+        }
+        if let Some(zoom) = place.zoom {
+            view.zoom = Zoom::of(zoom);
         }
         if place.window_s.is_finite() && place.window_s >= 2.0 * scenario.motion.time_step_s {
             view.window_s = place.window_s;

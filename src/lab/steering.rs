@@ -11,6 +11,7 @@ use super::values::Target;
 use super::view::Pane;
 use super::{Lab, Request};
 use crate::export::Destination;
+use crate::observe::camera::Zoom;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -128,6 +129,9 @@ impl Lab {
             Action::WholeView => Ok(Some(self.whole_view())),
             Action::WiderWindow => Ok(self.other_window(true)),
             Action::NarrowerWindow => Ok(self.other_window(false)),
+            Action::ZoomIn => self.other_zoom(times).map(Some),
+            Action::ZoomOut => self.other_zoom(-times).map(Some),
+            Action::ZoomToWhole => self.zoom_to(1.0).map(Some),
             Action::Move(direction) => self.moved(direction, times),
             Action::MoveFar(direction) => self.moved(direction, times.saturating_mul(FAR)),
             _ => Ok(None),
@@ -138,6 +142,30 @@ impl Lab {
         let time_step_s = self.player.run().simulation().motion().time_step_s;
         let window_s = self.view.zoomed(wider, time_step_s)?;
         Some(vec![Command::Window(window_s)])
+    }
+
+    /// The command that shows the round picture in focus `rungs` larger.
+    fn other_zoom(&self, rungs: i32) -> Result<Vec<Command>, String> {
+        let now = match self.view.focus {
+            Pane::THREE_D => self.view.zoom.three_d,
+            _ => self.view.zoom.above,
+        };
+        match Zoom::shifted(now, rungs) {
+            Some(next) => self.zoom_to(next),
+            None if rungs > 0 => Err("this is the largest; Z makes it smaller".to_owned()),
+            None => Err("this is the smallest; z makes it larger".to_owned()),
+        }
+    }
+
+    /// The command that shows the round picture in focus `factor` times as large as the whole.
+    fn zoom_to(&self, factor: f64) -> Result<Vec<Command>, String> {
+        let mut zoom = self.view.zoom;
+        match self.view.focus {
+            Pane::FROM_ABOVE => zoom.above = factor,
+            Pane::THREE_D => zoom.three_d = factor,
+            _ => return Err("the view from above and the 3-D view are zoomed: Tab".to_owned()),
+        }
+        Ok(vec![Command::Zoom(zoom)])
     }
 
     /// The commands of an arrow key that is pressed `times` times.
@@ -260,7 +288,10 @@ impl Lab {
             | Action::ToTurn(_)
             | Action::Pan(_)
             | Action::Magnify(_)
-            | Action::WholeView => {} // commands
+            | Action::WholeView
+            | Action::ZoomIn
+            | Action::ZoomOut
+            | Action::ZoomToWhole => {} // commands
         }
         None
     }

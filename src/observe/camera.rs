@@ -1,5 +1,8 @@
 //! The parallel projection of the world onto a picture, along a direction that the user turns.
 
+use crate::scenario::file::ZoomFile;
+use crate::scenario::keys::ZOOM;
+use crate::text::ladder;
 use nalgebra::Vector3;
 
 /// The direction from which the picture shows the scene.
@@ -9,6 +12,47 @@ pub struct Camera {
     pub yaw_deg: f64,
     /// Height of the eye above the horizontal, degrees, −90 to 90.
     pub pitch_deg: f64,
+}
+
+/// How much larger than the whole a round picture shows what it shows: 1 where it shows the whole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zoom {
+    /// The path from above.
+    pub above: f64,
+    /// The scene in space.
+    pub three_d: f64,
+}
+
+impl Default for Zoom {
+    fn default() -> Self {
+        Self {
+            above: 1.0,
+            three_d: 1.0,
+        }
+    }
+}
+
+impl Zoom {
+    /// What a file says; 1 where it says nothing, and the nearest that there is where that is out of range.
+    pub fn of(file: ZoomFile) -> Self {
+        let read = |zoom: Option<f64>| zoom.unwrap_or(1.0).max(ZOOM.0).min(ZOOM.1);
+        Self {
+            above: read(file.above),
+            three_d: read(file.three_d),
+        }
+    }
+
+    /// `zoom` so many rungs of 1, 2, 5 higher, or lower where that is negative; `None` where it is at its limit already.
+    pub fn shifted(zoom: f64, rungs: i32) -> Option<f64> {
+        let next = ladder::climbed(zoom, rungs).clamp(ZOOM.0, ZOOM.1);
+        (next != zoom).then_some(next)
+    }
+
+    /// Where the middle of a picture is that shows half a side of `half` around a point at `at`: the point is never farther
+    /// from it than half of that, and the middle stands still while the point moves, as long as it can.
+    pub fn middle(at: f64, half: f64) -> f64 {
+        (at / half).round() * half
+    }
 }
 
 impl Default for Camera {
@@ -35,6 +79,14 @@ impl Camera {
         let depth = cos_yaw * point.y - sin_yaw * point.x;
         (right, cos_pitch * point.z + sin_pitch * depth)
     }
+
+    /// How much farther from the eye than the pivot `point` (world frame, m) is, m.
+    pub fn depth(&self, point: &Vector3<f64>) -> f64 {
+        let (sin_yaw, cos_yaw) = self.yaw_deg.to_radians().sin_cos();
+        let (sin_pitch, cos_pitch) = self.pitch_deg.to_radians().sin_cos();
+        let depth = cos_yaw * point.y - sin_yaw * point.x;
+        cos_pitch * depth - sin_pitch * point.z
+    }
 }
 
 #[cfg(test)]
@@ -58,5 +110,44 @@ mod tests {
             pitch_deg: 0.0,
         };
         assert_eq!(side.project(&Vector3::new(1.0, 2.0, 3.0)), (1.0, 3.0));
+        assert_eq!(side.depth(&Vector3::new(1.0, 2.0, 3.0)), 2.0);
+    }
+
+    #[test]
+    fn right_up_and_depth_are_at_right_angles() {
+        let camera = Camera::default();
+        let at = Vector3::new(0.3, -1.2, 0.7);
+        let (right, up) = camera.project(&at);
+        let length = right.hypot(up).hypot(camera.depth(&at));
+        assert!((length - at.norm()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn there_is_an_end_of_zooming() {
+        assert_eq!(Zoom::shifted(1.0, 1), Some(2.0));
+        assert_eq!(Zoom::shifted(2.0, 1), Some(5.0));
+        assert_eq!(Zoom::shifted(5.0, -2), Some(1.0));
+        assert_eq!(Zoom::shifted(100.0, 1), None);
+        assert_eq!(Zoom::shifted(0.5, -1), None);
+        assert_eq!(Zoom::shifted(3.0, 1000), Some(100.0));
+    }
+
+    #[test]
+    fn the_middle_stands_still_and_keeps_the_point_in_the_picture() {
+        let middles: Vec<_> = (0..100)
+            .map(|at| {
+                (
+                    f64::from(at) * 0.01,
+                    Zoom::middle(f64::from(at) * 0.01, 0.25),
+                )
+            })
+            .collect();
+        assert!(
+            middles
+                .iter()
+                .all(|(at, middle)| (at - middle).abs() <= 0.126)
+        );
+        let moves = middles.windows(2).filter(|pair| pair[0].1 != pair[1].1);
+        assert_eq!(moves.count(), 4);
     }
 }

@@ -117,6 +117,14 @@ impl Path {
         self.radius
     }
 
+    /// The largest distance of the path from the place (`x`, `y`), m, to a cell.
+    pub fn radius_about(&self, x: f64, y: f64) -> f64 {
+        let distances = self
+            .dots()
+            .map(|(at_x, at_y)| libm::hypot(at_x - x, at_y - y));
+        distances.fold(0.0, f64::max)
+    }
+
     /// The middle of every cell the path went through, x and y in m.
     pub fn dots(&self) -> impl Iterator<Item = (f64, f64)> {
         let middle =

@@ -4,6 +4,7 @@
 use super::live::LiveRun;
 use super::pace::{Pace, Speed};
 use crate::analysis::{Measured, Readouts};
+use crate::physics::State;
 use crate::text::number::{exponent, fixed, shortest};
 use std::time::Duration;
 
@@ -18,6 +19,8 @@ const SETTLED: f64 = 0.05;
 pub struct Reading {
     /// The run's numbers, as the table of readouts has them.
     pub readouts: Readouts,
+    /// The state at that time.
+    pub state: State,
     /// Whether the run goes on, and how fast.
     pub pace: String,
 }
@@ -27,6 +30,7 @@ impl Reading {
     pub fn new(run: &mut LiveRun, pace: &Pace) -> Self {
         Self {
             readouts: run.readouts(),
+            state: *run.simulation().state(),
             pace: pace_in_words(pace),
         }
     }

@@ -155,6 +155,8 @@ pub struct ViewFile {
     pub fill: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraFile>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub zoom: Option<ZoomFile>,
 }
 
 /// `[view.camera]`
@@ -166,6 +168,17 @@ pub struct CameraFile {
     pub yaw_deg: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pitch_deg: Option<f64>,
+}
+
+/// `[view.zoom]`
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs, reason = "the table of keys says what each key means")]
+pub struct ZoomFile {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub above: Option<f64>,
+    #[serde(rename = "3d", skip_serializing_if = "Option::is_none")]
+    pub three_d: Option<f64>,
 }
 
 /// `[[expected]]`

@@ -44,7 +44,12 @@ pub enum Range {
     Positive,
     /// Zero or greater.
     NotNegative,
+    /// Within [`ZOOM`].
+    Zoom,
 }
+
+/// The least and the greatest zoom.
+pub const ZOOM: (f64, f64) = (0.5, 100.0);
 
 impl Kind {
     /// Whether `value` is of this kind and in its range.
@@ -77,6 +82,9 @@ impl Range {
         match self {
             Positive if number <= 0.0 => Err("must be greater than zero".to_owned()),
             NotNegative if number < 0.0 => Err("must not be negative".to_owned()),
+            Self::Zoom if number < ZOOM.0 || number > ZOOM.1 => {
+                Err(format!("must be from {} to {}", ZOOM.0, ZOOM.1))
+            }
             _ => Ok(()),
         }
     }

@@ -13,6 +13,8 @@ pub enum Ink {
     Strong(Role),
     /// The exact motion, axes, and the previous sweep.
     Faint(Role),
+    /// What a path has left behind, under these.
+    Under(Role),
     /// The previous run, under all other layers.
     Ghost,
 }
@@ -21,9 +23,11 @@ pub enum Ink {
 struct Cell {
     strong: u8,
     faint: u8,
+    under: u8,
     ghost: u8,
     strong_role: Role,
     faint_role: Role,
+    under_role: Role,
 }
 
 /// Dots on an area of cells; columns and rows are counted from the upper left.
@@ -78,8 +82,32 @@ impl Dots {
                 cell.faint |= bit;
                 cell.faint_role = role;
             }
+            Ink::Under(role) => {
+                cell.under |= bit;
+                cell.under_role = role;
+            }
             Ink::Ghost => cell.ghost |= bit,
         }
+    }
+
+    /// Takes the dot at column `x`, row `y` away, of whatever layer.
+    pub fn clear(&mut self, x: usize, y: usize) {
+        let (across, down) = self.marker.dots();
+        let kept = !self.marker.bit(x % across, y % down);
+        if let Some(cell) = self
+            .cells
+            .get_mut(y / down * self.area.width as usize + x / across)
+        {
+            cell.strong &= kept;
+            cell.faint &= kept;
+            cell.under &= kept;
+            cell.ghost &= kept;
+        }
+    }
+
+    /// What the dots are made of.
+    pub fn marker(&self) -> Marker {
+        self.marker
     }
 
     /// Draws a straight line from one dot to another.
@@ -121,17 +149,18 @@ impl Dots {
     pub fn render(&self, theme: &Theme, buf: &mut Buffer) {
         let full = self.patch();
         for (cell, position) in self.cells.iter().zip(self.area.positions()) {
-            let (symbol, role) = match (cell.strong, cell.faint, cell.ghost) {
-                (0, 0, 0) => continue,
-                (0, 0, ghost) => (self.marker.ghost(ghost), Role::Ghost),
-                (0, faint, _) => (self.marker.faint(faint), cell.faint_role),
+            let (symbol, role) = match (cell.strong, cell.faint, cell.under, cell.ghost) {
+                (0, 0, 0, 0) => continue,
+                (0, 0, 0, ghost) => (self.marker.ghost(ghost), Role::Ghost),
+                (0, 0, under, _) => (self.marker.faint(under), cell.under_role),
+                (0, faint, ..) => (self.marker.faint(faint), cell.faint_role),
                 // A motion too fast to be drawn as a line fills the cell; the exact motion is then drawn over it.
-                (strong, faint, _)
+                (strong, faint, ..)
                     if strong == full && faint != 0 && cell.faint_role == Role::Exact =>
                 {
                     (self.marker.faint(faint), cell.faint_role)
                 }
-                (strong, _, _) => (self.marker.strong(strong), cell.strong_role),
+                (strong, ..) => (self.marker.strong(strong), cell.strong_role),
             };
             if let Some(target) = buf.cell_mut(position) {
                 target.set_char(symbol).set_style(theme.style(role));

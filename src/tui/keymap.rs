@@ -49,6 +49,14 @@ pub struct Binding {
     pub help: &'static str,
 }
 
+/// The keys that zoom a round picture while it has the focus.
+#[rustfmt::skip]
+pub const ZOOM_KEYS: &[Binding] = &[
+    row(&[Lab], &[Char('z')], Action::ZoomIn, "zoom", "show it larger, around what moves; 3z three notches"),
+    row(&[Lab], &[Char('Z')], Action::ZoomOut, "", "show it smaller"),
+    row(&[Lab], &[Home], Action::ZoomToWhole, "", "show the whole of it"),
+];
+
 /// A row of a table of keys.
 pub const fn row(
     modes: &'static [Mode],
@@ -253,6 +261,9 @@ mod tests {
             A::WholeView,
             A::WiderWindow,
             A::NarrowerWindow,
+            A::ZoomIn,
+            A::ZoomOut,
+            A::ZoomToWhole,
             A::NextMarker,
             A::ToggleColour,
             A::ToggleBackground,
@@ -304,6 +315,9 @@ mod tests {
                 | A::WholeView
                 | A::WiderWindow
                 | A::NarrowerWindow
+                | A::ZoomIn
+                | A::ZoomOut
+                | A::ZoomToWhole
                 | A::NextMarker
                 | A::ToggleColour
                 | A::ToggleBackground

@@ -11,7 +11,8 @@
 //! - [`keyboard`] takes the terminal's bytes, [`decoder`] makes keys of them.
 //! - [`keymap`] is the one table of keys.
 //! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`layout`] says which
-//!   places those are, [`theme`] and [`markers`] what colours and dots look like, [`dots`] sets the dots.
+//!   places those are, [`theme`] and [`markers`] what colours and dots look like, [`dots`] sets the dots,
+//!   [`trail`] those of a path that fades, [`scene`] those of lines in space.
 
 pub mod app;
 pub mod decoder;
@@ -21,7 +22,9 @@ pub mod keymap;
 pub mod layout;
 pub mod markers;
 pub mod panes;
+pub mod scene;
 pub mod screen;
 pub mod surroundings;
 pub mod terminal;
 pub mod theme;
+pub mod trail;

@@ -23,8 +23,12 @@ pub enum Role {
     Y,
     /// z of the traced point.
     Z,
-    /// Tilt, and the path.
+    /// Tilt, and the path of the last turn.
     Path,
+    /// The path of the last swings.
+    Recent,
+    /// The path before the last turn.
+    Old,
     /// The exact motion.
     Exact,
     /// The previous run.
@@ -53,8 +57,8 @@ impl Theme {
 
 fn modifier(role: Role) -> Modifier {
     match role {
-        Role::Heading | Role::Focus | Role::Push | Role::Warning => Modifier::BOLD,
-        Role::Quiet | Role::Ghost => Modifier::DIM,
+        Role::Heading | Role::Focus | Role::Push | Role::Warning | Role::Recent => Modifier::BOLD,
+        Role::Quiet | Role::Ghost | Role::Old => Modifier::DIM,
         Role::Selected => Modifier::REVERSED,
         _ => Modifier::empty(),
     }

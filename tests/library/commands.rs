@@ -208,7 +208,8 @@ fn every_row_of_the_table_is_written_under_its_name() {
         show = ['traces', '3d']
         hide = ['health']
         fill = 'above'
-        camera = { yaw_deg = 30 }";
+        camera = { yaw_deg = 30 }
+        zoom = { above = 4, 3d = 2 }";
     let named: Vec<_> = commands(examples)
         .iter()
         .map(|command| command.to_table().keys().next().unwrap().clone())
@@ -303,6 +304,7 @@ fn what_is_wrong_is_told_with_its_line_and_the_nearest_right_name() {
         ("[[do]]\nhide = [\"helth\"]", "did you mean health?"),
         ("[[do]]\nfill = \"abve\"", "did you mean above?"),
         ("[[do]]\ncamera = { yaw = 3 }", "did you mean yaw_deg?"),
+        ("[[do]]\nzoom = { above = 0 }", "must be from 0.5 to 100"),
         (
             "[[do]]\npush = { force_N = [0, 0, 1], toward = \"down\" }",
             "do.0.push.toward (\"down\") has no place",
@@ -567,6 +569,8 @@ fn what_view_holds_is_what_the_commands_do() {
         ("detail_s", "2.0", (80, 24)),
         ("exact", "true", (80, 24)),
         ("camera", "{ yaw_deg = 90.0 }", (200, 50)),
+        ("zoom", "{ above = 5.0 }", (80, 24)),
+        ("zoom", "{ 3d = 2 }", (200, 50)),
         ("look_at", "'the dip'", (80, 24)),
         ("speed", "0.5", (80, 24)),
     ] {

@@ -89,7 +89,14 @@ fn undivided(run: &LiveRun, view: &View) -> Detail {
 
 fn from_above(run: &LiveRun, ghost: Option<&Ghost>, marker: Marker) -> String {
     let view = &view(run, marker);
-    drawn(FromAbove { run, ghost, view }, ROUND)
+    let reading = None;
+    let pane = FromAbove {
+        run,
+        ghost,
+        view,
+        reading,
+    };
+    drawn(pane, ROUND)
 }
 
 /// An edited run after `steps`, and the previous run, which had less tilt and lasted 7 s.
@@ -265,14 +272,157 @@ fn a_push_that_acts_is_an_arrow() {
         let above = from_above(&now, None, Marker::Braille);
         insta::assert_snapshot!(format!("push_{name}_from_above"), above);
         let view = &view(&now, Marker::Braille);
-        let scene = drawn(ThreeD { run: &now, view }, ROUND);
+        let scene = drawn(
+            ThreeD {
+                run: &now,
+                view,
+                reading: None,
+            },
+            ROUND,
+        );
         assert!(scene.contains('F'), "{scene}");
         insta::assert_snapshot!(format!("push_{name}_3d"), scene);
     }
     let over = run("wobble-push", &[], "", 201);
     assert!(!from_above(&over, None, Marker::Braille).contains('F'));
     let view = &view(&over, Marker::Braille);
-    assert!(!drawn(ThreeD { run: &over, view }, ROUND).contains('F'));
+    assert!(
+        !drawn(
+            ThreeD {
+                run: &over,
+                view,
+                reading: None,
+            },
+            ROUND
+        )
+        .contains('F')
+    );
+}
+
+/// The dots of the picture of a pane, column and row, without its frame.
+fn braille(picture: &str) -> Vec<(usize, usize)> {
+    const PLACES: [(usize, usize); 8] = [
+        (0, 0),
+        (0, 1),
+        (0, 2),
+        (1, 0),
+        (1, 1),
+        (1, 2),
+        (0, 3),
+        (1, 3),
+    ];
+    let mut dots = Vec::new();
+    for (y, line) in picture.lines().enumerate() {
+        for (x, sign) in line.chars().enumerate() {
+            let bits = u32::from(sign)
+                .checked_sub(0x2800)
+                .filter(|bits| *bits < 256);
+            let set = (0..8).filter(|bit| bits.is_some_and(|bits| bits >> bit & 1 == 1));
+            dots.extend(set.map(|bit| (2 * x + PLACES[bit].0, 4 * y + PLACES[bit].1)));
+        }
+    }
+    dots
+}
+
+#[test]
+fn a_circle_is_round_to_a_dot() {
+    // A whole turn takes 0.691 s; the second is zoomed out.
+    let run = run("torque-free", &[], "", 700);
+    for zoom in [1.0, 0.5] {
+        let mut view = view(&run, Marker::Braille);
+        view.zoom.above = zoom;
+        for size in [(36, 19), (80, 20), (47, 23), (30, 40)] {
+            let pane = FromAbove {
+                run: &run,
+                ghost: None,
+                view: &view,
+                reading: None,
+            };
+            let picture = drawn(pane, size);
+            let dots = braille(&picture);
+            let extent = |along: fn(&(usize, usize)) -> usize| {
+                let places = dots.iter().map(along);
+                places.clone().max().unwrap() - places.min().unwrap()
+            };
+            let (across, down) = (extent(|dot| dot.0), extent(|dot| dot.1));
+            assert!(across.abs_diff(down) <= 2, "{across} by {down}\n{picture}");
+            let room = (2 * (size.0 - 2)).min(4 * (size.1 - 3)) as f64 * zoom;
+            assert!(
+                down as f64 > 0.85 * room - 4.0,
+                "{down} of {room}\n{picture}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_path_about_a_momentum_that_stays_is_in_the_middle_of_the_picture() {
+    let run = run("method-1", &[], "", 1000);
+    let picture = from_above(&run, None, Marker::Braille);
+    let dots = braille(&picture);
+    let across = dots.iter().map(|dot| dot.0);
+    let (left, right) = (across.clone().min().unwrap(), across.max().unwrap());
+    assert!(right - left > 40, "{picture}");
+    assert!((left + right).abs_diff(36 * 2) <= 4, "{picture}");
+    // The axle stood upright at first: the pivot is on the path.
+    assert!(picture.contains('+'), "{picture}");
+}
+
+#[test]
+fn the_point_stays_in_the_picture_however_large_it_is() {
+    for steps in [0, 3, 150, 333, 600] {
+        let run = run("wobble-push", &[], "", steps);
+        for zoom in [0.5, 1.0, 2.0, 5.0, 100.0] {
+            let mut view = view(&run, Marker::Dot);
+            view.zoom.above = zoom;
+            let pane = FromAbove {
+                run: &run,
+                ghost: None,
+                view: &view,
+                reading: None,
+            };
+            let picture = drawn(pane, ROUND);
+            // Where it is enlarged, not at the edge either, where it would be put if it were outside.
+            let edge = usize::from(zoom > 1.0);
+            let lines: Vec<_> = picture.lines().skip(1 + edge).collect();
+            let inner = &lines[..lines.len() - 2 - edge];
+            let is_here = |line: &&str| {
+                line.chars()
+                    .skip(1 + edge)
+                    .take(34 - 2 * edge)
+                    .any(|sign| sign == 'o')
+            };
+            assert!(inner.iter().any(is_here), "{steps} ×{zoom}\n{picture}");
+        }
+    }
+}
+
+#[test]
+fn the_nearer_mass_is_drawn_over_the_farther_one() {
+    let run = run(
+        "method-2",
+        &["start.tilt_deg=0", "start.momentum_Js=[0, 0, 1000]"],
+        "",
+        0,
+    );
+    let mut view = view(&run, Marker::Braille);
+    (view.camera.yaw_deg, view.camera.pitch_deg) = (0.0, 0.0);
+    let scene = |view: &View| {
+        let pane = ThreeD {
+            run: &run,
+            view,
+            reading: None,
+        };
+        drawn(pane, (60, 24))
+    };
+    // From the side five masses are in front of others; from a little above all ten are to be seen.
+    let side = scene(&view);
+    assert_eq!(side.matches('O').count(), 4, "{side}");
+    assert_eq!(side.matches('·').count(), 0, "{side}");
+    view.camera.pitch_deg = 30.0;
+    let above = scene(&view);
+    assert_eq!(above.matches('O').count(), 4, "{above}");
+    assert_eq!(above.matches('·').count(), 4, "{above}");
 }
 
 /// Parameters similar to those of method-2: key, group, label, value, unit, whether it is a default.
@@ -522,20 +672,31 @@ proptest! {
         window_s in 0.2..300.0f64, force in prop::array::uniform3(-100.0..100.0f64), begin_s in 0.0..90.0f64, share in 0.01..1.1f64,
     ) {
         let set = format!("push.0.force_N={force:?}");
-        let now = run("wobble-push", &[&set], EDITS, steps);
+        let mut now = run("wobble-push", &[&set], EDITS, steps);
         let ghost = Ghost::of(&run("wobble-push", &[], "", ghosts));
         let mut view = view(&now, Marker::ALL[marker]);
         view.window_s = window_s;
         let around = Rect::new(0, 0, width + 6, height + 6);
         let inside = Rect::new(3, 3, width, height);
-        let (run, view, ghost) = (&now, &view, Some(&ghost));
+        let read = Reading::new(&mut now, &Pace::new(1.0, false));
+        let (run, view, ghost, reading) = (&now, &view, Some(&ghost), Some(&read));
         let detail = &Detail { curve: Curve::Tilt, begin_s, window_s: share * window_s };
         for pane in 0..3 {
             let mut buf = Buffer::filled(around, Cell::new("#"));
             match pane {
                 0 => Traces { run, ghost, view, detail, cursor: None }.render(inside, &mut buf),
-                1 => FromAbove { run, ghost, view }.render(inside, &mut buf),
-                _ => ThreeD { run, view }.render(inside, &mut buf),
+                1 => FromAbove {
+                    run,
+                    ghost,
+                    view,
+                    reading,
+                }
+                .render(inside, &mut buf),
+                _ => ThreeD {
+                    run,
+                    view,
+                    reading,
+                }.render(inside, &mut buf),
             }
             for position in around.positions().filter(|position| !inside.contains(*position)) {
                 prop_assert_eq!(buf[position].symbol(), "#", "{:?} of pane {}", position, pane);

@@ -201,6 +201,8 @@ const TABLE: &[(usize, &str, usize, &str, &str)] = &[
     (30, "fill = \"x\"", 30, "view.fill (\"x\") must be one of", "none"),
     (30, "camera = { yaw_deg = \"x\" }", 30, "view.camera.yaw_deg (\"x\") must be a number", ""),
     (30, "camera = { pitch_deg = \"x\" }", 30, "view.camera.pitch_deg (\"x\") must be a number", ""),
+    (30, "zoom = { above = 0 }", 30, "view.zoom.above (0) must be from 0.5 to 100", ""),
+    (30, "zoom = { 3d = 101 }", 30, "view.zoom.3d (101) must be from 0.5 to 100", ""),
     (34, "at_step = -1", 34, "expected.0.at_step (-1) must be 0 or more", ""),
     (35, "value = nan", 35, "expected.0.value (nan) must be a finite number", ""),
     (36, "tolerance = -1", 36, "expected.0.tolerance (-1) must not be negative", ""),

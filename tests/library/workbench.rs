@@ -90,6 +90,24 @@ fn a_teacher_stops_steps_and_goes_on() {
 }
 
 #[test]
+fn round_pictures_are_zoomed_where_they_have_the_focus() {
+    let mut stage = Stage::open("cusps", &[], SMALL);
+    stage
+        .press("\tz")
+        .shows("from above ×2")
+        .press("2z")
+        .shows("from above ×10");
+    stage.press("Z").shows("from above ×5").shows("z zoom");
+    stage
+        .press("9Z9Z")
+        .shows("from above ×0.5")
+        .shows("this is the smallest");
+    stage.key(Key::Home);
+    stage.wait(0.0).shows("┌ from above ─");
+    stage.press("dz").shows("┌ 3-D ×2 ─");
+}
+
+#[test]
 fn a_note_that_may_not_hold_any_more_is_not_shown() {
     let set = ["motion.time_step_s=0.01", "start.tilt_deg=30"];
     let mut stage = Stage::open("method-2", &set, SMALL);
@@ -500,7 +518,7 @@ fn half_blocks_need_no_rare_glyphs() {
     for keys in ["mt", "md", "m?", "mo/loops"] {
         let mut stage = Stage::open("method-2", &[], LARGE);
         stage.wait(2.0).press(keys);
-        let rare = |c: &char| !c.is_ascii() && !"─│┌┐└┘├┤═▀▄█·°×►▲▼Ω".contains(*c);
+        let rare = |c: &char| !c.is_ascii() && !"─│┌┐└┘├┤═▀▄█·°×►▲▼Ωτ".contains(*c);
         let picture = stage.picture();
         assert_eq!(picture.chars().find(rare), None, "{picture}");
     }

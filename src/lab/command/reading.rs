@@ -6,7 +6,7 @@ use super::{
 };
 use crate::lab::numbers;
 use crate::lab::view::{Pane, Part};
-use crate::observe::camera::Camera;
+use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
 use crate::scenario::keys::{self, Kind, Range};
 use crate::scenario::problem::nearest;
@@ -448,5 +448,15 @@ pub(super) fn camera(value: &Value) -> Read {
     Ok(Command::Camera(Camera {
         yaw_deg: angle("yaw_deg")?.unwrap_or(usual.yaw_deg),
         pitch_deg: angle("pitch_deg")?.unwrap_or(usual.pitch_deg),
+    }))
+}
+
+pub(super) fn zoom(value: &Value) -> Read {
+    let table = fields(value, &["above", "3d"])?;
+    let factor = |name: &str| field(table, name, |value| number(Range::Zoom, value));
+    let whole = Zoom::default();
+    Ok(Command::Zoom(Zoom {
+        above: factor("above")?.unwrap_or(whole.above),
+        three_d: factor("3d")?.unwrap_or(whole.three_d),
     }))
 }

@@ -4,7 +4,7 @@ use super::Command;
 use super::reading::{
     Read, camera, count, cursor, detail, exact, export, fill, go_to, hide, look_at, magnify,
     next_push, nudge, open, push, run_until, save, set, show, since, speed, step, told, wait,
-    window,
+    window, zoom,
 };
 use crate::scenario::Problem;
 use toml::Value;
@@ -74,4 +74,5 @@ pub static COMMANDS: &[Row] = &[
     row("hide", "[\"health\"]", "what is not shown: panes, health, predicted, look_at", hide),
     row("fill", "\"above\"", "the pane that fills the screen, or \"none\"", fill),
     row("camera", "{ yaw_deg = 30, pitch_deg = 20 }", "from where the 3-D view is seen", camera),
+    row("zoom", "{ above = 4, 3d = 2 }", "how much larger than the whole the path from above and the 3-D view are shown", zoom),
 ];

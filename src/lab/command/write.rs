@@ -69,6 +69,10 @@ pub(super) fn written(command: &Command) -> (&'static str, Value) {
                 ("pitch_deg", camera.pitch_deg.into()),
             ]),
         ),
+        Command::Zoom(zoom) => (
+            "zoom",
+            map([("above", zoom.above.into()), ("3d", zoom.three_d.into())]),
+        ),
     }
 }
 

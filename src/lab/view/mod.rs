@@ -7,7 +7,7 @@ pub mod markers;
 pub mod theme;
 
 use super::action::Direction;
-use crate::observe::camera::Camera;
+use crate::observe::camera::{Camera, Zoom};
 use crate::run::Clock;
 use crate::scenario::screen::PANES;
 use crate::scenario::{Scenario, keys};
@@ -110,6 +110,8 @@ pub struct View {
     pub cursor: Option<u64>,
     /// Where the 3-D view is looked at from.
     pub camera: Camera,
+    /// How much larger than the whole the round pictures are shown.
+    pub zoom: Zoom,
     /// The panes that share the screen; if empty, as many as there is room for.
     pub shown: Vec<Pane>,
     /// The hidden parts.
@@ -136,6 +138,7 @@ impl View {
             magnified: 1.0,
             cursor: None,
             camera: Camera::default(),
+            zoom: Zoom::default(),
             shown: Vec::new(),
             hidden: Vec::new(),
             look_at: None,
@@ -161,6 +164,9 @@ impl View {
         }
         if let Some(fill) = &file.fill {
             self.fill(Pane::named(fill));
+        }
+        if let Some(zoom) = file.zoom {
+            self.zoom = Zoom::of(zoom);
         }
         if let Some(camera) = file.camera {
             let usual = Camera::default();

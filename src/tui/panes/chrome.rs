@@ -197,7 +197,7 @@ fn footer(lab: &Lab, width: usize) -> Vec<(String, &'static str)> {
 fn is_kept(action: Action) -> bool {
     use Action::{
         Accept, Browse, Choose, Export, Help, Parameters, Push, Quit, Step, ToggleExact,
-        TogglePause,
+        TogglePause, ZoomIn,
     };
     matches!(
         action,
@@ -210,6 +210,7 @@ fn is_kept(action: Action) -> bool {
             | Browse
             | Choose
             | Accept
+            | ZoomIn
             | Help
             | Quit
     )

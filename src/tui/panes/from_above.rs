@@ -1,18 +1,30 @@
 //! The path of the traced point from above, x to the right and y up: a true circle at every size.
+//!
+//! What there is to see: where the point is, and the shape of its last swings behind it, as a line; the turn before them
+//! and all that came before, dotted more and more sparsely, denser where the point dwelt.
 
 use super::{PaneRow, Width, frame, write};
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, View};
+use crate::observe::ages::{Age, Ages};
+use crate::observe::camera::Zoom;
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::overlay::Overlay;
 use crate::observe::path::Path;
+use crate::observe::reading::Reading;
+use crate::observe::recording::Moment;
+use crate::run::Clock;
 use crate::text::ladder::at_or_below;
 use crate::tui::dots::{Dots, Ink};
+use crate::tui::keymap::ZOOM_KEYS;
 use crate::tui::theme::Role;
+use crate::tui::trail::Trail;
+use nalgebra::{Vector2, Vector3};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
+use std::f64::consts::TAU;
 
 /// Dots that are drawn of the exact motion and of the run before, and out of how many: without colours, dashes and
 /// dots tell them from the run.
@@ -34,6 +46,14 @@ const LEAST: f64 = 1e-6;
 /// The radius shown grows by this factor's exponential, or not at all.
 const STEP: f64 = 0.05;
 
+/// Where gravity turns L by less than this in the whole run, rad, the path is a circle about L and the picture is too.
+const STANDING: f64 = 0.35;
+/// A point that is nearer to the axle than this part of its distance from the pivot is on it.
+const ON_AXLE: f64 = 1e-6;
+
+/// Swings larger than this, dots, cover each other if they are close.
+const LARGE_SWING: f64 = 4.0;
+
 /// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
     id: Pane::FROM_ABOVE,
@@ -42,10 +62,15 @@ pub const ROW: PaneRow = PaneRow {
     rank: 1,
     least: (27, 18),
     draw: |lab, area, buf| {
-        let (run, ghost, view) = (lab.player().run(), lab.player().ghost(), lab.view());
-        FromAbove { run, ghost, view }.render(area, buf);
+        FromAbove {
+            run: lab.player().run(),
+            ghost: lab.player().ghost(),
+            view: lab.view(),
+            reading: Some(lab.player().reading()),
+        }
+        .render(area, buf);
     },
-    keys: &[],
+    keys: ZOOM_KEYS,
 };
 
 /// The view from above on a run.
@@ -56,12 +81,19 @@ pub struct FromAbove<'a> {
     pub ghost: Option<&'a Ghost>,
     /// How it is looked at.
     pub view: &'a View,
+    /// The latest reading of the run, if it is read at all: by it the path is recent or old.
+    pub reading: Option<&'a Reading>,
 }
 
 impl Widget for FromAbove<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
-        let inside = frame(ROW.title, area, self.view.focus == ROW.id, theme, buf);
+        let zoom = self.view.zoom.above;
+        let title = match zoom == 1.0 {
+            true => ROW.title.to_owned(),
+            false => format!("{} ×{zoom}", ROW.title),
+        };
+        let inside = frame(&title, area, self.view.focus == ROW.id, theme, buf);
         if inside.height < 2 || inside.width == 0 {
             return;
         }
@@ -69,7 +101,7 @@ impl Widget for FromAbove<'_> {
             height: inside.height - 1,
             ..inside
         };
-        let plan = Plan::new(picture, self.radius(), self.view);
+        let plan = self.plan(picture);
         self.path(&plan, picture, buf);
         self.pushes(&plan, picture, buf);
         self.marks(&plan, picture, buf);
@@ -83,17 +115,68 @@ impl Widget for FromAbove<'_> {
 }
 
 impl FromAbove<'_> {
-    fn radius(&self) -> f64 {
+    /// The middle and the scale of the picture.
+    fn plan(&self, picture: Rect) -> Plan {
+        let middle = self.circled().unwrap_or_default();
         let exact = self.run.overlay().map(Overlay::path);
         let before = self.ghost.map(Ghost::path);
         let paths = [Some(self.run.path()), exact, before];
-        let radius = paths
-            .into_iter()
-            .flatten()
-            .map(Path::radius)
-            .fold(LEAST, f64::max);
+        let about = |path: &Path| match middle == Vector2::zeros() {
+            true => path.radius(),
+            false => path.radius_about(middle.x, middle.y).max(middle.norm()),
+        };
+        let radius = paths.into_iter().flatten().map(about).fold(LEAST, f64::max);
         // In steps of 5 %: the picture shall not breathe with every millimetre.
-        libm::exp((libm::log(radius) / STEP).ceil() * STEP) * 1.02
+        let radius = libm::exp((libm::log(radius) / STEP).ceil() * STEP) * 1.02;
+        let zoom = self.view.zoom.above;
+        let half = radius / zoom;
+        let plan = Plan::new(picture, middle, half, self.view.marker);
+        if zoom <= 1.0 {
+            return plan;
+        }
+        let at = self.now(plan.across).position.xy();
+        let middle = at.map(|at| Zoom::middle(at, half));
+        Plan { middle, ..plan }
+    }
+
+    /// The place from above around which the axle circles: where the line of L is, at the height of the traced point, as
+    /// long as gravity cannot turn L noticeably within the run; `None` where the circle is about the vertical.
+    fn circled(&self) -> Option<Vector2<f64>> {
+        let scenario = self.run.scenario();
+        let momentum = scenario.start.momentum;
+        let axis = momentum.try_normalize(f64::MIN_POSITIVE)?;
+        let at = scenario.body.mechanics.points()[scenario.trace].at;
+        let torque = scenario.motion.gravity * scenario.body.mechanics.first_moment().norm();
+        let turn = torque.abs() / momentum.norm() * Clock::end_s(scenario);
+        let is_steady = scenario.pushes.is_empty() && scenario.edits.is_empty() && turn < STANDING;
+        let place = axis.xy() * at.norm();
+        (is_steady && is_on_axle(&at) && place.norm() > 0.0).then_some(place)
+    }
+
+    /// The ages of the path where a metre is `across` dots.
+    fn ages(&self, across: f64) -> Ages {
+        let ages = self.reading.map(|reading| Ages::of(&reading.readouts));
+        let turn_dots = TAU * self.run.path().radius() * across;
+        ages.unwrap_or(Ages::UNKNOWN).on_picture(turn_dots)
+    }
+
+    /// The moment that is shown: the present one, or that of the latest reading where the swings cover each other and the
+    /// eye cannot follow them anyway. They would have to be sent with every frame.
+    fn now(&self, across: f64) -> Moment {
+        let scenario = self.run.scenario();
+        let traced = scenario.body.mechanics.points()[scenario.trace].at;
+        match self.reading {
+            Some(reading) if self.ages(across).are_crowded => {
+                let extremes = &reading.readouts.extremes;
+                let swing_deg = extremes.highest_tilt_deg - extremes.lowest_tilt_deg;
+                let swing_dots = swing_deg.to_radians() * traced.norm() * across;
+                match swing_dots > LARGE_SWING {
+                    true => Moment::new(&reading.state, &traced),
+                    false => *self.run.now(),
+                }
+            }
+            _ => *self.run.now(),
+        }
     }
 
     fn path(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
@@ -108,15 +191,25 @@ impl FromAbove<'_> {
                 dots.set(x, y, Ink::Ghost);
             }
         }
+        let mut trail = Trail::new(&dots, false);
+        for (x, y) in self.run.path().dots() {
+            trail.dot(plan.dot(x, y), Age::Old);
+        }
+        let ages = self.ages(plan.across);
+        let now = self.now(plan.across);
+        let to_dot = |at: &Vector3<f64>| plan.dot(at.x, at.y);
+        trail.follow(
+            self.run.recording(),
+            &ages,
+            (now.time_s, &now.position),
+            to_dot,
+        );
+        trail.draw(&mut dots);
         if let Some(overlay) = self.run.overlay() {
             let exact = overlay.path().dots().map(|(x, y)| plan.dot(x, y));
             for (x, y) in on_and_off(exact, DASH) {
                 dots.set(x, y, Ink::Faint(Role::Exact));
             }
-        }
-        for (x, y) in self.run.path().dots() {
-            let (x, y) = plan.dot(x, y);
-            dots.set(x, y, Ink::Strong(Role::Path));
         }
         dots.render(&self.view.theme, buf);
     }
@@ -161,20 +254,19 @@ impl FromAbove<'_> {
             theme.style(Role::Y),
             buf,
         );
-        write(
-            picture,
-            plan.cell(0.0, 0.0),
-            "+",
-            theme.style(Role::Quiet),
-            buf,
-        );
-        let at = self.run.now().position;
+        if plan.shows(0.0, 0.0) {
+            let pivot = plan.cell(0.0, 0.0);
+            write(picture, pivot, "+", theme.style(Role::Quiet), buf);
+        }
+        let at = self.now(plan.across).position;
         let here = plan.cell(at.x, at.y);
         let mut mark = "o";
         if let Some(overlay) = self.run.overlay() {
             let at = overlay.now().position;
             let exact = plan.cell(at.x, at.y);
-            write(picture, exact, "e", theme.style(Role::Exact), buf);
+            if plan.shows(at.x, at.y) {
+                write(picture, exact, "e", theme.style(Role::Exact), buf);
+            }
             mark = if exact == here { "*" } else { mark };
         }
         write(picture, here, mark, theme.style(Role::Focus), buf);
@@ -198,7 +290,7 @@ impl FromAbove<'_> {
             None if self.ghost.is_some() => {
                 &["o now, dotted: the other run", "o now, dotted: other"]
             }
-            None => &["o now"],
+            None => &["o now, dotted: before", "o now"],
         };
         let place = |legend: &&str| {
             area.width
@@ -212,6 +304,10 @@ impl FromAbove<'_> {
             write(area, (x, 0), legend, theme.style(Role::Quiet), buf);
         }
     }
+}
+
+fn is_on_axle(at: &Vector3<f64>) -> bool {
+    at.xy().norm() <= ON_AXLE * at.norm()
 }
 
 /// The head of an arrow that points to the right by `x` and up by `y`.
@@ -238,8 +334,10 @@ fn upright((x, y): (u16, u16), up: f64, picture: Rect) -> ((u16, u16), &'static 
     ((place, y), sign)
 }
 
-/// From metres to dots and cells, the pivot in the middle.
+/// From metres to dots and cells.
 struct Plan {
+    /// What is in the middle of the picture, m.
+    middle: Vector2<f64>,
     width: f64,
     height: f64,
     /// Dots in a metre, across and down.
@@ -251,18 +349,19 @@ struct Plan {
 }
 
 impl Plan {
-    fn new(picture: Rect, radius_m: f64, view: &View) -> Self {
-        let (in_x, in_y) = view.marker.dots();
+    fn new(picture: Rect, middle: Vector2<f64>, radius_m: f64, marker: Marker) -> Self {
+        let (in_x, in_y) = marker.dots();
         let (width, height) = (
             picture.width as f64 * in_x as f64,
             picture.height as f64 * in_y as f64,
         );
         // A dot is `aspect` times as wide as high: this is what keeps circles round.
-        let aspect = view.marker.dot_aspect();
+        let aspect = marker.dot_aspect();
         let down = (0.5 * height).min(0.5 * width * aspect) / radius_m;
         let across = down / aspect;
         let cell_width_m = in_x as f64 / across;
         Self {
+            middle,
             width,
             height,
             across,
@@ -275,9 +374,15 @@ impl Plan {
 
     fn dot(&self, x: f64, y: f64) -> (f64, f64) {
         (
-            0.5 * self.width + x * self.across,
-            0.5 * self.height - y * self.down,
+            0.5 * self.width + (x - self.middle.x) * self.across,
+            0.5 * self.height - (y - self.middle.y) * self.down,
         )
+    }
+
+    /// Whether this place is in the picture.
+    fn shows(&self, x: f64, y: f64) -> bool {
+        let (column, row) = self.dot(x, y);
+        (0.0..self.width).contains(&column) && (0.0..self.height).contains(&row)
     }
 
     fn cell(&self, x: f64, y: f64) -> (u16, u16) {

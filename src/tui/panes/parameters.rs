@@ -16,8 +16,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 use rows::{
-    PREDICTED, Row, VALUE_END, body_rows, derived_rows, heading, motion_rows, now_rows, start_rows,
-    watched_rows,
+    PREDICTED, Row, VALUE_END, body_rows, derived_rows, further_rows, heading, motion_rows,
+    now_rows, start_rows, watched_rows,
 };
 use std::borrow::Cow;
 
@@ -98,8 +98,11 @@ impl Parameters<'_> {
 
     /// The lines there is room for, and how to see the others.
     fn most_important(&self, area: Rect, buf: &mut Buffer) {
-        let rows = self.rows();
+        let mut rows = self.rows();
         if rows.len() <= area.height as usize {
+            let further = without_dashes(further_rows(self.reading));
+            rows.extend(shown(self.view, further));
+            let rows = fitting(rows, area.height as usize);
             return self.lines(&rows, area, buf);
         }
         let (lines, note) = above_last(area);
@@ -394,6 +397,12 @@ fn fitting(mut rows: Vec<Row>, room: usize) -> Vec<Row> {
         rows = without_empty_groups(rows);
     }
     rows
+}
+
+/// `rows` without those that have no value, the headings kept.
+fn without_dashes(mut rows: Vec<Row>) -> Vec<Row> {
+    rows.retain(|row| row.is_heading() || row.value != "-");
+    without_empty_groups(rows)
 }
 
 /// No heading stands alone.

@@ -1,31 +1,57 @@
-//! The scene in space: wheel, axle, the path of the axle's top, and the vectors L and Ω.
+//! The scene in space: the wheel on its axle over the ground, the path of the axle's top, and what turns it.
+//!
+//! What there is to see: which way is up, a wheel with its masses of which some are in front and some behind, and why it
+//! goes where it goes. The weight g makes a torque τ about the pivot; L changes by dL along it, and the axle follows L.
 
 use super::{PaneRow, Width, frame, write};
 use crate::lab::view::{Pane, View};
+use crate::observe::ages::Ages;
+use crate::observe::camera::Zoom;
 use crate::observe::live::LiveRun;
-use crate::observe::recording::{Curve, Recording};
+use crate::observe::overlay::Overlay;
+use crate::observe::reading::Reading;
+use crate::observe::recording::Curve;
+use crate::physics::{State, loads, observables};
+use crate::text::wrap::columns;
 use crate::tui::dots::{Dots, Ink};
+use crate::tui::keymap::ZOOM_KEYS;
+use crate::tui::scene::{Scene, Shown, Stroke, beside};
 use crate::tui::theme::Role;
+use crate::tui::trail::Trail;
 use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
+use std::f64::consts::TAU;
 
-/// Length of the longer vectors, of the distance between pivot and traced point.
-const VECTOR: f64 = 1.15;
-/// What the picture shows of z, lowest and highest, of the same: for a body that has always stood above the pivot, and
-/// for one that has hung.
-const STANDING: (f64, f64) = (-0.45, 1.25);
-const HANGING: (f64, f64) = (-1.25, 1.25);
-/// Length of a push's arrow, and of the two strokes of its head, of the same: its direction is what there is to see.
-const ARROW: f64 = 0.45;
-const HEAD: f64 = 0.12;
-/// Half the angle between the strokes of a head, radians.
-const HEAD_ANGLE: f64 = 0.5;
+/// Lengths of the arrows, of the scene's reach: their directions are what there is to see.
+const MOMENTUM: f64 = 1.1;
+const OMEGA: f64 = 0.85;
+const WEIGHT: f64 = 0.35;
+const TORQUE: f64 = 0.5;
+const CHANGE: f64 = 0.35;
+const PUSH: f64 = 0.4;
+/// Radius of the ground, and length of the vertical axis, of the same.
+const GROUND: f64 = 0.6;
+/// A torque below this part of the largest that the weight can have is none.
+const NO_TORQUE: f64 = 1e-9;
 /// More pushes than this at one time are no picture.
 const MOST_PUSHES: usize = 20;
-/// Points of the body beyond this many are not drawn as a wheel.
-const MOST_SPOKES: usize = 400;
+/// Parts of a circle.
+const PARTS: usize = 72;
+/// Spokes, and free masses, that are drawn at most.
+const MOST_SPOKES: usize = 6;
+const MOST_FREE: usize = 60;
+/// Radius of the hub, of that of the rim.
+const HUB: f64 = 0.14;
+/// A mass is near or far where it is nearer or farther than the hub by this part of the rim's radius.
+const NEAR: f64 = 0.33;
+/// Signs of masses stand no closer than this on the rim, cells.
+const CLOSEST: f64 = 2.0;
+/// The tilts that are to have room are taken at multiples of this, degrees: the picture shall not breathe.
+const TILT_DEG: f64 = 5.0;
+/// Room around what is drawn, of it: for letters.
+const MARGIN: f64 = 1.06;
 
 /// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
@@ -35,10 +61,14 @@ pub const ROW: PaneRow = PaneRow {
     rank: 3,
     least: (40, 18),
     draw: |lab, area, buf| {
-        let (run, view) = (lab.player().run(), lab.view());
-        ThreeD { run, view }.render(area, buf);
+        ThreeD {
+            run: lab.player().run(),
+            view: lab.view(),
+            reading: Some(lab.player().reading()),
+        }
+        .render(area, buf);
     },
-    keys: &[],
+    keys: ZOOM_KEYS,
 };
 
 /// The scene in space.
@@ -47,238 +77,432 @@ pub struct ThreeD<'a> {
     pub run: &'a LiveRun,
     /// How it is looked at.
     pub view: &'a View,
+    /// The latest reading of the run, if it is read at all: the scene is that of its time, and by it the path is recent or
+    /// old. A wheel that turns changes most of the picture; sent with every frame it would load a slow line.
+    pub reading: Option<&'a Reading>,
 }
+
+/// A letter at a place.
+type Label = (&'static str, Role, Vector3<f64>);
 
 impl Widget for ThreeD<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
-        let inside = frame(ROW.title, area, self.view.focus == ROW.id, theme, buf);
-        if inside.is_empty() {
+        let zoom = self.view.zoom.three_d;
+        let title = match zoom == 1.0 {
+            true => ROW.title.to_owned(),
+            false => format!("{} ×{zoom}", ROW.title),
+        };
+        let inside = frame(&title, area, self.view.focus == ROW.id, theme, buf);
+        if inside.height < 2 || inside.width == 0 {
             return;
         }
-        let mut scene = Scene::new(inside, &self, Dots::new(inside, self.view.marker));
-        self.axes(&mut scene);
-        self.paths(&mut scene);
+        let picture = Rect {
+            height: inside.height - 1,
+            ..inside
+        };
+        let mut dots = Dots::new(picture, self.view.marker);
+        let mut scene = Scene::new(&dots, self.view.camera, &self.shown());
+        let mut labels = self.ground(&mut scene);
+        self.path(&scene, &mut dots);
         self.body(&mut scene);
-        let mut labels = self.vectors(&mut scene);
+        labels.extend(self.vectors(&mut scene));
         labels.extend(self.pushes(&mut scene));
-        scene.dots.render(theme, buf);
-        let mut taken = Vec::with_capacity(labels.len());
-        for (name, role, at) in labels.iter().rev() {
-            let cell = beside(scene.cell(at), &taken);
-            write(inside, cell, name, theme.style(*role), buf);
+        let masses = self.masses(&scene);
+        let cells: Vec<_> = labels
+            .iter()
+            .map(|(name, role, at)| (*name, *role, scene.cell(at)))
+            .collect();
+        let here = self.position();
+        let here = scene.shows(&here).then(|| scene.cell(&here));
+        scene.draw(&mut dots);
+        dots.render(theme, buf);
+        for (sign, role, cell) in masses {
+            write(picture, cell, sign, theme.style(role), buf);
+        }
+        let mut taken: Vec<_> = here.into_iter().collect();
+        for (name, role, cell) in cells.iter().rev() {
+            let cell = beside(*cell, columns(name) as u16, &taken, picture);
+            write(picture, cell, name, theme.style(*role), buf);
             taken.push(cell);
         }
+        if let Some(here) = here {
+            write(picture, here, "*", theme.style(Role::Focus), buf);
+        }
+        let legend = Rect {
+            y: picture.bottom(),
+            height: 1,
+            ..inside
+        };
+        self.legend(legend, buf);
     }
 }
 
-/// `cell`, or the next one to its right that keeps off those that are `taken`.
-fn beside(cell: (u16, u16), taken: &[(u16, u16)]) -> (u16, u16) {
-    let (mut x, y) = cell;
-    while taken
-        .iter()
-        .any(|&(other, row)| row.abs_diff(y) <= 1 && other.abs_diff(x) <= 1)
-    {
-        x += 2;
-    }
-    (x, y)
+/// The body as it is drawn, upright: distances from the axle and heights.
+struct Shape {
+    /// Radius, height and number of points of the rim.
+    rim: Option<(f64, f64, usize)>,
+    /// Heights between which there is an axle.
+    axle: (f64, f64),
+    /// Distance from the axle and height of the rim and of each free point that is drawn.
+    corners: Vec<(f64, f64)>,
+    /// The free points that have a mass.
+    free: Vec<Vector3<f64>>,
 }
 
-type Label = (&'static str, Role, Vector3<f64>);
+impl Shape {
+    fn of(run: &LiveRun) -> Self {
+        let scenario = run.scenario();
+        let points = scenario.body.mechanics.points();
+        let rim = scenario.file.body.rim.as_ref();
+        let rim = rim.map(|rim| (rim.radius_m, rim.height_m, rim.points));
+        let after = rim.map_or(0, |(_, _, points)| points);
+        let free: Vec<_> = points.iter().skip(after).take(MOST_FREE).collect();
+        let traced = points[scenario.trace].at;
+        let mut corners: Vec<_> = rim
+            .iter()
+            .map(|&(radius, height, _)| (radius, height))
+            .collect();
+        let corner = |at: &Vector3<f64>| (at.xy().norm(), at.z);
+        corners.extend(free.iter().map(|point| corner(&point.at)));
+        corners.push(corner(&traced));
+        let heights = || corners.iter().map(|(_, height)| *height);
+        let axle = (heights().fold(0.0, f64::min), heights().fold(0.0, f64::max));
+        let has_mass = free.iter().filter(|point| point.mass > 0.0);
+        let free = has_mass.map(|point| point.at).collect();
+        Self {
+            rim,
+            axle,
+            corners,
+            free,
+        }
+    }
+
+    /// The size of the body, m.
+    fn reach(&self) -> f64 {
+        let reaches = self
+            .corners
+            .iter()
+            .map(|(across, height)| across.hypot(*height));
+        reaches.fold(f64::MIN_POSITIVE, f64::max)
+    }
+}
+
+/// Whether something is in front of `middle`, behind it, or beside it, by `depth`.
+fn is_near(depth: f64, middle: f64, radius: f64) -> Option<bool> {
+    let share = (depth - middle) / radius;
+    (share.abs() > NEAR).then_some(share < 0.0)
+}
 
 impl ThreeD<'_> {
-    fn reach(&self) -> f64 {
+    /// The state that is shown.
+    fn state(&self) -> &State {
+        let state = self.reading.map(|reading| &reading.state);
+        state.unwrap_or_else(|| self.run.simulation().state())
+    }
+
+    /// Where the traced point is then.
+    fn position(&self) -> Vector3<f64> {
         let scenario = self.run.scenario();
-        let furthest = scenario
-            .file
-            .body
-            .rim
-            .as_ref()
-            .map_or(0.0, |rim| rim.radius_m.hypot(rim.height_m));
-        scenario.arm_m().max(furthest).max(f64::MIN_POSITIVE)
+        observables::position(&scenario.body.mechanics, self.state(), scenario.trace)
     }
 
-    fn axes(&self, scene: &mut Scene<'_>) {
-        let length = 0.5 * self.reach();
-        for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
-            scene.line(&Vector3::zeros(), &(axis * length), Ink::Faint(Role::Quiet));
+    /// What there must be room for: wherever the body comes as it precesses at the tilts that it has had, L, and the ground.
+    fn shown(&self) -> Shown {
+        let shape = Shape::of(self.run);
+        let reach = shape.reach();
+        let tilts = self.run.recording().whole();
+        let tilts = tilts.map_or((0.0, 0.0), |whole| {
+            let tilt = whole.extent(Curve::Tilt);
+            (tilt.min, tilt.max)
+        });
+        let (first, last) = ((tilts.0 / TILT_DEG).floor(), (tilts.1 / TILT_DEG).ceil());
+        // Circles about the vertical, radius and height.
+        let mut circles = vec![(GROUND * reach, 0.0), (0.0, GROUND * reach)];
+        for tilt in first as i32..=last as i32 {
+            let (sin, cos) = (f64::from(tilt) * TILT_DEG).to_radians().sin_cos();
+            for &(across, height) in &shape.corners {
+                let sides = [across, -across];
+                let circle =
+                    |side: f64| ((height * sin + side * cos).abs(), height * cos - side * sin);
+                circles.extend(sides.map(circle));
+            }
         }
-    }
-
-    fn paths(&self, scene: &mut Scene<'_>) {
-        if let Some(overlay) = self.run.overlay() {
-            scene.path(overlay.recording(), Ink::Faint(Role::Exact));
+        let momentum = self.state().momentum;
+        if let Some(axis) = momentum.try_normalize(f64::MIN_POSITIVE) {
+            let angle = libm::acos(axis.z.clamp(-1.0, 1.0)).to_degrees() / (3.0 * TILT_DEG);
+            for angle in [angle.floor(), angle.ceil()] {
+                let (sin, cos) = (angle * 3.0 * TILT_DEG).to_radians().sin_cos();
+                let length = MOMENTUM * reach;
+                circles.push(((length * sin).hypot(CHANGE * reach), length * cos));
+            }
         }
-        scene.path(self.run.recording(), Ink::Faint(Role::Path));
-    }
-
-    /// The rim as a polygon through its points, one spoke to see it turn, and the axle.
-    fn body(&self, scene: &mut Scene<'_>) {
-        let scenario = self.run.scenario();
-        let state = self.run.simulation().state();
-        let points = scenario.body.mechanics.points();
-        let place = |index: usize| state.orientation * points[index].at;
-        let rim = scenario.file.body.rim.as_ref().map_or(0, |rim| rim.points);
-        let every = rim.div_ceil(MOST_SPOKES).max(1);
-        let corners: Vec<_> = (0..rim).step_by(every).map(place).collect();
-        for (index, corner) in corners.iter().enumerate() {
-            scene.line(
-                corner,
-                &corners[(index + 1) % corners.len()],
-                Ink::Strong(Role::X),
-            );
-        }
-        if let (Some(first), Some(rim)) = (corners.first(), &scenario.file.body.rim) {
-            let hub = state.axle() * rim.height_m;
-            scene.line(&hub, first, Ink::Strong(Role::X));
-        }
-        scene.line(
-            &Vector3::zeros(),
-            &self.run.now().position,
-            Ink::Strong(Role::Text),
+        let (sin, cos) = self.view.camera.pitch_deg.to_radians().sin_cos();
+        let lowest = circles
+            .iter()
+            .map(|(radius, z)| z * cos - radius * sin.abs());
+        let highest = circles
+            .iter()
+            .map(|(radius, z)| z * cos + radius * sin.abs());
+        let (lowest, highest) = (lowest.fold(0.0, f64::min), highest.fold(0.0, f64::max));
+        let widest = circles
+            .iter()
+            .map(|(radius, _)| *radius)
+            .fold(0.0, f64::max);
+        let zoom = self.view.zoom.three_d;
+        let half = (
+            MARGIN * widest / zoom,
+            MARGIN * 0.5 * (highest - lowest) / zoom,
         );
+        let middle = match zoom > 1.0 {
+            true => {
+                let (right, up) = self.view.camera.project(&self.wheel(&shape));
+                (Zoom::middle(right, half.0), Zoom::middle(up, half.1))
+            }
+            false => (0.0, 0.5 * (lowest + highest)),
+        };
+        Shown {
+            middle,
+            half,
+            reach,
+        }
     }
 
-    /// L and Ω, each as long as the scene's vectors are: their directions are what there is to see.
-    fn vectors(&self, scene: &mut Scene<'_>) -> Vec<Label> {
-        let state = self.run.simulation().state();
-        let omega = crate::physics::observables::angular_velocity(
-            &self.run.scenario().body.mechanics,
-            state,
-        );
-        let length = VECTOR * self.reach();
-        let mut labels: Vec<Label> = [
+    /// The middle of the wheel, or the axle's top where there is none.
+    fn wheel(&self, shape: &Shape) -> Vector3<f64> {
+        let height = shape.rim.map_or(shape.axle.1, |(_, height, _)| height);
+        self.state().axle() * height
+    }
+
+    /// The horizontal plane of the pivot, with the directions of x and y on it, and the vertical.
+    fn ground(&self, scene: &mut Scene) -> Vec<Label> {
+        let length = GROUND * Shape::of(self.run).reach();
+        let ink = Ink::Faint(Role::Quiet);
+        let around = |part: usize| {
+            let (sin, cos) = (TAU * part as f64 / PARTS as f64).sin_cos();
+            Vector3::new(length * cos, length * sin, 0.0)
+        };
+        let circle: Vec<_> = (0..PARTS).map(around).collect();
+        for pair in circle.chunks(2) {
+            if let [from, to] = pair {
+                scene.line(from, to, Stroke::Thin, ink);
+            }
+        }
+        let axes = [
             ("x", Role::X, Vector3::x()),
             ("y", Role::Y, Vector3::y()),
             ("z", Role::Z, Vector3::z()),
-        ]
-        .map(|(name, role, axis)| (name, role, axis * (0.55 * self.reach())))
-        .to_vec();
-        for (name, role, vector, share) in [
-            ("Ω", Role::Y, omega, 0.9),
-            ("L", Role::Z, state.momentum, 1.0),
-        ] {
-            if let Some(direction) = vector.try_normalize(f64::MIN_POSITIVE) {
-                let tip = direction * (length * share);
-                scene.line(&Vector3::zeros(), &tip, Ink::Strong(role));
-                labels.push((name, role, tip));
+        ];
+        for (_, _, axis) in axes {
+            scene.line(&Vector3::zeros(), &(axis * length), Stroke::Dotted(3), ink);
+        }
+        axes.map(|(name, role, axis)| (name, role, axis * length))
+            .to_vec()
+    }
+
+    fn path(&self, scene: &Scene, dots: &mut Dots) {
+        let mut trail = Trail::new(dots, true);
+        let now = (self.state().time_s, &self.position());
+        let ages = self
+            .reading
+            .map_or(Ages::UNKNOWN, |reading| Ages::of(&reading.readouts));
+        let ages = ages.on_picture(TAU * self.run.path().radius() * scene.scale.0);
+        let to_dot = |at: &Vector3<f64>| scene.dot(at);
+        trail.follow(self.run.recording(), &ages, now, to_dot);
+        trail.draw(dots);
+        for block in self
+            .run
+            .overlay()
+            .into_iter()
+            .flat_map(|overlay: &Overlay| overlay.recording().since(0.0))
+        {
+            let (x, y) = scene.dot(&block.end);
+            dots.set(x, y, Ink::Faint(Role::Exact));
+        }
+    }
+
+    /// The axle from the pivot to its top, hub, spokes and rim, and what joins free masses to the axle.
+    fn body(&self, scene: &mut Scene) {
+        let shape = Shape::of(self.run);
+        let state = self.state();
+        let axle = state.axle();
+        scene.line(
+            &(axle * shape.axle.0),
+            &(axle * shape.axle.1),
+            Stroke::Thick,
+            Ink::Strong(Role::Text),
+        );
+        for at in &shape.free {
+            let foot = axle * at.z;
+            scene.line(
+                &foot,
+                &(state.orientation * at),
+                Stroke::Dotted(2),
+                Ink::Strong(Role::Text),
+            );
+        }
+        if let Some((radius, height, points)) = shape.rim {
+            let middle = scene.depth(&(axle * height));
+            let look = |depth: f64| match is_near(depth, middle, radius) {
+                Some(true) => (Stroke::Thick, Ink::Strong(Role::Text)),
+                None => (Stroke::Thin, Ink::Strong(Role::Text)),
+                Some(false) => (Stroke::Dotted(2), Ink::Faint(Role::Quiet)),
+            };
+            scene.ring(&circle(state, radius, height), look);
+            let hub = circle(state, HUB * radius, height);
+            scene.ring(&hub, |_| (Stroke::Thin, Ink::Strong(Role::Text)));
+            let every = points.div_ceil(MOST_SPOKES).max(1);
+            for point in (0..points).step_by(every) {
+                let at = on_circle(state, radius, height, point, points);
+                let hub = on_circle(state, HUB * radius, height, point, points);
+                // One of them is told from the others, so that the wheel is seen to turn.
+                let stroke = match point {
+                    0 => Stroke::Thin,
+                    _ => Stroke::Dotted(3),
+                };
+                scene.line(&hub, &at, stroke, Ink::Strong(Role::Text));
             }
+        }
+    }
+
+    /// The masses, the nearest last: a larger sign is nearer.
+    fn masses(&self, scene: &Scene) -> Vec<(&'static str, Role, (u16, u16))> {
+        let shape = Shape::of(self.run);
+        let state = self.state();
+        let middle = scene.depth(&self.wheel(&shape));
+        let mut masses: Vec<Vector3<f64>> = Vec::new();
+        let mut radius = shape.reach();
+        if let Some((rim, height, points)) = shape.rim {
+            radius = rim;
+            // From the side the rim is at least as long as twice its width.
+            let length = 4.0 * rim * scene.scale.1 / self.view.marker.dots().1 as f64;
+            if length * 2.0 >= CLOSEST * points as f64 {
+                masses
+                    .extend((0..points).map(|point| on_circle(state, rim, height, point, points)));
+            }
+        }
+        masses.extend(shape.free.iter().map(|at| state.orientation * at));
+        masses.retain(|at| scene.shows(at));
+        masses.sort_by(|a, b| scene.depth(b).total_cmp(&scene.depth(a)));
+        let signs = masses.iter().map(|at| {
+            let (sign, role) = match is_near(scene.depth(at), middle, radius) {
+                Some(true) => ("O", Role::Heading),
+                None => ("o", Role::Text),
+                Some(false) => ("·", Role::Quiet),
+            };
+            (sign, role, scene.cell(at))
+        });
+        signs.collect()
+    }
+
+    /// L and Ω from the pivot, the weight at the centre of mass, its torque at the pivot, and at the tip of L where it goes.
+    fn vectors(&self, scene: &mut Scene) -> Vec<Label> {
+        let simulation = self.run.simulation();
+        let state = self.state();
+        let body = &self.run.scenario().body.mechanics;
+        let reach = Shape::of(self.run).reach();
+        let direction = |vector: &Vector3<f64>| vector.try_normalize(f64::MIN_POSITIVE);
+        let mut labels = Vec::new();
+        let mut arrow = |name, role, from: Vector3<f64>, to: Vector3<f64>| {
+            scene.arrow(&from, &(from + to), Ink::Strong(role));
+            labels.push((name, role, from + to * 1.04));
+        };
+        let pivot = Vector3::zeros();
+        let weight = Vector3::z() * -simulation.loads().gravity;
+        if let Some(down) = direction(&weight) {
+            let centre = state.orientation * body.first_moment() / body.mass();
+            arrow("g", Role::Push, centre, down * (WEIGHT * reach));
+        }
+        if let Some(along) = direction(&observables::angular_velocity(body, state)) {
+            arrow("Ω", Role::Y, pivot, along * (OMEGA * reach));
+        }
+        let momentum = direction(&state.momentum).map(|along| along * (MOMENTUM * reach));
+        if let Some(torque) = self.torque() {
+            arrow("τ", Role::X, pivot, torque * (TORQUE * reach));
+            if let Some(momentum) = momentum {
+                arrow("dL", Role::X, momentum, torque * (CHANGE * reach));
+            }
+        }
+        if let Some(momentum) = momentum {
+            arrow("L", Role::Z, pivot, momentum);
         }
         labels
     }
-}
 
-impl ThreeD<'_> {
+    /// The direction of the torque of all forces about the pivot, where there is one.
+    fn torque(&self) -> Option<Vector3<f64>> {
+        let simulation = self.run.simulation();
+        let (state, body) = (self.state(), &self.run.scenario().body.mechanics);
+        let torque = loads::torque(&state.orientation, &simulation.loads().moment(body));
+        let largest = simulation.loads().gravity.abs() * body.first_moment().norm();
+        torque.try_normalize((NO_TORQUE * largest).max(f64::MIN_POSITIVE))
+    }
+
     /// An arrow for each push that acts, from the pushed point along the force.
-    fn pushes(&self, scene: &mut Scene<'_>) -> Vec<Label> {
+    fn pushes(&self, scene: &mut Scene) -> Vec<Label> {
         let simulation = self.run.simulation();
         let points = self.run.scenario().body.mechanics.points();
+        let length = PUSH * Shape::of(self.run).reach();
         let mut labels = Vec::new();
         for push in simulation.loads().pushes.iter().take(MOST_PUSHES) {
-            let from = simulation.state().orientation * points[push.point].at;
+            let from = self.state().orientation * points[push.point].at;
             if let Some(direction) = push.force.try_normalize(f64::MIN_POSITIVE) {
-                let tip = from + direction * (ARROW * self.reach());
-                scene.arrow(&from, &tip, HEAD * self.reach(), Ink::Strong(Role::Push));
+                let tip = from + direction * length;
+                scene.arrow(&from, &tip, Ink::Strong(Role::Push));
                 labels.push(("F", Role::Push, tip));
             }
         }
         labels
     }
+
+    /// What the letters mean, in as many words as there is room for.
+    fn legend(&self, area: Rect, buf: &mut Buffer) {
+        let theme = &self.view.theme;
+        let (torque, change) = match self.torque() {
+            Some(_) => (
+                ["τ torque", "τ torque", "τ"],
+                ["dL where L goes", "dL", "dL"],
+            ),
+            None => (["no torque", "no torque", ""], ["L stays", "", ""]),
+        };
+        let weight = match self.run.simulation().loads().gravity == 0.0 {
+            true => ["no weight", "", ""],
+            false => ["g weight", "g weight", "g"],
+        };
+        let momentum = ["L angular momentum", "L", "L"];
+        let omega = ["Ω angular velocity", "Ω", "Ω"];
+        let words = [
+            (momentum, Role::Z),
+            (omega, Role::Y),
+            (weight, Role::Push),
+            (torque, Role::X),
+            (change, Role::X),
+        ];
+        let length = |at: usize| -> usize {
+            let lengths = words
+                .iter()
+                .map(|(words, _)| words[at])
+                .filter(|word| !word.is_empty());
+            lengths.map(|word| columns(word) + 2).sum()
+        };
+        let at = (0..3)
+            .find(|&at| length(at) <= area.width as usize + 2)
+            .unwrap_or(2);
+        let mut x = 0;
+        for (words, role) in words.iter().filter(|(words, _)| !words[at].is_empty()) {
+            x = write(area, (x, 0), words[at], theme.style(*role), buf) + 2;
+        }
+    }
 }
 
-/// The sheet of dots with the camera's eye on it.
-struct Scene<'a> {
-    view: &'a View,
-    dots: Dots,
-    /// Where the pivot stands, dots.
-    pivot: (f64, f64),
-    /// Dots in a metre, across and down.
-    across: f64,
-    down: f64,
+/// The place of `point` of `points` on a circle across the axle.
+fn on_circle(state: &State, radius: f64, height: f64, point: usize, points: usize) -> Vector3<f64> {
+    let (sin, cos) = (TAU * point as f64 / points as f64).sin_cos();
+    state.orientation * Vector3::new(radius * cos, radius * sin, height)
 }
 
-impl<'a> Scene<'a> {
-    fn new(area: Rect, pane: &ThreeD<'a>, dots: Dots) -> Self {
-        let (in_x, in_y) = pane.view.marker.dots();
-        let (width, height) = (
-            area.width as f64 * in_x as f64,
-            area.height as f64 * in_y as f64,
-        );
-        let aspect = pane.view.marker.dot_aspect();
-        let lowest = pane
-            .run
-            .recording()
-            .whole()
-            .map_or(0.0, |whole| whole.extent(Curve::Z).min);
-        let (bottom, top) = if lowest < 0.0 { HANGING } else { STANDING };
-        let (half_height, middle) = (0.5 * (top - bottom), 0.5 * (top + bottom));
-        let reach = pane.reach();
-        let down = (0.5 * height / half_height).min(0.5 * width * aspect / HANGING.1) / reach;
-        let (_, above_pivot) = pane
-            .view
-            .camera
-            .project(&Vector3::new(0.0, 0.0, middle * reach));
-        let pivot = (0.5 * width, 0.5 * height + above_pivot * down);
-        Self {
-            view: pane.view,
-            dots,
-            pivot,
-            across: down / aspect,
-            down,
-        }
-    }
-
-    fn dot(&self, point: &Vector3<f64>) -> (f64, f64) {
-        let (right, up) = self.view.camera.project(point);
-        (
-            self.pivot.0 + right * self.across,
-            self.pivot.1 - up * self.down,
-        )
-    }
-
-    fn cell(&self, point: &Vector3<f64>) -> (u16, u16) {
-        let (x, y) = self.dot(point);
-        let (in_x, in_y) = self.view.marker.dots();
-        let inside = |dot: f64, dots: usize| dot.clamp(0.0, dots.saturating_sub(1) as f64);
-        (
-            (inside(x, self.dots.width()) / in_x as f64) as u16,
-            (inside(y, self.dots.height()) / in_y as f64) as u16,
-        )
-    }
-
-    fn line(&mut self, from: &Vector3<f64>, to: &Vector3<f64>, ink: Ink) {
-        let (from, to) = (self.dot(from), self.dot(to));
-        self.dots.line(from, to, ink);
-    }
-
-    /// A line with a head of two strokes, each `head_m` long, at its tip.
-    fn arrow(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, head_m: f64, ink: Ink) {
-        self.line(from, tip, ink);
-        let (begin, end) = (
-            self.view.camera.project(from),
-            self.view.camera.project(tip),
-        );
-        let (right, up) = (begin.0 - end.0, begin.1 - end.1);
-        let length = right.hypot(up);
-        if length < head_m {
-            return; // seen along itself, it has no head
-        }
-        for (sin, cos) in [HEAD_ANGLE, -HEAD_ANGLE].map(f64::sin_cos) {
-            let stroke = (right * cos - up * sin, right * sin + up * cos);
-            let share = head_m / length;
-            let end_dot = self.dot(tip);
-            let stroke_end = (
-                end_dot.0 + share * stroke.0 * self.across,
-                end_dot.1 - share * stroke.1 * self.down,
-            );
-            self.dots.line(end_dot, stroke_end, ink);
-        }
-    }
-
-    fn path(&mut self, recording: &Recording, ink: Ink) {
-        for block in recording.since(0.0) {
-            let (x, y) = self.dot(&block.end);
-            self.dots.set(x, y, ink);
-        }
-    }
+fn circle(state: &State, radius: f64, height: f64) -> Vec<Vector3<f64>> {
+    (0..PARTS)
+        .map(|part| on_circle(state, radius, height, part, PARTS))
+        .collect()
 }

@@ -156,6 +156,30 @@ pub(super) fn now_rows(reading: &Reading) -> Vec<Row> {
     rows
 }
 
+/// What is shown beside them where there is room: the extremes so far, and how the wheel turns.
+pub(super) fn further_rows(reading: &Reading) -> Vec<Row> {
+    let readouts = &reading.readouts;
+    let told = |rank, label, name, digits, unit| {
+        measured(rank, label, readouts.number(name), digits, unit)
+    };
+    vec![
+        heading("so far"),
+        told(7, "tilt from", "measured_lowest_tilt_deg", 3, "deg"),
+        told(8, PREDICTED, "predicted_lowest_tilt_deg", 3, "deg"),
+        told(7, "tilt to", "measured_highest_tilt_deg", 3, "deg"),
+        told(8, PREDICTED, "predicted_highest_tilt_deg", 3, "deg"),
+        told(7, "z from", "measured_lowest_z_m", 4, "m"),
+        told(7, "z to", "measured_highest_z_m", 4, "m"),
+        heading("wheel"),
+        told(9, "L on axle", "L_axle_Js", 3, "J s"),
+        told(9, "turns", "turns_per_step", 4, "/step"),
+        told(9, "axle to L", "lag_deg", 3, "deg"),
+        told(9, "steady", "true_steady_lag_deg", 3, "deg"),
+        told(10, "azimuth", "azimuth_deg", 2, "deg"),
+        told(10, "off exact", "distance_m", 4, "m"),
+    ]
+}
+
 /// The readouts to watch while values are edited; the last is the energy's drift.
 pub(super) fn watched_rows(reading: &Reading) -> [Row; 5] {
     let readouts = &reading.readouts;

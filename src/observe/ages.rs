@@ -1,0 +1,168 @@
+//! How old the parts of a path are, in the measures of the motion itself: the last swings, the last turn, and what came
+//! before.
+
+use crate::analysis::Measured;
+use crate::analysis::Readouts;
+use std::f64::consts::TAU;
+
+/// So many swings are recent.
+const RECENT_SWINGS: f64 = 10.0;
+/// And fewer where they would stand closer than so many dots on the picture, but never fewer than `LEAST_SWINGS`.
+const CLOSEST_DOTS: f64 = 4.0;
+const LEAST_SWINGS: f64 = 2.0;
+/// Recent is at most this part of a turn, so that the way behind the point has a beginning and an end.
+const RECENT_TURN: f64 = 1.0 / 3.0;
+/// Where no turn is known, the last turn is so many times as long as what is recent.
+const TURN: f64 = 6.0;
+/// A turn or a swing is measured well enough to be gone by where its uncertainty is at most this part of it.
+const SETTLED: f64 = 0.5;
+/// Ages grow by this factor's exponential, or not at all: what is measured changes a little all the time, and the
+/// picture shall not.
+const GRADE: f64 = 0.1;
+/// What is recent begins at a multiple of this part of its length.
+const NOTCH: f64 = 1.0 / 16.0;
+
+/// How long a part of a path counts as recent, and as of the last turn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ages {
+    /// The time that is recent, s; infinite where nothing is known of the motion.
+    pub recent_s: f64,
+    /// The time of the last turn, s, what is recent included.
+    pub turn_s: f64,
+    /// The time of one swing, s.
+    pub swing_s: Option<f64>,
+    /// Whether the swings cover each other on the picture.
+    pub are_crowded: bool,
+}
+
+/// The age of a part of a path, the oldest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Age {
+    /// Before the last turn.
+    Old,
+    /// Of the last turn.
+    Turn,
+    /// Of the last swings.
+    Recent,
+}
+
+impl Ages {
+    /// Where nothing is known of the motion: all of it is recent.
+    pub const UNKNOWN: Self = Self {
+        recent_s: f64::INFINITY,
+        turn_s: f64::INFINITY,
+        swing_s: None,
+        are_crowded: false,
+    };
+
+    /// The ages of the motion that `readouts` tell of: by what was measured, or else by what theory predicts.
+    pub fn of(readouts: &Readouts) -> Self {
+        let theory = readouts.theory_about_z();
+        // A run whose time step is too long for its nutation is seen to swing at another period.
+        let predicted = theory
+            .and_then(|theory| theory.nutation_period_s)
+            .filter(|_| readouts.nutation_is_resolved() != Some(false));
+        let swing_s = settled(readouts.nutation).or(predicted);
+        let rate = settled(readouts.precession).or(theory.and_then(|theory| theory.precession));
+        let turn_s = rate.map(|rate| TAU / rate.abs());
+        Self::new(swing_s, turn_s)
+    }
+
+    /// The ages where a swing and a turn take so long, s.
+    pub fn new(swing_s: Option<f64>, turn_s: Option<f64>) -> Self {
+        let is_time = |time_s: &f64| time_s.is_finite() && *time_s > 0.0;
+        let (swing_s, turn_s) = (swing_s.filter(is_time), turn_s.filter(is_time));
+        let by_swings = swing_s.map(|swing_s| RECENT_SWINGS * swing_s);
+        let by_turn = turn_s.map(|turn_s| RECENT_TURN * turn_s);
+        let recent_s = match (by_swings, by_turn) {
+            (Some(swings), Some(turn)) => swings.min(turn),
+            (Some(one), None) | (None, Some(one)) => one,
+            (None, None) => return Self::UNKNOWN,
+        };
+        Self {
+            recent_s: graded(recent_s),
+            turn_s: graded(turn_s.unwrap_or(TURN * recent_s)),
+            swing_s,
+            are_crowded: false,
+        }
+    }
+
+    /// The same for a picture on which a turn is `turn_dots` long: where the swings stand so close that they cover each
+    /// other, only the last of them are recent.
+    pub fn on_picture(self, turn_dots: f64) -> Self {
+        let Some(swing_s) = self.swing_s else {
+            return self;
+        };
+        let apart = turn_dots * swing_s / self.turn_s;
+        let swings = (RECENT_SWINGS * apart / CLOSEST_DOTS).max(LEAST_SWINGS);
+        Self {
+            recent_s: self.recent_s.min(graded(swings * swing_s)),
+            are_crowded: apart < CLOSEST_DOTS,
+            ..self
+        }
+    }
+
+    /// The time since when the motion is of `age` where it is now `now_s`, s. It stands still for a while and then moves by a
+    /// notch: what changes on the screen has to be sent.
+    pub fn since(&self, age: Age, now_s: f64) -> f64 {
+        let length_s = match age {
+            Age::Old => return f64::NEG_INFINITY,
+            Age::Turn => self.turn_s,
+            Age::Recent => self.recent_s,
+        };
+        if !length_s.is_finite() {
+            return f64::NEG_INFINITY;
+        }
+        let notch_s = NOTCH * self.recent_s;
+        ((now_s - length_s) / notch_s).floor() * notch_s
+    }
+}
+
+fn settled(measured: Option<Measured>) -> Option<f64> {
+    let is_settled = |measured: &Measured| measured.uncertainty <= SETTLED * measured.value.abs();
+    measured.filter(is_settled).map(|measured| measured.value)
+}
+
+fn graded(length_s: f64) -> f64 {
+    libm::exp((libm::log(length_s) / GRADE).ceil() * GRADE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn recent_is_some_swings_but_never_a_whole_turn() {
+        let fast = Ages::new(Some(0.1), Some(100.0));
+        assert!((1.0..1.2).contains(&fast.recent_s), "{fast:?}");
+        let slow = Ages::new(Some(1.0), Some(8.0));
+        assert!((2.6..3.0).contains(&slow.recent_s), "{slow:?}");
+        assert!(slow.turn_s >= 8.0);
+        assert_eq!(Ages::new(None, None), Ages::UNKNOWN);
+        assert_eq!(Ages::new(Some(f64::NAN), Some(0.0)), Ages::UNKNOWN);
+        assert_eq!(Ages::UNKNOWN.since(Age::Recent, 7.0), f64::NEG_INFINITY);
+    }
+
+    #[test]
+    fn where_swings_cover_each_other_fewer_are_recent() {
+        let ages = Ages::new(Some(1.0), Some(100.0));
+        assert_eq!(ages.on_picture(1000.0), ages);
+        let close = ages.on_picture(100.0);
+        assert!((2.0..3.0).contains(&close.recent_s), "{close:?}");
+        assert_eq!(Ages::UNKNOWN.on_picture(10.0), Ages::UNKNOWN);
+    }
+
+    #[test]
+    fn recent_begins_at_notches_and_reaches_back_far_enough() {
+        let ages = Ages::new(Some(0.1), Some(100.0));
+        let begins: Vec<_> = (0..100)
+            .map(|frame| ages.since(Age::Recent, 50.0 + 0.01 * f64::from(frame)))
+            .collect();
+        let moves = begins.windows(2).filter(|pair| pair[0] != pair[1]);
+        assert!((10..20).contains(&moves.count()));
+        for (begin, frame) in begins.iter().zip(0..) {
+            let reaches_back = 50.0 + 0.01 * f64::from(frame) - begin;
+            assert!(reaches_back >= ages.recent_s && reaches_back <= 1.07 * ages.recent_s);
+        }
+    }
+}

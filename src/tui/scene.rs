@@ -1,0 +1,304 @@
+//! Lines in space on a sheet of dots. What is nearer hides what is farther and leaves a gap beside it, so that one sees
+//! which of two crossing lines passes in front of the other.
+
+use crate::observe::camera::Camera;
+use crate::tui::dots::{Dots, Ink};
+use nalgebra::Vector3;
+use ratatui::layout::Rect;
+
+/// A line hides what is farther than it by more than this part of the scene's reach: lines that meet do not hide each other.
+const BEHIND: f64 = 0.05;
+/// Half the angle between the strokes of an arrow's head, radians.
+const HEAD_ANGLE: f64 = 0.45;
+/// Length of these strokes, of the scene's reach.
+const HEAD: f64 = 0.1;
+
+/// How a line is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stroke {
+    /// Every dot, and those beside them.
+    Thick,
+    /// Every dot.
+    Thin,
+    /// One dot of so many. It hides nothing.
+    Dotted(u32),
+}
+
+/// A dot of a line.
+struct Speck {
+    at: (f64, f64),
+    depth: f64,
+    ink: Ink,
+    hides: bool,
+}
+
+/// The camera's eye on a sheet of dots.
+pub struct Scene {
+    camera: Camera,
+    /// Dots in a cell, and of the sheet.
+    in_cell: (usize, usize),
+    size: (usize, usize),
+    /// What stands in the middle of the sheet, m to the right and up.
+    middle: (f64, f64),
+    /// Dots in a metre, across and down.
+    pub scale: (f64, f64),
+    reach: f64,
+    specks: Vec<Speck>,
+}
+
+/// What a scene shows of the world.
+pub struct Shown {
+    /// What stands in the middle of the sheet, m to the right and up.
+    pub middle: (f64, f64),
+    /// How far that is to be seen to each side, and up and down, m.
+    pub half: (f64, f64),
+    /// The size of what is drawn, m.
+    pub reach: f64,
+}
+
+impl Scene {
+    /// An empty scene on the sheet of `dots`, as large as there is room for.
+    pub fn new(dots: &Dots, camera: Camera, shown: &Shown) -> Self {
+        let marker = dots.marker();
+        let aspect = marker.dot_aspect();
+        let size = (dots.width(), dots.height());
+        let down =
+            (0.5 * size.1 as f64 / shown.half.1).min(0.5 * size.0 as f64 * aspect / shown.half.0);
+        Self {
+            camera,
+            in_cell: marker.dots(),
+            size,
+            middle: shown.middle,
+            scale: (down / aspect, down),
+            reach: shown.reach,
+            specks: Vec::new(),
+        }
+    }
+
+    /// Where `point` (world frame, m) is on the sheet.
+    pub fn dot(&self, point: &Vector3<f64>) -> (f64, f64) {
+        self.dot_at(self.camera.project(point))
+    }
+
+    fn dot_at(&self, (right, up): (f64, f64)) -> (f64, f64) {
+        (
+            0.5 * self.size.0 as f64 + (right - self.middle.0) * self.scale.0,
+            0.5 * self.size.1 as f64 - (up - self.middle.1) * self.scale.1,
+        )
+    }
+
+    /// The cell of `point`, or the one at the edge that is nearest to it.
+    pub fn cell(&self, point: &Vector3<f64>) -> (u16, u16) {
+        let (x, y) = self.dot(point);
+        let inside = |dot: f64, dots: usize| dot.clamp(0.0, dots.saturating_sub(1) as f64);
+        (
+            (inside(x, self.size.0) / self.in_cell.0 as f64) as u16,
+            (inside(y, self.size.1) / self.in_cell.1 as f64) as u16,
+        )
+    }
+
+    /// Whether `point` is on the sheet.
+    pub fn shows(&self, point: &Vector3<f64>) -> bool {
+        let (x, y) = self.dot(point);
+        (0.0..self.size.0 as f64).contains(&x) && (0.0..self.size.1 as f64).contains(&y)
+    }
+
+    /// A straight line.
+    pub fn line(&mut self, from: &Vector3<f64>, to: &Vector3<f64>, stroke: Stroke, ink: Ink) {
+        let depths = (self.camera.depth(from), self.camera.depth(to));
+        self.line_of_dots(
+            (self.dot(from), depths.0),
+            (self.dot(to), depths.1),
+            stroke,
+            ink,
+        );
+    }
+
+    fn line_of_dots(
+        &mut self,
+        (from, near): ((f64, f64), f64),
+        (to, far): ((f64, f64), f64),
+        stroke: Stroke,
+        ink: Ink,
+    ) {
+        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+        let length = dx.abs().max(dy.abs()).ceil();
+        if length.is_nan() || length > 8.0 * (self.size.0 + self.size.1) as f64 {
+            return; // nowhere near the sheet
+        }
+        let every = match stroke {
+            Stroke::Dotted(every) => every.max(1),
+            Stroke::Thick | Stroke::Thin => 1,
+        };
+        let beside = match (stroke, dx.abs() > dy.abs()) {
+            (Stroke::Thick, true) => Some((0.0, 1.0)),
+            (Stroke::Thick, false) => Some((1.0, 0.0)),
+            _ => None,
+        };
+        for dot in (0..=length as u32).step_by(every as usize) {
+            let share = f64::from(dot) / length.max(1.0);
+            let at = (from.0 + share * dx, from.1 + share * dy);
+            let depth = near + share * (far - near);
+            let hides = every == 1;
+            let mut speck = |at| {
+                self.specks.push(Speck {
+                    at,
+                    depth,
+                    ink,
+                    hides,
+                });
+            };
+            speck(at);
+            if let Some((x, y)) = beside {
+                speck((at.0 + x, at.1 + y));
+            }
+        }
+    }
+
+    /// A closed line through `points`; the stroke of each part goes by the depth of its middle.
+    pub fn ring(&mut self, points: &[Vector3<f64>], look: impl Fn(f64) -> (Stroke, Ink)) {
+        for (index, from) in points.iter().enumerate() {
+            let to = &points[(index + 1) % points.len()];
+            let (stroke, ink) = look(self.camera.depth(&((from + to) * 0.5)));
+            self.line(from, to, stroke, ink);
+        }
+    }
+
+    /// How far from the eye `point` is, m.
+    pub fn depth(&self, point: &Vector3<f64>) -> f64 {
+        self.camera.depth(point)
+    }
+
+    /// A line with a head of two strokes at its tip.
+    pub fn arrow(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink) {
+        self.line(from, tip, Stroke::Thin, ink);
+        let (begin, end) = (self.camera.project(from), self.camera.project(tip));
+        let (right, up) = (begin.0 - end.0, begin.1 - end.1);
+        let length = right.hypot(up);
+        let head = HEAD * self.reach;
+        if length < head {
+            return; // seen along itself, it has no head
+        }
+        let depth = self.camera.depth(tip);
+        for (sin, cos) in [HEAD_ANGLE, -HEAD_ANGLE].map(f64::sin_cos) {
+            let share = head / length;
+            let stroke = (right * cos - up * sin, right * sin + up * cos);
+            let stroke_end = self.dot_at((end.0 + share * stroke.0, end.1 + share * stroke.1));
+            let tip = self.dot_at(end);
+            self.line_of_dots((tip, depth), (stroke_end, depth), Stroke::Thin, ink);
+        }
+    }
+
+    fn place(&self, (x, y): (f64, f64)) -> Option<(usize, usize)> {
+        let inside = x >= 0.0 && y >= 0.0 && x < self.size.0 as f64 && y < self.size.1 as f64;
+        inside.then_some((x as usize, y as usize))
+    }
+
+    /// Sets the dots that are to be seen, and takes away those beside and behind them that were set before.
+    pub fn draw(mut self, dots: &mut Dots) {
+        let (width, height) = self.size;
+        let mut nearest = vec![f64::INFINITY; width * height];
+        for speck in self.specks.iter().filter(|speck| speck.hides) {
+            let Some((x, y)) = self.place(speck.at) else {
+                continue;
+            };
+            for y in y.saturating_sub(1)..(y + 2).min(height) {
+                for x in x.saturating_sub(1)..(x + 2).min(width) {
+                    let nearest = &mut nearest[y * width + x];
+                    *nearest = nearest.min(speck.depth);
+                }
+            }
+        }
+        for (place, _) in nearest
+            .iter()
+            .enumerate()
+            .filter(|(_, depth)| depth.is_finite())
+        {
+            dots.clear(place % width, place / width);
+        }
+        // The nearest last: it decides how a cell looks that several lines cross.
+        self.specks.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+        for speck in &self.specks {
+            let is_seen = self
+                .place(speck.at)
+                .is_some_and(|(x, y)| speck.depth <= nearest[y * width + x] + BEHIND * self.reach);
+            if is_seen {
+                dots.set(speck.at.0, speck.at.1, speck.ink);
+            }
+        }
+    }
+}
+
+/// `cell`, or the next one to its right, and then to its left, that keeps off those that are `taken` and in `area`.
+pub fn beside(cell: (u16, u16), width: u16, taken: &[(u16, u16)], area: Rect) -> (u16, u16) {
+    let (x, y) = cell;
+    let last = area.width.saturating_sub(width);
+    let is_free = |x: &u16| {
+        let mut near = taken.iter().filter(|(_, row)| *row == y);
+        near.all(|&(other, _)| other.abs_diff(*x) > width)
+    };
+    let right = (x.min(last)..=last).find(is_free);
+    let left = || (0..x.min(last)).rev().find(is_free);
+    (right.or_else(left).unwrap_or(x.min(last)), y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::view::markers::Marker;
+    use crate::lab::view::theme::{Background, Theme};
+    use crate::tui::theme::Role;
+    use ratatui::buffer::Buffer;
+
+    #[test]
+    fn what_is_nearer_hides_what_is_farther() {
+        let area = Rect::new(0, 0, 20, 10);
+        let mut dots = Dots::new(area, Marker::Braille);
+        let camera = Camera {
+            yaw_deg: 0.0,
+            pitch_deg: 0.0,
+        };
+        let shown = Shown {
+            middle: (0.0, 0.0),
+            half: (1.0, 1.0),
+            reach: 1.0,
+        };
+        let mut scene = Scene::new(&dots, camera, &shown);
+        // Upright and in front; level and behind.
+        let ink = Ink::Strong(Role::Text);
+        let at = |x, y, z| Vector3::new(x, y, z);
+        scene.line(&at(0.0, -0.5, -0.9), &at(0.0, -0.5, 0.9), Stroke::Thin, ink);
+        scene.line(&at(-0.9, 0.5, 0.0), &at(0.9, 0.5, 0.0), Stroke::Thin, ink);
+        let (x, y) = scene.dot(&Vector3::zeros());
+        scene.draw(&mut dots);
+        let theme = Theme {
+            colour: false,
+            background: Background::Dark,
+        };
+        let mut buf = Buffer::empty(area);
+        dots.render(&theme, &mut buf);
+        let is_set = |x: usize, y: usize| {
+            let sign = buf[((x / 2) as u16, (y / 4) as u16)].symbol();
+            let bits = sign
+                .chars()
+                .next()
+                .map_or(0, u32::from)
+                .saturating_sub(0x2800);
+            bits as u8 & Marker::Braille.bit(x % 2, y % 4) != 0
+        };
+        let (x, y) = (x as usize, y as usize);
+        assert!((5..35).all(|row| is_set(x, row)), "the near line is whole");
+        assert!(!is_set(x - 1, y) && !is_set(x + 1, y), "a gap beside it");
+        assert!(is_set(x - 3, y) && is_set(x + 3, y), "the far line goes on");
+    }
+
+    #[test]
+    fn letters_keep_off_each_other_and_in_the_picture() {
+        let area = Rect::new(0, 0, 10, 3);
+        assert_eq!(beside((4, 1), 1, &[], area), (4, 1));
+        assert_eq!(beside((4, 1), 1, &[(4, 1)], area), (6, 1));
+        assert_eq!(beside((9, 1), 2, &[], area), (8, 1));
+        assert_eq!(beside((9, 1), 1, &[(9, 1)], area), (7, 1));
+        assert_eq!(beside((4, 1), 1, &[(4, 2)], area), (4, 1));
+    }
+}

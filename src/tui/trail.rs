@@ -1,0 +1,290 @@
+//! How a path fades: what is recent is a line, the last turn is dotted, what came before is dotted sparsely. Where the
+//! point has dwelt its dots are denser. All of this is seen without colours too; with them, and by bold and dim type,
+//! the ages differ in shade as well.
+
+use crate::observe::ages::{Age, Ages};
+use crate::observe::recording::Recording;
+use crate::tui::dots::{Dots, Ink};
+use crate::tui::theme::Role;
+use nalgebra::Vector3;
+
+/// The ranks of the dots of a row, from a multiple of five on; the next row is shifted by `SHIFT` dots. A line that is
+/// drawn with the dots of the first few ranks has gaps of equal length, whether it is level, upright or slanting.
+const RANK: [u8; 5] = [0, 3, 1, 4, 2];
+const SHIFT: usize = 3;
+
+/// A dot in which the point was found this many times as often as in an average one is one where it dwelt.
+const DWELT: f64 = 3.0;
+/// And no more seldom than this: else it is chance.
+const LEAST_DWELT: u16 = 5;
+/// The longest line between two places of the last turn, dots: the way between them is not known.
+const LONGEST_LINE: f64 = 8.0;
+/// The longest line between two recent places, of the sheet's shorter side.
+const LONGEST_RECENT_LINE: f64 = 0.5;
+
+/// A path on a sheet of dots, each with its age.
+pub struct Trail {
+    width: usize,
+    height: usize,
+    ages: Vec<Option<Age>>,
+    counts: Vec<u16>,
+    /// Whether areas are drawn as sparsely as can be, because something else is drawn over them.
+    is_thin: bool,
+}
+
+impl Trail {
+    /// An empty trail on the sheet of `dots`; `is_thin` says whether areas are drawn as sparsely as can be, because something
+    /// else is drawn over them.
+    pub fn new(dots: &Dots, is_thin: bool) -> Self {
+        let (width, height) = (dots.width(), dots.height());
+        Self {
+            width,
+            height,
+            ages: vec![None; width * height],
+            counts: vec![0; width * height],
+            is_thin,
+        }
+    }
+
+    /// The place of a dot; `None` outside the sheet, as of NaN.
+    fn place(&self, (x, y): (f64, f64)) -> Option<usize> {
+        let inside = x >= 0.0 && y >= 0.0 && x < self.width as f64 && y < self.height as f64;
+        inside.then(|| y as usize * self.width + x as usize)
+    }
+
+    /// The path goes through this dot.
+    pub fn dot(&mut self, at: (f64, f64), age: Age) {
+        if let Some(place) = self.place(at) {
+            self.ages[place] = self.ages[place].max(Some(age));
+        }
+    }
+
+    fn line(&mut self, from: (f64, f64), to: (f64, f64), age: Age) {
+        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+        let length = dx.abs().max(dy.abs()).ceil();
+        if length.is_nan() || length > 4.0 * (self.width + self.height) as f64 {
+            return; // nowhere near the sheet
+        }
+        for dot in 1..=length as usize {
+            let share = dot as f64 / length;
+            self.dot((from.0 + share * dx, from.1 + share * dy), age);
+        }
+    }
+
+    /// The path of `recording` until now, when the point is at `now` (s; world frame, m); `to_dot` says where a place is on
+    /// the sheet.
+    pub fn follow(
+        &mut self,
+        recording: &Recording,
+        ages: &Ages,
+        (now_s, now): (f64, &Vector3<f64>),
+        to_dot: impl Fn(&Vector3<f64>) -> (f64, f64),
+    ) {
+        for block in recording.since(f64::NEG_INFINITY) {
+            if let Some(place) = self.place(to_dot(&block.end)) {
+                self.counts[place] = self.counts[place].saturating_add(1);
+            }
+        }
+        let recent = LONGEST_RECENT_LINE * self.width.min(self.height) as f64;
+        for (age, longest) in [
+            (Age::Old, LONGEST_LINE),
+            (Age::Turn, LONGEST_LINE),
+            (Age::Recent, recent),
+        ] {
+            let since = ages.since(age, now_s);
+            let blocks = recording
+                .since(since)
+                .filter(|block| block.end_s >= since && block.end_s <= now_s);
+            let mut last: Option<(f64, f64)> = None;
+            for at in blocks.map(|block| &block.end).chain([now]) {
+                let at = to_dot(at);
+                self.dot(at, age);
+                if let Some(last) = last.replace(at)
+                    && (at.0 - last.0).abs().max((at.1 - last.1).abs()) <= longest
+                {
+                    self.line(last, at, age);
+                }
+            }
+        }
+    }
+
+    /// The count from which on a dot is one where the point dwelt.
+    fn dwelt(&self) -> u16 {
+        let found = self.counts.iter().filter(|count| **count > 0);
+        let (dots, sum) = found.fold((0u32, 0u32), |(dots, sum), count| {
+            (dots + 1, sum + u32::from(*count))
+        });
+        let average = f64::from(sum) / f64::from(dots.max(1));
+        ((DWELT * average).ceil() as u16).max(LEAST_DWELT)
+    }
+
+    fn age(&self, x: usize, y: usize) -> Option<Age> {
+        let inside = x < self.width && y < self.height;
+        inside.then(|| self.ages[y * self.width + x]).flatten()
+    }
+
+    /// Whether the path is on all four sides of a dot: it covers an area there, and is no line.
+    fn is_covered(&self, x: usize, y: usize) -> bool {
+        let (left, above) = (x.wrapping_sub(1), y.wrapping_sub(1));
+        let around = [(left, y), (x + 1, y), (x, above), (x, y + 1)];
+        around.into_iter().all(|(x, y)| self.age(x, y).is_some())
+    }
+
+    /// Whether a recent dot is next to this one.
+    fn is_beside_recent(&self, x: usize, y: usize) -> bool {
+        let near = |at: usize| [at.wrapping_sub(1), at, at + 1];
+        let mut around = near(y).into_iter().flat_map(|y| near(x).map(|x| (x, y)));
+        around.any(|(x, y)| self.age(x, y) == Some(Age::Recent))
+    }
+
+    /// Sets the dots that are drawn of the path.
+    pub fn draw(&self, dots: &mut Dots) {
+        let dwelt = self.dwelt();
+        // The strongest last: it decides how a cell looks in which there are dots of more than one age.
+        for age in [Age::Old, Age::Turn, Age::Recent] {
+            let of_age = self.ages.iter().enumerate();
+            for (place, _) in of_age.filter(|(_, is)| **is == Some(age)) {
+                let (x, y) = (place % self.width, place / self.width);
+                let dwelt = self.counts[place] >= dwelt;
+                // What is beside a recent line is left out, so that it is seen as one.
+                if age != Age::Recent && self.is_beside_recent(x, y) {
+                    continue;
+                }
+                let is_drawn = match self.is_covered(x, y) {
+                    _ if age == Age::Recent || dwelt => true,
+                    true if self.is_thin => is_in_area(x, y, Age::Old),
+                    true => is_in_area(x, y, age),
+                    false => is_in_line(x, y, age),
+                };
+                if is_drawn {
+                    let is_area = self.is_covered(x, y);
+                    dots.set(x as f64, y as f64, ink(age, is_area));
+                }
+            }
+        }
+    }
+}
+
+/// Whether a dot of a line is drawn: four of five where it is of the last turn, else two.
+fn is_in_line(x: usize, y: usize, age: Age) -> bool {
+    let drawn = if age == Age::Turn { 4 } else { 2 };
+    RANK[(x + SHIFT * y) % RANK.len()] < drawn
+}
+
+/// Whether a dot of an area is drawn: one of four where it is of the last turn, else one of eight.
+fn is_in_area(x: usize, y: usize, age: Age) -> bool {
+    let is_corner = x.is_multiple_of(2) && y.is_multiple_of(2);
+    is_corner && (age == Age::Turn || (x / 2 + y / 2).is_multiple_of(2))
+}
+
+fn ink(age: Age, is_area: bool) -> Ink {
+    match age {
+        Age::Recent => Ink::Strong(Role::Recent),
+        // The exact motion is seen through it.
+        Age::Turn if is_area => Ink::Under(Role::Path),
+        Age::Turn => Ink::Strong(Role::Path),
+        Age::Old => Ink::Under(Role::Old),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::view::markers::Marker;
+    use crate::lab::view::theme::{Background, Theme};
+    use crate::observe::recording::Moment;
+    use ratatui::buffer::Buffer;
+    use ratatui::layout::Rect;
+
+    const WIDTH: u16 = 60;
+
+    /// How many dots there are in each column of cells of what `trail` draws.
+    fn drawn(trail: &Trail, mut dots: Dots) -> Vec<u32> {
+        let theme = Theme {
+            colour: false,
+            background: Background::Dark,
+        };
+        trail.draw(&mut dots);
+        let area = Rect::new(0, 0, WIDTH, 10);
+        let mut buf = Buffer::empty(area);
+        dots.render(&theme, &mut buf);
+        let in_cell = |x, y| {
+            let sign = buf[(x, y)].symbol().chars().next().unwrap_or(' ');
+            u32::from(sign)
+                .checked_sub(0x2800)
+                .map_or(0, u32::count_ones)
+        };
+        (0..WIDTH)
+            .map(|x| (0..10).map(|y| in_cell(x, y)).sum())
+            .collect()
+    }
+
+    fn sheet() -> Dots {
+        Dots::new(Rect::new(0, 0, WIDTH, 10), Marker::Braille)
+    }
+
+    /// A trail of a point that moves from the left to the right in 120 s, at places `at` says by the time.
+    fn trail(at: impl Fn(f64) -> (f64, f64)) -> Trail {
+        let mut recording = Recording::default();
+        let moment = |step: u32| {
+            let time_s = f64::from(step) * 0.05;
+            let (x, y) = at(time_s);
+            Moment {
+                time_s,
+                position: Vector3::new(x, y, 0.0),
+                axle_height: 1.0,
+            }
+        };
+        (0..2400).for_each(|step| recording.push(&moment(step)));
+        let now = moment(2400);
+        let ages = Ages::new(Some(2.0), Some(60.0));
+        let mut trail = Trail::new(&sheet(), false);
+        let to_dot = |at: &Vector3<f64>| (at.x, at.y);
+        trail.follow(&recording, &ages, (now.time_s, &now.position), to_dot);
+        trail
+    }
+
+    #[test]
+    fn the_newest_dots_are_denser_than_the_old_ones() {
+        for slope in [0.0, 0.3, 0.1] {
+            let columns = drawn(&trail(|t| (t, 2.0 + slope * t)), sheet());
+            let density =
+                |columns: &[u32]| columns.iter().sum::<u32>() as f64 / (2 * columns.len()) as f64;
+            let (old, turn, recent) = (
+                density(&columns[..25]),
+                density(&columns[30..45]),
+                density(&columns[50..59]),
+            );
+            assert!(old > 0.2 && old < 0.5, "{old}");
+            assert!(turn > old + 0.2, "{old} {turn}");
+            assert!(recent > turn + 0.15, "{turn} {recent}");
+        }
+    }
+
+    #[test]
+    fn an_old_area_is_sparse_and_the_last_swings_are_a_line() {
+        // Twice up and down in each dot.
+        let zigzag = |t: f64| (t, 20.0 + 15.0 * libm::sin(12.0 * t));
+        let columns = drawn(&trail(zigzag), sheet());
+        let old: u32 = columns[10..25].iter().sum();
+        let area = 15.0 * 2.0 * 30.0;
+        assert!(f64::from(old) < 0.25 * area, "{old} of {area}");
+        assert!(f64::from(old) > 0.08 * area, "{old} of {area}");
+        let recent: u32 = columns[52..58].iter().sum();
+        assert!(recent > 6 * 2 * 20, "{recent}");
+    }
+
+    #[test]
+    fn where_the_point_dwelt_the_path_is_denser() {
+        // It stands still at x = 20 for a while.
+        let columns = drawn(&trail(|t| (t.min(20.0).max(t - 20.0), 7.0)), sheet());
+        assert!(columns[10] > columns[5], "{columns:?}");
+    }
+
+    #[test]
+    fn it_has_no_more_places_than_the_sheet_has_dots() {
+        let trail = trail(|t| (t * 1e9, t));
+        assert_eq!(trail.ages.len(), 120 * 40);
+        assert_eq!(trail.counts.len(), 120 * 40);
+    }
+}
