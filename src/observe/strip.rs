@@ -14,13 +14,16 @@ const ROUNDING: f64 = 1e-6;
 const LONGEST_S: f64 = f64::MAX / 4.0;
 
 /// Columns on either side over which the turns of a curve are counted to tell whether its swings can be drawn one by one.
-const NEIGHBOURS: usize = 2;
+const NEIGHBOURS: usize = 6;
 
 /// Turns on either side over which the mean of a band is taken, so that parts of a swing do not show in it.
-const MEAN_TURNS: f64 = 8.0;
+const MEAN_TURNS: f64 = 4.0;
 
 /// From so many turns in a column on, swings cannot be drawn one by one: a swing has two turns, and needs five columns.
 const MOST_TURNS: f64 = 0.4;
+
+/// The part of a band's width by which slow motion may carry the curve in two swings.
+const MOST_CARRIED: f64 = 0.5;
 
 /// A tilt that changes by less than this, degrees, does not swing: it has no more than rounding.
 const LEAST_SWING_DEG: f64 = 0.01;
@@ -201,8 +204,8 @@ impl<'a> Pen<'a> {
         columns.map(move |(column, drawn)| (column.abs_diff(index), drawn))
     }
 
-    /// How often the curve turns in a column about the column `index`; where slow motion carries it along and the tilt,
-    /// which swings with every nutation, turns more than once in a column: how often the tilt does.
+    /// How often the curve turns in a column about the column `index`; where slow motion carries it along, how often the
+    /// tilt does, which swings with every nutation.
     fn turns(&self, index: usize) -> f64 {
         let about = || self.about(index, NEIGHBOURS).map(|(_, drawn)| drawn);
         let columns = about().count().max(1) as f64;
@@ -210,7 +213,7 @@ impl<'a> Pen<'a> {
         let turns_of_tilt: f64 = about().map(|drawn| drawn.turns_of_tilt).sum();
         let tilt = about().filter_map(|drawn| drawn.tilt).reduce(Extent::and);
         match tilt {
-            Some(tilt) if tilt.max - tilt.min > LEAST_SWING_DEG && turns_of_tilt > columns => {
+            Some(tilt) if tilt.max - tilt.min > LEAST_SWING_DEG => {
                 turns.max(turns_of_tilt) / columns
             }
             _ => turns / columns,
@@ -230,6 +233,9 @@ impl<'a> Pen<'a> {
     }
 
     fn finish(self) -> Vec<Option<Column>> {
+        let is_drawn = |drawn: &Drawn| drawn.extent.is_some();
+        let first = self.columns.iter().position(is_drawn).unwrap_or(0);
+        let last = self.columns.iter().rposition(is_drawn).unwrap_or(0);
         let column = |(index, drawn): (usize, &Drawn)| {
             let extent = drawn.extent?;
             let turns = self.turns(index);
@@ -251,11 +257,24 @@ impl<'a> Pen<'a> {
                 .about(index, reach)
                 .filter_map(|(_, drawn)| drawn.extent);
             let band = extents.fold(extent, Extent::and);
-            let mean = self.mean(index, (MEAN_TURNS / turns) as usize);
+            let mean = |index: usize| {
+                let mean = self.mean(index, (MEAN_TURNS / turns) as usize);
+                mean.unwrap_or(extent.min)
+            };
+            // Where slow motion carries the curve further in two swings than it swings, it is drawn as it is.
+            let away = (4.0 / turns).ceil() as usize;
+            // The means at the ends of the curve are of one side only: what holds further inside is taken to hold there.
+            let middle = index
+                .min(last.saturating_sub(2 * away))
+                .max((first + 2 * away).min(last));
+            let carried = [middle.saturating_sub(away), (middle + away).min(last)]
+                .map(|other| mean(other) - mean(middle));
+            let is_band = carried.map(f64::abs).into_iter().fold(0.0, f64::max)
+                < MOST_CARRIED * (band.max - band.min);
             Some(Column {
                 extent,
-                mean: mean.map_or(extent.min, |mean| mean.clamp(band.min, band.max)),
-                band: Some(band),
+                mean: mean(index).clamp(band.min, band.max),
+                band: is_band.then_some(band),
             })
         };
         self.columns.iter().enumerate().map(column).collect()

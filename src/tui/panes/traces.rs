@@ -181,7 +181,7 @@ impl Traces<'_> {
             None => Strip::following(self.run.now().time_s, self.view.window_s, columns),
         };
         let detail = Strip::new(self.detail.begin_s, self.detail.window_s, columns);
-        let is_magnified = detail.window_s < 0.999 * long.window_s;
+        let is_magnified = self.is_detail(&detail);
         let least = if beside > 0 { 1 } else { STRIP };
         let axes = 1 + u16::from(is_magnified);
         let strips = inside.height.saturating_sub(axes) / least;
@@ -228,6 +228,11 @@ impl Traces<'_> {
         std::iter::once(first).take(most).chain(others).collect()
     }
 
+    /// Whether `strip` shows less time than the others: the fast motion.
+    fn is_detail(&self, strip: &Strip) -> bool {
+        strip.window_s < 0.999 * self.view.window_s
+    }
+
     fn group(&self, group: &Group, marks: &Marks, buf: &mut Buffer) {
         let count = group.curves.len() as u16;
         let rows = group.area.height.saturating_sub(1);
@@ -257,7 +262,7 @@ impl Traces<'_> {
 
     /// One strip with its name and its values.
     fn strip(&self, curve: Curve, group: &Group, marks: &Marks, area: Rect, buf: &mut Buffer) {
-        let is_detail = group.strip.window_s < 0.999 * self.view.window_s;
+        let is_detail = self.is_detail(&group.strip);
         let scale = self.magnified(curve, self.scale(curve, is_detail.then_some(&group.strip)));
         let theme = &self.view.theme;
         let (name, quiet) = (theme.style(role(curve)), theme.style(Role::Quiet));
@@ -306,12 +311,21 @@ impl Traces<'_> {
         buf: &mut Buffer,
     ) {
         let mut dots = Dots::new(area, self.view.marker);
+        // Where swings are shown one by one, few columns are no reason for a band.
+        let columns = |recording: &Recording, cuts: &[f64]| {
+            let mut columns = strip.columns(recording, curve, cuts);
+            if self.is_detail(strip) {
+                let columns = columns.iter_mut().flatten();
+                columns.for_each(|column| column.band = None);
+            }
+            columns
+        };
         if let Some(ghost) = self.ghost {
-            let before = strip.columns(ghost.recording(), curve, &ghost.marks().edits);
+            let before = columns(ghost.recording(), &ghost.marks().edits);
             draw(&mut dots, &before, scale, Stroke::Dotted, Ink::Ghost);
         }
         if let Some(overlay) = self.run.overlay() {
-            let exact = strip.columns(overlay.recording(), curve, &[]);
+            let exact = columns(overlay.recording(), &[]);
             draw(
                 &mut dots,
                 &exact,
@@ -320,10 +334,10 @@ impl Traces<'_> {
                 Ink::Faint(Role::Exact),
             );
         }
-        let columns = strip.columns(self.run.recording(), curve, &marks.edits);
+        let run = columns(self.run.recording(), &marks.edits);
         draw(
             &mut dots,
-            &columns,
+            &run,
             scale,
             Stroke::Full,
             Ink::Strong(role(curve)),
