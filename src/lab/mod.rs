@@ -115,6 +115,7 @@ impl Lab {
     /// If the numbers stop being finite on the way.
     pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
         let arrived = self.player.playback.begin_at(step);
+        self.player.playback.catch_up_exact();
         self.read_now();
         arrived
     }

@@ -6,7 +6,7 @@ use super::numbers::{self, Numbers};
 use crate::analysis::health::Advice;
 use crate::lab::view::View;
 use crate::observe::advisor::Advisor;
-use crate::observe::detail::{Detail, Wanted};
+use crate::observe::detail::{Detail, Placement, Wanted};
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::lookup;
@@ -185,12 +185,12 @@ impl Player {
     /// Chooses the time that the strip of the fast motion shows. While that would pass too fast to be seen, it is chosen
     /// once in a while only.
     fn choose_detail(&mut self, now: Duration, view: &View) {
-        let is_held = match self.playback.speed() {
+        let is_fast = match self.playback.speed() {
             _ if !self.playback.is_running() => false,
             Speed::Top => true,
             Speed::Times(speed) => speed * PASSES_S > self.detail.window_s,
         };
-        let is_held = is_held && self.cursor().is_none();
+        let is_held = is_fast && self.cursor().is_none();
         let is_of_this_run = self.detail.begin_s + self.detail.window_s <= self.run().now().time_s;
         if is_held && is_of_this_run && now < self.detail_at + HOLD {
             return;
@@ -198,8 +198,12 @@ impl Player {
         let wanted = Wanted {
             window_s: view.detail_s,
             long_s: view.window_s,
-            about_s: self.cursor().map(|cursor| cursor.time_s),
-            is_held,
+            place: match self.cursor() {
+                Some(cursor) => Placement::About(cursor.time_s),
+                None if is_held => Placement::Latest,
+                None if self.playback.is_at_end() => Placement::UpToNow,
+                None => Placement::Following,
+            },
         };
         let (run, readouts) = (self.playback.run(), &self.reading.readouts);
         self.detail = Detail::new(run, readouts, &wanted, Some(&self.detail));

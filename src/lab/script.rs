@@ -164,6 +164,7 @@ impl Lab {
             }
             self.go_on_with_script(halt);
         }
+        self.player.playback.catch_up_exact();
         self.read_now();
         match self.script.failed.take() {
             Some(text) => {

@@ -36,10 +36,21 @@ pub struct Wanted {
     pub window_s: Option<f64>,
     /// Length of the long window, s: the longest that it may have.
     pub long_s: f64,
-    /// The time that it shows about its middle, s; `None`: it follows the run.
-    pub about_s: Option<f64>,
-    /// Whether it shows the latest whole window, and not the present one as it fills.
-    pub is_held: bool,
+    /// Which time it shows.
+    pub place: Placement,
+}
+
+/// Which time the window shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Placement {
+    /// The present, as the window fills; where it is full, a part is taken off its beginning.
+    Following,
+    /// The latest whole window that begins at the top of a swing.
+    Latest,
+    /// The time up to now.
+    UpToNow,
+    /// The time about this one, s.
+    About(f64),
 }
 
 impl Wanted {
@@ -48,8 +59,7 @@ impl Wanted {
         Self {
             window_s: None,
             long_s,
-            about_s: None,
-            is_held: false,
+            place: Placement::Following,
         }
     }
 }
@@ -70,17 +80,15 @@ impl Detail {
         });
         let swing_s = swing_s.unwrap_or(0.0).min(0.5 * window_s);
         let now_s = run.now().time_s;
-        let begin_s = match wanted.about_s {
-            Some(about_s) => about_s - 0.5 * window_s,
-            None if wanted.is_held => now_s - window_s,
-            None => {
+        let begin_s = match wanted.place {
+            Placement::About(about_s) => about_s - 0.5 * window_s,
+            Placement::UpToNow => now_s - window_s,
+            Placement::Latest => highest_s(run.recording(), curve, now_s - window_s, swing_s),
+            Placement::Following => {
                 let pages = ((now_s + swing_s - window_s) / (PAGE * window_s)).ceil();
-                PAGE * window_s * pages.max(0.0)
+                let begin_s = PAGE * window_s * pages.max(0.0);
+                highest_s(run.recording(), curve, begin_s, swing_s)
             }
-        };
-        let begin_s = match wanted.about_s {
-            Some(_) => begin_s,
-            None => highest_s(run.recording(), curve, begin_s, swing_s),
         };
         Self {
             curve,
@@ -186,7 +194,7 @@ mod tests {
     fn held_it_begins_at_the_top_of_a_swing_each_time() {
         let (mut run, _) = at("cusps", 9000);
         let held = Wanted {
-            is_held: true,
+            place: Placement::Latest,
             ..Wanted::following(230.0)
         };
         for _ in 0..5 {

@@ -247,6 +247,11 @@ impl Playback {
         self.stop
     }
 
+    /// Whether it stands still at the last step of the scenario's run, or later.
+    pub fn is_at_end(&self) -> bool {
+        !self.is_running() && self.step_number() >= self.end_step()
+    }
+
     /// Whether it plays until a condition holds.
     pub fn is_running_until(&self) -> bool {
         self.until.is_some()
@@ -261,6 +266,11 @@ impl Playback {
         };
         let deadline = clock() + share;
         self.run.follow_exact(|| clock() >= deadline);
+    }
+
+    /// Advances the exact motion to the run's time, if it is shown, however long that takes.
+    pub fn catch_up_exact(&mut self) {
+        self.run.follow_exact(|| false);
     }
 
     /// The last step of the scenario's run; once the run has reached it, there is no further stop.

@@ -282,7 +282,8 @@ impl FromAbove<'_> {
             0.4
         };
         let length_m = at_or_below(share * area.width as f64 * plan.cell_width_m);
-        let cells = (length_m / plan.cell_width_m).round() as usize;
+        // From the middle of its first cell to that of its last.
+        let cells = (length_m / plan.cell_width_m).round() as usize + 1;
         let bar = format!("├{}┤ {length_m} m", "─".repeat(cells.saturating_sub(2)));
         let end = write(area, (0, 0), &bar, theme.style(Role::Quiet), buf);
         let legends: &[&str] = match self.run.overlay() {

@@ -32,6 +32,8 @@ use ratatui::widgets::Widget;
 const STRIP: u16 = 2;
 /// From this width on the values stand beside the strips, and not on a line above each.
 const BESIDE_FROM: u16 = 48;
+/// What marks the strip that shows less time than the others.
+const ZOOM: &str = "zoom";
 /// Columns of a strip's name beside it.
 const NAME: u16 = 5;
 /// What marks the time of an edit, and the time where the run stands.
@@ -146,8 +148,17 @@ impl Traces<'_> {
         let point = named.unwrap_or("axle top");
         let (exact, ghost) = (self.run.overlay().is_some(), self.ghost.is_some());
         let legends: &[&str] = match (exact, ghost) {
+            (false, false) if self.detail.window_s < 0.999 * self.view.window_s => &[
+                "over time; bands: lowest, mean (dotted) and highest of fast swings",
+                ROW.title,
+            ],
             (false, false) => &[ROW.title],
-            (true, false) => &["over time, dashed: exact motion", "- - exact", "--exact"],
+            (true, false) => &[
+                "over time, dashed: exact motion; bands: lowest, mean (dotted) and highest of fast swings",
+                "over time, dashed: exact motion",
+                "- - exact",
+                "--exact",
+            ],
             (false, true) => &["over time, dotted: other run", "··· other run", "···other"],
             (true, true) => &[
                 "over time, dashed: exact motion, dotted: other run",
@@ -271,6 +282,9 @@ impl Traces<'_> {
             if area.height > 1 {
                 write(area, (0, 1), curve.unit(), quiet, buf);
             }
+            if area.height > 2 && self.is_detail(&group.strip) {
+                write(area, (0, 2), ZOOM, quiet, buf);
+            }
             for (row, label) in axis::values(&scale, area.height as usize) {
                 let x = group.beside.saturating_sub(1 + label.len() as u16);
                 write(area, (x, row as u16), &label, quiet, buf);
@@ -286,7 +300,17 @@ impl Traces<'_> {
             let value = self.at_cursor(curve, &group.strip);
             let (text, style) = match value {
                 Some((_, value)) => (format!(" {value}"), theme.style(Role::Focus)),
-                None => (format!(" {} {}", scale.in_words(), curve.unit()), quiet),
+                None => {
+                    let range = format!(" {} {}", scale.in_words(), curve.unit());
+                    let zoom = if self.is_detail(&group.strip) {
+                        ZOOM
+                    } else {
+                        ""
+                    };
+                    let room = (area.width as usize).saturating_sub(range.len() + NAME as usize);
+                    let zoom = if zoom.len() < room { zoom } else { "" };
+                    (format!("{range} {zoom}"), quiet)
+                }
             };
             write(area, (after, 0), &text, style, buf);
             Rect {

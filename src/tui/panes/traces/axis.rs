@@ -10,7 +10,7 @@ const LONG_TIME_S: f64 = 1e6;
 const MOST_TIME_S: f64 = 1e15;
 /// Columns from one label to the next, at least.
 const APART: usize = 2;
-/// What follows the last label.
+/// What follows the first label, or the last of two.
 const UNIT: &str = " s";
 
 /// A text, and the cell in which it begins.
@@ -34,14 +34,16 @@ fn round_times(strip: &Strip, width: usize, most: usize) -> Option<Vec<Placed>> 
         _ => strip.window_s,
     };
     let digits = scale::decimals(apart);
-    let last = ticks.len().checked_sub(1)?;
+    if ticks.is_empty() {
+        return None;
+    }
     let mut placed: Vec<Placed> = Vec::with_capacity(ticks.len());
     let mut free_from = 0;
     for (index, &time_s) in ticks.iter().enumerate() {
         let label = fixed(time_s + 0.0, digits);
         let share = (time_s - strip.begin_s) / strip.window_s;
         let middle = (share * width as f64).min(width as f64 - 1.0) as usize;
-        let unit = if index == last { UNIT } else { "" };
+        let unit = if index == 0 { UNIT } else { "" };
         let length = label.len() + unit.len();
         let at = middle
             .saturating_sub(label.len() / 2)
@@ -118,9 +120,9 @@ mod tests {
     #[test]
     fn times_are_round_and_stand_under_their_place() {
         let of = |begin_s, window_s, width| line(&Strip::new(begin_s, window_s, 2 * width), width);
-        assert_eq!(of(0.0, 230.0, 25), "0   50   100   150  200 s");
-        assert_eq!(of(0.0, 230.0, 12), "0      200 s");
-        assert_eq!(of(12.0, 0.5, 30), "12.0     12.2         12.4 s");
+        assert_eq!(of(0.0, 230.0, 25), "0 s 50   100   150  200");
+        assert_eq!(of(0.0, 230.0, 12), "0 s     200");
+        assert_eq!(of(12.0, 0.5, 30), "12.0 s   12.2         12.4");
         assert_eq!(of(0.0, 230.0, 4), "0 s");
         assert_eq!(of(0.0, 230.0, 1), "");
     }

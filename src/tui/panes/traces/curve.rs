@@ -62,7 +62,7 @@ pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: 
         set(from, to);
         let mean = row(column.mean);
         let is_clear = mean >= top + CLEAR_OF_EDGE && mean + CLEAR_OF_EDGE <= bottom;
-        if stroke == Stroke::Full && is_clear && (x / across).is_multiple_of(2) {
+        if stroke == Stroke::Full && is_clear && x.is_multiple_of(across.max(2)) {
             set(mean, mean);
         }
         before = Some((top, bottom));
