@@ -238,7 +238,9 @@ impl<'a> Pen<'a> {
         let last = self.columns.iter().rposition(is_drawn).unwrap_or(0);
         let column = |(index, drawn): (usize, &Drawn)| {
             let extent = drawn.extent?;
-            let turns = self.turns(index);
+            // Near an end of the curve there are turns on one side only: what holds further inside is taken to hold there.
+            let inside = index.max((first + NEIGHBOURS).min(last));
+            let turns = self.turns(inside.min(last.saturating_sub(NEIGHBOURS).max(first)));
             if turns <= MOST_TURNS {
                 let mean = self.mean(index, 0).unwrap_or(extent.min);
                 return Some(Column {
@@ -263,7 +265,7 @@ impl<'a> Pen<'a> {
             };
             // Where slow motion carries the curve further in two swings than it swings, it is drawn as it is.
             let away = (4.0 / turns).ceil() as usize;
-            // The means at the ends of the curve are of one side only: what holds further inside is taken to hold there.
+            // So are the means.
             let middle = index
                 .min(last.saturating_sub(2 * away))
                 .max((first + 2 * away).min(last));
