@@ -242,14 +242,17 @@ impl Lab {
             Action::NextMarker => {
                 let text = self.view.next_marker();
                 self.say(text);
+                self.remember("marker", self.view.marker.name());
             }
             Action::ToggleColour => {
                 let text = self.view.toggle_colour();
                 self.say(text);
+                self.remember("colour", self.view.theme.colour_choice());
             }
             Action::ToggleBackground => {
                 let text = self.view.toggle_background();
                 self.say(text);
+                self.remember("background", self.view.theme.background.name());
             }
             Action::Browse => {
                 let files = &self.files;
