@@ -189,7 +189,10 @@ impl Lab {
 
     /// Takes a pasted text, where text is typed.
     pub fn paste(&mut self, text: &str) {
-        self.on_top.paste(text, self.now);
+        match self.on_top.mode() {
+            Mode::Find => self.values.type_name(text),
+            _ => self.on_top.paste(text, self.now),
+        }
         self.changed = true;
     }
 

@@ -3,6 +3,7 @@
 
 use super::command::{Command, Force, PushChoice};
 use super::editor::{Editor, Line};
+use super::on_top::type_into;
 use crate::observe::live::LiveRun;
 use crate::scenario::Scenario;
 use crate::work::journal::{Journal, number_of_push};
@@ -90,6 +91,27 @@ impl Values {
         &self.editor
     }
 
+    /// Adds `text` to the part of a name that the listed lines have.
+    pub(super) fn type_name(&mut self, text: &str) {
+        let mut name = self.editor.name().to_owned();
+        type_into(&mut name, text);
+        self.editor.filter(name);
+    }
+
+    /// Removes the last character of that part.
+    pub(super) fn erase_name(&mut self) {
+        let mut name = self.editor.name().to_owned();
+        name.pop();
+        self.editor.filter(name);
+    }
+
+    /// Lists all values again; returns whether some were left out.
+    pub(super) fn forget_name(&mut self) -> bool {
+        let was_filtered = !self.editor.name().is_empty();
+        self.editor.filter(String::new());
+        was_filtered
+    }
+
     /// Moves the selection by `rows` lines.
     pub(super) fn shift(&mut self, rows: isize) {
         self.editor.shift(rows);
@@ -97,11 +119,13 @@ impl Values {
 
     /// Selects the size of the push to come.
     pub(super) fn select_next_push(&mut self) {
+        self.editor.filter(String::new());
         self.editor.select(NEXT_PUSH, Field::Size.label().0);
     }
 
     /// The value of the selected line.
     pub(super) fn selected(&self) -> Option<&Target> {
+        self.editor.selected()?;
         self.targets.get(self.editor.selected_index())
     }
 

@@ -5,12 +5,14 @@
 mod rows;
 
 use super::{PaneRow, Width, frame, shortened, write};
+use crate::lab::action::Action;
 use crate::lab::editor::{Editor, Line};
 use crate::lab::view::{Pane, Part, View};
 use crate::observe::reading::Reading;
 use crate::scenario::{Motion, Scenario};
 use crate::text::printable::printable;
 use crate::text::wrap::columns;
+use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -47,12 +49,19 @@ pub const ROW: PaneRow = PaneRow {
             motion: &lab.player().motion(),
             reading: lab.player().reading(),
             editor: lab.values().editor(),
+            is_searched: lab.on_top().mode() == Mode::Find,
             view: lab.view(),
         }
         .render(area, buf);
     },
-    keys: &[],
+    keys: KEYS,
 };
+
+/// The keys that the footer names while the pane has the focus.
+#[rustfmt::skip]
+const KEYS: &[Binding] = &[
+    row(&[Mode::Lab], &[Key::Char('/')], Action::FindValue, "find", "find a value by a part of its name; Esc shows all again"),
+];
 
 /// The values of a scenario and of its run.
 pub struct Parameters<'a> {
@@ -64,6 +73,8 @@ pub struct Parameters<'a> {
     pub reading: &'a Reading,
     /// What can be edited.
     pub editor: &'a Editor,
+    /// Whether a part of a name is being typed, to find a value.
+    pub is_searched: bool,
     /// How it is looked at.
     pub view: &'a View,
 }
@@ -72,7 +83,13 @@ impl Widget for Parameters<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let focus = self.view.focus == ROW.id;
         let editor = Some(self.editor).filter(|_| focus);
-        let inside = frame(&title(editor), area, focus, &self.view.theme, buf);
+        let inside = frame(
+            &title(editor, self.is_searched),
+            area,
+            focus,
+            &self.view.theme,
+            buf,
+        );
         if inside.is_empty() {
             return;
         }
@@ -242,24 +259,37 @@ impl Parameters<'_> {
     }
 }
 
-/// The pane's title, which tells where in the list the selected line is.
-fn title(editor: Option<&Editor>) -> String {
-    match editor.map(|editor| (editor.selected_index() + 1, editor.lines().len())) {
-        Some((at, all @ 1..)) => format!("{} {at} of {all}", ROW.title),
-        _ => ROW.title.to_owned(),
+/// The pane's title, which tells where in the list the selected line is, and what is searched for.
+fn title(editor: Option<&Editor>, is_searched: bool) -> String {
+    let Some(editor) = editor else {
+        return ROW.title.to_owned();
+    };
+    let shown = editor.shown();
+    let at = shown
+        .iter()
+        .position(|(index, _)| *index == editor.selected_index());
+    let at = at.map_or(0, |at| at + 1);
+    match (editor.name(), is_searched, shown.len()) {
+        (name, true, count) => format!("/{name}_ {at} of {count}"),
+        ("", false, 0) => ROW.title.to_owned(),
+        ("", false, count) => format!("{} {at} of {count}", ROW.title),
+        (name, false, count) => format!("/{name} {at} of {count}"),
     }
 }
 
-/// The lines of `editor`, its groups with their headings.
+/// The lines of `editor` that are shown, its groups with their headings.
 fn edited_rows(editor: &Editor) -> Vec<Row> {
-    let mut rows = Vec::with_capacity(2 * editor.lines().len());
-    let mut at = 0;
-    for group in editor.lines().chunk_by(|a, b| a.group == b.group) {
-        rows.extend(group.first().map(|line| heading(on_one_line(&line.group))));
-        for line in group {
-            rows.push(edited_row(line, at == editor.selected_index()));
-            at += 1;
+    let shown = editor.shown();
+    let mut rows = Vec::with_capacity(2 * shown.len());
+    for group in shown.chunk_by(|(_, a), (_, b)| a.group == b.group) {
+        let first = group.first();
+        rows.extend(first.map(|(_, line)| heading(on_one_line(&line.group))));
+        for (index, line) in group {
+            rows.push(edited_row(line, *index == editor.selected_index()));
         }
+    }
+    if rows.is_empty() && !editor.name().is_empty() {
+        rows.push(heading("no value has that name"));
     }
     rows
 }
