@@ -89,7 +89,7 @@ fn a_word_is_explained_by_its_sentence() {
         }
         stage
             .press("?strobed")
-            .shows("strobe light")
+            .shows("as under a strobe")
             .press(ESC)
             .press(ESC);
     }
@@ -190,4 +190,54 @@ fn a_name_that_no_value_has_is_said_and_cleared() {
         .press("/dt\n\u{1b}")
         .press("P")
         .shows("next push");
+}
+
+#[test]
+fn a_value_shows_all_the_digits_it_has() {
+    const HEIGHT: &str = "0.565685424949238";
+    let mut stage = open(SMALL);
+    stage
+        .press("/rim height")
+        .shows("body.rim.height_m")
+        .shows(&format!("={HEIGHT}"));
+    let mut stage = open(Rect::new(0, 0, 160, 40));
+    stage.press("ef").shows(HEIGHT).shows("m  ");
+    // Beside the other panes too, a value is not rounded where there is room.
+    let set = [
+        "start.tilt_deg=0.000123456",
+        "motion.gravity_m_per_s2=9.80665",
+    ];
+    let stage = &mut Stage::open("method-2", &set, LARGE);
+    stage.shows("0.000123456 deg").shows("9.80665");
+}
+
+#[test]
+fn a_whole_number_keeps_all_its_digits() {
+    let set = ["push=[{point='top', force_N=[0,0,1], first_step=123456789, steps=1}]"];
+    let mut stage = Stage::open("method-2", &set, SMALL);
+    stage
+        .press("/first step")
+        .shows_no("...")
+        .shows("1.23e8")
+        .shows("=123456789");
+}
+
+#[test]
+fn the_frame_of_l_stands_beside_it_and_is_kept() {
+    let mut stage = open(SMALL);
+    stage
+        .press("/lz")
+        .shows("Lz body")
+        .press("→\n")
+        .shows("Lz body, J s")
+        .press("500\n");
+    let file = stage.lab.player().run().scenario().file.clone();
+    assert_eq!(
+        file.start.momentum_frame,
+        Some(gyrolab::scenario::file::Frame::Body)
+    );
+    assert_eq!(file.start.momentum_Js, Some([0.0, 0.0, 500.0]));
+    Stage::open("method-1", &[], SMALL)
+        .press("/lz")
+        .shows("Lz world");
 }

@@ -102,14 +102,21 @@ impl Widget for Parameters<'_> {
 }
 
 impl Parameters<'_> {
-    fn columns<'r>(&self, columns: impl Iterator<Item = &'r [Row]>, area: Rect, buf: &mut Buffer) {
+    /// Columns of lines, each `wide` columns of the screen.
+    fn columns<'r>(
+        &self,
+        columns: impl Iterator<Item = &'r [Row]>,
+        wide: u16,
+        area: Rect,
+        buf: &mut Buffer,
+    ) {
         for (rows, column) in columns.zip(0..MOST_EDITED) {
             let place = Rect {
-                x: area.x + column * COLUMN,
-                width: area.width.saturating_sub(column * COLUMN).min(COLUMN),
+                x: area.x + column * wide,
+                width: area.width.saturating_sub(column * wide).min(wide),
                 ..area
             };
-            self.lines(rows, place, buf);
+            self.lines_of(rows, wide, place, buf);
         }
     }
 
@@ -143,7 +150,7 @@ impl Parameters<'_> {
             height: area.height - lower,
             ..area
         };
-        self.edited(&edited, editor, upper, 1, buf);
+        self.edited(&edited, editor, upper, (1, COLUMN), buf);
         let lower = Rect {
             y: upper.bottom(),
             height: lower,
@@ -164,8 +171,12 @@ impl Parameters<'_> {
         let height = area.height.saturating_sub(1) as usize;
         let grouped = by_group(&edited, height).map_or(usize::MAX, |columns| columns.len());
         let count = grouped.min(count as usize) as u16;
-        let width = COLUMN * count;
-        self.edited(&edited, editor, Rect { width, ..area }, count, buf);
+        let most = (area.width - COLUMN) / count;
+        let wide = edited.iter().map(needed).max().unwrap_or(COLUMN);
+        let wide = wide.clamp(COLUMN, most.max(COLUMN));
+        let width = wide * count;
+        let place = Rect { width, ..area };
+        self.edited(&edited, editor, place, (count, wide), buf);
         let right = Rect {
             x: area.x + width,
             width: area.width - width,
@@ -175,27 +186,37 @@ impl Parameters<'_> {
         self.lines(&rows, right, buf);
     }
 
-    /// `rows` of `editor` in `count` columns, as many as there is room for around the selected one, and below them what
-    /// `--set` takes for it.
-    fn edited(&self, rows: &[Row], editor: &Editor, area: Rect, count: u16, buf: &mut Buffer) {
-        let (lines, last) = match area.height {
-            0..=1 => (area, Rect { height: 0, ..area }),
-            _ => above_last(area),
-        };
-        if let Some(selected) = editor.selected() {
-            let width = last.width as usize;
-            self.note(&key_line(selected, width), last, buf);
+    /// `rows` of `editor` in `count` columns, each `wide` columns of the screen: as many as there is room for around the
+    /// selected one, and below them what `--set` takes for it, with all its digits.
+    fn edited(
+        &self,
+        rows: &[Row],
+        editor: &Editor,
+        area: Rect,
+        (count, wide): (u16, u16),
+        buf: &mut Buffer,
+    ) {
+        let mut lines = area;
+        let notes = editor
+            .selected()
+            .map(|line| key_lines(line, area.width as usize));
+        for note in notes.into_iter().flatten().rev() {
+            if lines.height > 1 {
+                let (above, last) = above_last(lines);
+                self.note(&note, last, buf);
+                lines = above;
+            }
         }
         let height = lines.height as usize;
         let grouped = by_group(rows, height).filter(|columns| columns.len() <= count as usize);
         if let Some(columns) = grouped {
-            return self.columns(columns.into_iter(), lines, buf);
+            return self.columns(columns.into_iter(), wide, lines, buf);
         }
         let room = height * count as usize;
         let (shown, above, below) = around_selected(rows, room);
-        self.columns(shown.chunks(height.max(1)), lines, buf);
+        self.columns(shown.chunks(height.max(1)), wide, lines, buf);
         // On the frame, or where columns of lines are empty.
-        let x = match self.view.filled && area.width == count * COLUMN {
+        let x = match self.view.filled && area.width == count * wide {
             true => area.right() - 1,
             false => area.right(),
         };
@@ -216,22 +237,28 @@ impl Parameters<'_> {
     }
 
     fn lines(&self, rows: &[Row], area: Rect, buf: &mut Buffer) {
+        self.lines_of(rows, COLUMN, area, buf);
+    }
+
+    /// `rows` in lines that are `wide` columns.
+    fn lines_of(&self, rows: &[Row], wide: u16, area: Rect, buf: &mut Buffer) {
         for (row, y) in rows.iter().zip(0..area.height) {
             let line = Rect {
                 y: area.y + y,
                 height: 1,
                 ..area
             };
-            self.line(row, line, buf);
+            self.line(row, VALUE_END + wide - COLUMN, line, buf);
         }
     }
 
-    fn line(&self, row: &Row, area: Rect, buf: &mut Buffer) {
+    /// One line; `value_end` is the column of the last character of its value.
+    fn line(&self, row: &Row, value_end: u16, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
         let indent = u16::from(!row.is_heading());
         let label = theme.style(row.label_role);
         let end = write(area, (indent, 0), &row.label, label, buf);
-        let room = VALUE_END.saturating_sub(end + 1) as usize;
+        let room = value_end.saturating_sub(end + 1) as usize;
         let value = fewer_digits(&row.value, room);
         let style = theme.style(row.value_role);
         if row.unit.is_empty() && columns(&value) > room {
@@ -239,10 +266,11 @@ impl Parameters<'_> {
             write(area, (end + 1, 0), &value, style, buf);
         } else {
             let value = shortened(&value, room);
-            let begin = VALUE_END.saturating_sub(columns(&value) as u16);
+            let begin = value_end.saturating_sub(columns(&value) as u16);
             write(area, (begin, 0), &value, style, buf);
         }
-        write(area, (UNIT, 0), &row.unit, theme.style(Role::Quiet), buf);
+        let unit = value_end + UNIT - VALUE_END;
+        write(area, (unit, 0), &row.unit, theme.style(Role::Quiet), buf);
         if row.is_selected {
             write(area, (0, 0), SELECTED, theme.style(Role::Focus), buf);
             buf.set_style(area, theme.style(Role::Selected));
@@ -316,18 +344,24 @@ fn on_one_line(text: &str) -> String {
     printable(&text.replace('\n', " ")).into_owned()
 }
 
-/// What `--set` takes for `line`: with its value where there is room for it on `width` columns.
-fn key_line(line: &Line, width: usize) -> String {
-    if line.key.is_empty() {
-        return String::new();
-    }
+/// What `--set` takes for `line`: on one line of `width` columns, or else the key on one and the value on the next.
+fn key_lines(line: &Line, width: usize) -> Vec<String> {
     let value = on_one_line(&line.value);
     let whole = format!("{}={value}", line.key);
-    if columns(&whole) <= width {
-        whole
-    } else {
-        line.key.clone()
+    let is_short = columns(&whole) <= width;
+    match (line.key.is_empty(), is_short) {
+        (true, _) => vec![String::new()],
+        (false, true) => vec![whole],
+        (false, false) => vec![line.key.clone(), format!("={value}")],
     }
+}
+
+/// Columns that `row` needs to show its number with all its digits.
+fn needed(row: &Row) -> u16 {
+    let is_number = row.value.parse::<f64>().is_ok();
+    let words = columns(&row.label) + columns(&row.value) + 2;
+    let behind = COLUMN - VALUE_END;
+    if is_number { words as u16 + behind } else { 0 }
 }
 
 /// The `room` rows around the selected one, its group's heading kept on top; whether there are more above and below.
@@ -349,8 +383,8 @@ fn around_selected(rows: &[Row], room: usize) -> (Vec<Row>, bool, bool) {
 
 /// `text`, or with fewer decimals where it is a number that is wider than `room`.
 fn fewer_digits(text: &str, room: usize) -> Cow<'_, str> {
-    let is_number = text.contains('.') && text.len() > room;
-    let number = text.parse::<f64>().ok().filter(|_| is_number);
+    let is_wide = text.len() > room;
+    let number = text.parse::<f64>().ok().filter(|_| is_wide);
     let Some(number) = number else {
         return text.into();
     };

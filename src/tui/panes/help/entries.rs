@@ -87,18 +87,21 @@ impl Entry {
         if short.starts_with(lower) {
             return Some(2);
         }
-        let all = format!("{} {short} {} {}", self.name(), self.text(), self.group).to_lowercase();
-        let begins = |wanted: &str| {
-            all.split(|c: char| !c.is_alphanumeric())
-                .any(|word| word.starts_with(wanted))
+        let all = format!("{} {short} {}", self.name(), self.text()).to_lowercase();
+        let is_word = |wanted: &str| {
+            let mut words = all.split(|c: char| !c.is_alphanumeric());
+            words.any(|word| word.starts_with(wanted))
         };
-        if lower.split_whitespace().all(begins) {
+        let mut wanted = lower.split_whitespace();
+        if wanted.clone().all(is_word) {
             return Some(3);
         }
-        lower
-            .split_whitespace()
-            .all(|word| all.contains(word))
-            .then_some(4)
+        if wanted.clone().all(|word| all.contains(word)) {
+            return Some(4);
+        }
+        let group = self.group.to_lowercase();
+        let is_there = |word: &str| all.contains(word) || group.contains(word);
+        wanted.all(is_there).then_some(5)
     }
 }
 
