@@ -344,15 +344,18 @@ fn on_one_line(text: &str) -> String {
     printable(&text.replace('\n', " ")).into_owned()
 }
 
-/// What `--set` takes for `line`: on one line of `width` columns, or else the key on one and the value on the next.
+/// What `--set` takes for `line`: on one line of `width` columns, or else the key on one and a number on the next; a text
+/// is shown whole by the dialog.
 fn key_lines(line: &Line, width: usize) -> Vec<String> {
     let value = on_one_line(&line.value);
     let whole = format!("{}={value}", line.key);
     let is_short = columns(&whole) <= width;
-    match (line.key.is_empty(), is_short) {
-        (true, _) => vec![String::new()],
-        (false, true) => vec![whole],
-        (false, false) => vec![line.key.clone(), format!("={value}")],
+    let is_number = value.parse::<f64>().is_ok();
+    match (line.key.is_empty(), is_short, is_number) {
+        (true, ..) => vec![String::new()],
+        (false, true, _) => vec![whole],
+        (false, false, true) => vec![line.key.clone(), format!("={value}")],
+        (false, false, false) => vec![line.key.clone()],
     }
 }
 
