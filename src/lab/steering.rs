@@ -387,7 +387,7 @@ impl Lab {
         let rows = rows(direction) * times as isize;
         match (self.on_top.mode(), self.view.focus) {
             (Mode::Lab | Mode::Find, Pane::PARAMETERS) => {
-                self.values.shift(rows.signum() * times as isize)
+                self.values.shift(rows.signum() * times as isize);
             }
             _ => self.on_top.shift(rows),
         }

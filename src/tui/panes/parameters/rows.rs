@@ -1,6 +1,6 @@
 //! What stands in the pane's lines, each number with as many decimals as there is room for.
 
-use super::fewer_digits;
+use super::edited::fewer_digits;
 use crate::analysis::remarks::short_unit;
 use crate::observe::reading::Reading;
 use crate::physics::Body;
@@ -11,6 +11,9 @@ use std::borrow::Cow;
 
 /// Column of the last character of values.
 pub(super) const VALUE_END: u16 = 18;
+
+/// Width of a column of lines.
+pub(super) const COLUMN: u16 = 26;
 
 /// The label of what theory predicts for the number above it.
 pub(super) const PREDICTED: &str = "predicted";
