@@ -81,7 +81,7 @@ pub(super) struct ScenarioArgs {
 }
 
 /// What is changed in a scenario before it is run.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct Changes {
     /// Change a value first, such as motion.time_step_s=0.05 or push.0.force_N=[0,0,-50]; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
@@ -97,7 +97,7 @@ pub(super) struct Changes {
 }
 
 /// How the lab is opened.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct WorkbenchArgs {
     /// A preset's name, or a file (.toml or .csv): a scenario, a run file, or a CSV that gyrolab wrote [default: method-2]
     pub(super) scenario: Option<String>,
@@ -131,23 +131,23 @@ pub(super) struct WorkbenchArgs {
     #[command(flatten)]
     pub(super) look: Look,
 
-    /// Frames a second at most
-    #[arg(long, value_name = "FRAMES", default_value = "15", value_parser = clap::value_parser!(u32).range(1..=60))]
-    pub(super) fps: u32,
+    /// Frames a second at most [default: 15, or as config.toml says]
+    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=60))]
+    pub(super) fps: Option<u32>,
 }
 
 /// What the lab looks like.
 #[derive(Clone, Copy, Debug, Args)]
 pub(super) struct Look {
-    /// Colours: auto honours NO_COLOR
-    #[arg(long, value_enum, value_name = "WHEN", default_value = "auto")]
-    pub(super) color: Color,
+    /// Colours: auto honours NO_COLOR [default: as chosen last in the lab, or auto]
+    #[arg(long, value_enum, value_name = "WHEN")]
+    pub(super) color: Option<Color>,
 
-    /// What the colours are for [default: dark, or as COLORFGBG says]
+    /// What the colours are for [default: as chosen last, or as COLORFGBG says, or dark]
     #[arg(long, value_enum, value_name = "SCREEN")]
     pub(super) background: Option<Screen>,
 
-    /// What dots are made of [default: by locale and terminal]
+    /// What dots are made of [default: as chosen last, or by locale and terminal]
     #[arg(long, value_enum, value_name = "KIND")]
     pub(super) markers: Option<Markers>,
 }

@@ -5,10 +5,11 @@ use super::{print, tell};
 use crate::analysis::readouts::READOUTS;
 use crate::lab::command::{self, COMMANDS};
 use crate::physics::scheme::SCHEMES;
-use crate::scenario::keys::{KEYS, Key};
+use crate::scenario::keys::{KEYS, Key, Kind};
 use crate::scenario::presets::{self, PRESETS, Preset};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problems, Scenario};
+use crate::storage::settings;
 use crate::text::number::shortest;
 use crate::text::printable::{Shown, printable, printable_lines};
 use anyhow::{Context, bail};
@@ -172,6 +173,25 @@ fn commands_page() -> String {
     page
 }
 
+/// The manual's section about the files of settings, one paragraph for each key.
+fn settings_page() -> String {
+    let mut page = ".SH \"SETTINGS\"\n\
+        The lab's settings, each a line of $XDG_CONFIG_HOME/gyrolab/config.toml (by default ~/.config/gyrolab/config.toml). What is chosen in the lab is \
+        remembered in settings.toml beside the sessions; config.toml wins, and is never written; options win over both. \
+        No setting changes a number, and show reads none.\n"
+        .to_owned();
+    for (key, kind, about) in settings::KEYS {
+        let value = match kind {
+            Kind::OneOf(words) => format!("\"{}\"", words.join("\", \"")),
+            Kind::Whole(least, most) => format!("{least} to {most}"),
+            _ => "true, false".to_owned(),
+        };
+        let value = value.replace('-', "\\-");
+        page += &format!(".TP\n\\fB{key} = {value}\\fR\n{about}\n");
+    }
+    page
+}
+
 /// The manual: the page of the program, then one section for each command.
 pub(super) fn man() -> anyhow::Result<ExitCode> {
     let mut command = Cli::command();
@@ -190,5 +210,6 @@ pub(super) fn man() -> anyhow::Result<ExitCode> {
         man.render_options_section(&mut page)?;
     }
     page.extend(commands_page().as_bytes());
+    page.extend(settings_page().as_bytes());
     print(&String::from_utf8(page).context("the manual is not text")?)
 }

@@ -9,6 +9,7 @@ mod progress;
 mod run;
 mod scenario;
 mod sessions;
+mod settings;
 mod show;
 mod workbench;
 

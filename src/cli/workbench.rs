@@ -3,7 +3,7 @@
 use super::args::{Changes, Cli, Color, Look, Markers, Screen, WorkbenchArgs};
 use super::scenario::change;
 use super::show::{Picture, go_to, print_picture};
-use super::{sessions, tell};
+use super::{sessions, settings, tell};
 use crate::lab::command;
 use crate::lab::view::View;
 use crate::lab::view::markers::Marker;
@@ -13,6 +13,7 @@ use crate::scenario::{Document, Scenario};
 use crate::storage::confined::Confined;
 use crate::storage::exporting;
 use crate::storage::session::{self, KeptAside, Session};
+use crate::storage::settings::Keeper;
 use crate::text::printable::{Shown, printable};
 use crate::tui::app;
 use crate::tui::panes;
@@ -67,11 +68,24 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     }
     let commands = args.commands.as_deref().map(command::open).transpose()?;
     let folder = sessions::folder_of(confined.as_ref());
+    let chosen = settings::read(
+        folder.as_ref().ok().map(PathBuf::as_path),
+        confined.is_some(),
+    );
+    let args = &chosen.complete(args);
     let (mut lab, session) = match args.resume.as_deref() {
-        Some("") => come_back(args, confined.as_ref(), folder)?,
-        Some(session) => come_back_to(session, args, confined.as_ref(), folder)?,
-        None => (new(args, name)?, folder.and_then(|folder| begun(&folder))),
+        Some("") => come_back(args, confined.as_ref(), folder.clone())?,
+        Some(session) => come_back_to(session, args, confined.as_ref(), folder.clone())?,
+        None => (
+            new(args, name)?,
+            folder.clone().and_then(|folder| begun(&folder)),
+        ),
     };
+    chosen.tell(&mut lab);
+    // Without a thread nothing is remembered; the lab needs none for anything else.
+    if let Some(keeper) = folder.ok().and_then(|folder| Keeper::new(folder).ok()) {
+        lab.remember_with(keeper);
+    }
     if let Some(folder) = confined {
         lab.files_mut().confine(folder);
     }
@@ -83,7 +97,11 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     if let Some(commands) = commands {
         lab.take_commands(commands);
     }
-    app::run(&mut lab, session.as_ref().ok(), args.fps).context("the terminal cannot be used")?;
+    let frames = args.fps.unwrap_or(settings::FPS);
+    app::run(&mut lab, session.as_ref().ok(), frames).context("the terminal cannot be used")?;
+    if let Some(trouble) = lab.take_keeper().and_then(|keeper| keeper.close(PATIENCE)) {
+        tell(format_args!("gyrolab: {}", printable(&trouble)));
+    }
     tell_of_exports(&lab)?;
     tell_of_session(session, args.folder.as_deref())?;
     Ok(ExitCode::SUCCESS)
@@ -307,15 +325,15 @@ pub(super) fn lab(
     Ok(lab)
 }
 
-fn variable(name: &str) -> Option<String> {
+pub(super) fn variable(name: &str) -> Option<String> {
     std::env::var(name).ok()
 }
 
 fn theme(look: Look) -> Theme {
     let choice = match look.color {
-        Color::Auto => ColourChoice::Auto,
-        Color::Always => ColourChoice::Always,
-        Color::Never => ColourChoice::Never,
+        None | Some(Color::Auto) => ColourChoice::Auto,
+        Some(Color::Always) => ColourChoice::Always,
+        Some(Color::Never) => ColourChoice::Never,
     };
     let theme = surroundings::theme(choice, variable);
     let background = match look.background {

@@ -81,11 +81,15 @@ pub enum Action {
     ToggleBackground,
     /// Opens the browser of presets and files.
     Browse,
+    /// Turns to the values and begins to type a part of a name: only values with it in their names are listed.
+    FindValue,
+    /// Does the entry that is selected in the help; `tui`, which has the entries, carries it out.
+    DoEntry,
     /// Opens the entry that is selected in the browser.
     Choose,
     /// Begins to type the filter of the browser.
     Filter,
-    /// Types a character into the filter or the dialog.
+    /// Types a character into a filter, the search of the help, or the dialog.
     Type(char),
     /// Removes the character before the cursor.
     Erase,
@@ -93,7 +97,7 @@ pub enum Action {
     InField(FieldEdit),
     /// Accepts what is typed into the dialog.
     Accept,
-    /// Opens or closes the list of keys.
+    /// Opens or closes the help: the list of keys and words.
     Help,
     /// Closes what lies on top, or stops what is in progress.
     Close,

@@ -17,11 +17,22 @@ pub struct Line {
     pub is_default: bool,
 }
 
-/// The lines and the selected one.
+/// The lines, the selected one, and a part of a name: while there is one, only lines that have it are shown.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Editor {
     lines: Vec<Line>,
+    /// The number of the selected line among all, from 0.
     selected: usize,
+    name: String,
+}
+
+impl Line {
+    /// Whether each word of `name` is a part of its group, label or key, in capitals or not.
+    fn has(&self, name: &str) -> bool {
+        let names = format!("{} {} {}", self.group, self.label, self.key).to_lowercase();
+        let name = name.to_lowercase();
+        name.split_whitespace().all(|word| names.contains(word))
+    }
 }
 
 impl Editor {
@@ -33,13 +44,30 @@ impl Editor {
         self.lines = lines;
         let stays = was.is_some_and(|(group, label)| self.select(&group, &label));
         if !stays {
-            self.selected = self.selected.min(self.last());
+            self.selected = self.selected.min(self.lines.len().saturating_sub(1));
+            self.keep_shown();
         }
     }
 
-    /// Moves the selection by `rows` lines; it stops at both ends.
+    /// Shows only the lines that have `name` in their names; all of them where it is empty. The selection stays on its
+    /// line, or moves to the first that is shown.
+    pub fn filter(&mut self, name: String) {
+        self.name = name;
+        self.keep_shown();
+    }
+
+    /// The part of a name that all lines shown have; empty where every line is shown.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Moves the selection by `rows` of the lines that are shown; it stops at both ends.
     pub fn shift(&mut self, rows: isize) {
-        self.selected = self.selected.saturating_add_signed(rows).min(self.last());
+        let shown = self.indices();
+        let here = shown.iter().position(|&index| index == self.selected);
+        let next = here.unwrap_or(0).saturating_add_signed(rows);
+        let next = shown.get(next).or(shown.last());
+        self.selected = next.copied().unwrap_or(self.selected);
     }
 
     /// Selects the line `label` of `group`; returns whether there is one.
@@ -50,12 +78,13 @@ impl Editor {
         found.is_some()
     }
 
-    /// The selected line; `None` where there are no lines.
+    /// The selected line; `None` where no lines are shown.
     pub fn selected(&self) -> Option<&Line> {
-        self.lines.get(self.selected)
+        let line = self.lines.get(self.selected)?;
+        line.has(&self.name).then_some(line)
     }
 
-    /// The number of the selected line, from 0.
+    /// The number of the selected line among all lines, from 0.
     pub fn selected_index(&self) -> usize {
         self.selected
     }
@@ -65,8 +94,21 @@ impl Editor {
         &self.lines
     }
 
-    fn last(&self) -> usize {
-        self.lines.len().saturating_sub(1)
+    /// The lines that are shown, in order, each with its number among all.
+    pub fn shown(&self) -> Vec<(usize, &Line)> {
+        let lines = self.lines.iter().enumerate();
+        lines.filter(|(_, line)| line.has(&self.name)).collect()
+    }
+
+    fn indices(&self) -> Vec<usize> {
+        self.shown().into_iter().map(|(index, _)| index).collect()
+    }
+
+    fn keep_shown(&mut self) {
+        if self.selected().is_none() {
+            let first = self.indices().first().copied();
+            self.selected = first.unwrap_or(self.selected);
+        }
     }
 }
 
@@ -122,5 +164,33 @@ mod tests {
         assert!(!editor.select("c", "1"));
         assert_eq!(selected(&editor), ("a", "1"));
         Editor::default().shift(3);
+    }
+
+    #[test]
+    fn only_lines_with_the_name_are_shown_and_selected() {
+        let mut editor = editor(&[("start", "tilt"), ("motion", "dt"), ("push 0", "steps")]);
+        editor.lines[1].key = "motion.time_step_s".to_owned();
+        for (name, shown) in [
+            ("", 3),
+            ("ti", 2),
+            ("TIME step", 1),
+            ("push st", 1),
+            ("nothing", 0),
+        ] {
+            editor.filter(name.to_owned());
+            assert_eq!(editor.shown().len(), shown, "{name}");
+            assert_eq!(editor.selected().is_some(), shown > 0, "{name}");
+            editor.shift(5);
+            let last = editor.shown().last().map(|(index, _)| *index);
+            assert_eq!(
+                last.unwrap_or(editor.selected_index()),
+                editor.selected_index()
+            );
+        }
+        editor.filter("tilt".to_owned());
+        assert_eq!(selected(&editor), ("start", "tilt"));
+        // Found again among other lines.
+        editor.set_lines(vec![line("a", "b"), line("start", "tilt")]);
+        assert_eq!(selected(&editor), ("start", "tilt"));
     }
 }

@@ -47,6 +47,7 @@ pub use work::Work;
 use crate::observe::playback::Halt;
 use crate::run::NotFinite;
 use crate::scenario::Scenario;
+use crate::storage::settings::Keeper;
 use crate::work::changed;
 use player::halt_in_words;
 use std::sync::Arc;
@@ -73,6 +74,8 @@ pub struct Lab {
     view: View,
     on_top: OnTop,
     script: Script,
+    /// Remembers what dots and colours the user chooses; `None` where nothing is remembered.
+    keeper: Option<Keeper>,
     /// The time since the lab was opened.
     now: Duration,
     /// Whether the picture has changed since it was drawn.
@@ -90,6 +93,7 @@ impl Lab {
             view,
             on_top: OnTop::default(),
             script: Script::default(),
+            keeper: None,
             now: Duration::ZERO,
             changed: true,
         };
@@ -107,6 +111,23 @@ impl Lab {
     /// From now on looks in the background for a scheme or time step that would make doubtful numbers right.
     pub fn take_advice(&mut self) {
         self.player.is_advised = true;
+    }
+
+    /// From now on remembers what dots and colours the user chooses.
+    pub fn remember_with(&mut self, keeper: Keeper) {
+        self.keeper = Some(keeper);
+    }
+
+    /// Ends remembering, and returns what remembers: it may have something left to write.
+    pub fn take_keeper(&mut self) -> Option<Keeper> {
+        self.keeper.take()
+    }
+
+    /// Remembers that the user has chosen `value` for the setting `key`.
+    fn remember(&self, key: &'static str, value: impl Into<toml::Value>) {
+        if let Some(keeper) = &self.keeper {
+            keeper.keep(key, value);
+        }
     }
 
     /// Takes the run to `step` at once.
@@ -135,6 +156,9 @@ impl Lab {
         self.changed |= self.on_top.take_news();
         self.open_what_was_read();
         self.follow_export();
+        if let Some(trouble) = self.keeper.as_ref().and_then(Keeper::trouble) {
+            self.tell(trouble);
+        }
         self.go_on_with_script(halt);
         if self.changed && self.player.is_due(now, self.view.window_s) {
             self.read_now();
@@ -166,7 +190,10 @@ impl Lab {
 
     /// Takes a pasted text, where text is typed.
     pub fn paste(&mut self, text: &str) {
-        self.on_top.paste(text, self.now);
+        match self.on_top.mode() {
+            Mode::Find => self.values.type_name(text),
+            _ => self.on_top.paste(text, self.now),
+        }
         self.changed = true;
     }
 
@@ -184,7 +211,7 @@ impl Lab {
     /// Shows `text` before the present message, until the next key.
     pub fn tell_first(&mut self, text: &str) {
         let said = self.on_top.notice().text().unwrap_or_default();
-        self.tell(format!("{text}{said}"));
+        self.tell(format!("{text}{said}").trim_end_matches("; "));
     }
 
     /// Shows why the session cannot be saved, until it can.

@@ -6,6 +6,7 @@ use super::browser::{Browser, MOST_TYPED};
 use super::dialog::Dialog;
 use super::notice::Notice;
 use super::preview::Preview;
+use crate::text::printable::is_steering;
 use std::path::Path;
 use std::time::Duration;
 
@@ -21,7 +22,9 @@ pub enum Mode {
     Browser,
     /// The line in which the user types the browser's filter.
     Filter,
-    /// The list of keys.
+    /// The line in which the user types a part of the name of a value.
+    Find,
+    /// The list of keys and words.
     Help,
     /// A dialog.
     Dialog,
@@ -29,10 +32,11 @@ pub enum Mode {
 
 impl Mode {
     /// Every mode.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Lab,
         Self::Browser,
         Self::Filter,
+        Self::Find,
         Self::Help,
         Self::Dialog,
     ];
@@ -46,8 +50,10 @@ pub struct OnTop {
     /// The open dialog; `Some` exactly in [`Mode::Dialog`].
     dialog: Option<Dialog>,
     browser: Browser,
-    /// First line shown of the help.
-    help_scroll: usize,
+    /// The part of a key, a text or a word that is searched for in the help.
+    help_search: String,
+    /// The number of the selected entry among those of the help that are found, from 0.
+    help_selected: usize,
     count: Option<u64>,
     notice: Notice,
     /// Whether the last key asked to leave while an export was in progress, and the user was warned.
@@ -72,7 +78,8 @@ impl Default for OnTop {
             under_help: Mode::Lab,
             dialog: None,
             browser: Browser::default(),
-            help_scroll: 0,
+            help_search: String::new(),
+            help_selected: 0,
             count: None,
             notice: Notice::default(),
             was_warned: false,
@@ -96,9 +103,19 @@ impl OnTop {
         &self.browser
     }
 
-    /// First line shown of the help.
-    pub fn help_scroll(&self) -> usize {
-        self.help_scroll
+    /// The text that is searched for in the help.
+    pub fn help_search(&self) -> &str {
+        &self.help_search
+    }
+
+    /// The number of the selected entry among those of the help that are found, from 0.
+    pub fn help_selected(&self) -> usize {
+        self.help_selected
+    }
+
+    /// The mode that is returned to when the help is closed.
+    pub fn under_help(&self) -> Mode {
+        self.under_help
     }
 
     /// The count typed so far.
@@ -172,6 +189,21 @@ impl OnTop {
         self.mode = Mode::Filter;
     }
 
+    /// Opens the line for a part of the name of a value.
+    pub(super) fn open_find(&mut self) {
+        self.mode = Mode::Find;
+    }
+
+    /// Closes that line.
+    pub(super) fn close_find(&mut self) {
+        self.mode = Mode::Lab;
+    }
+
+    /// Says that the help has `entries` entries that are found: the selected one is among them.
+    pub(super) fn limit_help(&mut self, entries: usize) {
+        self.help_selected = self.help_selected.min(entries.saturating_sub(1));
+    }
+
     /// Closes the browser.
     pub(super) fn close_browser(&mut self) {
         self.mode = Mode::Lab;
@@ -198,7 +230,7 @@ impl OnTop {
 
     /// Opens the help on top of the present mode, or closes it.
     pub(super) fn toggle_help(&mut self) {
-        self.help_scroll = 0;
+        self.search_help(String::new());
         if self.mode == Mode::Help {
             self.mode = self.under_help;
         } else {
@@ -207,10 +239,19 @@ impl OnTop {
         }
     }
 
-    /// Closes the topmost of help, filter, browser and dialog; returns whether one of them was open.
+    /// Searches the help for `text`; the first entry that is found is selected.
+    fn search_help(&mut self, text: String) {
+        self.help_search = text;
+        self.help_selected = 0;
+    }
+
+    /// Closes the topmost of help, filters, browser and dialog; returns whether one of them was open. Of the help it first
+    /// clears the search. The filter of the values is the caller's to clear.
     pub(super) fn close(&mut self) -> bool {
         match self.mode {
             Mode::Lab => return false,
+            Mode::Find => self.close_find(),
+            Mode::Help if !self.help_search.is_empty() => self.search_help(String::new()),
             Mode::Help => self.toggle_help(),
             Mode::Filter => {
                 self.browser.clear_filter();
@@ -223,18 +264,21 @@ impl OnTop {
         true
     }
 
-    /// Moves the selection of the browser or the lines of the help by `rows`.
+    /// Moves the selection of the browser or the help by `rows`.
     pub(super) fn shift(&mut self, rows: isize) {
         match self.mode {
             Mode::Browser | Mode::Filter => self.browser.shift(rows),
-            Mode::Help => self.help_scroll = self.help_scroll.saturating_add_signed(rows),
-            Mode::Lab | Mode::Dialog => {}
+            Mode::Help => self.help_selected = self.help_selected.saturating_add_signed(rows),
+            Mode::Lab | Mode::Find | Mode::Dialog => {}
         }
     }
 
     pub(super) fn type_char(&mut self, typed: char) {
         match &mut self.dialog {
             Some(dialog) => dialog.type_char(typed),
+            None if self.mode == Mode::Help => {
+                self.paste_into_search(typed.encode_utf8(&mut [0; 4]));
+            }
             None => self.browser.type_char(typed),
         }
     }
@@ -242,8 +286,20 @@ impl OnTop {
     pub(super) fn erase(&mut self) {
         match &mut self.dialog {
             Some(dialog) => dialog.erase(),
+            None if self.mode == Mode::Help => {
+                let mut text = std::mem::take(&mut self.help_search);
+                text.pop();
+                self.search_help(text);
+            }
             None => self.browser.erase(),
         }
+    }
+
+    /// Adds `text` to what is searched for in the help, up to 100 characters.
+    fn paste_into_search(&mut self, text: &str) {
+        let mut search = std::mem::take(&mut self.help_search);
+        type_into(&mut search, text);
+        self.search_help(search);
     }
 
     pub(super) fn edit_field(&mut self, edit: FieldEdit) {
@@ -258,6 +314,7 @@ impl OnTop {
         self.clear();
         match (&mut self.dialog, self.mode) {
             (Some(dialog), _) => dialog.paste(text),
+            (None, Mode::Help) => self.paste_into_search(text),
             (None, Mode::Filter) => {
                 if !self.browser.paste(text) {
                     let text = format!(
@@ -272,6 +329,12 @@ impl OnTop {
             }
         }
     }
+}
+
+/// Adds `text` to the line `typed`, without line ends and other control characters, up to 100 characters.
+pub(super) fn type_into(typed: &mut String, text: &str) {
+    let room = MOST_TYPED.saturating_sub(typed.chars().count());
+    typed.extend(text.chars().filter(|&c| !is_steering(c)).take(room));
 }
 
 #[cfg(test)]
@@ -337,17 +400,34 @@ mod tests {
     }
 
     #[test]
-    fn the_help_is_read_from_its_first_line_each_time() {
+    fn the_help_begins_at_its_first_entry_each_time() {
         let mut on_top = OnTop::default();
         on_top.toggle_help();
         on_top.shift(10);
         on_top.shift(-3);
-        assert_eq!(on_top.help_scroll(), 7);
+        assert_eq!(on_top.help_selected(), 7);
+        on_top.limit_help(5);
+        assert_eq!(on_top.help_selected(), 4);
         on_top.shift(-30);
-        assert_eq!(on_top.help_scroll(), 0);
+        assert_eq!(on_top.help_selected(), 0);
         on_top.shift(1);
         on_top.toggle_help();
         on_top.toggle_help();
-        assert_eq!(on_top.help_scroll(), 0);
+        assert_eq!(on_top.help_selected(), 0);
+    }
+
+    #[test]
+    fn the_help_is_searched_and_esc_clears_the_search_first() {
+        let mut on_top = OnTop::default();
+        on_top.toggle_help();
+        on_top.shift(3);
+        on_top.type_char('d');
+        on_top.paste("t\n", NOW);
+        assert_eq!((on_top.help_search(), on_top.help_selected()), ("dt", 0));
+        on_top.erase();
+        assert_eq!(on_top.help_search(), "d");
+        assert!(on_top.close() && on_top.mode() == Mode::Help);
+        assert_eq!(on_top.help_search(), "");
+        assert!(on_top.close() && on_top.mode() == Mode::Lab);
     }
 }

@@ -175,7 +175,7 @@ impl Lab {
                 let camera = self.view.turned(direction, times);
                 Ok(Some(vec![Command::Camera(camera)]))
             }
-            (Mode::Lab, Pane::PARAMETERS) => match direction {
+            (Mode::Lab | Mode::Find, Pane::PARAMETERS) => match direction {
                 Direction::Left => self.nudged(-times),
                 Direction::Right => self.nudged(times),
                 _ => Ok(None),
@@ -220,6 +220,9 @@ impl Lab {
             Action::ChoosePush => self.turn_to_next_push(),
             Action::Parameters | Action::GoToCursor => self.turn_to_parameters(),
             Action::Edit if self.view.focus != Pane::PARAMETERS => self.turn_to_parameters(),
+            Action::Edit if self.values.selected().is_none() => {
+                self.say("no value has that in its name: Esc shows all of them");
+            }
             Action::Edit => {
                 if let Some(dialog) = Dialog::value(&self.values) {
                     self.on_top.open_dialog(dialog);
@@ -242,14 +245,17 @@ impl Lab {
             Action::NextMarker => {
                 let text = self.view.next_marker();
                 self.say(text);
+                self.remember("marker", self.view.marker.name());
             }
             Action::ToggleColour => {
                 let text = self.view.toggle_colour();
                 self.say(text);
+                self.remember("colour", self.view.theme.colour_choice());
             }
             Action::ToggleBackground => {
                 let text = self.view.toggle_background();
                 self.say(text);
+                self.remember("background", self.view.theme.background.name());
             }
             Action::Browse => {
                 let files = &self.files;
@@ -259,8 +265,14 @@ impl Lab {
             }
             Action::Choose => self.open_chosen(),
             Action::Filter => self.on_top.open_filter(),
+            Action::FindValue => self.find_value(),
+            Action::Type(typed) if self.on_top.mode() == Mode::Find => {
+                self.values.type_name(typed.encode_utf8(&mut [0; 4]));
+            }
+            Action::Erase if self.on_top.mode() == Mode::Find => self.values.erase_name(),
             Action::Type(typed) => self.on_top.type_char(typed),
             Action::Erase => self.on_top.erase(),
+            Action::DoEntry => {} // tui does it
             Action::InField(edit) => self.on_top.edit_field(edit),
             Action::Accept => self.accept(),
             Action::Help => self.on_top.toggle_help(),
@@ -374,7 +386,9 @@ impl Lab {
     fn shift(&mut self, direction: Direction, times: i32) {
         let rows = rows(direction) * times as isize;
         match (self.on_top.mode(), self.view.focus) {
-            (Mode::Lab, Pane::PARAMETERS) => self.values.shift(rows.signum() * times as isize),
+            (Mode::Lab | Mode::Find, Pane::PARAMETERS) => {
+                self.values.shift(rows.signum() * times as isize);
+            }
             _ => self.on_top.shift(rows),
         }
     }
@@ -433,6 +447,12 @@ impl Lab {
     /// screen, the export. Then it turns from the parameters back to the run. If there is none of these, it says how to
     /// leave, unless the key has already removed a message or a count.
     fn close(&mut self, has_cleared: bool) {
+        let is_found = self.on_top.mode() == Mode::Find;
+        let is_filtered = self.on_top.mode() == Mode::Lab && self.view.focus == Pane::PARAMETERS;
+        if (is_found || is_filtered) && self.values.forget_name() {
+            self.on_top.close();
+            return;
+        }
         if self.on_top.close() {
             return;
         }
@@ -451,6 +471,24 @@ impl Lab {
         } else if !self.view.leave_parameters() {
             self.say("nothing to close; q leaves");
         }
+    }
+
+    /// Turns to the values, to type a part of the name of one.
+    fn find_value(&mut self) {
+        self.view.turn_to(Pane::PARAMETERS);
+        self.values.forget_name();
+        self.on_top.open_find();
+    }
+
+    /// Moves the focus to `pane`, which fills the screen if it is not on it.
+    pub fn turn_to(&mut self, pane: Pane) {
+        self.view.turn_to(pane);
+        self.changed = true;
+    }
+
+    /// Says that the help has `entries` entries that are found: the selected one is among them.
+    pub fn limit_help(&mut self, entries: usize) {
+        self.on_top.limit_help(entries);
     }
 
     /// Stops the run and drops the commands that are not carried out yet.

@@ -3,6 +3,7 @@
 
 use super::command::{Command, Force, PushChoice};
 use super::editor::{Editor, Line};
+use super::on_top::type_into;
 use crate::observe::live::LiveRun;
 use crate::scenario::Scenario;
 use crate::work::journal::{Journal, number_of_push};
@@ -17,6 +18,10 @@ const BELONGS: Duration = Duration::from_secs(3);
 
 /// The heading over the values of the push to come.
 const NEXT_PUSH: &str = "next push (p)";
+
+/// The start's momentum, and the frame in which it is given.
+const MOMENTUM: &str = "start.momentum_Js";
+const MOMENTUM_FRAME: &str = "start.momentum_frame";
 
 /// The order of the groups in the list. The scenario's pushes come after the start, its points after the body.
 const ORDER: [&str; 6] = ["motion", "start", NEXT_PUSH, "body", "view", "scenario"];
@@ -72,9 +77,10 @@ impl Values {
         let values = values.map(|parameter| Target::Parameter(Box::new(parameter)));
         let mut targets: Vec<_> = values.chain(Field::ALL.map(Target::NextPush)).collect();
         targets.sort_by_key(|target| rank(target.group())); // stable: within a group nothing moves
+        let frame = frame_of_momentum(&targets);
         let lines = targets
             .iter()
-            .map(|target| target.line(&self.next_push))
+            .map(|target| target.line(&self.next_push, &frame))
             .collect();
         self.editor.set_lines(lines);
         self.targets = targets;
@@ -90,6 +96,27 @@ impl Values {
         &self.editor
     }
 
+    /// Adds `text` to the part of a name that the listed lines have.
+    pub(super) fn type_name(&mut self, text: &str) {
+        let mut name = self.editor.name().to_owned();
+        type_into(&mut name, text);
+        self.editor.filter(name);
+    }
+
+    /// Removes the last character of that part.
+    pub(super) fn erase_name(&mut self) {
+        let mut name = self.editor.name().to_owned();
+        name.pop();
+        self.editor.filter(name);
+    }
+
+    /// Lists all values again; returns whether some were left out.
+    pub(super) fn forget_name(&mut self) -> bool {
+        let was_filtered = !self.editor.name().is_empty();
+        self.editor.filter(String::new());
+        was_filtered
+    }
+
     /// Moves the selection by `rows` lines.
     pub(super) fn shift(&mut self, rows: isize) {
         self.editor.shift(rows);
@@ -97,11 +124,13 @@ impl Values {
 
     /// Selects the size of the push to come.
     pub(super) fn select_next_push(&mut self) {
+        self.editor.filter(String::new());
         self.editor.select(NEXT_PUSH, Field::Size.label().0);
     }
 
     /// The value of the selected line.
     pub(super) fn selected(&self) -> Option<&Target> {
+        self.editor.selected()?;
         self.targets.get(self.editor.selected_index())
     }
 
@@ -233,13 +262,17 @@ impl Target {
         }
     }
 
-    fn line(&self, push: &NextPush) -> Line {
+    /// Its line; `frame` is the frame in which the start's momentum is given.
+    fn line(&self, push: &NextPush, frame: &str) -> Line {
         let group = self.group().to_owned();
         match self {
             Self::Parameter(parameter) => Line {
                 key: parameter.key.clone(),
                 group,
-                label: parameter.label.clone(),
+                label: match parameter.spec.path {
+                    MOMENTUM => format!("{} {frame}", parameter.label),
+                    _ => parameter.label.clone(),
+                },
                 value: parameter.shown(),
                 unit: parameter.unit().to_owned(),
                 is_default: parameter.is_default,
@@ -254,6 +287,15 @@ impl Target {
             },
         }
     }
+}
+
+/// The frame in which the start's momentum is given among `targets`.
+fn frame_of_momentum(targets: &[Target]) -> String {
+    let frame = targets.iter().find_map(|target| match target {
+        Target::Parameter(parameter) if parameter.key == MOMENTUM_FRAME => Some(parameter.shown()),
+        _ => None,
+    });
+    frame.unwrap_or_default()
 }
 
 /// The place of a group in the list; groups with a smaller number come first.

@@ -1,7 +1,9 @@
-//! What the lab keeps on the disk: [`session`]s that can be resumed and [`exporting`] in the background. [`at_exit`] holds
-//! the hooks that save or clean up both however the process ends; [`confined`] restricts paths to one folder.
+//! What the lab keeps on the disk: [`session`]s that can be resumed, [`settings`] that the user chose, and [`exporting`] in
+//! the background. [`at_exit`] holds the hooks that save or clean up however the process ends; [`confined`] restricts paths
+//! to one folder.
 
 pub mod at_exit;
 pub mod confined;
 pub mod exporting;
 pub mod session;
+pub mod settings;

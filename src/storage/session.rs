@@ -10,12 +10,13 @@
 //! place in it, which changes all the time.
 
 mod format;
-mod own;
+pub(super) mod own;
 mod slot;
 mod text;
 mod writer;
 
 pub use slot::{Check, Content, KeptAside};
+pub(super) use slot::{lock_folder, make_folder};
 pub use text::Text;
 
 use super::at_exit::{self, Registered, Release};

@@ -1,9 +1,10 @@
 //! The main loop: it carries out what keys mean, advances the run with time, and draws a frame when something has changed.
 
+use crate::lab::action::Action;
 use crate::lab::{Lab, Request};
 use crate::storage::session::Session;
 use crate::tui::keymap::{self, Key};
-use crate::tui::panes;
+use crate::tui::panes::{self, help};
 use crate::tui::screen;
 use crate::tui::terminal::{Event, Screen};
 use std::io;
@@ -135,7 +136,12 @@ fn handle(
 /// Carries out the action of `key`, or shows a message that it has none.
 pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
     match keymap::action_with(panes::keys(lab.view().focus), lab.on_top().mode(), key) {
-        Some(action) => lab.update(action),
+        Some(Action::DoEntry) => help::do_entry(lab),
+        Some(action) => {
+            let request = lab.update(action);
+            help::limit(lab);
+            request
+        }
         None => {
             lab.refuse(keymap::refusal(lab.on_top().mode(), key));
             None

@@ -6,7 +6,7 @@ use Key::{
     BackTab, Backspace, Char, Ctrl, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp,
     Right, ShiftDown, ShiftLeft, ShiftRight, ShiftUp, Tab, Up,
 };
-use Mode::{Browser, Dialog, Filter, Help, Lab};
+use Mode::{Browser, Dialog, Filter, Find, Help, Lab};
 
 /// A key, as no terminal library names it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,16 +99,17 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[BackTab], Action::PreviousPane, "", "the pane before"),
     row(&[Lab], &[Char('f')], Action::FillScreen, "fill", "fill the screen with the pane, or show all panes again"),
     row(&[Lab], &[Char('d')], Action::ThreeD, "3-D", "fill the screen with the 3-D view, or show all panes again"),
-    row(&[Lab, Browser, Help], &[Up, Char('k')], Action::Move(Direction::Up), "", "up: in lists and values; in 3-D the camera"),
-    row(&[Lab, Browser, Help], &[Down, Char('j')], Action::Move(Direction::Down), "", "down"),
+    row(&[Lab], &[Char('/')], Action::FindValue, "", "find a value of the scenario by a part of its name"),
+    row(&[Lab, Browser], &[Up, Char('k')], Action::Move(Direction::Up), "", "up: in lists and values; in 3-D the camera"),
+    row(&[Lab, Browser], &[Down, Char('j')], Action::Move(Direction::Down), "", "down"),
     row(&[Lab], &[Left, Char('h')], Action::Move(Direction::Left), "", "values: nudge down; 3-D: turn the camera left"),
     row(&[Lab], &[Right, Char('l')], Action::Move(Direction::Right), "", "values: nudge up; 3-D: turn the camera right"),
     row(&[Lab], &[ShiftLeft], Action::MoveFar(Direction::Left), "", "the same ten times; a count does it too: 10 Left"),
     row(&[Lab], &[ShiftRight], Action::MoveFar(Direction::Right), "", "the same ten times"),
-    row(&[Lab, Browser, Help], &[ShiftUp], Action::MoveFar(Direction::Up), "", "ten lines up"),
-    row(&[Lab, Browser, Help], &[ShiftDown], Action::MoveFar(Direction::Down), "", "ten lines down"),
-    row(&[Filter], &[Up], Action::Move(Direction::Up), "", "up"),
-    row(&[Filter], &[Down], Action::Move(Direction::Down), "", "down"),
+    row(&[Lab, Browser, Find, Help], &[ShiftUp], Action::MoveFar(Direction::Up), "", "ten lines up"),
+    row(&[Lab, Browser, Find, Help], &[ShiftDown], Action::MoveFar(Direction::Down), "", "ten lines down"),
+    row(&[Filter, Find, Help], &[Up], Action::Move(Direction::Up), "", "up"),
+    row(&[Filter, Find, Help], &[Down], Action::Move(Direction::Down), "", "down"),
     row(&[Browser, Filter, Help], &[PageUp], Action::Move(Direction::PageUp), "", "a page up"),
     row(&[Browser, Filter, Help], &[PageDown], Action::Move(Direction::PageDown), "", "a page down"),
     row(&[Lab], &[Char('w')], Action::WiderWindow, "", "traces: show twice the time"),
@@ -118,7 +119,11 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('b')], Action::ToggleBackground, "", "colours for a dark or a light screen"),
     row(&[Browser, Filter], &[Enter], Action::Choose, "open", "open what is selected"),
     row(&[Browser], &[Char('/')], Action::Filter, "filter", "type a part of a name"),
-    row(&[Filter, Dialog], &[Backspace, Ctrl('h')], Action::Erase, "", "take the last character away"),
+    row(&[Find], &[Left], Action::Move(Direction::Left), "nudge", "nudge the value down"),
+    row(&[Find], &[Right], Action::Move(Direction::Right), "", "nudge the value up"),
+    row(&[Find], &[Enter], Action::Edit, "type it", "type the value that is found"),
+    row(&[Help], &[Enter], Action::DoEntry, "do it", "do the entry that is selected"),
+    row(&[Filter, Find, Help, Dialog], &[Backspace, Ctrl('h')], Action::Erase, "", "take the last character away"),
     row(&[Dialog], &[Enter], Action::Accept, "take it", "take what is typed"),
     row(&[Dialog], &[Delete, Ctrl('d')], Action::InField(FieldEdit::Delete), "", "take the character at the cursor away"),
     row(&[Dialog], &[Ctrl('u')], Action::InField(FieldEdit::Clear), "", "take all of it away"),
@@ -128,12 +133,12 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Dialog], &[End, Ctrl('e')], Action::InField(FieldEdit::End), "", "to the end"),
     row(&[Dialog], &[Down, Tab], Action::InField(FieldEdit::Next), "", "the next line"),
     row(&[Dialog], &[Up, BackTab], Action::InField(FieldEdit::Previous), "", "the line before"),
-    row(&[Lab, Browser, Filter, Help, Dialog], &[Esc], Action::Close, "", "close what lies on top"),
-    row(&[Lab, Browser, Help], &[Char('?')], Action::Help, "help", "this list, and away again"),
-    row(&[Lab, Browser, Filter, Help, Dialog], &[Ctrl('l')], Action::Redraw, "", "draw the whole screen again"),
-    row(&[Lab, Browser, Filter, Help, Dialog], &[Ctrl('z')], Action::Suspend, "", "back to the shell; fg returns"),
-    row(&[Lab, Browser, Help], &[Char('q')], Action::Quit, "quit", "leave the lab"),
-    row(&[Lab, Browser, Filter, Help, Dialog], &[Ctrl('c')], Action::Quit, "", "leave the lab"),
+    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Esc], Action::Close, "", "close what lies on top; first it clears what is searched for"),
+    row(&[Lab, Browser, Help], &[Char('?')], Action::Help, "help", "this list, and away again: type to search it"),
+    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('l')], Action::Redraw, "", "draw the whole screen again"),
+    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('z')], Action::Suspend, "", "back to the shell; fg returns"),
+    row(&[Lab, Browser], &[Char('q')], Action::Quit, "quit", "leave the lab"),
+    row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('c')], Action::Quit, "", "leave the lab"),
 ];
 
 /// What `key` means in `mode`.
@@ -150,7 +155,7 @@ pub fn action_with(keys: &'static [Binding], mode: Mode, key: Key) -> Option<Act
     match (bound, mode, key) {
         (Some(row), _, _) => Some(row.action),
         (None, Lab, Char(digit)) => digit.to_digit(10).map(|digit| Action::Digit(digit as u8)),
-        (None, Filter | Dialog, Char(typed)) => Some(Action::Type(typed)),
+        (None, Filter | Find | Help | Dialog, Char(typed)) => Some(Action::Type(typed)),
         _ => None,
     }
 }
@@ -158,8 +163,9 @@ pub fn action_with(keys: &'static [Binding], mode: Mode, key: Key) -> Option<Act
 /// What is to be said of `key`, which means nothing in `mode`.
 pub fn refusal(mode: Mode, key: Key) -> String {
     match (mode, key) {
-        (Lab, Char('/')) => "/ filters the list of presets and files: o shows it".to_owned(),
         (Filter, _) => format!("no key {key} here; Enter opens, Esc clears the filter"),
+        (Find, _) => format!("no key {key} here; Enter types the value, Esc shows all values"),
+        (Help, _) => format!("no key {key} here; Enter does the entry, Esc closes"),
         (Dialog, _) => format!("no key {key} here; Enter takes what is typed, Esc leaves it"),
         _ => format!("no key {key} here; ? lists them"),
     }
@@ -269,6 +275,8 @@ mod tests {
             A::ToggleBackground,
             A::Browse,
             A::Choose,
+            A::FindValue,
+            A::DoEntry,
             A::Filter,
             A::Type('x'),
             A::Erase,
@@ -323,6 +331,8 @@ mod tests {
                 | A::ToggleBackground
                 | A::Browse
                 | A::Choose
+                | A::FindValue
+                | A::DoEntry
                 | A::Filter
                 | A::Erase
                 | A::Help

@@ -56,7 +56,7 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
 fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     match lab.on_top().mode() {
-        Mode::Lab => {}
+        Mode::Lab | Mode::Find => {}
         Mode::Dialog => {
             if let Some(dialog) = lab.on_top().dialog() {
                 let form = dialog.form();
@@ -72,7 +72,8 @@ fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
             .render(area, buf);
         }
         Mode::Help => Help {
-            scroll: lab.on_top().help_scroll(),
+            search: lab.on_top().help_search(),
+            selected: lab.on_top().help_selected(),
             theme,
         }
         .render(area, buf),

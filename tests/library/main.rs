@@ -9,6 +9,7 @@ mod chosen;
 mod commands;
 mod coverage;
 mod exact;
+mod finding;
 mod health;
 mod journal;
 mod kept;

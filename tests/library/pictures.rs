@@ -542,6 +542,7 @@ fn parameters(editor: &Editor, (focus, filled): (bool, bool), size: (u16, u16)) 
         motion: now.simulation().motion(),
         reading,
         editor,
+        is_searched: false,
         view: &view,
     }
     .render(buf.area, &mut buf);
@@ -727,6 +728,7 @@ proptest! {
             motion: now.simulation().motion(),
             reading,
             editor: &lines,
+            is_searched: false,
             view: &view,
         };
         let mut buf = Buffer::filled(around, Cell::new("#"));

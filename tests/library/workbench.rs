@@ -341,7 +341,7 @@ fn what_does_nothing_says_why() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("!").shows("no key ! here; ? lists them");
     stage.press("\n").shows("Enter types it");
-    stage.press("/").shows("/ filters the list");
+    stage.press("/").shows("/_ 1 of").press("\u{1b}");
     stage
         .press("99+")
         .shows_no("this is")

@@ -13,4 +13,5 @@ mod escapes;
 mod journeys;
 mod readme;
 mod sessions;
+mod settings;
 mod terminal;

@@ -68,3 +68,14 @@ fn the_steady_start_is_steady() {
     let health = json["health"].as_str().unwrap();
     assert!(health.starts_with("The numbers hold"), "{health}");
 }
+
+#[test]
+fn the_settings_are_good_and_all_of_them_are_shown() {
+    let ground = Ground::new();
+    ground.write("config.toml", &block("toml", "marker = "));
+    let read = gyrolab::storage::settings::read_config(&ground.file("config.toml"));
+    assert_eq!(read.problems, None);
+    let settings = read.settings;
+    assert!(settings.marker.is_some() && settings.colour.is_some());
+    assert!(settings.background.is_some() && settings.fps.is_some() && settings.mouse.is_some());
+}

@@ -38,6 +38,11 @@ impl Ground {
         self.file("state")
     }
 
+    /// The folder in which the folder of the user's settings is.
+    pub fn config(&self) -> PathBuf {
+        self.file("config")
+    }
+
     pub fn read(&self, name: &str) -> String {
         std::fs::read_to_string(self.file(name)).unwrap()
     }
@@ -89,6 +94,7 @@ impl Ground {
             .envs(VARIABLES)
             .env_remove("LC_ALL")
             .env("XDG_STATE_HOME", self.state())
+            .env("XDG_CONFIG_HOME", self.config())
             .current_dir(self.path())
             .stdin(Stdio::null());
         command

@@ -50,6 +50,7 @@ impl Ground {
             command.env_remove(name);
         }
         command.env("XDG_STATE_HOME", self.state());
+        command.env("XDG_CONFIG_HOME", self.config());
         command.env("HOME", self.path());
         command.cwd(self.path());
         for (name, value) in variables {

@@ -17,3 +17,20 @@ pub struct Theme {
     /// What kind of screen they are for.
     pub background: Background,
 }
+
+impl Background {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Dark => "dark",
+            Self::Light => "light",
+        }
+    }
+}
+
+impl Theme {
+    /// What `--color` takes for it.
+    pub fn colour_choice(&self) -> &'static str {
+        if self.colour { "always" } else { "never" }
+    }
+}

@@ -45,7 +45,7 @@ pub(super) fn check_folder(path: &Path) -> io::Result<()> {
 }
 
 /// Whether there is anything at `path`; a symbolic link to nothing counts too.
-pub(super) fn exists(path: &Path) -> bool {
+pub(in crate::storage) fn exists(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
 }
 
@@ -54,7 +54,7 @@ pub(super) fn exists(path: &Path) -> bool {
 ///
 /// # Errors
 /// When the new file cannot be written; the old one is then unchanged.
-pub(super) fn replace(path: &Path, parts: &[&str]) -> io::Result<()> {
+pub(in crate::storage) fn replace(path: &Path, parts: &[&str]) -> io::Result<()> {
     let mut temporary = path.as_os_str().to_owned();
     temporary.push(".new");
     let temporary = Path::new(&temporary);
@@ -90,7 +90,7 @@ fn write(path: &Path, parts: &[&str]) -> io::Result<()> {
 ///
 /// # Errors
 /// Why it cannot be read.
-pub(super) fn read(path: &Path) -> Result<String, String> {
+pub(in crate::storage) fn read(path: &Path) -> Result<String, String> {
     let mut text = String::new();
     let read = open(path, OpenOptions::new().read(true))
         .and_then(|mut file| file.read_to_string(&mut text));

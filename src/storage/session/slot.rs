@@ -63,7 +63,7 @@ pub(super) struct Stored {
 }
 
 /// A lock file that is locked.
-pub(super) struct Lock(File);
+pub(in crate::storage) struct Lock(File);
 
 impl Drop for Lock {
     /// Unlocks explicitly: closing alone keeps the lock while a child process that is just being started still has the
@@ -83,7 +83,7 @@ pub struct KeptAside {
 }
 
 /// Creates the folder if it does not exist, accessible to the user alone.
-pub(super) fn make_folder(folder: &Path) -> io::Result<()> {
+pub(in crate::storage) fn make_folder(folder: &Path) -> io::Result<()> {
     DirBuilder::new()
         .recursive(true)
         .mode(0o700)
@@ -98,7 +98,7 @@ pub(super) fn make_folder(folder: &Path) -> io::Result<()> {
 /// Locks the folder, so that other processes wait before they choose or remove sessions. `None` if another process keeps
 /// the lock longer than 0.2 s: it may have been suspended. Sessions are protected by their own locks; this lock only keeps
 /// a process that briefly locks a session to look at it from being mistaken for its user.
-pub(super) fn lock_folder(folder: &Path) -> Option<Lock> {
+pub(in crate::storage) fn lock_folder(folder: &Path) -> Option<Lock> {
     let begin = Instant::now();
     loop {
         match take(&folder.join("lock")) {

@@ -1,42 +1,116 @@
-//! The list of keys, from the table of keys.
+//! The help: keys and words, searched by typing; Enter does the key that is selected.
 
-use super::{PANES, frame_on_top, write};
+mod entries;
+mod glossary;
+
+use super::{frame_on_top, write};
 use crate::lab::view::theme::Theme;
-use crate::text::wrap::wrapped;
-use crate::tui::keymap::{BINDINGS, Binding, Mode};
+use crate::lab::{Lab, Mode, Request};
+use crate::text::wrap::{columns, wrapped};
 use crate::tui::theme::Role;
+pub use entries::{Entry, What, entries, found};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 
-/// Column of the keys.
-const KEYS: usize = 2;
-/// Between keys and explanations.
+/// Column of keys and words.
+const NAMES: usize = 2;
+/// Between them and their texts.
 const GAP: usize = 2;
-/// Explanations with fewer columns than this stand below their keys, not beside them.
-const LEAST_TEXT: usize = 16;
+/// Texts with fewer columns than this begin right after their keys, not in a column of their own.
+const LEAST_TEXT: usize = 40;
+/// What marks the selected entry.
+const SELECTED: &str = "►";
 
-/// The keys of all modes.
+/// Keys and words.
 pub struct Help<'a> {
-    /// First line shown.
-    pub scroll: usize,
+    /// What is searched for; empty: every entry is shown.
+    pub search: &'a str,
+    /// The number of the selected entry among those found.
+    pub selected: usize,
     /// Colours.
     pub theme: &'a Theme,
 }
 
+/// The entry that is selected in the help of `lab`, if any is found.
+fn selected(lab: &Lab) -> Option<Entry> {
+    let found = found(lab.on_top().help_search());
+    found.get(lab.on_top().help_selected()).copied()
+}
+
+/// Keeps the selection of the help among the entries that are found.
+pub fn limit(lab: &mut Lab) {
+    if lab.on_top().mode() == Mode::Help {
+        lab.limit_help(found(lab.on_top().help_search()).len());
+    }
+}
+
+/// Closes the help and does what the key of the selected entry does; a key of a pane turns to that pane first. Says why
+/// where nothing can be done.
+pub fn do_entry(lab: &mut Lab) -> Option<Request> {
+    use crate::lab::action::Action;
+    let Some(entry) = selected(lab) else {
+        lab.refuse("nothing is selected: Esc clears the search");
+        return None;
+    };
+    let What::Key(binding) = entry.what else {
+        lab.refuse("a word to read: Enter does nothing with it, Esc closes");
+        return None;
+    };
+    if !binding.modes.contains(&lab.on_top().under_help()) {
+        lab.refuse(format!("{}: this key works there", entry.group));
+        return None;
+    }
+    while lab.on_top().mode() == Mode::Help {
+        lab.update(Action::Help);
+    }
+    if let Some(pane) = entry.pane {
+        lab.turn_to(pane);
+    }
+    match binding.action {
+        Action::Help => None,
+        action => lab.update(action),
+    }
+}
+
 impl Widget for Help<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let lines = lines(area.width.saturating_sub(2) as usize);
-        let room = area.height.saturating_sub(2) as usize;
-        let scroll = self.scroll.min(lines.len().saturating_sub(room));
-        let title = match lines.len().saturating_sub(scroll + room) {
-            0 => "keys: Esc closes".to_owned(),
-            more => format!("keys: Esc closes, Down: {more} more"),
-        };
-        let inside = frame_on_top(&title, area, self.theme, buf);
-        for (line, y) in lines.iter().skip(scroll).zip(0..inside.height) {
-            for (x, text, role) in &line.pieces {
-                write(inside, (*x as u16, y), text, self.theme.style(*role), buf);
+        let found = found(self.search);
+        let selected = self.selected.min(found.len().saturating_sub(1));
+        let inside = frame_on_top(&self.title(found.len()), area, self.theme, buf);
+        if found.is_empty() {
+            let text = "nothing has that in it: Esc clears the search";
+            write(inside, (1, 0), text, self.theme.style(Role::Text), buf);
+        }
+        let lines = lines(&found, self.search.is_empty(), inside.width as usize);
+        let first = first_shown(&lines, selected, inside.height as usize);
+        for (line, y) in lines.iter().skip(first).zip(0..inside.height) {
+            self.line(line, line.entry == Some(selected), y, inside, buf);
+        }
+    }
+}
+
+impl Help<'_> {
+    fn title(&self, count: usize) -> String {
+        match (self.search, count) {
+            ("", _) => "help: type to search, Enter does it".to_owned(),
+            (search, count) => format!("help: {search}_ ({count})"),
+        }
+    }
+
+    fn line(&self, line: &Line, is_selected: bool, y: u16, area: Rect, buf: &mut Buffer) {
+        for (x, text, role) in &line.pieces {
+            write(area, (*x as u16, y), text, self.theme.style(*role), buf);
+        }
+        if is_selected {
+            let place = Rect {
+                y: area.y + y,
+                height: 1,
+                ..area
+            };
+            buf.set_style(place, self.theme.style(Role::Selected));
+            if line.is_first {
+                write(area, (0, y), SELECTED, self.theme.style(Role::Focus), buf);
             }
         }
     }
@@ -44,65 +118,103 @@ impl Widget for Help<'_> {
 
 /// One line of the screen: texts, and the columns where they begin.
 struct Line {
+    /// The number of its entry; none for a heading.
+    entry: Option<usize>,
+    /// Whether it is the first line of its entry.
+    is_first: bool,
     pieces: Vec<(usize, String, Role)>,
 }
 
-impl Line {
-    fn of(x: usize, text: impl Into<String>, role: Role) -> Self {
-        Self {
-            pieces: vec![(x, text.into(), role)],
-        }
-    }
-}
-
-/// Each binding once, under the first mode that has it, in lines of `width` columns.
-fn lines(width: usize) -> Vec<Line> {
-    let mut lines = Vec::new();
-    for (mode, heading) in [
-        (Mode::Lab, "the lab"),
-        (Mode::Browser, "the list of presets and files"),
-        (Mode::Filter, "the filter"),
-        (Mode::Dialog, "what is asked for"),
-    ] {
-        let heading = wrapped(heading, width.saturating_sub(1));
-        lines.extend(
-            heading
-                .into_iter()
-                .map(|text| Line::of(1, text, Role::Heading)),
-        );
-        let rows = BINDINGS.iter().filter(|row| row.modes[0] == mode);
-        lines.extend(rows.flat_map(|row| explained(row, width)));
-    }
-    for pane in PANES.iter().filter(|pane| !pane.keys.is_empty()) {
-        lines.push(Line::of(1, pane.title, Role::Heading));
-        lines.extend(pane.keys.iter().flat_map(|row| explained(row, width)));
-    }
-    lines
-}
-
-/// The keys of `binding` and, beside them or below, what they mean.
-fn explained(binding: &Binding, width: usize) -> Vec<Line> {
-    let longest = BINDINGS.iter().map(|row| keys(row).len()).max();
-    let column = KEYS + longest.unwrap_or(0) + GAP;
-    let beside = width >= column + LEAST_TEXT;
-    let x = if beside { column } else { KEYS + GAP };
-    let text = wrapped(binding.help, width.saturating_sub(x));
-    let mut lines: Vec<_> = text
-        .into_iter()
-        .map(|text| Line::of(x, text, Role::Text))
-        .collect();
-    if !beside {
-        lines.insert(0, Line { pieces: Vec::new() });
-    }
-    lines[0].pieces.push((KEYS, keys(binding), Role::Focus));
-    lines
-}
-
-fn keys(binding: &Binding) -> String {
-    binding
-        .keys
+/// The first of `lines` that is shown on `height` lines, so that the entry `selected` is in the middle where it can be,
+/// and its first line is always shown.
+fn first_shown(lines: &[Line], selected: usize, height: usize) -> usize {
+    let of_it = |line: &Line| line.entry == Some(selected);
+    let begin = lines.iter().position(of_it).unwrap_or(0);
+    let length = lines[begin.min(lines.len())..]
         .iter()
-        .map(ToString::to_string)
-        .collect::<Vec<_>>()
-        .join(" ")
+        .take_while(|line| of_it(line))
+        .count();
+    let above = height.saturating_sub(length) / 2;
+    let most = lines.len().saturating_sub(height);
+    begin.saturating_sub(above).min(most)
+}
+
+/// `entries` in lines of `width` columns; `grouped` says whether under the headings of their groups.
+fn lines(entries: &[Entry], grouped: bool, width: usize) -> Vec<Line> {
+    let longest = entries.iter().map(|entry| columns(&entry.name())).max();
+    let column = NAMES + longest.unwrap_or(0) + GAP;
+    let column = Some(column).filter(|column| width >= column + LEAST_TEXT);
+    let mut lines = Vec::new();
+    for (index, entry) in entries.iter().enumerate() {
+        let is_new = index == 0 || entries[index - 1].group != entry.group;
+        if grouped && is_new {
+            lines.extend(heading(entry, width));
+        }
+        let of_entry = match column {
+            Some(column) => beside(entry, column, width),
+            None => after(entry, width),
+        };
+        lines.extend(of_entry.into_iter().enumerate().map(|(at, pieces)| Line {
+            entry: Some(index),
+            is_first: at == 0,
+            pieces,
+        }));
+    }
+    lines
+}
+
+fn heading(entry: &Entry, width: usize) -> Vec<Line> {
+    let text = match entry.pane {
+        Some(_) => format!("{}: keys of this pane, Tab turns to it", entry.group),
+        None => entry.group.to_owned(),
+    };
+    let lines = wrapped(&text, width.saturating_sub(1)).into_iter();
+    let line = |text| Line {
+        entry: None,
+        is_first: false,
+        pieces: vec![(1, text, Role::Heading)],
+    };
+    lines.map(line).collect()
+}
+
+type Pieces = Vec<(usize, String, Role)>;
+
+/// The name of `entry`, and its text in lines that begin in `column`.
+fn beside(entry: &Entry, column: usize, width: usize) -> Vec<Pieces> {
+    let text = wrapped(entry.text(), width.saturating_sub(column));
+    let text = text
+        .into_iter()
+        .map(|text| vec![(column, text, Role::Text)]);
+    let mut lines: Vec<Pieces> = text.collect();
+    if let Some(first) = lines.first_mut() {
+        first.push((NAMES, entry.name(), Role::Focus));
+    }
+    lines
+}
+
+/// The name of `entry` and its text right after it, where there is room for a few words; else below it.
+fn after(entry: &Entry, width: usize) -> Vec<Pieces> {
+    const INDENT: usize = NAMES + GAP - 1;
+    const FEW_WORDS: usize = 12;
+    let name = entry.name();
+    let taken = columns(&name);
+    let room = width.saturating_sub(INDENT);
+    if taken + GAP + FEW_WORDS > room {
+        let text = wrapped(entry.text(), room).into_iter();
+        let text = text.map(|text| vec![(INDENT, text, Role::Text)]);
+        let name = vec![(NAMES, name, Role::Focus)];
+        return std::iter::once(name).chain(text).collect();
+    }
+    // A word as long as the name keeps the name's columns free on the first line.
+    let held = "x".repeat(taken);
+    let text = wrapped(&format!("{held} {}", entry.text()), room);
+    let first = text.first().and_then(|first| first.strip_prefix(&held));
+    let first = first.unwrap_or_default().trim_start().to_owned();
+    let mut lines = vec![vec![
+        (NAMES + taken + GAP, first, Role::Text),
+        (NAMES, name, Role::Focus),
+    ]];
+    let rest = text.into_iter().skip(1);
+    lines.extend(rest.map(|text| vec![(INDENT, text, Role::Text)]));
+    lines
 }

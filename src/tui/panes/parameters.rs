@@ -2,29 +2,29 @@
 //!
 //! In focus it is an editor: the values one by one above, one of them selected, and the readouts to watch below.
 
+mod edited;
 mod rows;
 
 use super::{PaneRow, Width, frame, shortened, write};
-use crate::lab::editor::{Editor, Line};
+use crate::lab::action::Action;
+use crate::lab::editor::Editor;
 use crate::lab::view::{Pane, Part, View};
 use crate::observe::reading::Reading;
 use crate::scenario::{Motion, Scenario};
-use crate::text::printable::printable;
 use crate::text::wrap::columns;
+use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
+use edited::{around_selected, edited_rows, fewer_digits, key_lines, needed, title};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 use rows::{
-    PREDICTED, Row, VALUE_END, body_rows, derived_rows, further_rows, heading, motion_rows,
+    COLUMN, PREDICTED, Row, VALUE_END, body_rows, derived_rows, further_rows, heading, motion_rows,
     now_rows, start_rows, watched_rows,
 };
-use std::borrow::Cow;
 
 /// Column of units.
 const UNIT: u16 = 19;
-/// Width of a column of lines.
-const COLUMN: u16 = 26;
 /// How many columns of values that can be edited stand side by side at most; the readouts have one more.
 const MOST_EDITED: u16 = 6;
 /// What marks the selected line, and a list that goes on above or below.
@@ -47,12 +47,19 @@ pub const ROW: PaneRow = PaneRow {
             motion: &lab.player().motion(),
             reading: lab.player().reading(),
             editor: lab.values().editor(),
+            is_searched: lab.on_top().mode() == Mode::Find,
             view: lab.view(),
         }
         .render(area, buf);
     },
-    keys: &[],
+    keys: KEYS,
 };
+
+/// The keys that the footer names while the pane has the focus.
+#[rustfmt::skip]
+const KEYS: &[Binding] = &[
+    row(&[Mode::Lab], &[Key::Char('/')], Action::FindValue, "find", "find a value by a part of its name; Esc shows all again"),
+];
 
 /// The values of a scenario and of its run.
 pub struct Parameters<'a> {
@@ -64,6 +71,8 @@ pub struct Parameters<'a> {
     pub reading: &'a Reading,
     /// What can be edited.
     pub editor: &'a Editor,
+    /// Whether a part of a name is being typed, to find a value.
+    pub is_searched: bool,
     /// How it is looked at.
     pub view: &'a View,
 }
@@ -72,7 +81,13 @@ impl Widget for Parameters<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let focus = self.view.focus == ROW.id;
         let editor = Some(self.editor).filter(|_| focus);
-        let inside = frame(&title(editor), area, focus, &self.view.theme, buf);
+        let inside = frame(
+            &title(editor, self.is_searched),
+            area,
+            focus,
+            &self.view.theme,
+            buf,
+        );
         if inside.is_empty() {
             return;
         }
@@ -85,14 +100,21 @@ impl Widget for Parameters<'_> {
 }
 
 impl Parameters<'_> {
-    fn columns<'r>(&self, columns: impl Iterator<Item = &'r [Row]>, area: Rect, buf: &mut Buffer) {
+    /// Columns of lines, each `wide` columns of the screen.
+    fn columns<'r>(
+        &self,
+        columns: impl Iterator<Item = &'r [Row]>,
+        wide: u16,
+        area: Rect,
+        buf: &mut Buffer,
+    ) {
         for (rows, column) in columns.zip(0..MOST_EDITED) {
             let place = Rect {
-                x: area.x + column * COLUMN,
-                width: area.width.saturating_sub(column * COLUMN).min(COLUMN),
+                x: area.x + column * wide,
+                width: area.width.saturating_sub(column * wide).min(wide),
                 ..area
             };
-            self.lines(rows, place, buf);
+            self.lines_of(rows, wide, place, buf);
         }
     }
 
@@ -126,7 +148,7 @@ impl Parameters<'_> {
             height: area.height - lower,
             ..area
         };
-        self.edited(&edited, editor, upper, 1, buf);
+        self.edited(&edited, editor, upper, (1, COLUMN), buf);
         let lower = Rect {
             y: upper.bottom(),
             height: lower,
@@ -147,8 +169,12 @@ impl Parameters<'_> {
         let height = area.height.saturating_sub(1) as usize;
         let grouped = by_group(&edited, height).map_or(usize::MAX, |columns| columns.len());
         let count = grouped.min(count as usize) as u16;
-        let width = COLUMN * count;
-        self.edited(&edited, editor, Rect { width, ..area }, count, buf);
+        let most = (area.width - COLUMN) / count;
+        let wide = edited.iter().map(needed).max().unwrap_or(COLUMN);
+        let wide = wide.clamp(COLUMN, most.max(COLUMN));
+        let width = wide * count;
+        let place = Rect { width, ..area };
+        self.edited(&edited, editor, place, (count, wide), buf);
         let right = Rect {
             x: area.x + width,
             width: area.width - width,
@@ -158,27 +184,37 @@ impl Parameters<'_> {
         self.lines(&rows, right, buf);
     }
 
-    /// `rows` of `editor` in `count` columns, as many as there is room for around the selected one, and below them what
-    /// `--set` takes for it.
-    fn edited(&self, rows: &[Row], editor: &Editor, area: Rect, count: u16, buf: &mut Buffer) {
-        let (lines, last) = match area.height {
-            0..=1 => (area, Rect { height: 0, ..area }),
-            _ => above_last(area),
-        };
-        if let Some(selected) = editor.selected() {
-            let width = last.width as usize;
-            self.note(&key_line(selected, width), last, buf);
+    /// `rows` of `editor` in `count` columns, each `wide` columns of the screen: as many as there is room for around the
+    /// selected one, and below them what `--set` takes for it, with all its digits.
+    fn edited(
+        &self,
+        rows: &[Row],
+        editor: &Editor,
+        area: Rect,
+        (count, wide): (u16, u16),
+        buf: &mut Buffer,
+    ) {
+        let mut lines = area;
+        let notes = editor
+            .selected()
+            .map(|line| key_lines(line, area.width as usize));
+        for note in notes.into_iter().flatten().rev() {
+            if lines.height > 1 {
+                let (above, last) = above_last(lines);
+                self.note(&note, last, buf);
+                lines = above;
+            }
         }
         let height = lines.height as usize;
         let grouped = by_group(rows, height).filter(|columns| columns.len() <= count as usize);
         if let Some(columns) = grouped {
-            return self.columns(columns.into_iter(), lines, buf);
+            return self.columns(columns.into_iter(), wide, lines, buf);
         }
         let room = height * count as usize;
         let (shown, above, below) = around_selected(rows, room);
-        self.columns(shown.chunks(height.max(1)), lines, buf);
+        self.columns(shown.chunks(height.max(1)), wide, lines, buf);
         // On the frame, or where columns of lines are empty.
-        let x = match self.view.filled && area.width == count * COLUMN {
+        let x = match self.view.filled && area.width == count * wide {
             true => area.right() - 1,
             false => area.right(),
         };
@@ -199,22 +235,28 @@ impl Parameters<'_> {
     }
 
     fn lines(&self, rows: &[Row], area: Rect, buf: &mut Buffer) {
+        self.lines_of(rows, COLUMN, area, buf);
+    }
+
+    /// `rows` in lines that are `wide` columns.
+    fn lines_of(&self, rows: &[Row], wide: u16, area: Rect, buf: &mut Buffer) {
         for (row, y) in rows.iter().zip(0..area.height) {
             let line = Rect {
                 y: area.y + y,
                 height: 1,
                 ..area
             };
-            self.line(row, line, buf);
+            self.line(row, VALUE_END + wide - COLUMN, line, buf);
         }
     }
 
-    fn line(&self, row: &Row, area: Rect, buf: &mut Buffer) {
+    /// One line; `value_end` is the column of the last character of its value.
+    fn line(&self, row: &Row, value_end: u16, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
         let indent = u16::from(!row.is_heading());
         let label = theme.style(row.label_role);
         let end = write(area, (indent, 0), &row.label, label, buf);
-        let room = VALUE_END.saturating_sub(end + 1) as usize;
+        let room = value_end.saturating_sub(end + 1) as usize;
         let value = fewer_digits(&row.value, room);
         let style = theme.style(row.value_role);
         if row.unit.is_empty() && columns(&value) > room {
@@ -222,10 +264,11 @@ impl Parameters<'_> {
             write(area, (end + 1, 0), &value, style, buf);
         } else {
             let value = shortened(&value, room);
-            let begin = VALUE_END.saturating_sub(columns(&value) as u16);
+            let begin = value_end.saturating_sub(columns(&value) as u16);
             write(area, (begin, 0), &value, style, buf);
         }
-        write(area, (UNIT, 0), &row.unit, theme.style(Role::Quiet), buf);
+        let unit = value_end + UNIT - VALUE_END;
+        write(area, (unit, 0), &row.unit, theme.style(Role::Quiet), buf);
         if row.is_selected {
             write(area, (0, 0), SELECTED, theme.style(Role::Focus), buf);
             buf.set_style(area, theme.style(Role::Selected));
@@ -240,100 +283,6 @@ impl Parameters<'_> {
         rows.extend(shown(self.view, now_rows(self.reading)));
         rows
     }
-}
-
-/// The pane's title, which tells where in the list the selected line is.
-fn title(editor: Option<&Editor>) -> String {
-    match editor.map(|editor| (editor.selected_index() + 1, editor.lines().len())) {
-        Some((at, all @ 1..)) => format!("{} {at} of {all}", ROW.title),
-        _ => ROW.title.to_owned(),
-    }
-}
-
-/// The lines of `editor`, its groups with their headings.
-fn edited_rows(editor: &Editor) -> Vec<Row> {
-    let mut rows = Vec::with_capacity(2 * editor.lines().len());
-    let mut at = 0;
-    for group in editor.lines().chunk_by(|a, b| a.group == b.group) {
-        rows.extend(group.first().map(|line| heading(on_one_line(&line.group))));
-        for line in group {
-            rows.push(edited_row(line, at == editor.selected_index()));
-            at += 1;
-        }
-    }
-    rows
-}
-
-fn edited_row(line: &Line, is_selected: bool) -> Row {
-    let value_role = if line.is_default {
-        Role::Quiet
-    } else {
-        Role::Text
-    };
-    Row {
-        rank: 0,
-        label: on_one_line(&line.label).into(),
-        label_role: Role::Quiet,
-        value: on_one_line(&line.value),
-        value_role,
-        unit: line.unit.clone().into(),
-        is_selected,
-    }
-}
-
-/// `text` as it can stand on a line, whatever it holds.
-fn on_one_line(text: &str) -> String {
-    printable(&text.replace('\n', " ")).into_owned()
-}
-
-/// What `--set` takes for `line`: with its value where there is room for it on `width` columns.
-fn key_line(line: &Line, width: usize) -> String {
-    if line.key.is_empty() {
-        return String::new();
-    }
-    let value = on_one_line(&line.value);
-    let whole = format!("{}={value}", line.key);
-    if columns(&whole) <= width {
-        whole
-    } else {
-        line.key.clone()
-    }
-}
-
-/// The `room` rows around the selected one, its group's heading kept on top; whether there are more above and below.
-fn around_selected(rows: &[Row], room: usize) -> (Vec<Row>, bool, bool) {
-    let selected = rows.iter().position(|row| row.is_selected).unwrap_or(0);
-    let most = rows.len().saturating_sub(room);
-    let first = selected.saturating_sub(room / 2).min(most);
-    let end = (first + room).min(rows.len());
-    let mut shown = rows[first..end].to_vec();
-    let before = rows.get(..=first).unwrap_or(rows);
-    let heading = before.iter().rfind(|row| row.is_heading());
-    if let (Some(top), Some(heading)) = (shown.first_mut(), heading)
-        && !top.is_selected
-    {
-        top.clone_from(heading);
-    }
-    (shown, first > 0, end < rows.len())
-}
-
-/// `text`, or with fewer decimals where it is a number that is wider than `room`.
-fn fewer_digits(text: &str, room: usize) -> Cow<'_, str> {
-    let is_number = text.contains('.') && text.len() > room;
-    let number = text.parse::<f64>().ok().filter(|_| is_number);
-    let Some(number) = number else {
-        return text.into();
-    };
-    let decimals = (1..room).rev().map(|digits| format!("{number:.digits$}"));
-    let exponents = (0..room).rev().map(|digits| format!("{number:.digits$e}"));
-    let is_told = |text: &String| text.parse::<f64>().is_ok_and(|told| near(told, number));
-    let mut fitting = decimals.chain(exponents).filter(|text| text.len() <= room);
-    fitting.find(is_told).map_or(text.into(), Cow::from)
-}
-
-/// Whether `told` is `number` to within a thousandth.
-fn near(told: f64, number: f64) -> bool {
-    (told - number).abs() <= 1e-3 * number.abs()
 }
 
 /// The readouts for `room` lines: all of them, or those to watch.

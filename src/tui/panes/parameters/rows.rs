@@ -1,5 +1,6 @@
 //! What stands in the pane's lines, each number with as many decimals as there is room for.
 
+use super::edited::fewer_digits;
 use crate::analysis::remarks::short_unit;
 use crate::observe::reading::Reading;
 use crate::physics::Body;
@@ -10,6 +11,9 @@ use std::borrow::Cow;
 
 /// Column of the last character of values.
 pub(super) const VALUE_END: u16 = 18;
+
+/// Width of a column of lines.
+pub(super) const COLUMN: u16 = 26;
 
 /// The label of what theory predicts for the number above it.
 pub(super) const PREDICTED: &str = "predicted";
@@ -58,6 +62,18 @@ fn number(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'sta
     value(rank, label, fixed(label, Some(number), digits), unit)
 }
 
+/// A number of the scenario: with `digits` decimals where these are all it has, else with as many as stand beside its label.
+fn given(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'static str) -> Row {
+    let usual = fixed(label, Some(number), digits);
+    let is_whole = usual.parse() == Ok(number);
+    let room = (VALUE_END as usize).saturating_sub(label.len() + 2);
+    let text = match is_whole {
+        true => usual,
+        false => fewer_digits(&shortest(number), room).into_owned(),
+    };
+    value(rank, label, text, unit)
+}
+
 /// What follows from the body's values.
 pub(super) fn derived_rows(scenario: &Scenario) -> Vec<Row> {
     let body: &Body = &scenario.body.mechanics;
@@ -72,7 +88,7 @@ pub(super) fn derived_rows(scenario: &Scenario) -> Vec<Row> {
 pub(super) fn body_rows(scenario: &Scenario) -> Vec<Row> {
     let mut rows = derived_rows(scenario);
     if let Some(rim) = &scenario.file.body.rim {
-        rows.push(number(4, "rim radius", rim.radius_m, 4, "m"));
+        rows.push(given(4, "rim radius", rim.radius_m, 4, "m"));
         rows.push(value(6, "rim points", rim.points.to_string(), ""));
     }
     rows
@@ -88,11 +104,11 @@ pub(super) fn start_rows(scenario: &Scenario) -> Vec<Row> {
     };
     vec![
         heading("start"),
-        number(2, "tilt", tilt, 3, "deg"),
+        given(2, "tilt", tilt, 3, "deg"),
         number(0, "|L|", scenario.start.momentum.norm(), 3, "J s"),
-        number(5, "Lx", x, 3, "J s"),
-        number(5, "Ly", y, 3, "J s"),
-        number(5, "Lz", z, 3, "J s"),
+        given(5, "Lx", x, 3, "J s"),
+        given(5, "Ly", y, 3, "J s"),
+        given(5, "Lz", z, 3, "J s"),
         value(5, "L given in", frame.to_owned(), ""),
     ]
 }
@@ -107,7 +123,7 @@ pub(super) fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
         heading("motion"),
         value(0, "dt", shortest(motion.time_step_s), "s"),
         value(3, "scheme", motion.scheme.name.to_owned(), ""),
-        number(4, "gravity", motion.gravity, 3, "m/s2"),
+        given(4, "gravity", motion.gravity, 3, "m/s2"),
         value(6, "steps", scenario.steps.to_string(), ""),
         value(
             if scenario.pushes.is_empty() { 5 } else { 1 },

@@ -1,0 +1,127 @@
+//! The settings of the lab that no option names: those of the user's `config.toml`, and after them those that were chosen in
+//! the lab.
+
+use super::args::{Look, WorkbenchArgs};
+use super::tell;
+use super::workbench::variable;
+use crate::lab::Lab;
+use crate::lab::view::markers::Marker;
+use crate::scenario::Problems;
+use crate::storage::settings::{self, Read, Settings};
+use crate::text::printable::printable_lines;
+use crate::tui::surroundings;
+use clap::ValueEnum;
+use std::path::Path;
+
+/// Frames a second at most, where nothing is chosen.
+pub(super) const FPS: u32 = 15;
+
+/// What the files of settings hold.
+pub(super) struct Chosen {
+    /// The user's file.
+    config: Read,
+    /// What the program has remembered.
+    remembered: Read,
+}
+
+/// Reads the settings: those remembered in `folder`, and the user's own unless the lab is confined to a folder.
+pub(super) fn read(folder: Option<&Path>, is_confined: bool) -> Chosen {
+    let config = settings::config().filter(|_| !is_confined);
+    Chosen {
+        config: config.map_or_else(Read::default, |path| settings::read_config(&path)),
+        remembered: folder.map_or_else(Read::default, settings::read),
+    }
+}
+
+impl Chosen {
+    /// `args` with the settings for which it has no option.
+    pub(super) fn complete(&self, args: &WorkbenchArgs) -> WorkbenchArgs {
+        let remembered = shown_here(self.remembered.settings.clone());
+        let settings = self.config.settings.clone().or(remembered);
+        let mut args = args.clone();
+        args.fps = args.fps.or(settings.fps);
+        args.look = Look {
+            color: args.look.color.or_else(|| option(settings.colour)),
+            background: args.look.background.or_else(|| option(settings.background)),
+            markers: args.look.markers.or_else(|| option(settings.marker)),
+        };
+        args
+    }
+
+    /// Says in `lab` what is wrong with the files, and of the user's also on the shell's screen, which shows all of it
+    /// when the lab is left.
+    pub(super) fn tell(&self, lab: &mut Lab) {
+        if let Some(problems) = &self.remembered.problems {
+            let first = first_line(problems);
+            lab.tell_first(&format!("{first}: not used; a choice mends it; "));
+        }
+        if let Some(problems) = &self.config.problems {
+            tell(format_args!(
+                "gyrolab: {}\ngyrolab: what is wrong there is not used; gyrolab man lists the settings",
+                printable_lines(&problems.to_string())
+            ));
+            let first = first_line(problems);
+            lab.tell_first(&format!("{first}: not used; mend it; "));
+        }
+    }
+}
+
+/// The first of `problems` in one line, with the file's name and no folder.
+fn first_line(problems: &Problems) -> String {
+    let name = Path::new(&problems.origin).file_name().unwrap_or_default();
+    let named = Problems {
+        origin: name.to_string_lossy().into_owned(),
+        ..problems.clone()
+    };
+    let text = named.to_string();
+    text.lines().next().unwrap_or_default().to_owned()
+}
+
+/// The remembered `settings` that this terminal can show: dots that were chosen on another terminal may need more.
+fn shown_here(settings: Settings) -> Settings {
+    let usual = surroundings::marker(variable);
+    let can_be_shown = |name: &String| {
+        let marker = Marker::ALL.into_iter().find(|marker| marker.name() == name);
+        marker.is_some_and(|marker| marker.needs_no_more_than(usual))
+    };
+    Settings {
+        marker: settings.marker.filter(can_be_shown),
+        ..settings
+    }
+}
+
+/// The option called `name`, which the table of settings has checked.
+fn option<T: ValueEnum>(name: Option<String>) -> Option<T> {
+    T::from_str(&name?, false).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::args::{Color, Markers, Screen};
+    use super::*;
+    use crate::lab::view::theme::Background;
+    use crate::scenario::keys::Kind;
+
+    #[test]
+    fn every_word_of_the_table_is_an_option_and_a_choice_of_the_lab() {
+        let words = |wanted: &str| {
+            let row = settings::KEYS.iter().find(|(key, ..)| *key == wanted);
+            match row.unwrap().1 {
+                Kind::OneOf(words) => words.to_vec(),
+                other => panic!("{other:?}"),
+            }
+        };
+        let is_option = |word: &&str| option::<Markers>(Some((*word).to_owned())).is_some();
+        assert!(words("marker").iter().all(is_option));
+        let names: Vec<_> = Marker::ALL.iter().map(|marker| marker.name()).collect();
+        assert_eq!(words("marker"), names);
+        for word in words("colour") {
+            assert!(option::<Color>(Some(word.to_owned())).is_some(), "{word}");
+        }
+        for background in [Background::Dark, Background::Light] {
+            let word = background.name();
+            assert!(words("background").contains(&word));
+            assert!(option::<Screen>(Some(word.to_owned())).is_some());
+        }
+    }
+}

@@ -1,0 +1,235 @@
+//! What the help lists: every key, grouped by what one wants to do, and every word of the glossary; and what a search finds
+//! among them.
+
+use super::glossary::{GLOSSARY, Word};
+use crate::lab::Mode;
+use crate::lab::action::Action;
+use crate::lab::view::Pane;
+use crate::tui::keymap::{BINDINGS, Binding};
+use crate::tui::panes::PANES;
+
+/// A line of the help.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// The heading under which it stands.
+    pub group: &'static str,
+    /// The pane whose key it is; `None` for a key that every pane has, and for a word.
+    pub pane: Option<Pane>,
+    /// The key or the word.
+    pub what: What,
+}
+
+/// A key or a word.
+#[derive(Clone, Copy, Debug)]
+pub enum What {
+    /// A key, or several that mean the same.
+    Key(&'static Binding),
+    /// A word of the glossary and its meaning.
+    Word(&'static Word),
+}
+
+const PLAY: &str = "play";
+const LOOK: &str = "look";
+const CHANGE: &str = "change the values";
+const PUSH: &str = "push";
+const KEEP: &str = "keep and export";
+const OPEN: &str = "open another run";
+const LEAVE: &str = "help, close, leave";
+/// The groups of the keys of the lab, in order.
+const PURPOSES: [&str; 7] = [PLAY, LOOK, CHANGE, PUSH, KEEP, OPEN, LEAVE];
+/// The groups of the keys of other modes, in order.
+const PLACES: [(Mode, &str); 5] = [
+    (Mode::Browser, "in the list of presets and files"),
+    (Mode::Filter, "while a part of a name is typed"),
+    (Mode::Find, "while a value is searched for"),
+    (Mode::Help, "in this list"),
+    (Mode::Dialog, "in a dialog"),
+];
+const WORDS: &str = "words";
+
+impl Entry {
+    /// The keys, or the word.
+    pub fn name(&self) -> String {
+        match self.what {
+            What::Key(binding) => {
+                let keys: Vec<_> = binding.keys.iter().map(ToString::to_string).collect();
+                keys.join(" ")
+            }
+            What::Word((word, _)) => (*word).to_owned(),
+        }
+    }
+
+    /// What it does, or means.
+    pub fn text(&self) -> &'static str {
+        match self.what {
+            What::Key(binding) => binding.help,
+            What::Word((_, meaning)) => meaning,
+        }
+    }
+
+    /// How well it answers to `search`, of which `lower` is in small letters: 0 is best; `None` if it does not.
+    fn answers(&self, search: &str, lower: &str) -> Option<u8> {
+        let is_key = |wanted: &dyn Fn(String) -> bool| match self.what {
+            What::Key(binding) => binding.keys.iter().any(|key| wanted(key.to_string())),
+            What::Word(_) => false,
+        };
+        if is_key(&|key| key == search) {
+            return Some(0);
+        }
+        let short = match self.what {
+            What::Key(binding) => binding.footer,
+            What::Word((word, _)) => word,
+        };
+        let short = short.to_lowercase();
+        if short == lower || is_key(&|key| key.to_lowercase() == lower) {
+            return Some(1);
+        }
+        if short.starts_with(lower) {
+            return Some(2);
+        }
+        let all = format!("{} {short} {}", self.name(), self.text()).to_lowercase();
+        let is_word = |wanted: &str| {
+            let mut words = all.split(|c: char| !c.is_alphanumeric());
+            words.any(|word| word.starts_with(wanted))
+        };
+        let mut wanted = lower.split_whitespace();
+        if wanted.clone().all(is_word) {
+            return Some(3);
+        }
+        if wanted.clone().all(|word| all.contains(word)) {
+            return Some(4);
+        }
+        let group = self.group.to_lowercase();
+        let is_there = |word: &str| all.contains(word) || group.contains(word);
+        wanted.all(is_there).then_some(5)
+    }
+}
+
+/// Every entry, group by group.
+pub fn entries() -> Vec<Entry> {
+    let of_lab = |group| {
+        let rows = BINDINGS.iter().filter(move |row| row.modes[0] == Mode::Lab);
+        let rows = rows.filter(move |row| purpose(row.action) == group);
+        rows.map(move |row| key(group, None, row))
+    };
+    let of_mode = |(mode, group)| {
+        let rows = BINDINGS.iter().filter(move |row| row.modes[0] == mode);
+        rows.map(move |row| key(group, None, row))
+    };
+    let of_pane = PANES.iter().flat_map(|pane| {
+        let rows = pane.keys.iter();
+        rows.map(|row| key(pane.title, Some(pane.id), row))
+    });
+    let words = GLOSSARY.iter().map(|word| Entry {
+        group: WORDS,
+        pane: None,
+        what: What::Word(word),
+    });
+    let keys = PURPOSES.into_iter().flat_map(of_lab).chain(of_pane);
+    keys.chain(words)
+        .chain(PLACES.into_iter().flat_map(of_mode))
+        .collect()
+}
+
+/// The entries that answer to `search`, the best first; all of them, group by group, where it is empty.
+pub fn found(search: &str) -> Vec<Entry> {
+    let (search, mut found) = (search.trim(), entries());
+    if search.is_empty() {
+        return found;
+    }
+    let lower = search.to_lowercase();
+    let rank = |entry: &Entry| entry.answers(search, &lower);
+    found.retain(|entry| rank(entry).is_some());
+    found.sort_by_key(rank); // stable: among equals the order of the groups
+    found
+}
+
+fn key(group: &'static str, pane: Option<Pane>, binding: &'static Binding) -> Entry {
+    Entry {
+        group,
+        pane,
+        what: What::Key(binding),
+    }
+}
+
+/// What one wants to do who presses the key of `action` in the lab.
+fn purpose(action: Action) -> &'static str {
+    use Action as A;
+    match action {
+        A::TogglePause | A::Step | A::StepBack | A::Faster | A::Slower | A::GoTo | A::Restart => {
+            PLAY
+        }
+        A::Parameters | A::Edit | A::FindValue | A::Undo | A::Redo => CHANGE,
+        A::Move(_) | A::MoveFar(_) => CHANGE,
+        A::Push | A::ChoosePush => PUSH,
+        A::Export | A::SaveRun | A::SavePresent => KEEP,
+        A::Browse => OPEN,
+        A::Help | A::Close | A::Redraw | A::Suspend | A::Quit => LEAVE,
+        _ => LOOK,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_key_is_listed_once() {
+        let entries = entries();
+        let keys = entries
+            .iter()
+            .filter(|entry| matches!(entry.what, What::Key(_)));
+        let of_panes: usize = PANES.iter().map(|pane| pane.keys.len()).sum();
+        assert_eq!(keys.count(), BINDINGS.len() + of_panes);
+    }
+
+    #[test]
+    fn a_group_is_listed_in_one_piece() {
+        let entries = entries();
+        let groups: Vec<_> = entries
+            .chunk_by(|one, next| one.group == next.group)
+            .map(|group| group[0].group)
+            .collect();
+        for (index, group) in groups.iter().enumerate() {
+            assert!(!groups[..index].contains(group), "{group}");
+        }
+        assert_eq!(groups[0], PLAY);
+    }
+
+    #[test]
+    fn a_search_finds_keys_texts_and_words_the_best_first() {
+        let first = |search: &str| found(search)[0].name();
+        for (search, name) in [
+            ("p", "p"),
+            ("P", "P"),
+            ("U", "U Ctrl-R"),
+            ("export", "x"),
+            ("EXPORT", "x"),
+            ("nutation", "nutation"),
+            ("strob", "strobed"),
+            ("space", "space"),
+            ("time step on", "."),
+            ("magnify", "z"),
+        ] {
+            assert_eq!(first(search), name, "{search}");
+        }
+        assert!(found("xyzzy").is_empty());
+        assert_eq!(found("  ").len(), entries().len());
+    }
+
+    #[test]
+    fn every_word_of_the_glossary_is_found_by_itself() {
+        for (word, meaning) in GLOSSARY {
+            let found = found(word);
+            assert!(
+                found
+                    .iter()
+                    .any(|entry| entry.name() == *word && entry.text() == *meaning)
+            );
+            assert!(
+                meaning.len() < 140 && !meaning.contains(". "),
+                "{word}: one sentence"
+            );
+        }
+    }
+}

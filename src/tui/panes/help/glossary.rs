@@ -1,0 +1,133 @@
+//! The words that the lab uses, each in one sentence.
+
+/// A word and its meaning.
+pub(super) type Word = (&'static str, &'static str);
+
+/// Every word, those of the motion first, then those of the numbers and of the screen.
+pub(super) const GLOSSARY: &[Word] = &[
+    (
+        "precession",
+        "the slow turn of the axle about the vertical: gravity's torque carries L around",
+    ),
+    (
+        "nutation",
+        "the fast nodding of the axle about its slow way; for a fast top its period is 2 pi I1/L, I1 the inertia across the axle",
+    ),
+    (
+        "axle",
+        "the direction in the body that was upright before the start turned it; tilt and azimuth are the axle's",
+    ),
+    ("tilt", "the angle of the axle from the vertical z, now"),
+    (
+        "azimuth",
+        "the direction of the axle as seen from above, counted on over full turns",
+    ),
+    (
+        "axle top",
+        "the point of the body whose path is drawn, unless the scenario traces another: x, y and z are its",
+    ),
+    (
+        "trace",
+        "the path of the traced point, or a curve over time",
+    ),
+    (
+        "pivot",
+        "the foot of the axle, which stands still; L and torque are about it",
+    ),
+    (
+        "L",
+        "angular momentum about the pivot, in J s; given in the \"world\" as it stands, or in the \"body\", turned with it",
+    ),
+    (
+        "Omega",
+        "angular velocity: the axis about which the body turns just now, and how fast",
+    ),
+    (
+        "lag",
+        "the angle between axle and L; a scheme with too long a time step makes it too large, and the axle then swings about it",
+    ),
+    (
+        "run",
+        "a scenario and what was done to it, played from step 0",
+    ),
+    (
+        "time step",
+        "dt, the simulated time of one round of the scheme; the playback speed changes nothing about it",
+    ),
+    (
+        "step",
+        "the number of a time step, counted from 0, which is the start",
+    ),
+    (
+        "scheme",
+        "the numerical method that takes the body from one step to the next",
+    ),
+    (
+        "exact motion",
+        "the true motion from the same start under the same pushes, in closed form or to 1e-12; t shows it",
+    ),
+    (
+        "turn",
+        "one revolution of the wheel about its axle, as in \"5 turns a step\"; of the tilt: where it is least or greatest",
+    ),
+    (
+        "strobed",
+        "the time step is too long to see a motion: as under a strobe light, a slower one or none at all appears",
+    ),
+    (
+        "aliased",
+        "as strobed: the wheel turns so far in a step that the swing on the screen is the time step's, not the gyroscope's",
+    ),
+    (
+        "predicted",
+        "what the theory of the heavy symmetric top says of this motion, without the scheme",
+    ),
+    (
+        "measured",
+        "what is read off this run, as the scheme made it",
+    ),
+    (
+        "drift",
+        "the energy that the scheme has gained or lost, the work of pushes taken off; it should be 0",
+    ),
+    (
+        "mgl",
+        "mass times gravity times the distance of the centre of mass from the pivot: the unit of the drift, J",
+    ),
+    (
+        "Ekin",
+        "the kinetic energy at the start: the unit of the drift where there is no mgl",
+    ),
+    (
+        "off exact",
+        "how far the traced point is from where the exact motion has it at the same time",
+    ),
+    (
+        "mends it",
+        "with this time step or scheme, which has been tried, the traced point keeps within 1 % of its arm of the exact motion",
+    ),
+    (
+        "band",
+        "a column of a trace that holds several swings: from the least value to the greatest",
+    ),
+    (
+        "segment",
+        "a part of a run between edits of dt, scheme or gravity; a CSV numbers them from 0",
+    ),
+    (
+        "edit",
+        "a value that was changed during a run; it acts from the next step on, and a dotted line marks it",
+    ),
+    (
+        "push",
+        "a force on a point of the body, for some steps or seconds; the arrow F shows it",
+    ),
+    (
+        "ghost",
+        "the run before the last edit, dotted: what did the edit change?",
+    ),
+    (
+        "session",
+        "the lab as it was left; gyrolab --resume comes back to it",
+    ),
+];

@@ -1,0 +1,125 @@
+//! The lines of the values that can be edited: all of them or those that are found, and the selected one in full.
+
+use super::ROW;
+use super::rows::{COLUMN, Row, VALUE_END, heading};
+use crate::lab::editor::{Editor, Line};
+use crate::text::printable::printable;
+use crate::text::wrap::columns;
+use crate::tui::theme::Role;
+use std::borrow::Cow;
+
+/// The pane's title, which tells where in the list the selected line is, and what is searched for.
+pub(super) fn title(editor: Option<&Editor>, is_searched: bool) -> String {
+    let Some(editor) = editor else {
+        return ROW.title.to_owned();
+    };
+    let shown = editor.shown();
+    let at = shown
+        .iter()
+        .position(|(index, _)| *index == editor.selected_index());
+    let at = at.map_or(0, |at| at + 1);
+    match (editor.name(), is_searched, shown.len()) {
+        (name, true, count) => format!("/{name}_ {at} of {count}"),
+        ("", false, 0) => ROW.title.to_owned(),
+        ("", false, count) => format!("{} {at} of {count}", ROW.title),
+        (name, false, count) => format!("/{name} {at} of {count}"),
+    }
+}
+
+/// The lines of `editor` that are shown, its groups with their headings.
+pub(super) fn edited_rows(editor: &Editor) -> Vec<Row> {
+    let shown = editor.shown();
+    let mut rows = Vec::with_capacity(2 * shown.len());
+    for group in shown.chunk_by(|(_, a), (_, b)| a.group == b.group) {
+        let first = group.first();
+        rows.extend(first.map(|(_, line)| heading(on_one_line(&line.group))));
+        for (index, line) in group {
+            rows.push(edited_row(line, *index == editor.selected_index()));
+        }
+    }
+    if rows.is_empty() && !editor.name().is_empty() {
+        rows.push(heading("no value has that name"));
+    }
+    rows
+}
+
+fn edited_row(line: &Line, is_selected: bool) -> Row {
+    let value_role = if line.is_default {
+        Role::Quiet
+    } else {
+        Role::Text
+    };
+    Row {
+        rank: 0,
+        label: on_one_line(&line.label).into(),
+        label_role: Role::Quiet,
+        value: on_one_line(&line.value),
+        value_role,
+        unit: line.unit.clone().into(),
+        is_selected,
+    }
+}
+
+/// `text` as it can stand on a line, whatever it holds.
+fn on_one_line(text: &str) -> String {
+    printable(&text.replace('\n', " ")).into_owned()
+}
+
+/// What `--set` takes for `line`: on one line of `width` columns, or else the key on one and a number on the next; a text
+/// is shown whole by the dialog.
+pub(super) fn key_lines(line: &Line, width: usize) -> Vec<String> {
+    let value = on_one_line(&line.value);
+    let whole = format!("{}={value}", line.key);
+    let is_short = columns(&whole) <= width;
+    let is_number = value.parse::<f64>().is_ok();
+    match (line.key.is_empty(), is_short, is_number) {
+        (true, ..) => vec![String::new()],
+        (false, true, _) => vec![whole],
+        (false, false, true) => vec![line.key.clone(), format!("={value}")],
+        (false, false, false) => vec![line.key.clone()],
+    }
+}
+
+/// Columns that `row` needs to show its number with all its digits.
+pub(super) fn needed(row: &Row) -> u16 {
+    let is_number = row.value.parse::<f64>().is_ok();
+    let words = columns(&row.label) + columns(&row.value) + 2;
+    let behind = COLUMN - VALUE_END;
+    if is_number { words as u16 + behind } else { 0 }
+}
+
+/// The `room` rows around the selected one, its group's heading kept on top; whether there are more above and below.
+pub(super) fn around_selected(rows: &[Row], room: usize) -> (Vec<Row>, bool, bool) {
+    let selected = rows.iter().position(|row| row.is_selected).unwrap_or(0);
+    let most = rows.len().saturating_sub(room);
+    let first = selected.saturating_sub(room / 2).min(most);
+    let end = (first + room).min(rows.len());
+    let mut shown = rows[first..end].to_vec();
+    let before = rows.get(..=first).unwrap_or(rows);
+    let heading = before.iter().rfind(|row| row.is_heading());
+    if let (Some(top), Some(heading)) = (shown.first_mut(), heading)
+        && !top.is_selected
+    {
+        top.clone_from(heading);
+    }
+    (shown, first > 0, end < rows.len())
+}
+
+/// `text`, or with fewer decimals where it is a number that is wider than `room`.
+pub(super) fn fewer_digits(text: &str, room: usize) -> Cow<'_, str> {
+    let is_wide = text.len() > room;
+    let number = text.parse::<f64>().ok().filter(|_| is_wide);
+    let Some(number) = number else {
+        return text.into();
+    };
+    let decimals = (1..room).rev().map(|digits| format!("{number:.digits$}"));
+    let exponents = (0..room).rev().map(|digits| format!("{number:.digits$e}"));
+    let is_told = |text: &String| text.parse::<f64>().is_ok_and(|told| near(told, number));
+    let mut fitting = decimals.chain(exponents).filter(|text| text.len() <= room);
+    fitting.find(is_told).map_or(text.into(), Cow::from)
+}
+
+/// Whether `told` is `number` to within a thousandth.
+fn near(told: f64, number: f64) -> bool {
+    (told - number).abs() <= 1e-3 * number.abs()
+}

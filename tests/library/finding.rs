@@ -1,0 +1,242 @@
+//! Keys, words and values are found by typing: the help, and the filter of the values.
+
+use crate::support::stage::{LARGE, SMALL, Stage};
+use gyrolab::lab::{Mode, Request};
+use gyrolab::tui::keymap::Key;
+use gyrolab::tui::panes::PANES;
+use ratatui::layout::Rect;
+
+const ESC: &str = "\u{1b}";
+
+fn open(size: Rect) -> Stage {
+    let mut stage = Stage::open("method-2", &[], size);
+    stage.wait(1.0).commands("pause = true").wait(6.0);
+    stage
+}
+
+#[test]
+fn the_help_does_the_entry_that_is_found() {
+    let mut stage = open(SMALL);
+    let step = stage.step();
+    stage
+        .press("?one time step on")
+        .shows("help: one time step on_")
+        .press("\n")
+        .wait(0.1);
+    assert_eq!(
+        (stage.lab.on_top().mode(), stage.step()),
+        (Mode::Lab, step + 1)
+    );
+    stage
+        .press("?export\n")
+        .shows("export steps 0 to")
+        .press(ESC);
+    stage.press("?\u{1b}");
+    assert_eq!(stage.lab.on_top().mode(), Mode::Lab);
+    for key in "?leave".chars() {
+        stage.key(Key::Char(key));
+    }
+    assert_eq!(stage.key(Key::Enter), Some(Request::Quit));
+}
+
+#[test]
+fn letters_of_the_help_are_typed_and_esc_clears_them_first() {
+    let mut stage = open(SMALL);
+    stage
+        .press("?")
+        .shows("help: type to search")
+        .shows("►")
+        .press("qkj")
+        .shows("help: qkj_ (0)");
+    stage
+        .shows("nothing has that")
+        .press("\n")
+        .shows("nothing is selected");
+    stage
+        .press(ESC)
+        .shows("help: type to search")
+        .press(ESC)
+        .shows_no("help: ");
+    stage.press("?undo?").shows_no("help: ");
+}
+
+#[test]
+fn a_word_is_explained_by_its_sentence() {
+    let words = [
+        "nutation",
+        "precession",
+        "strobed",
+        "mgl",
+        "lag",
+        "predicted",
+        "measured",
+        "drift",
+        "turn",
+        "band",
+        "segment",
+        "tilt",
+        "azimuth",
+        "time step",
+        "scheme",
+        "exact motion",
+    ];
+    for size in [SMALL, LARGE, Rect::new(0, 0, 40, 12)] {
+        let mut stage = open(size);
+        for word in words {
+            stage.press("?").press(word).shows(word).press("\n");
+            stage.press(ESC).press(ESC);
+            assert_eq!(stage.lab.on_top().mode(), Mode::Lab, "{word}");
+        }
+        stage
+            .press("?strobed")
+            .shows("as under a strobe")
+            .press(ESC)
+            .press(ESC);
+    }
+}
+
+#[test]
+fn the_keys_of_a_pane_stand_under_its_title_and_turn_to_it() {
+    let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, 100, 150));
+    stage.press("?");
+    for pane in PANES.iter().filter(|pane| !pane.keys.is_empty()) {
+        stage.shows(&format!("{}: keys of this pane", pane.title));
+    }
+    let mut stage = open(SMALL);
+    stage.press("\t");
+    assert_eq!(stage.focus(), "above");
+    stage.press("?cursor one step to the right\n");
+    assert_eq!(stage.focus(), "traces");
+    assert!(stage.lab.view().cursor.is_some());
+}
+
+#[test]
+fn a_key_of_another_place_is_not_done_but_says_where_it_works() {
+    let mut stage = open(SMALL);
+    stage
+        .press("?take what is typed\n")
+        .shows("in a dialog: this key works there");
+    assert_eq!(stage.lab.on_top().mode(), Mode::Help);
+    // Opened from the list, the help does the list's keys.
+    stage.press(ESC).press(ESC).press("o?type a part\n");
+    assert_eq!(stage.lab.on_top().mode(), Mode::Filter);
+}
+
+#[test]
+fn the_selection_stops_at_both_ends_of_the_help() {
+    let mut stage = open(Rect::new(0, 0, 40, 12));
+    stage.press("?").press(&"↓".repeat(500)).press("↑");
+    let at = stage.lab.on_top().help_selected();
+    stage.press("↓");
+    assert_eq!(stage.lab.on_top().help_selected(), at + 1);
+    stage.press("cusps").press(ESC).press("↑");
+    assert_eq!(stage.lab.on_top().help_selected(), 0);
+}
+
+#[test]
+fn values_are_found_by_their_names() {
+    let mut stage = open(SMALL);
+    stage
+        .press("/grav")
+        .shows("/grav_ 1 of 1")
+        .shows("gravity")
+        .shows_no("scheme  ");
+    assert_eq!(stage.focus(), "parameters");
+    // What is found is nudged at once, and typed.
+    stage.press("→").shows("gravity 9.9");
+    stage
+        .press("\n")
+        .shows("motion.gravity_m_per_s2")
+        .press("1.6\n");
+    let gravity = |stage: &Stage| stage.lab.player().motion().gravity;
+    assert_eq!(gravity(&stage), 1.6);
+    stage
+        .shows("/grav 1 of 1")
+        .press(ESC)
+        .shows_no("/grav")
+        .shows("parameters ");
+    assert_eq!(stage.focus(), "parameters");
+    let selected = stage.lab.values().editor().selected().unwrap();
+    assert_eq!(selected.label, "gravity");
+    stage.press(ESC);
+    assert_eq!(stage.focus(), "traces");
+}
+
+#[test]
+fn a_name_that_no_value_has_is_said_and_cleared() {
+    let mut stage = open(SMALL);
+    stage
+        .press("e/qz")
+        .shows("/qz_ 0 of 0")
+        .shows("no value has that name");
+    stage
+        .press("\n")
+        .shows("no value has that in its name")
+        .press("→");
+    stage.lab.paste("x\n");
+    stage.shows("/qzx_");
+    stage.key(Key::Backspace);
+    stage.shows("/qz_").press(ESC);
+    assert_eq!(stage.lab.on_top().mode(), Mode::Lab);
+    stage.shows("parameters ").press("/").press(ESC);
+    assert_eq!(
+        (stage.focus(), stage.lab.on_top().mode()),
+        ("parameters", Mode::Lab)
+    );
+    // The push to come is found whatever was searched for.
+    stage
+        .press("/dt")
+        .press("\u{1b}")
+        .press("/dt\n\u{1b}")
+        .press("P")
+        .shows("next push");
+}
+
+#[test]
+fn a_value_shows_all_the_digits_it_has() {
+    const HEIGHT: &str = "0.565685424949238";
+    let mut stage = open(SMALL);
+    stage
+        .press("/rim height")
+        .shows("body.rim.height_m")
+        .shows(&format!("={HEIGHT}"));
+    let mut stage = open(Rect::new(0, 0, 160, 40));
+    stage.press("ef").shows(HEIGHT).shows("m  ");
+    // Beside the other panes too, a value is not rounded where there is room.
+    let set = [
+        "start.tilt_deg=0.000123456",
+        "motion.gravity_m_per_s2=9.80665",
+    ];
+    let stage = &mut Stage::open("method-2", &set, LARGE);
+    stage.shows("0.000123456 deg").shows("9.80665");
+}
+
+#[test]
+fn a_whole_number_keeps_all_its_digits() {
+    let set = ["push=[{point='top', force_N=[0,0,1], first_step=123456789, steps=1}]"];
+    let mut stage = Stage::open("method-2", &set, SMALL);
+    stage
+        .press("/first step")
+        .shows("first step 123456789")
+        .shows("=123456789");
+}
+
+#[test]
+fn the_frame_of_l_stands_beside_it_and_is_kept() {
+    let mut stage = open(SMALL);
+    stage
+        .press("/lz")
+        .shows("Lz body")
+        .press("→\n")
+        .shows("Lz body, J s")
+        .press("500\n");
+    let file = stage.lab.player().run().scenario().file.clone();
+    assert_eq!(
+        file.start.momentum_frame,
+        Some(gyrolab::scenario::file::Frame::Body)
+    );
+    assert_eq!(file.start.momentum_Js, Some([0.0, 0.0, 500.0]));
+    Stage::open("method-1", &[], SMALL)
+        .press("/lz")
+        .shows("Lz world");
+}

@@ -1,0 +1,143 @@
+//! What is chosen in the lab is remembered, and the user's own file of settings wins: the program itself in a pty.
+
+use crate::support::ground::{Ground, stdout};
+use crate::support::pty::Terminal;
+use std::fs;
+use std::path::PathBuf;
+
+const PLAIN: [&str; 2] = ["method-2", "--paused"];
+const BLUE: &str = "\u{1b}[38;";
+
+/// The file that the program has written.
+fn remembered(ground: &Ground) -> PathBuf {
+    ground.state().join("gyrolab/settings.toml")
+}
+
+fn configure(ground: &Ground, text: &str) {
+    fs::create_dir_all(ground.config().join("gyrolab")).unwrap();
+    fs::write(ground.config().join("gyrolab/config.toml"), text).unwrap();
+}
+
+fn open(ground: &Ground, args: &[&str]) -> Terminal {
+    let lab = ground.open(&[&PLAIN, args].concat());
+    lab.wait_for("q quit");
+    lab
+}
+
+fn is_ascii(lab: &Terminal) -> bool {
+    lab.screen().contains("+-") && !lab.screen().contains('┌')
+}
+
+fn has_colours(lab: &Terminal) -> bool {
+    lab.sent_text().contains(BLUE)
+}
+
+#[test]
+fn what_was_chosen_is_there_at_the_next_start() {
+    let ground = Ground::new();
+    let mut lab = open(&ground, &[]);
+    assert!(!is_ascii(&lab) && has_colours(&lab));
+    lab.ask("mmm", "dots: ascii");
+    lab.ask("c", "without colours");
+    lab.quit();
+    let text = fs::read_to_string(remembered(&ground)).unwrap();
+    assert!(
+        text.contains("marker = \"ascii\"") && text.contains("colour = \"never\""),
+        "{text}"
+    );
+    assert_eq!(ground.mode("state/gyrolab/settings.toml"), 0o600);
+    for args in [&[][..], &["--resume"]] {
+        let mut lab = match args {
+            [] => open(&ground, &[]),
+            args => ground.open(args),
+        };
+        lab.wait_for("q quit");
+        assert!(is_ascii(&lab) && !has_colours(&lab), "{}", lab.screen());
+        lab.quit();
+    }
+    // An option wins.
+    let mut lab = open(&ground, &["--markers", "braille", "--color", "always"]);
+    assert!(!is_ascii(&lab) && has_colours(&lab));
+    lab.quit();
+    // A picture does not depend on what was chosen.
+    let shown = ground.run(&["show", "method-2"]);
+    assert!(stdout(&shown).contains('┌'));
+}
+
+#[test]
+fn the_users_own_file_wins_and_is_never_written() {
+    let ground = Ground::new();
+    let text = "marker = 'ascii'\ncolour = 'never' # mine\nfps = 5\n";
+    configure(&ground, text);
+    let mut lab = open(&ground, &[]);
+    assert!(is_ascii(&lab) && !has_colours(&lab));
+    lab.ask("m", "dots: braille");
+    lab.quit();
+    assert!(
+        fs::read_to_string(remembered(&ground))
+            .unwrap()
+            .contains("braille")
+    );
+    let mut lab = open(&ground, &[]);
+    assert!(is_ascii(&lab), "{}", lab.screen());
+    lab.quit();
+    let file = ground.config().join("gyrolab/config.toml");
+    assert_eq!(fs::read_to_string(file).unwrap(), text);
+    let shown = ground.run(&["show", "method-2"]);
+    assert!(stdout(&shown).contains('┌'));
+}
+
+#[test]
+fn broken_files_are_told_and_keep_nobody_out() {
+    let ground = Ground::new();
+    configure(&ground, "marker = 'ascii'\nfbs = 5\n");
+    let mut lab = open(&ground, &[]);
+    lab.wait_for("config.toml:2: fbs: unknown key: did you mean fps?: not used; mend it");
+    assert!(is_ascii(&lab));
+    lab.quit();
+    assert!(lab.sent_text().contains("gyrolab/config.toml:2: fbs"));
+    configure(&ground, "");
+
+    let folder = ground.state().join("gyrolab");
+    fs::create_dir_all(&folder).unwrap();
+    for text in ["marker = [", "marker = 'dots'", "\u{1b}]0;x\u{7}"] {
+        fs::write(folder.join("settings.toml"), text).unwrap();
+        let mut lab = open(&ground, &[]);
+        lab.wait_for("settings.toml:1: ");
+        lab.wait_for("not used");
+        lab.ask("m", "dots: half-block");
+        lab.quit();
+        let mut lab = open(&ground, &[]);
+        assert!(!lab.words().contains("not used"), "{}", lab.screen());
+        lab.quit();
+        fs::remove_file(folder.join("settings.toml")).unwrap();
+    }
+}
+
+#[test]
+fn a_confined_lab_remembers_in_its_folder_and_reads_no_other() {
+    let ground = Ground::new();
+    configure(&ground, "marker = 'ascii'\n");
+    fs::create_dir(ground.file("inside")).unwrap();
+    let mut lab = open(&ground, &["--folder", "inside"]);
+    assert!(!is_ascii(&lab));
+    lab.ask("m", "dots: half-block");
+    lab.quit();
+    let kept = ground.read("inside/.gyrolab/settings.toml");
+    assert!(
+        kept.contains("half-block") && !remembered(&ground).exists(),
+        "{kept}"
+    );
+}
+
+#[test]
+fn dots_that_this_terminal_cannot_show_are_not_taken_from_another() {
+    let ground = Ground::new();
+    let mut lab = open(&ground, &["--markers", "ascii"]);
+    lab.ask("m", "dots: braille");
+    lab.quit();
+    let mut lab = ground.open_with(&PLAIN, &[("TERM", "xterm"), ("LANG", "C")]);
+    lab.wait_for("q quit");
+    assert!(is_ascii(&lab));
+    lab.quit();
+}
