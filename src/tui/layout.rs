@@ -26,6 +26,8 @@ pub struct Layout {
     pub title: Rect,
     /// The panes that have a place, from left to right.
     pub panes: Vec<(Pane, Rect)>,
+    /// The line of the whole run.
+    pub timeline: Rect,
     /// The line about the numbers' health.
     pub health: Rect,
     /// The lines that say what to look at: one, or two where the screen is narrow.
@@ -48,10 +50,12 @@ impl Layout {
             false => hint,
         };
         let health = cut(&mut rest, area.height >= 9, true);
+        let timeline = cut(&mut rest, area.height >= HEIGHT, true);
         let is_cramped = area.width < WIDTH || area.height < HEIGHT;
         Self {
             title,
             panes: panes(rest, view),
+            timeline,
             health,
             hint,
             keys,

@@ -5,6 +5,7 @@ use super::panes::browser::BrowserPane;
 use super::panes::chrome;
 use super::panes::form::FormPane;
 use super::panes::help::Help;
+use super::panes::timeline;
 use crate::lab::Lab;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, Part};
@@ -35,6 +36,7 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
         draw_pane(lab, pane, place, buf);
     }
     chrome::title(lab, layout.title, buf);
+    timeline::draw(lab, layout.timeline, buf);
     if !lab.view().hides(Part::Health) {
         chrome::health(lab, layout.health, buf);
     }
