@@ -8,7 +8,7 @@ use super::dialog::{Dialog, Question};
 use super::on_top::{Cleared, Mode};
 use super::preview::Preview;
 use super::values::Target;
-use super::view::Pane;
+use super::view::{Pane, Part};
 use super::{Lab, Request};
 use crate::export::Destination;
 use crate::observe::camera::Zoom;
@@ -109,6 +109,9 @@ impl Lab {
             Action::Redo => one(Command::Redo(times.unsigned_abs())),
             Action::Push => one(Command::Push(PushChoice::default())),
             Action::ToggleExact => one(Command::Exact(self.player.run().overlay().is_none())),
+            Action::ToggleHealth => one(Command::Hide(self.view.toggled(Part::Health))),
+            Action::TogglePredicted => one(Command::Hide(self.view.toggled(Part::Predicted))),
+            Action::ToggleBare => one(Command::Bare(!self.view.bare)),
             Action::FillScreen => one(Command::Fill(
                 (!self.view.filled).then_some(self.view.focus),
             )),
@@ -251,6 +254,10 @@ impl Lab {
                 let text = self.view.toggle_background();
                 self.say(text);
             }
+            Action::ToggleMouse => {
+                let text = self.view.toggle_mouse();
+                self.say(text);
+            }
             Action::Browse => {
                 let files = &self.files;
                 let may_be_read = |path: &std::path::Path| files.admit(path).is_ok();
@@ -284,6 +291,9 @@ impl Lab {
             | Action::Push
             | Action::ToggleExact
             | Action::FillScreen
+            | Action::ToggleHealth
+            | Action::TogglePredicted
+            | Action::ToggleBare
             | Action::StepCursor(_)
             | Action::ToTurn(_)
             | Action::Pan(_)

@@ -41,6 +41,9 @@ pub struct Layout {
 impl Layout {
     /// The layout of `area`; `keys` says whether there is a line of keys.
     pub fn new(area: Rect, view: &View, keys: bool) -> Self {
+        if view.bare {
+            return Self::bare(area, view);
+        }
         let mut rest = area;
         let title = cut(&mut rest, area.height >= 3, false);
         let keys = cut(&mut rest, keys && area.height >= 7, true);
@@ -60,6 +63,23 @@ impl Layout {
             hint,
             keys,
             is_cramped,
+        }
+    }
+
+    /// The layout of a bare screen: the title and the panes. A message has the last line, over the panes.
+    fn bare(area: Rect, view: &View) -> Self {
+        let mut rest = area;
+        let title = cut(&mut rest, area.height >= 3, false);
+        let hint = cut(&mut rest.clone(), area.height >= 6, true);
+        let none = Rect { height: 0, ..hint };
+        Self {
+            title,
+            panes: panes(rest, view),
+            timeline: none,
+            health: none,
+            hint,
+            keys: none,
+            is_cramped: false,
         }
     }
 

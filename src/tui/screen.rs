@@ -40,7 +40,9 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     if !lab.view().hides(Part::Health) {
         chrome::health(lab, layout.health, buf);
     }
-    chrome::hint(lab, keys && layout.is_cramped, layout.hint, buf);
+    if !lab.view().bare || chrome::has_message(lab) {
+        chrome::hint(lab, keys && layout.is_cramped, layout.hint, buf);
+    }
     chrome::keys(lab, layout.keys, buf);
     draw_on_top(lab, body(&layout), buf);
     if lab.view().marker == Marker::Ascii {

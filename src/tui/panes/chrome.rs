@@ -10,6 +10,7 @@ use crate::tui::keymap::{BINDINGS, Mode};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use ratatui::widgets::{Clear, Widget};
 
 /// Columns without which a title is none.
 const LEAST_TITLE: usize = 8;
@@ -20,6 +21,9 @@ const SEPARATOR: &str = " · ";
 
 /// Title, scheme and time step on the left, what fits of it; time, step and pace on the right, in fixed columns.
 pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    if lab.view().bare {
+        return bare_title(lab, area, buf);
+    }
     let theme = &lab.view().theme;
     let motion = lab.player().motion();
     let step = shortest(motion.time_step_s);
@@ -54,9 +58,30 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
 }
 
+/// Title and time.
+fn bare_title(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let theme = &lab.view().theme;
+    let digits = digits(lab.player().motion().time_step_s);
+    let time_s = lab.player().reading().readouts.sample.time_s;
+    let time = format!("t {:>8} s ", fixed(time_s, digits));
+    let x = area.width.saturating_sub(time.len() as u16);
+    write(area, (x, 0), &time, theme.style(Role::Text), buf);
+    let left = Rect {
+        width: x.saturating_sub(1),
+        ..area
+    };
+    let title = &lab.player().run().scenario().file.title;
+    write(left, (1, 0), title, theme.style(Role::Heading), buf);
+}
+
+/// Digits after the point of a time that tell every step from the next.
+fn digits(time_step_s: f64) -> usize {
+    (-time_step_s.log10()).ceil().clamp(0.0, 6.0) as usize
+}
+
 /// Time, step and pace in fixed columns, or closer together where `width` is short of them.
 fn clock(reading: &Reading, time_step_s: f64, width: usize) -> String {
-    let digits = (-time_step_s.log10()).ceil().clamp(0.0, 6.0) as usize;
+    let digits = digits(time_step_s);
     let (t, step) = (reading.readouts.sample.time_s, reading.readouts.sample.step);
     let (t, pace) = (fixed(t, digits), &reading.pace);
     let moves = pace.split([' ', ',']).next().unwrap_or_default();
@@ -109,6 +134,9 @@ pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     let width = area.width.saturating_sub(2) as usize;
     let lines = wrapped_to(&text, width, area.height as usize);
+    if lab.view().bare {
+        Clear.render(area, buf); // the line lies over the panes
+    }
     let mut end = 0;
     for (line, y) in lines.iter().zip(0..area.height) {
         end = write(area, (1, y), line, theme.style(role), buf);
@@ -121,6 +149,12 @@ pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
     if is_cramped && x >= end + 2 {
         write(area, (x, last), CRAMPED, theme.style(Role::Quiet), buf);
     }
+}
+
+/// Whether there is something to be said now, besides what there is to see.
+pub fn has_message(lab: &Lab) -> bool {
+    let on_top = lab.on_top();
+    on_top.count().is_some() || lab.notice().is_some() || on_top.notice().trouble().is_some()
 }
 
 /// Before whatever is said while the session is not kept.
