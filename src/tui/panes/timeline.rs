@@ -13,17 +13,17 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 /// Time that the run has not reached.
-const AHEAD: &str = "─";
+const AHEAD: &str = "·";
 /// Time that the run has reached.
-const REACHED: &str = "━";
+const REACHED: &str = "─";
 /// Time in which a push acts.
 const PUSH: &str = "═";
 /// An edit.
 const EDIT: &str = ":";
 /// The scenario's end, where the run has gone on beyond it.
-const END: &str = "|";
+const END: &str = "│";
 /// Where the run stands.
-const NOW: &str = "●";
+const NOW: &str = "█";
 /// Fewest columns of a line that is worth drawing.
 const LEAST: u16 = 16;
 
@@ -156,16 +156,16 @@ mod tests {
 
     #[test]
     fn each_thing_has_a_sign_of_its_own() {
-        assert_eq!(drawn(&timeline(40.0, 80.0)), "━━═════━●━━━:━━━━────");
-        assert_eq!(drawn(&timeline(0.0, 0.0)), "●─═════─────:────────");
-        assert_eq!(drawn(&timeline(100.0, 100.0)), "━━═════━━━━━:━━━━━━━●");
+        assert_eq!(drawn(&timeline(40.0, 80.0)), "──═════─█───:────····");
+        assert_eq!(drawn(&timeline(0.0, 0.0)), "█·═════·····:········");
+        assert_eq!(drawn(&timeline(100.0, 100.0)), "──═════─────:───────█");
     }
 
     #[test]
     fn a_run_that_goes_on_beyond_its_end_doubles_the_line() {
         let beyond = timeline(150.0, 150.0);
         assert_eq!(beyond.whole_s(), 200.0);
-        assert_eq!(drawn(&beyond), "━════━:━━━|━━━━●─────");
+        assert_eq!(drawn(&beyond), "─════─:───│────█·····");
         assert_eq!(timeline(100.0, 100.0).whole_s(), 100.0);
         assert_eq!(timeline(0.0, 201.0).whole_s(), 400.0);
     }
@@ -175,7 +175,7 @@ mod tests {
         let mut endless = timeline(0.0, 0.0);
         endless.marks.pushes = vec![(50.0, f64::INFINITY)];
         endless.marks.edits.clear();
-        assert_eq!(drawn(&endless), "●─────────═══════════");
+        assert_eq!(drawn(&endless), "█·········═══════════");
     }
 
     #[test]
