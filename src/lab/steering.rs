@@ -47,6 +47,27 @@ impl Lab {
         None
     }
 
+    /// Carries out `command` as a key does: what was said before goes, and its message is shown.
+    pub fn carry_out_now(&mut self, command: &Command) {
+        self.on_top.clear();
+        self.carry_out_all(std::slice::from_ref(command));
+    }
+
+    /// Moves the focus to `pane`.
+    pub fn turn_to(&mut self, pane: Pane) {
+        self.on_top.clear();
+        self.view.turn_to(pane);
+        self.read_now();
+    }
+
+    /// Selects the entry of this number in the browser.
+    pub fn select_in_browser(&mut self, row: usize) {
+        self.on_top.clear();
+        let selected = self.on_top.browser().selected();
+        self.on_top.shift(row as isize - selected as isize);
+        self.changed = true;
+    }
+
     /// Carries out `commands` up to the first that is refused, and shows their messages.
     fn carry_out_all(&mut self, commands: &[Command]) {
         for command in commands {

@@ -84,7 +84,7 @@ fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 /// The area of all panes together.
-fn body(layout: &Layout) -> Rect {
+pub(super) fn body(layout: &Layout) -> Rect {
     layout
         .panes
         .iter()

@@ -143,10 +143,7 @@ fn the_run_pauses_once_at_its_end() {
         .shows("Next: t draws the exact motion")
         .shows("paused");
     assert_eq!(stage.step(), 50);
-    stage
-        .press(" ")
-        .wait(1.0)
-        .shows_no("end of the run");
+    stage.press(" ").wait(1.0).shows_no("end of the run");
     assert!(stage.step() > 200);
 }
 

@@ -6,7 +6,7 @@ use crate::lab::Lab;
 use crate::lab::action::Action;
 use crate::observe::reading::Reading;
 use crate::text::number::{fixed, shortest};
-use crate::tui::keymap::{BINDINGS, Mode};
+use crate::tui::keymap::{BINDINGS, Key, Mode};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -185,14 +185,43 @@ fn said_of_run(lab: &Lab) -> (String, Role) {
 /// The keys of the mode, as many as fit; help and quit always.
 pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let mut x = 1;
-    for (key, word) in footer(lab, area.width as usize) {
-        x = write(area, (x, 0), &key, theme.style(Role::Focus), buf);
-        x = write(area, (x + 1, 0), word, theme.style(Role::Quiet), buf) + 2;
+    for (x, key, word) in placed(lab, area.width) {
+        let x = write(
+            area,
+            (x, 0),
+            &key.to_string(),
+            theme.style(Role::Focus),
+            buf,
+        );
+        write(area, (x + 1, 0), word, theme.style(Role::Quiet), buf);
     }
 }
 
-fn footer(lab: &Lab, width: usize) -> Vec<(String, &'static str)> {
+/// The key that the line of keys on `area` names at the column `x` of the screen.
+pub fn key_at(lab: &Lab, area: Rect, x: u16) -> Option<Key> {
+    let x = x.checked_sub(area.x)?;
+    let mut placed = placed(lab, area.width).into_iter();
+    let found = placed.find(|(at, key, word)| (*at..at + length(*key, word)).contains(&x));
+    found.map(|(_, key, _)| key)
+}
+
+/// Each key of the line with its column and its word.
+fn placed(lab: &Lab, width: u16) -> Vec<(u16, Key, &'static str)> {
+    let mut x = 1;
+    let place = |(key, word)| {
+        let at = x;
+        x += length(key, word) + 2;
+        (at, key, word)
+    };
+    footer(lab, width as usize).into_iter().map(place).collect()
+}
+
+/// Columns of a key and its word.
+fn length(key: Key, word: &str) -> u16 {
+    (key.to_string().len() + 1 + word.len()) as u16
+}
+
+fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
     let (mode, is_running) = (lab.on_top().mode(), lab.player().playback().is_running());
     let rows = super::keys(lab.view().focus)
         .iter()
@@ -205,19 +234,17 @@ fn footer(lab: &Lab, width: usize) -> Vec<(String, &'static str)> {
             } else {
                 row.footer
             };
-            (row.keys[0].to_string(), word, is_kept(row.action))
+            (row.keys[0], word, is_kept(row.action))
         })
         .collect();
     if mode != Mode::Lab {
-        words.insert(0, ("Esc".to_owned(), "close", true));
+        words.insert(0, (Key::Esc, "close", true));
     }
-    let length = |words: &[(String, &str, bool)]| {
-        let lengths = words
-            .iter()
-            .map(|(key, word, _)| key.len() + word.len() + 3);
-        lengths.sum::<usize>()
+    let whole = |words: &[(Key, &str, bool)]| {
+        let lengths = words.iter().map(|(key, word, _)| length(*key, word) + 2);
+        lengths.sum::<u16>() as usize
     };
-    while words.len() > 2 && length(&words) > width {
+    while words.len() > 2 && whole(&words) > width {
         let least = words.iter().rposition(|(_, _, kept)| !kept);
         words.remove(least.unwrap_or(words.len() - 3)); // the last two are help and quit
     }

@@ -86,7 +86,9 @@ impl Timeline {
     /// The time at the column `x` of the screen where this timeline is drawn on `area`, s; `None` beside the line.
     pub fn time_s(&self, area: Rect, x: u16) -> Option<f64> {
         let line = self.line(area)?;
-        let column = x.checked_sub(line.x).filter(|column| *column < line.width)?;
+        let column = x
+            .checked_sub(line.x)
+            .filter(|column| *column < line.width)?;
         Some(f64::from(column) / f64::from(line.width - 1) * self.whole_s())
     }
 

@@ -3,6 +3,7 @@
 
 mod axis;
 mod curve;
+mod pointing;
 mod pushes;
 
 use super::{PaneRow, Width, frame, write};
@@ -57,14 +58,7 @@ pub const ROW: PaneRow = PaneRow {
     rank: 0,
     least: (27, 0),
     draw: |lab, area, buf| {
-        Traces {
-            run: lab.player().run(),
-            ghost: lab.player().ghost(),
-            view: lab.view(),
-            detail: lab.player().detail(),
-            cursor: lab.player().cursor(),
-        }
-        .render(area, buf);
+        Traces::of(lab).render(area, buf);
     },
     keys: KEYS,
 };
