@@ -53,7 +53,9 @@ impl Layout {
             false => hint,
         };
         let health = cut(&mut rest, area.height >= 9, true);
-        let timeline = cut(&mut rest, area.height >= HEIGHT, true);
+        // The values have all the lines where they fill a screen that has no more than they need.
+        let is_full = area.height == HEIGHT && view.is_filled_by(Pane::PARAMETERS);
+        let timeline = cut(&mut rest, area.height >= HEIGHT && !is_full, true);
         let is_cramped = area.width < WIDTH || area.height < HEIGHT;
         Self {
             title,

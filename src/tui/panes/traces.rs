@@ -194,7 +194,7 @@ impl Traces<'_> {
         let split = usize::from(is_magnified).min(shown.len());
         let (upper, lower) = shown.split_at(split);
         let parts = [(upper, detail), (lower, long)];
-        let rows = inside.height - axes;
+        let rows = inside.height.saturating_sub(axes);
         let mut y = inside.y;
         let mut groups = Vec::new();
         for (curves, strip) in parts.into_iter().filter(|(curves, _)| !curves.is_empty()) {
