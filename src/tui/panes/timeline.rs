@@ -167,7 +167,7 @@ mod tests {
     fn a_run_that_goes_on_beyond_its_end_doubles_the_line() {
         let beyond = timeline(150.0, 150.0);
         assert_eq!(beyond.whole_s(), 200.0);
-        assert_eq!(drawn(&beyond), "─════─:───│────█·····");
+        assert_eq!(drawn(&beyond), "─═══──:───│────█·····");
         assert_eq!(timeline(100.0, 100.0).whole_s(), 100.0);
         assert_eq!(timeline(0.0, 201.0).whole_s(), 400.0);
     }
