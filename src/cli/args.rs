@@ -150,6 +150,10 @@ pub(super) struct Look {
     /// What dots are made of [default: as chosen last, or by locale and terminal]
     #[arg(long, value_enum, value_name = "KIND")]
     pub(super) markers: Option<Markers>,
+
+    /// Leave the mouse to the terminal, to select text; the key M takes it
+    #[arg(long)]
+    pub(super) no_mouse: bool,
 }
 
 /// `--background`

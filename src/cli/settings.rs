@@ -44,6 +44,7 @@ impl Chosen {
             color: args.look.color.or_else(|| option(settings.colour)),
             background: args.look.background.or_else(|| option(settings.background)),
             markers: args.look.markers.or_else(|| option(settings.marker)),
+            no_mouse: args.look.no_mouse || settings.mouse == Some(false),
         };
         args
     }

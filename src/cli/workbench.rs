@@ -89,6 +89,10 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     if let Some(folder) = confined {
         lab.files_mut().confine(folder);
     }
+    lab.set_mouse(!args.look.no_mouse);
+    if args.scenario.is_none() && args.resume.is_none() && args.commands.is_none() {
+        lab.play_on();
+    }
     lab.set_trouble(session.as_ref().err().cloned());
     if let Ok(session) = &session {
         session.check_with(Lab::check);

@@ -79,6 +79,14 @@ pub enum Action {
     ToggleColour,
     /// Chooses the colours for a dark screen or those for a light one.
     ToggleBackground,
+    /// Hides the line about the numbers' health, or shows it.
+    ToggleHealth,
+    /// Hides the numbers that theory predicts, or shows them.
+    TogglePredicted,
+    /// Shows two panes and nothing else, or everything again.
+    ToggleBare,
+    /// Listens to the mouse, or leaves it to the terminal.
+    ToggleMouse,
     /// Opens the browser of presets and files.
     Browse,
     /// Turns to the values and begins to type a part of a name: only values with it in their names are listed.

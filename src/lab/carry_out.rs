@@ -159,6 +159,17 @@ impl Lab {
                 self.view.look_at = Some(text.clone());
                 Ok(Done::SILENT)
             }
+            Command::Next(text) => {
+                self.view.next = Some(text.clone());
+                Ok(Done::SILENT)
+            }
+            Command::Bare(bare) => {
+                self.view.bare = *bare;
+                Ok(match bare {
+                    true => Done::saying("a bare screen: B brings the rest back"),
+                    false => Done::SILENT,
+                })
+            }
             Command::Detail(detail_s) => self.set_detail(*detail_s),
             Command::Since(since_s) => self.set_since(*since_s),
             Command::Magnify(times) => self.magnify(*times),

@@ -88,6 +88,8 @@ pub enum Command {
     Speed(Speed),
     /// The line about what there is to see.
     LookAt(String),
+    /// The line about what to try after the run.
+    Next(String),
     /// Length of time that the traces show, s.
     Window(f64),
     /// Length of time that the strip of the fast motion shows, s.
@@ -106,6 +108,8 @@ pub enum Command {
     Hide(Vec<Part>),
     /// The pane that fills the screen, or none.
     Fill(Option<Pane>),
+    /// Whether the screen is bare.
+    Bare(bool),
     /// The direction from which the 3-D view is seen.
     Camera(Camera),
     /// How large the round pictures show what they show.

@@ -55,6 +55,11 @@ struct KeptPlace {
     /// The line about what there is to see; `None` where the scenario tells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     look_at: Option<String>,
+    /// The line about what to try next; `None` where the scenario or the preset tells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    next: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    bare: Option<bool>,
     next_push: NextPush,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     camera: Option<KeptCamera>,
@@ -154,6 +159,8 @@ impl Lab {
             show: Some(ids(&mut self.view.shown.iter().map(|pane| pane.id()))),
             hide: Some(ids(&mut self.view.hidden.iter().map(|part| part.id()))),
             look_at: self.view.look_at.clone(),
+            next: self.view.next.clone(),
+            bare: self.view.bare.then_some(true),
             next_push: self.values.next_push().clone(),
             camera: Some(KeptCamera {
                 yaw_deg: self.view.camera.yaw_deg,
@@ -235,7 +242,8 @@ impl Lab {
         if let Some(ids) = &place.hide {
             view.hidden = ids.iter().filter_map(|id| Part::named(id)).collect();
         }
-        view.look_at = place.look_at;
+        (view.look_at, view.next) = (place.look_at, place.next);
+        view.bare = place.bare.unwrap_or(false);
         if let Some(KeptCamera { yaw_deg, pitch_deg }) = place.camera
             && yaw_deg.is_finite()
             && (-90.0..=90.0).contains(&pitch_deg)

@@ -46,13 +46,16 @@ pub use work::Work;
 
 use crate::observe::playback::Halt;
 use crate::run::NotFinite;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, presets};
 use crate::storage::settings::Keeper;
 use crate::work::changed;
 use player::halt_in_words;
 use std::sync::Arc;
 use std::time::Duration;
 use view::{Pane, Part, View};
+
+/// What is said at the end of the scenario's run, before what to try next.
+const END_OF_RUN: &str = "end of the run: space goes on, r begins again";
 
 /// What only the main loop can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -167,10 +170,35 @@ impl Lab {
 
     /// Says why the run has stopped by itself.
     fn halted(&mut self, halt: Halt) {
-        if let Some(text) = halt_in_words(halt) {
+        let next = self.next().filter(|_| halt == Halt::EndOfRun);
+        let said = next.map(|next| format!("{END_OF_RUN}. Next: {next}"));
+        if let Some(text) = said.or_else(|| halt_in_words(halt)) {
             self.tell(text);
         }
         self.read_now();
+    }
+
+    /// The line about what to try after the run: as a command or the scenario has it, or else the preset, as long as its
+    /// motion is as it was opened.
+    fn next(&self) -> Option<&str> {
+        let file = self.player.run().scenario().file.view.as_ref();
+        let told = self.view.next.as_deref();
+        let told = told.or_else(|| file?.next.as_deref());
+        let preset = || match self.work.changed_from_file() {
+            None => presets::find(self.work.name()).map(|preset| preset.next),
+            Some(_) => None,
+        };
+        told.or_else(preset).filter(|next| !next.is_empty())
+    }
+
+    /// From now on the run goes on at the scenario's end, until another is opened.
+    pub fn play_on(&mut self) {
+        self.player.playback.play_on();
+    }
+
+    /// Listens to the mouse, or leaves it to the terminal.
+    pub fn set_mouse(&mut self, listens: bool) {
+        self.view.mouse = listens;
     }
 
     /// Takes note of the progress of the export, and says when it has ended.
@@ -299,6 +327,11 @@ impl Lab {
         }
         let file = || changed::look_at(self.player.run().scenario());
         let told = self.view.look_at.as_deref();
+        let playback = self.player.playback();
+        let is_over = playback.is_endless() && playback.step_number() >= playback.end_step();
+        if let Some(next) = self.next().filter(|_| is_over) {
+            return next;
+        }
         let note = told.or(self.work.changed_from_file()).or_else(file);
         note.unwrap_or("r begins the run again, o opens another")
     }

@@ -8,7 +8,7 @@ use super::dialog::{Dialog, Question};
 use super::on_top::{Cleared, Mode};
 use super::preview::Preview;
 use super::values::Target;
-use super::view::Pane;
+use super::view::{Pane, Part};
 use super::{Lab, Request};
 use crate::export::Destination;
 use crate::observe::camera::Zoom;
@@ -45,6 +45,27 @@ impl Lab {
         self.view.keep_focus();
         self.read_now();
         None
+    }
+
+    /// Carries out `command` as a key does: what was said before goes, and its message is shown.
+    pub fn carry_out_now(&mut self, command: &Command) {
+        self.on_top.clear();
+        self.carry_out_all(std::slice::from_ref(command));
+    }
+
+    /// Moves the focus to `pane`.
+    pub fn turn_to(&mut self, pane: Pane) {
+        self.on_top.clear();
+        self.view.turn_to(pane);
+        self.read_now();
+    }
+
+    /// Selects the entry of this number in the browser.
+    pub fn select_in_browser(&mut self, row: usize) {
+        self.on_top.clear();
+        let selected = self.on_top.browser().selected();
+        self.on_top.shift(row as isize - selected as isize);
+        self.changed = true;
     }
 
     /// Carries out `commands` up to the first that is refused, and shows their messages.
@@ -109,6 +130,9 @@ impl Lab {
             Action::Redo => one(Command::Redo(times.unsigned_abs())),
             Action::Push => one(Command::Push(PushChoice::default())),
             Action::ToggleExact => one(Command::Exact(self.player.run().overlay().is_none())),
+            Action::ToggleHealth => one(Command::Hide(self.view.toggled(Part::Health))),
+            Action::TogglePredicted => one(Command::Hide(self.view.toggled(Part::Predicted))),
+            Action::ToggleBare => one(Command::Bare(!self.view.bare)),
             Action::FillScreen => one(Command::Fill(
                 (!self.view.filled).then_some(self.view.focus),
             )),
@@ -257,6 +281,11 @@ impl Lab {
                 self.say(text);
                 self.remember("background", self.view.theme.background.name());
             }
+            Action::ToggleMouse => {
+                let text = self.view.toggle_mouse();
+                self.say(text);
+                self.remember("mouse", self.view.mouse);
+            }
             Action::Browse => {
                 let files = &self.files;
                 let may_be_read = |path: &std::path::Path| files.admit(path).is_ok();
@@ -296,6 +325,9 @@ impl Lab {
             | Action::Push
             | Action::ToggleExact
             | Action::FillScreen
+            | Action::ToggleHealth
+            | Action::TogglePredicted
+            | Action::ToggleBare
             | Action::StepCursor(_)
             | Action::ToTurn(_)
             | Action::Pan(_)
@@ -478,12 +510,6 @@ impl Lab {
         self.view.turn_to(Pane::PARAMETERS);
         self.values.forget_name();
         self.on_top.open_find();
-    }
-
-    /// Moves the focus to `pane`, which fills the screen if it is not on it.
-    pub fn turn_to(&mut self, pane: Pane) {
-        self.view.turn_to(pane);
-        self.changed = true;
     }
 
     /// Says that the help has `entries` entries that are found: the selected one is among them.

@@ -52,6 +52,8 @@ pub struct Playback {
     hurries: bool,
     /// Time at which the scenario's run ends, s.
     end_s: f64,
+    /// Whether it goes on at the end of the scenario's run.
+    is_endless: bool,
     /// The condition until which it is played, if there is one.
     until: Option<Condition>,
 }
@@ -68,6 +70,7 @@ impl Playback {
             stop,
             hurries: false,
             end_s,
+            is_endless: false,
             until: None,
         }
     }
@@ -78,6 +81,11 @@ impl Playback {
         if !self.hurries && self.until.is_none() {
             self.stop = self.next_stop();
         }
+    }
+
+    /// Time at which the scenario's run ends, s.
+    pub fn end_s(&self) -> f64 {
+        self.end_s
     }
 
     /// The step at which the scenario's run ends.
@@ -273,10 +281,23 @@ impl Playback {
         self.run.follow_exact(|| false);
     }
 
+    /// From now on it goes on at the end of the scenario's run.
+    pub fn play_on(&mut self) {
+        self.is_endless = true;
+        if !self.hurries && self.until.is_none() {
+            self.stop = self.next_stop();
+        }
+    }
+
+    /// Whether it goes on at the end of the scenario's run.
+    pub fn is_endless(&self) -> bool {
+        self.is_endless
+    }
+
     /// The last step of the scenario's run; once the run has reached it, there is no further stop.
     fn next_stop(&self) -> u64 {
         let end = self.end_step();
-        if self.step_number() < end {
+        if self.step_number() < end && !self.is_endless {
             end
         } else {
             u64::MAX

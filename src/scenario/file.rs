@@ -142,6 +142,8 @@ pub struct ViewFile {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub look_at: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    pub next: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub window_s: Option<f64>,
     /// Length of time that the strip of the fast motion shows, s.
     pub detail_s: Option<f64>,
@@ -153,6 +155,8 @@ pub struct ViewFile {
     pub hide: Option<Vec<String>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fill: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bare: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraFile>,
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -7,19 +7,38 @@ pub struct Preset {
     pub name: &'static str,
     /// The file's text.
     pub text: &'static str,
+    /// What to try after its run, one line. It is no part of the file, which stands in the header of every CSV of its run.
+    pub next: &'static str,
 }
 
 macro_rules! presets {
-    ($($name:literal)*) => {
-        &[$(Preset { name: $name, text: include_str!(concat!("../../presets/", $name, ".toml")) }),*]
+    ($($name:literal: $next:literal)*) => {
+        &[$(Preset {
+            name: $name,
+            text: include_str!(concat!("../../presets/", $name, ".toml")),
+            next: $next,
+        }),*]
     };
 }
 
 /// Every preset: the report's first, in the report's order, then the textbook's.
 pub const PRESETS: &[Preset] = presets![
-    "method-1" "method-1-steeper" "method-2-slow" "method-2" "wobble-push" "wobble-push-accumulating"
-    "fast-top" "cusps" "loops" "waves" "steady-slow" "steady-fast" "sleeping" "sleeping-unstable" "falling"
-    "torque-free"
+    "method-1": "o opens method-1-steeper: L further from the axle, and a wider circle."
+    "method-1-steeper": "t draws the exact motion beside it: how far apart are they at the end?"
+    "method-2-slow": "o opens method-2: the same start at dt 0.1 s, where the precession shows."
+    "method-2": "t draws the exact motion: how much of the swing in z is the time step's?"
+    "wobble-push": "t draws the exact motion of the same push: does it wobble?"
+    "wobble-push-accumulating": "o opens wobble-push: the same push, which does not grow."
+    "fast-top": "e, then |L|: half of it doubles the precession and makes the nutation larger."
+    "cusps": "o opens waves and loops: the same top, started with and against its precession."
+    "loops": "o opens waves: the same top, started with its precession and not against it."
+    "waves": "o opens steady-slow: the same top, started with all of the precession it needs."
+    "steady-slow": "o opens steady-fast: the same tilt and spin, 10.76 times as fast around."
+    "steady-fast": "o opens steady-slow: the same tilt and spin, 10.76 times slower around."
+    "sleeping": "o opens sleeping-unstable: a little less spin, and it sinks."
+    "sleeping-unstable": "e, then |L|: at 40 J s it stays up."
+    "falling": "e, then |L|: at 30 J s it falls less far, at 60 much less."
+    "torque-free": "e, then gravity: at 9.8 m/s2 a torque acts, and the tilt no longer stays."
 ];
 
 /// The preset of that name.

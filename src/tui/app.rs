@@ -4,6 +4,7 @@ use crate::lab::action::Action;
 use crate::lab::{Lab, Request};
 use crate::storage::session::Session;
 use crate::tui::keymap::{self, Key};
+use crate::tui::mouse::Pointer;
 use crate::tui::panes::{self, help};
 use crate::tui::screen;
 use crate::tui::terminal::{Event, Screen};
@@ -27,12 +28,14 @@ pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<
     let begin = Instant::now();
     let mut next_frame = Duration::ZERO;
     screen::fit(lab, screen.size()?);
+    let mut pointer = Pointer::default();
     loop {
+        screen.set_mouse(lab.view().mouse)?;
         let wait = wait(lab, next_frame.saturating_sub(begin.elapsed()));
         let events = screen.events(wait)?;
         let acted = !events.is_empty();
         for event in events {
-            if handle(event, lab, &mut screen, session)?.is_break() {
+            if handle(event, lab, &mut screen, &mut pointer, session)?.is_break() {
                 return Ok(());
             }
         }
@@ -99,6 +102,7 @@ fn handle(
     event: Event,
     lab: &mut Lab,
     screen: &mut Screen,
+    pointer: &mut Pointer,
     session: Option<&Session>,
 ) -> io::Result<ControlFlow<()>> {
     let request = match event {
@@ -107,6 +111,7 @@ fn handle(
             lab.paste(&text);
             None
         }
+        Event::Mouse(mouse) => pointer.act(mouse, screen.size()?, lab),
         Event::Suspend => Some(Request::Suspend),
         Event::Resized => {
             // A screen that was smaller for a moment has lost a part of its content, even if it has its old size again.

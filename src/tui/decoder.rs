@@ -2,9 +2,10 @@
 //!
 //! Bytes arrive in pieces of any length. An unfinished sequence waits a short time for its next byte. After that time, or at
 //! a byte that cannot belong to it, the sequence is dropped and decoding starts anew. Ctrl-C ends every sequence. Reports of
-//! the mouse, the focus and the like are recognised and ignored, so that they are not taken for keys.
+//! the focus and the like, and older ones of the mouse, are recognised and ignored, so that they are not taken for keys.
 
 use crate::tui::keymap::Key;
+use crate::tui::mouse::{Did, Mouse};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -31,6 +32,8 @@ pub enum Typed {
     Key(Key),
     /// A text that the terminal says is pasted.
     Paste(String),
+    /// What the mouse did.
+    Mouse(Mouse),
 }
 
 /// The decoder with its unfinished sequence and its finished keys.
@@ -59,6 +62,8 @@ enum Found {
     Unfinished,
     /// A key.
     Key(Key),
+    /// What the mouse did.
+    Mouse(Mouse),
     /// Finished, but no key that the lab uses.
     Nothing,
     /// The beginning of a paste.
@@ -127,6 +132,7 @@ impl Decoder {
         match found(&self.pending) {
             Found::Unfinished => return,
             Found::Key(key) => self.typed.push_back(Typed::Key(key)),
+            Found::Mouse(mouse) => self.typed.push_back(Typed::Mouse(mouse)),
             Found::Nothing => {}
             Found::Paste => self.paste = Some(Paste::default()),
             Found::Broken => {
@@ -264,9 +270,38 @@ fn control_sequence(rest: &[u8]) -> Found {
         [] | [b'['] | [b'M'] | [b'M', _] | [b'M', _, _] => Found::Unfinished,
         [b'[', _] | [b'M', ..] => Found::Nothing,
         [.., 0x20..0x40] => Found::Unfinished,
+        [b'<', parameters @ .., last @ (b'M' | b'm')] => {
+            mouse(parameters, *last == b'M').map_or(Found::Nothing, Found::Mouse)
+        }
         [parameters @ .., last @ 0x40..0x7f] => meaning(parameters, *last),
         _ => Found::Broken,
     }
+}
+
+/// The meaning of a report of the mouse, `BUTTON;COLUMN;LINE` counted from 1; `is_down`: no button was released.
+fn mouse(parameters: &[u8], is_down: bool) -> Option<Mouse> {
+    /// Shift, Alt and Ctrl.
+    const MODIFIERS: u16 = 4 | 8 | 16;
+    /// More bytes than these are no place on any screen.
+    const LONGEST_PLACE: usize = 20;
+    let text = std::str::from_utf8(parameters).ok()?;
+    if text.len() > LONGEST_PLACE {
+        return None;
+    }
+    let numbers: Result<Vec<u16>, _> = text.split(';').map(str::parse).collect();
+    let [button, column, line] = numbers.ok()?[..] else {
+        return None;
+    };
+    let did = match (button & !MODIFIERS, is_down) {
+        (0, true) => Did::Press,
+        (32, true) => Did::Drag,
+        (64, true) => Did::WheelUp,
+        (65, true) => Did::WheelDown,
+        (0..=3, false) => Did::Release,
+        _ => return None,
+    };
+    let (x, y) = (column.checked_sub(1)?, line.checked_sub(1)?);
+    Some(Mouse { did, x, y })
 }
 
 /// The meaning of a complete control sequence.

@@ -117,6 +117,10 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('m')], Action::NextMarker, "", "dots: Braille, half blocks, points, ASCII"),
     row(&[Lab], &[Char('c')], Action::ToggleColour, "", "with colour, or without"),
     row(&[Lab], &[Char('b')], Action::ToggleBackground, "", "colours for a dark or a light screen"),
+    row(&[Lab], &[Char('H')], Action::ToggleHealth, "", "hide the line about the numbers' health, or show it"),
+    row(&[Lab], &[Char('T')], Action::TogglePredicted, "", "hide the numbers that theory predicts, or show them"),
+    row(&[Lab], &[Char('B')], Action::ToggleBare, "", "a bare screen: two panes with title and time, or all again"),
+    row(&[Lab, Browser, Help], &[Char('M')], Action::ToggleMouse, "", "leave the mouse to the terminal, to select text, or take it again"),
     row(&[Browser, Filter], &[Enter], Action::Choose, "open", "open what is selected"),
     row(&[Browser], &[Char('/')], Action::Filter, "filter", "type a part of a name"),
     row(&[Find], &[Left], Action::Move(Direction::Left), "nudge", "nudge the value down"),
@@ -273,6 +277,10 @@ mod tests {
             A::NextMarker,
             A::ToggleColour,
             A::ToggleBackground,
+            A::ToggleHealth,
+            A::TogglePredicted,
+            A::ToggleBare,
+            A::ToggleMouse,
             A::Browse,
             A::Choose,
             A::FindValue,
@@ -329,6 +337,10 @@ mod tests {
                 | A::NextMarker
                 | A::ToggleColour
                 | A::ToggleBackground
+                | A::ToggleHealth
+                | A::TogglePredicted
+                | A::ToggleBare
+                | A::ToggleMouse
                 | A::Browse
                 | A::Choose
                 | A::FindValue

@@ -26,6 +26,8 @@ pub struct Layout {
     pub title: Rect,
     /// The panes that have a place, from left to right.
     pub panes: Vec<(Pane, Rect)>,
+    /// The line of the whole run.
+    pub timeline: Rect,
     /// The line about the numbers' health.
     pub health: Rect,
     /// The lines that say what to look at: one, or two where the screen is narrow.
@@ -39,6 +41,9 @@ pub struct Layout {
 impl Layout {
     /// The layout of `area`; `keys` says whether there is a line of keys.
     pub fn new(area: Rect, view: &View, keys: bool) -> Self {
+        if view.bare {
+            return Self::bare(area, view);
+        }
         let mut rest = area;
         let title = cut(&mut rest, area.height >= 3, false);
         let keys = cut(&mut rest, keys && area.height >= 7, true);
@@ -48,14 +53,35 @@ impl Layout {
             false => hint,
         };
         let health = cut(&mut rest, area.height >= 9, true);
+        // The values have all the lines where they fill a screen that has no more than they need.
+        let is_full = area.height == HEIGHT && view.is_filled_by(Pane::PARAMETERS);
+        let timeline = cut(&mut rest, area.height >= HEIGHT && !is_full, true);
         let is_cramped = area.width < WIDTH || area.height < HEIGHT;
         Self {
             title,
             panes: panes(rest, view),
+            timeline,
             health,
             hint,
             keys,
             is_cramped,
+        }
+    }
+
+    /// The layout of a bare screen: the title and the panes. A message has the last line, over the panes.
+    fn bare(area: Rect, view: &View) -> Self {
+        let mut rest = area;
+        let title = cut(&mut rest, area.height >= 3, false);
+        let hint = cut(&mut rest.clone(), area.height >= 6, true);
+        let none = Rect { height: 0, ..hint };
+        Self {
+            title,
+            panes: panes(rest, view),
+            timeline: none,
+            health: none,
+            hint,
+            keys: none,
+            is_cramped: false,
         }
     }
 

@@ -73,6 +73,7 @@ fn half_block(bits: u8) -> char {
 pub fn ascii(symbol: &str) -> &'static str {
     match symbol {
         "─" => "-",
+        "█" => "#",
         "│" => "|",
         "┌" | "┐" | "└" | "┘" | "├" | "┤" => "+",
         "×" => "x",

@@ -8,7 +8,7 @@
 //!
 //! - [`app`] is the loop, [`terminal`] the only file that talks to the terminal, [`surroundings`] what the environment
 //!   says about it.
-//! - [`keyboard`] takes the terminal's bytes, [`decoder`] makes keys of them.
+//! - [`keyboard`] takes the terminal's bytes, [`decoder`] makes keys of them; [`mouse`] says what is done where it points.
 //! - [`keymap`] is the one table of keys.
 //! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`layout`] says which
 //!   places those are, [`theme`] and [`markers`] what colours and dots look like, [`dots`] sets the dots,
@@ -21,6 +21,7 @@ pub mod keyboard;
 pub mod keymap;
 pub mod layout;
 pub mod markers;
+pub mod mouse;
 pub mod panes;
 pub mod scene;
 pub mod screen;

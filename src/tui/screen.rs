@@ -5,6 +5,7 @@ use super::panes::browser::BrowserPane;
 use super::panes::chrome;
 use super::panes::form::FormPane;
 use super::panes::help::Help;
+use super::panes::timeline;
 use crate::lab::Lab;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, Part};
@@ -35,10 +36,13 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
         draw_pane(lab, pane, place, buf);
     }
     chrome::title(lab, layout.title, buf);
+    timeline::draw(lab, layout.timeline, buf);
     if !lab.view().hides(Part::Health) {
         chrome::health(lab, layout.health, buf);
     }
-    chrome::hint(lab, keys && layout.is_cramped, layout.hint, buf);
+    if !lab.view().bare || chrome::has_message(lab) {
+        chrome::hint(lab, keys && layout.is_cramped, layout.hint, buf);
+    }
     chrome::keys(lab, layout.keys, buf);
     draw_on_top(lab, body(&layout), buf);
     if lab.view().marker == Marker::Ascii {
@@ -81,7 +85,7 @@ fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 /// The area of all panes together.
-fn body(layout: &Layout) -> Rect {
+pub(super) fn body(layout: &Layout) -> Rect {
     layout
         .panes
         .iter()

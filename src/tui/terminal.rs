@@ -9,6 +9,7 @@ use crate::storage::at_exit::{self, Release};
 use crate::tui::decoder::Typed;
 use crate::tui::keyboard::{self, Keyboard};
 use crate::tui::keymap::Key;
+use crate::tui::mouse::Mouse;
 use crossterm::cursor::{Hide, Show};
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
 use crossterm::terminal::{self, Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};
@@ -31,6 +32,13 @@ use std::time::{Duration, Instant};
 
 /// Whether this process has taken the terminal over.
 static ENTERED: AtomicBool = AtomicBool::new(false);
+/// Whether the mouse is asked for while the terminal is taken over.
+static MOUSE: AtomicBool = AtomicBool::new(false);
+/// Asks for presses, the wheel and moves with a button held, with numbers of any size; moves without a button, which a slow
+/// line would have to carry for nothing, are not asked for.
+const MOUSE_ON: &[u8] = b"\x1b[?1000h\x1b[?1002h\x1b[?1006h";
+/// The same in the other order, and off.
+const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1002l\x1b[?1000l";
 /// Locked by the thread that writes to the terminal.
 static PEN: Mutex<()> = Mutex::new(());
 /// A signal is ending the process.
@@ -62,6 +70,8 @@ pub enum Event {
     Key(Key),
     /// A text was pasted.
     Paste(String),
+    /// The mouse did something.
+    Mouse(Mouse),
     /// The size of the screen has changed.
     Resized,
     /// The program is asked to suspend.
@@ -116,6 +126,22 @@ impl Screen {
             .map(|_| ())
     }
 
+    /// Asks the terminal for the mouse, or leaves the mouse to it.
+    ///
+    /// # Errors
+    /// When the terminal cannot be written to.
+    pub fn set_mouse(&mut self, listens: bool) -> io::Result<()> {
+        if MOUSE.load(Ordering::SeqCst) == listens {
+            return Ok(());
+        }
+        let _pen = PEN.lock().unwrap_or_else(PoisonError::into_inner);
+        while ENDING.load(Ordering::SeqCst) {
+            thread::park();
+        }
+        MOUSE.store(listens, Ordering::SeqCst);
+        stdout()?.write_all(if listens { MOUSE_ON } else { MOUSE_OFF })
+    }
+
     /// The size of the screen, cells.
     ///
     /// # Errors
@@ -168,6 +194,7 @@ impl Screen {
             .map(|typed| match typed {
                 Typed::Key(key) => Event::Key(key),
                 Typed::Paste(text) => Event::Paste(text),
+                Typed::Mouse(mouse) => Event::Mouse(mouse),
             })
             .collect();
         let signals = [
@@ -206,7 +233,11 @@ fn take_over() -> io::Result<()> {
         Clear(ClearType::All),
         Hide,
         EnableBracketedPaste
-    )
+    )?;
+    match MOUSE.load(Ordering::SeqCst) {
+        true => stdout()?.write_all(MOUSE_ON),
+        false => Ok(()),
+    }
 }
 
 /// Ends the use of the terminal, whatever the reason: it runs the exit hooks, gives the terminal back, and prints the panic
@@ -230,6 +261,9 @@ fn give_back() {
         return;
     }
     if let Ok(mut stdout) = stdout() {
+        if MOUSE.load(Ordering::SeqCst) {
+            let _ = stdout.write_all(MOUSE_OFF);
+        }
         let _ = execute!(stdout, DisableBracketedPaste, LeaveAlternateScreen, Show);
     }
     let _ = terminal::disable_raw_mode();

@@ -138,6 +138,8 @@ fn a_command() -> impl Strategy<Value = Command> {
         a_number().prop_map(Command::Window),
         any::<bool>().prop_map(Command::Exact),
         "[a-zA-Z\"'=#]{1,20}".prop_map(Command::LookAt),
+        "[a-zA-Z\"'=#]{1,20}".prop_map(Command::Next),
+        any::<bool>().prop_map(Command::Bare),
         prop::collection::vec(pane(), 0..4).prop_map(Command::Show),
         prop::collection::vec(part, 0..4).prop_map(Command::Hide),
         prop::option::of(pane()).prop_map(Command::Fill),
@@ -572,6 +574,7 @@ fn what_view_holds_is_what_the_commands_do() {
         ("zoom", "{ above = 5.0 }", (80, 24)),
         ("zoom", "{ 3d = 2 }", (200, 50)),
         ("look_at", "'the dip'", (80, 24)),
+        ("bare", "true", (80, 24)),
         ("speed", "0.5", (80, 24)),
     ] {
         // The window of time that a run begins with goes by its speed; a command leaves it as it is.

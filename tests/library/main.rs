@@ -16,6 +16,7 @@ mod kept;
 mod laws;
 mod limits;
 mod mangled;
+mod mouse;
 mod parameters;
 mod pictures;
 mod present;

@@ -198,6 +198,8 @@ const TABLE: &[(usize, &str, usize, &str, &str)] = &[
     (30, "exact = 3", 30, "view.exact (3) must be true or false", "not a number"),
     (30, "show = \"x\"", 30, "view.show (\"x\") must be a list", "not text"),
     (30, "hide = [\"x\"]", 30, "view.hide ([\"x\"]) each must be one of", "health"),
+    (30, "bare = 3", 30, "view.bare (3) must be true or false", "not a number"),
+    (30, "next = 1", 30, "view.next (1) must be text", ""),
     (30, "fill = \"x\"", 30, "view.fill (\"x\") must be one of", "none"),
     (30, "camera = { yaw_deg = \"x\" }", 30, "view.camera.yaw_deg (\"x\") must be a number", ""),
     (30, "camera = { pitch_deg = \"x\" }", 30, "view.camera.pitch_deg (\"x\") must be a number", ""),

@@ -139,13 +139,11 @@ fn the_run_pauses_once_at_its_end() {
     let mut stage = Stage::open("method-2", &["motion.steps=50"], SMALL);
     stage
         .wait(3.0)
-        .shows("end of the scenario's run")
+        .shows("end of the run: space goes on, r begins again")
+        .shows("Next: t draws the exact motion")
         .shows("paused");
     assert_eq!(stage.step(), 50);
-    stage
-        .press(" ")
-        .wait(1.0)
-        .shows_no("end of the scenario's run");
+    stage.press(" ").wait(1.0).shows_no("end of the run");
     assert!(stage.step() > 200);
 }
 

@@ -380,6 +380,16 @@ pub(super) fn look_at(value: &Value) -> Read {
     Ok(Command::LookAt(text.to_owned()))
 }
 
+pub(super) fn next(value: &Value) -> Read {
+    let text = text_in(of_view("next", value)?);
+    Ok(Command::Next(text.to_owned()))
+}
+
+pub(super) fn bare(value: &Value) -> Read {
+    let bare = of_view("bare", value)?.as_bool().unwrap_or_default();
+    Ok(Command::Bare(bare))
+}
+
 pub(super) fn window(value: &Value) -> Read {
     Ok(Command::Window(number_in(of_view("window_s", value)?)))
 }

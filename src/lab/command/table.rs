@@ -2,8 +2,8 @@
 
 use super::Command;
 use super::reading::{
-    Read, camera, count, cursor, detail, exact, export, fill, go_to, hide, look_at, magnify,
-    next_push, nudge, open, push, run_until, save, set, show, since, speed, step, told, wait,
+    Read, bare, camera, count, cursor, detail, exact, export, fill, go_to, hide, look_at, magnify,
+    next, next_push, nudge, open, push, run_until, save, set, show, since, speed, step, told, wait,
     window, zoom,
 };
 use crate::scenario::Problem;
@@ -64,6 +64,7 @@ pub static COMMANDS: &[Row] = &[
     row("save", "\"run.toml\", or { path = \"run.toml\", from_here = true, force = true }", "write the run up to here, or to_step, as a run file; from_here: the present state as a scenario", save),
     row("speed", "20 or \"top\"", "how fast the run is played, simulated seconds a second", speed),
     row("look_at", "\"one line\"", "what the lab says of what there is to see", look_at),
+    row("next", "\"one line\"", "what the lab says at the end of the run of what to try next", next),
     row("window_s", "60", "length of time that the traces show, s", window),
     row("detail_s", "0.5", "length of time that the strip of the fast motion shows, s", detail),
     row("since_s", "12.5, or \"none\"", "time at the left edge of the traces, s; none: they follow the run", since),
@@ -73,6 +74,7 @@ pub static COMMANDS: &[Row] = &[
     row("show", "[\"traces\", \"3d\"]", "the panes that share the screen, of traces, above, 3d, parameters; none: as many as there is room for", show),
     row("hide", "[\"health\"]", "what is not shown: panes, health, predicted, look_at", hide),
     row("fill", "\"above\"", "the pane that fills the screen, or \"none\"", fill),
+    row("bare", "true or false", "whether the screen is bare: two panes, or one, with title and time, and nothing else", bare),
     row("camera", "{ yaw_deg = 30, pitch_deg = 20 }", "from where the 3-D view is seen", camera),
     row("zoom", "{ above = 4, 3d = 2 }", "how much larger than the whole the path from above and the 3-D view are shown", zoom),
 ];

@@ -52,6 +52,8 @@ pub(super) fn written(command: &Command) -> (&'static str, Value) {
         Command::Speed(Speed::Times(speed)) => ("speed", (*speed).into()),
         Command::Speed(Speed::Top) => ("speed", "top".into()),
         Command::LookAt(text) => ("look_at", text.clone().into()),
+        Command::Next(text) => ("next", text.clone().into()),
+        Command::Bare(bare) => ("bare", (*bare).into()),
         Command::Detail(detail_s) => ("detail_s", (*detail_s).into()),
         Command::Since(Some(since_s)) => ("since_s", (*since_s).into()),
         Command::Since(None) => ("since_s", NONE.into()),

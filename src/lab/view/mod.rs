@@ -16,6 +16,8 @@ use theme::{Background, Theme};
 
 /// The longest time that one sweep of the traces may take at first, seconds of wall time.
 const LONGEST_SWEEP_S: f64 = 120.0;
+/// The panes of a bare screen, where none are chosen.
+const BARE: [Pane; 2] = [Pane::TRACES, Pane::FROM_ABOVE];
 /// Degrees by which one press of an arrow turns the camera.
 const TURN_DEG: f64 = 10.0;
 
@@ -118,6 +120,12 @@ pub struct View {
     pub hidden: Vec<Part>,
     /// The line about what there is to see, if a command has set it; otherwise the scenario's line is shown.
     pub look_at: Option<String>,
+    /// The line about what to try after the run, if a command has set it; otherwise the scenario's or the preset's.
+    pub next: Option<String>,
+    /// Whether the screen is bare: few panes, and nothing around them but title and time.
+    pub bare: bool,
+    /// Whether the lab listens to the mouse; otherwise the terminal has it, to select text.
+    pub mouse: bool,
     /// The panes that stand side by side on the screen, as it is now, while none fills it: from left to right, in the
     /// order in which the focus goes through them. Until the screen is known, all panes.
     pub side_by_side: Vec<Pane>,
@@ -142,6 +150,9 @@ impl View {
             shown: Vec::new(),
             hidden: Vec::new(),
             look_at: None,
+            next: None,
+            bare: false,
+            mouse: true,
             side_by_side: panes.to_vec(),
         };
         view.fit(scenario);
@@ -158,7 +169,8 @@ impl View {
         self.shown = panes.filter_map(|id| Pane::named(id)).collect();
         let parts = file.hide.iter().flatten();
         self.hidden = parts.filter_map(|id| Part::named(id)).collect();
-        self.look_at = None;
+        (self.look_at, self.next) = (None, None);
+        self.bare = file.bare.unwrap_or(self.bare);
         if !self.may_show(self.focus) {
             self.keep_focus_among(&self.to_show());
         }
@@ -183,6 +195,16 @@ impl View {
         chosen.unwrap_or_else(|| first_window_s(scenario))
     }
 
+    /// What is hidden once `part` is hidden too, or shown again if it is hidden now.
+    pub(super) fn toggled(&self, part: Part) -> Vec<Part> {
+        let mut hidden = self.hidden.clone();
+        hidden.retain(|other| *other != part);
+        if hidden.len() == self.hidden.len() {
+            hidden.push(part);
+        }
+        hidden
+    }
+
     /// Whether `part` is hidden.
     pub fn hides(&self, part: Part) -> bool {
         self.hidden.contains(&part)
@@ -190,7 +212,11 @@ impl View {
 
     /// Whether `pane` may be on the screen.
     pub fn may_show(&self, pane: Pane) -> bool {
-        let is_shown = self.shown.is_empty() || self.shown.contains(&pane);
+        let is_shown = match (self.shown.is_empty(), self.bare) {
+            (true, true) => BARE.contains(&pane),
+            (true, false) => true,
+            (false, _) => self.shown.contains(&pane),
+        };
         is_shown && !self.hides(Part::Pane(pane))
     }
 
@@ -307,6 +333,15 @@ impl View {
         let mut camera = self.camera;
         camera.turn(yaw_deg, pitch_deg);
         camera
+    }
+
+    /// Listens to the mouse, or leaves it to the terminal; returns the message about it.
+    pub(super) fn toggle_mouse(&mut self) -> &'static str {
+        self.mouse = !self.mouse;
+        match self.mouse {
+            true => "the mouse acts on the lab: M leaves it to the terminal",
+            false => "the mouse is the terminal's: it selects text; M takes it again",
+        }
     }
 
     /// Changes to the next kind of dots; returns the message about it.

@@ -80,8 +80,17 @@ fn every_key_is_known_however_its_sequence_comes_apart() {
 #[test]
 fn what_is_no_key_is_passed_over_as_a_whole() {
     for text in [
-        "\u{1b}[<0;10;20M",
-        "\u{1b}[<35;10;20m",
+        "\u{1b}[<35;10;20M",
+        "\u{1b}[<1;10;20M",
+        "\u{1b}[<128;10;20M",
+        "\u{1b}[<0;0;20M",
+        "\u{1b}[<0;10;0M",
+        "\u{1b}[<0;-1;20M",
+        "\u{1b}[<0;99999;20M",
+        "\u{1b}[<0;10M",
+        "\u{1b}[<0;10;20;30M",
+        "\u{1b}[<M",
+        "\u{1b}[<0;000000000000000000000000010;20M",
         "\u{1b}[M !!",
         "\u{1b}[[A",
         "\u{1b}[I",
@@ -233,5 +242,24 @@ proptest! {
         while decoder.take_typed().is_some() {}
         decoder.feed(b"x", now);
         prop_assert_eq!(decoder.take_typed(), Some(Typed::Key(Key::Char('x'))));
+    }
+}
+
+#[test]
+fn the_mouse_is_known_however_its_report_comes_apart() {
+    let cases = [
+        ("\u{1b}[<0;10;20M", Did::Press, 9, 19),
+        ("\u{1b}[<16;1;1M", Did::Press, 0, 0),
+        ("\u{1b}[<32;10;20M", Did::Drag, 9, 19),
+        ("\u{1b}[<0;10;20m", Did::Release, 9, 19),
+        ("\u{1b}[<64;200;50M", Did::WheelUp, 199, 49),
+        ("\u{1b}[<65;65535;65535M", Did::WheelDown, 65534, 65534),
+    ];
+    for (report, did, x, y) in cases {
+        let wanted = [Typed::Mouse(Mouse { did, x, y })];
+        for cut in 1..report.len() {
+            let (begin, end) = report.as_bytes().split_at(cut);
+            assert_eq!(typed(&[begin, end]), wanted, "{report:?} cut at {cut}");
+        }
     }
 }

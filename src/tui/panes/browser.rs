@@ -10,7 +10,7 @@ use crate::text::wrap::wrapped;
 use crate::tui::keymap::Mode;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Margin, Position, Rect};
 use ratatui::widgets::Widget;
 
 /// Width of the list; the preview has the rest.
@@ -59,6 +59,22 @@ impl Widget for BrowserPane<'_> {
     }
 }
 
+/// The number of the first entry in a list of `height` lines.
+fn first_shown(browser: &Browser, height: usize) -> usize {
+    let selected = browser.selected();
+    selected.saturating_sub(height.saturating_sub(1))
+}
+
+/// The number of the entry at the cell `at` of the screen where `browser` is drawn on `area`.
+pub fn row_at(browser: &Browser, area: Rect, at: Position) -> Option<usize> {
+    let inside = area.inner(Margin::new(1, 1));
+    let line = at.y.checked_sub(inside.y + 1)?;
+    let is_in_list = inside.contains(at) && at.x - inside.x < LIST;
+    let height = inside.height.saturating_sub(1) as usize;
+    let row = first_shown(browser, height) + line as usize;
+    (is_in_list && row < browser.shown().len()).then_some(row)
+}
+
 /// What can be done with the list, and what is in it beside the presets.
 fn keys(files: usize) -> String {
     match files {
@@ -91,10 +107,7 @@ impl BrowserPane<'_> {
             );
         }
         let height = area.height as usize;
-        let first = self
-            .browser
-            .selected()
-            .saturating_sub(height.saturating_sub(1));
+        let first = first_shown(self.browser, height);
         for ((index, entry), y) in shown.iter().enumerate().skip(first).zip(0..area.height) {
             let selected = index == self.browser.selected();
             let role = if selected { Role::Selected } else { Role::Text };

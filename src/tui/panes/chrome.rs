@@ -6,10 +6,11 @@ use crate::lab::Lab;
 use crate::lab::action::Action;
 use crate::observe::reading::Reading;
 use crate::text::number::{fixed, shortest};
-use crate::tui::keymap::{BINDINGS, Mode};
+use crate::tui::keymap::{BINDINGS, Key, Mode};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use ratatui::widgets::{Clear, Widget};
 
 /// Columns without which a title is none.
 const LEAST_TITLE: usize = 8;
@@ -20,6 +21,9 @@ const SEPARATOR: &str = " · ";
 
 /// Title, scheme and time step on the left, what fits of it; time, step and pace on the right, in fixed columns.
 pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    if lab.view().bare {
+        return bare_title(lab, area, buf);
+    }
     let theme = &lab.view().theme;
     let motion = lab.player().motion();
     let step = shortest(motion.time_step_s);
@@ -54,9 +58,30 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
 }
 
+/// Title and time.
+fn bare_title(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let theme = &lab.view().theme;
+    let digits = digits(lab.player().motion().time_step_s);
+    let time_s = lab.player().reading().readouts.sample.time_s;
+    let time = format!("t {:>8} s ", fixed(time_s, digits));
+    let x = area.width.saturating_sub(time.len() as u16);
+    write(area, (x, 0), &time, theme.style(Role::Text), buf);
+    let left = Rect {
+        width: x.saturating_sub(1),
+        ..area
+    };
+    let title = &lab.player().run().scenario().file.title;
+    write(left, (1, 0), title, theme.style(Role::Heading), buf);
+}
+
+/// Digits after the point of a time that tell every step from the next.
+fn digits(time_step_s: f64) -> usize {
+    (-time_step_s.log10()).ceil().clamp(0.0, 6.0) as usize
+}
+
 /// Time, step and pace in fixed columns, or closer together where `width` is short of them.
 fn clock(reading: &Reading, time_step_s: f64, width: usize) -> String {
-    let digits = (-time_step_s.log10()).ceil().clamp(0.0, 6.0) as usize;
+    let digits = digits(time_step_s);
     let (t, step) = (reading.readouts.sample.time_s, reading.readouts.sample.step);
     let (t, pace) = (fixed(t, digits), &reading.pace);
     let moves = pace.split([' ', ',']).next().unwrap_or_default();
@@ -109,6 +134,9 @@ pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     let width = area.width.saturating_sub(2) as usize;
     let lines = wrapped_to(&text, width, area.height as usize);
+    if lab.view().bare {
+        Clear.render(area, buf); // the line lies over the panes
+    }
     let mut end = 0;
     for (line, y) in lines.iter().zip(0..area.height) {
         end = write(area, (1, y), line, theme.style(role), buf);
@@ -121,6 +149,12 @@ pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
     if is_cramped && x >= end + 2 {
         write(area, (x, last), CRAMPED, theme.style(Role::Quiet), buf);
     }
+}
+
+/// Whether there is something to be said now, besides what there is to see.
+pub fn has_message(lab: &Lab) -> bool {
+    let on_top = lab.on_top();
+    on_top.count().is_some() || lab.notice().is_some() || on_top.notice().trouble().is_some()
 }
 
 /// Before whatever is said while the session is not kept.
@@ -151,14 +185,43 @@ fn said_of_run(lab: &Lab) -> (String, Role) {
 /// The keys of the mode, as many as fit; help and quit always.
 pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let mut x = 1;
-    for (key, word) in footer(lab, area.width as usize) {
-        x = write(area, (x, 0), &key, theme.style(Role::Focus), buf);
-        x = write(area, (x + 1, 0), word, theme.style(Role::Quiet), buf) + 2;
+    for (x, key, word) in placed(lab, area.width) {
+        let x = write(
+            area,
+            (x, 0),
+            &key.to_string(),
+            theme.style(Role::Focus),
+            buf,
+        );
+        write(area, (x + 1, 0), word, theme.style(Role::Quiet), buf);
     }
 }
 
-fn footer(lab: &Lab, width: usize) -> Vec<(String, &'static str)> {
+/// The key that the line of keys on `area` names at the column `x` of the screen.
+pub fn key_at(lab: &Lab, area: Rect, x: u16) -> Option<Key> {
+    let x = x.checked_sub(area.x)?;
+    let mut placed = placed(lab, area.width).into_iter();
+    let found = placed.find(|(at, key, word)| (*at..at + length(*key, word)).contains(&x));
+    found.map(|(_, key, _)| key)
+}
+
+/// Each key of the line with its column and its word.
+fn placed(lab: &Lab, width: u16) -> Vec<(u16, Key, &'static str)> {
+    let mut x = 1;
+    let place = |(key, word)| {
+        let at = x;
+        x += length(key, word) + 2;
+        (at, key, word)
+    };
+    footer(lab, width as usize).into_iter().map(place).collect()
+}
+
+/// Columns of a key and its word.
+fn length(key: Key, word: &str) -> u16 {
+    (key.to_string().len() + 1 + word.len()) as u16
+}
+
+fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
     let (mode, is_running) = (lab.on_top().mode(), lab.player().playback().is_running());
     let rows = super::keys(lab.view().focus)
         .iter()
@@ -171,19 +234,17 @@ fn footer(lab: &Lab, width: usize) -> Vec<(String, &'static str)> {
             } else {
                 row.footer
             };
-            (row.keys[0].to_string(), word, is_kept(row.action))
+            (row.keys[0], word, is_kept(row.action))
         })
         .collect();
     if mode != Mode::Lab {
-        words.insert(0, ("Esc".to_owned(), "close", true));
+        words.insert(0, (Key::Esc, "close", true));
     }
-    let length = |words: &[(String, &str, bool)]| {
-        let lengths = words
-            .iter()
-            .map(|(key, word, _)| key.len() + word.len() + 3);
-        lengths.sum::<usize>()
+    let whole = |words: &[(Key, &str, bool)]| {
+        let lengths = words.iter().map(|(key, word, _)| length(*key, word) + 2);
+        lengths.sum::<u16>() as usize
     };
-    while words.len() > 2 && length(&words) > width {
+    while words.len() > 2 && whole(&words) > width {
         let least = words.iter().rposition(|(_, _, kept)| !kept);
         words.remove(least.unwrap_or(words.len() - 3)); // the last two are help and quit
     }

@@ -10,6 +10,7 @@ pub mod from_above;
 pub mod help;
 pub mod parameters;
 pub mod three_d;
+pub mod timeline;
 pub mod traces;
 
 use crate::lab::Lab;

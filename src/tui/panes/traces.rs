@@ -3,6 +3,7 @@
 
 mod axis;
 mod curve;
+mod pointing;
 mod pushes;
 
 use super::{PaneRow, Width, frame, write};
@@ -57,14 +58,7 @@ pub const ROW: PaneRow = PaneRow {
     rank: 0,
     least: (27, 0),
     draw: |lab, area, buf| {
-        Traces {
-            run: lab.player().run(),
-            ghost: lab.player().ghost(),
-            view: lab.view(),
-            detail: lab.player().detail(),
-            cursor: lab.player().cursor(),
-        }
-        .render(area, buf);
+        Traces::of(lab).render(area, buf);
     },
     keys: KEYS,
 };
@@ -200,7 +194,7 @@ impl Traces<'_> {
         let split = usize::from(is_magnified).min(shown.len());
         let (upper, lower) = shown.split_at(split);
         let parts = [(upper, detail), (lower, long)];
-        let rows = inside.height - axes;
+        let rows = inside.height.saturating_sub(axes);
         let mut y = inside.y;
         let mut groups = Vec::new();
         for (curves, strip) in parts.into_iter().filter(|(curves, _)| !curves.is_empty()) {

@@ -126,7 +126,7 @@ pub(super) fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
         given(4, "gravity", motion.gravity, 3, "m/s2"),
         value(6, "steps", scenario.steps.to_string(), ""),
         value(
-            if scenario.pushes.is_empty() { 5 } else { 1 },
+            if scenario.pushes.is_empty() { 5 } else { 2 },
             "push",
             pushes,
             "",

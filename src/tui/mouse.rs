@@ -1,0 +1,191 @@
+//! The mouse: what a press, a drag or the wheel does where it points. Nothing needs it; every act has keys too.
+
+use super::app;
+use super::keymap::Mode;
+use super::layout::Layout;
+use super::panes::browser;
+use super::panes::chrome;
+use super::panes::timeline::Timeline;
+use super::panes::traces::Traces;
+use super::screen;
+use crate::lab::action::{Action, Direction};
+use crate::lab::command::{Command, CursorTo, Place};
+use crate::lab::view::Pane;
+use crate::lab::{Lab, Request};
+use crate::run::Clock;
+use ratatui::layout::{Position, Rect};
+
+/// Degrees by which the 3-D view turns where it is dragged by a column, and by a row, which is twice as high.
+const DEGREES_A_COLUMN: f64 = 3.0;
+const DEGREES_A_ROW: f64 = 6.0;
+/// Lines that one notch of the wheel moves a list by.
+const LINES: usize = 3;
+
+/// What the mouse did, and at which cell of the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mouse {
+    /// What it did.
+    pub did: Did,
+    /// The column, from 0.
+    pub x: u16,
+    /// The line, from 0.
+    pub y: u16,
+}
+
+/// What the mouse can do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Did {
+    /// The left button was pressed.
+    Press,
+    /// It was moved with the left button held.
+    Drag,
+    /// A button was released.
+    Release,
+    /// The wheel was turned away from the user.
+    WheelUp,
+    /// The wheel was turned towards the user.
+    WheelDown,
+}
+
+/// What a held button drags.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Held {
+    /// The cursor on the traces.
+    Cursor,
+    /// The place on the timeline.
+    Place,
+    /// The 3-D view, from this cell.
+    Camera(Position),
+}
+
+/// The mouse between two of its events.
+#[derive(Debug, Default)]
+pub struct Pointer {
+    held: Option<Held>,
+}
+
+impl Pointer {
+    /// Does in `lab`, on a screen of this `area`, what `mouse` stands for; outside the screen that is nothing.
+    pub fn act(&mut self, mouse: Mouse, area: Rect, lab: &mut Lab) -> Option<Request> {
+        let at = Position::new(mouse.x, mouse.y);
+        if !lab.view().mouse || !area.contains(at) {
+            return None;
+        }
+        let layout = Layout::new(area, lab.view(), true);
+        match mouse.did {
+            Did::Press => return self.press(&layout, at, lab),
+            Did::Drag => self.drag(&layout, at, lab),
+            Did::Release => self.held = None,
+            Did::WheelUp => wheel(&layout, at, true, lab),
+            Did::WheelDown => wheel(&layout, at, false, lab),
+        }
+        None
+    }
+
+    fn press(&mut self, layout: &Layout, at: Position, lab: &mut Lab) -> Option<Request> {
+        self.held = None;
+        if layout.keys.contains(at) {
+            let key = chrome::key_at(lab, layout.keys, at.x)?;
+            return app::press(key, lab);
+        }
+        match lab.on_top().mode() {
+            Mode::Lab => {}
+            Mode::Browser | Mode::Filter => return press_in_browser(layout, at, lab),
+            Mode::Help | Mode::Find | Mode::Dialog => return None,
+        }
+        if layout.timeline.contains(at) {
+            self.held = Some(Held::Place);
+            let time_s = Timeline::of(lab).time_s(layout.timeline, at.x)?;
+            lab.carry_out_now(&Command::GoTo(Place::Time(time_s)));
+            return None;
+        }
+        let (pane, place) = pane_at(layout, at)?;
+        lab.turn_to(pane);
+        if pane == Pane::TRACES {
+            self.held = Some(Held::Cursor);
+            read_off(place, at, lab);
+        } else if pane == Pane::THREE_D {
+            self.held = Some(Held::Camera(at));
+        }
+        None
+    }
+
+    fn drag(&mut self, layout: &Layout, at: Position, lab: &mut Lab) {
+        if lab.on_top().mode() != Mode::Lab {
+            return;
+        }
+        match self.held {
+            None => {}
+            Some(Held::Cursor) => {
+                let traces = layout.panes.iter().find(|(pane, _)| *pane == Pane::TRACES);
+                if let Some(&(_, place)) = traces {
+                    read_off(place, at, lab);
+                }
+            }
+            Some(Held::Place) => {
+                let run = lab.player().run();
+                let furthest = run.furthest();
+                let furthest_s = Clock::at(run.scenario(), furthest).time_s(furthest);
+                let time_s = Timeline::of(lab).time_s(layout.timeline, at.x);
+                if let Some(time_s) = time_s {
+                    // Time that the run has not reached would take long: a press goes there.
+                    lab.carry_out_now(&Command::GoTo(Place::Time(time_s.min(furthest_s))));
+                }
+            }
+            Some(Held::Camera(from)) => {
+                let moved = |from: u16, to: u16| f64::from(to) - f64::from(from);
+                let mut camera = lab.view().camera;
+                let yaw_deg = -DEGREES_A_COLUMN * moved(from.x, at.x);
+                camera.turn(yaw_deg, DEGREES_A_ROW * moved(from.y, at.y));
+                self.held = Some(Held::Camera(at));
+                lab.carry_out_now(&Command::Camera(camera));
+            }
+        }
+    }
+}
+
+fn pane_at(layout: &Layout, at: Position) -> Option<(Pane, Rect)> {
+    let mut panes = layout.panes.iter().copied();
+    panes.find(|(_, place)| place.contains(at))
+}
+
+/// Sets the cursor on the traces to the time at `at`, where there is one.
+fn read_off(place: Rect, at: Position, lab: &mut Lab) {
+    if let Some(time_s) = Traces::of(lab).time_s(place, at) {
+        let to = CursorTo::Place(Place::Time(time_s));
+        lab.carry_out_now(&Command::Cursor(to));
+    }
+}
+
+/// Selects the entry at `at`, or opens it if it is selected already.
+fn press_in_browser(layout: &Layout, at: Position, lab: &mut Lab) -> Option<Request> {
+    let row = browser::row_at(lab.on_top().browser(), screen::body(layout), at)?;
+    if lab.on_top().browser().selected() == row {
+        return lab.update(Action::Choose);
+    }
+    lab.select_in_browser(row);
+    None
+}
+
+/// Scrolls a list, or zooms the pane at `at`.
+fn wheel(layout: &Layout, at: Position, up: bool, lab: &mut Lab) {
+    let choose = |if_up, if_down| if up { if_up } else { if_down };
+    let lines = choose(Action::Move(Direction::Up), Action::Move(Direction::Down));
+    if lab.on_top().mode() != Mode::Lab {
+        for _ in 0..LINES {
+            lab.update(lines);
+        }
+        return;
+    }
+    let Some((pane, _)) = pane_at(layout, at) else {
+        return;
+    };
+    let zoom = match pane {
+        Pane::TRACES => choose(Action::NarrowerWindow, Action::WiderWindow),
+        Pane::FROM_ABOVE | Pane::THREE_D => choose(Action::ZoomIn, Action::ZoomOut),
+        Pane::PARAMETERS if lab.view().focus == pane => lines,
+        _ => return,
+    };
+    lab.turn_to(pane);
+    lab.update(zoom);
+}

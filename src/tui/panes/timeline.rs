@@ -1,0 +1,199 @@
+//! The timeline: a line for the whole run, with the place where it stands, how far it has been, its pushes and its edits.
+//!
+//! Each has a sign of its own, so that no colour is needed to tell them apart. The scale changes only where the run goes
+//! on beyond the line's end: while a run is played, two cells change now and then.
+
+use super::write;
+use crate::lab::Lab;
+use crate::observe::marks::Marks;
+use crate::run::Clock;
+use crate::text::number::decimal;
+use crate::tui::theme::Role;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+/// Time that the run has not reached.
+const AHEAD: &str = "·";
+/// Time that the run has reached.
+const REACHED: &str = "─";
+/// Time in which a push acts.
+const PUSH: &str = "═";
+/// An edit.
+const EDIT: &str = ":";
+/// The scenario's end, where the run has gone on beyond it.
+const END: &str = "│";
+/// Where the run stands.
+const NOW: &str = "█";
+/// Fewest columns of a line that is worth drawing.
+const LEAST: u16 = 16;
+
+/// The times of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Timeline {
+    /// Where the scenario's run ends, s.
+    pub end_s: f64,
+    /// Where the run stands, s.
+    pub now_s: f64,
+    /// How far it has been, s.
+    pub furthest_s: f64,
+    /// Its pushes and edits.
+    pub marks: Marks,
+}
+
+impl Timeline {
+    /// The times of the run in `lab`.
+    pub fn of(lab: &Lab) -> Self {
+        let run = lab.player().run();
+        let (scenario, furthest) = (run.scenario(), run.furthest());
+        let now_s = run.now().time_s;
+        Self {
+            end_s: lab.player().playback().end_s(),
+            now_s,
+            furthest_s: Clock::at(scenario, furthest).time_s(furthest).max(now_s),
+            marks: Marks::of(scenario),
+        }
+    }
+
+    /// Time at the right end, s: that of the scenario's run, doubled as often as the run has gone on beyond it.
+    pub fn whole_s(&self) -> f64 {
+        let end_s = self.end_s.max(f64::MIN_POSITIVE);
+        let doublings = (self.furthest_s / end_s * (1.0 - 1e-9)).log2().ceil();
+        end_s * doublings.max(0.0).exp2()
+    }
+
+    /// The columns of the line on `area`, between its labels; `None` where there is no room.
+    fn line(&self, area: Rect) -> Option<Rect> {
+        let label = self.label().len() as u16;
+        let width = area.width.checked_sub(label + 3)?;
+        let line = Rect {
+            x: area.x + 1,
+            width,
+            ..area
+        };
+        (width >= LEAST && area.height > 0).then_some(line)
+    }
+
+    fn label(&self) -> String {
+        format!("{} s", decimal(self.whole_s()))
+    }
+
+    /// The column of `time_s` on a line of `width` columns; a time outside is at the nearer end.
+    fn column(&self, time_s: f64, width: u16) -> u16 {
+        let share = (time_s / self.whole_s()).clamp(0.0, 1.0);
+        (share * f64::from(width.saturating_sub(1))).round() as u16
+    }
+
+    /// The time at the column `x` of the screen where this timeline is drawn on `area`, s; `None` beside the line.
+    pub fn time_s(&self, area: Rect, x: u16) -> Option<f64> {
+        let line = self.line(area)?;
+        let column = x
+            .checked_sub(line.x)
+            .filter(|column| *column < line.width)?;
+        Some(f64::from(column) / f64::from(line.width - 1) * self.whole_s())
+    }
+
+    /// The signs of a line of `width` columns, each with its role.
+    fn signs(&self, width: u16) -> Vec<(&'static str, Role)> {
+        let reached = self.column(self.furthest_s, width);
+        let way = |column| match column <= reached && self.furthest_s > 0.0 {
+            true => (REACHED, Role::Text),
+            false => (AHEAD, Role::Quiet),
+        };
+        let mut signs: Vec<_> = (0..width).map(way).collect();
+        let mut put = |column: u16, sign, role| {
+            if let Some(cell) = signs.get_mut(column as usize) {
+                *cell = (sign, role);
+            }
+        };
+        let whole_s = self.whole_s();
+        for &(begin_s, end_s) in self.marks.pushes.iter().filter(|push| push.0 <= whole_s) {
+            let (first, last) = (self.column(begin_s, width), self.column(end_s, width));
+            (first..=last).for_each(|column| put(column, PUSH, Role::Push));
+        }
+        if whole_s > self.end_s {
+            put(self.column(self.end_s, width), END, Role::Text);
+        }
+        for &edit_s in self.marks.edits.iter().filter(|edit_s| **edit_s <= whole_s) {
+            put(self.column(edit_s, width), EDIT, Role::Heading);
+        }
+        put(self.column(self.now_s, width), NOW, Role::Focus);
+        signs
+    }
+}
+
+/// Draws the timeline of `lab` on the line `area`.
+pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let timeline = Timeline::of(lab);
+    let Some(line) = timeline.line(area) else {
+        return;
+    };
+    let theme = &lab.view().theme;
+    for ((sign, role), x) in timeline.signs(line.width).into_iter().zip(0..) {
+        write(line, (x, 0), sign, theme.style(role), buf);
+    }
+    let label = timeline.label();
+    let x = line.right() - area.x + 1;
+    write(area, (x, 0), &label, theme.style(Role::Quiet), buf);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn timeline(now_s: f64, furthest_s: f64) -> Timeline {
+        Timeline {
+            end_s: 100.0,
+            now_s,
+            furthest_s,
+            marks: Marks {
+                pushes: vec![(10.0, 30.0)],
+                edits: vec![60.0],
+            },
+        }
+    }
+
+    fn drawn(timeline: &Timeline) -> String {
+        timeline.signs(21).iter().map(|(sign, _)| *sign).collect()
+    }
+
+    #[test]
+    fn each_thing_has_a_sign_of_its_own() {
+        assert_eq!(drawn(&timeline(40.0, 80.0)), "──═════─█───:────····");
+        assert_eq!(drawn(&timeline(0.0, 0.0)), "█·═════·····:········");
+        assert_eq!(drawn(&timeline(100.0, 100.0)), "──═════─────:───────█");
+    }
+
+    #[test]
+    fn a_run_that_goes_on_beyond_its_end_doubles_the_line() {
+        let beyond = timeline(150.0, 150.0);
+        assert_eq!(beyond.whole_s(), 200.0);
+        assert_eq!(drawn(&beyond), "─═══──:───│────█·····");
+        assert_eq!(timeline(100.0, 100.0).whole_s(), 100.0);
+        assert_eq!(timeline(0.0, 201.0).whole_s(), 400.0);
+    }
+
+    #[test]
+    fn a_push_without_end_ends_with_the_line() {
+        let mut endless = timeline(0.0, 0.0);
+        endless.marks.pushes = vec![(50.0, f64::INFINITY)];
+        endless.marks.edits.clear();
+        assert_eq!(drawn(&endless), "█·········═══════════");
+    }
+
+    #[test]
+    fn a_place_on_the_line_is_a_time() {
+        let timeline = timeline(0.0, 0.0);
+        let area = Rect::new(5, 20, 80, 1);
+        let line = timeline.line(area).unwrap();
+        assert_eq!(timeline.time_s(area, line.x), Some(0.0));
+        assert_eq!(timeline.time_s(area, line.right() - 1), Some(100.0));
+        for x in [0, 5, line.right(), u16::MAX] {
+            assert_eq!(timeline.time_s(area, x), None, "{x}");
+        }
+        assert_eq!(timeline.time_s(Rect::new(0, 0, 10, 1), 3), None);
+        for column in 0..line.width {
+            let time_s = timeline.time_s(area, line.x + column).unwrap();
+            assert_eq!(timeline.column(time_s, line.width), column);
+        }
+    }
+}

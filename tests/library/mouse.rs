@@ -1,0 +1,303 @@
+//! The mouse on a screen without a terminal: what is done where it points.
+
+use crate::support::stage::{LARGE, SMALL, Stage};
+use gyrolab::tui::layout::Layout;
+use gyrolab::tui::mouse::{Did, Mouse, Pointer};
+use ratatui::layout::Rect;
+
+/// A stage and its mouse.
+struct Desk {
+    stage: Stage,
+    pointer: Pointer,
+}
+
+impl Desk {
+    fn open(scenario: &str, size: Rect) -> Self {
+        let mut stage = Stage::open(scenario, &[], size);
+        stage.wait(2.0).commands("pause = true");
+        Self {
+            stage,
+            pointer: Pointer::default(),
+        }
+    }
+
+    fn does(&mut self, did: Did, (x, y): (u16, u16)) -> &mut Self {
+        let (size, lab) = (self.stage.size, &mut self.stage.lab);
+        self.pointer.act(Mouse { did, x, y }, size, lab);
+        self.stage.wait(0.0);
+        self
+    }
+
+    fn layout(&self) -> Layout {
+        Layout::new(self.stage.size, self.stage.lab.view(), true)
+    }
+
+    fn pane(&self, id: &str) -> Rect {
+        let layout = self.layout();
+        let mut panes = layout.panes.into_iter();
+        panes.find(|(pane, _)| pane.id() == id).unwrap().1
+    }
+
+    /// The cell in which `words` begin on the screen.
+    fn place(&self, words: &str) -> (u16, u16) {
+        let picture = self.stage.picture();
+        let found = picture.lines().zip(0..).find_map(|(line, y)| {
+            let (before, _) = line.split_once(words)?;
+            Some((before.chars().count() as u16, y))
+        });
+        found.unwrap_or_else(|| panic!("no {words} in\n{picture}"))
+    }
+
+    fn cursor_s(&self) -> Option<f64> {
+        let cursor = self.stage.lab.player().cursor();
+        cursor.map(|sample| sample.time_s)
+    }
+}
+
+#[test]
+fn a_press_on_the_traces_sets_the_cursor_and_a_drag_moves_it() {
+    for size in [SMALL, LARGE] {
+        let mut desk = Desk::open("method-2", size);
+        let traces = desk.pane("traces");
+        let middle = |x: u16| (x, traces.bottom() - 3);
+        // The strips show 230 s, of which 40 have been; below them stands "100" at its time.
+        desk.does(Did::Press, middle(traces.x + 4));
+        let early = desk.cursor_s();
+        if size == SMALL {
+            assert!(
+                early.is_some_and(|time_s| (20.0..40.0).contains(&time_s)),
+                "{early:?}"
+            );
+        }
+        desk.does(Did::Press, middle(traces.right() - 2));
+        let latest = desk.cursor_s();
+        assert_eq!(latest, Some(desk.stage.lab.player().run().now().time_s));
+        assert_eq!(desk.stage.focus(), "traces");
+        desk.does(Did::Drag, middle(traces.x + traces.width / 8));
+        let dragged = desk.cursor_s();
+        assert!(dragged < latest, "{dragged:?}");
+        desk.does(Did::Release, middle(traces.x + 1));
+        desk.does(Did::Drag, middle(traces.right() - 2));
+        assert_eq!(desk.cursor_s(), dragged, "it was released");
+    }
+}
+
+#[test]
+fn the_cursor_stands_in_the_column_that_was_pressed() {
+    let mut desk = Desk::open("cusps", LARGE);
+    let traces = desk.pane("traces");
+    let y = traces.bottom() - 3;
+    let line = |desk: &Desk| {
+        desk.stage
+            .picture()
+            .lines()
+            .nth(y as usize)
+            .unwrap()
+            .to_owned()
+    };
+    let mut pressed = 0;
+    for x in traces.x + 16..traces.x + 26 {
+        desk.does(Did::Press, (x, y));
+        let found = line(&desk).chars().position(|sign| sign == '┃');
+        // A curve may hide the cursor here.
+        if let Some(found) = found {
+            assert!(
+                (found as i32 - i32::from(x)).abs() <= 1,
+                "{x}: {}",
+                line(&desk)
+            );
+            pressed += 1;
+        }
+    }
+    assert!(pressed > 3, "{}", desk.stage.picture());
+}
+
+#[test]
+fn a_press_selects_a_pane_goes_to_a_place_and_does_a_key() {
+    let mut desk = Desk::open("method-2", LARGE);
+    for id in ["above", "3d", "parameters", "traces"] {
+        let pane = desk.pane(id);
+        desk.does(Did::Press, (pane.x + 2, pane.y));
+        assert_eq!(desk.stage.focus(), id);
+    }
+    let timeline = desk.layout().timeline;
+    desk.does(Did::Press, (timeline.x + 1, timeline.y));
+    assert_eq!(desk.stage.step(), 0);
+    let end = desk.place("230 s").0;
+    desk.does(Did::Drag, (end - 2, timeline.y));
+    assert_eq!(
+        desk.stage.step(),
+        400,
+        "a drag goes no further than the run has been"
+    );
+    desk.does(Did::Release, (end - 2, timeline.y));
+    desk.does(Did::Press, (end - 2, timeline.y));
+    desk.stage.wait(1.0);
+    assert_eq!(desk.stage.step(), 2300);
+    let help = desk.place("? help");
+    desk.does(Did::Press, (help.0 + 3, help.1));
+    desk.stage.shows("Esc close ");
+    let close = desk.place("Esc close ");
+    desk.does(Did::Press, close);
+    desk.stage.shows_no("Esc close ");
+}
+
+#[test]
+fn the_wheel_zooms_and_a_drag_turns_the_view_in_space() {
+    let mut desk = Desk::open("method-2", LARGE);
+    let traces = desk.pane("traces");
+    let before = desk.stage.lab.view().window_s;
+    desk.does(Did::WheelUp, (traces.x + 5, traces.y + 5));
+    assert!(desk.stage.lab.view().window_s < before);
+    desk.does(Did::WheelDown, (traces.x + 5, traces.y + 5));
+    assert_eq!(desk.stage.lab.view().window_s, before);
+    let scene = desk.pane("3d");
+    let camera = desk.stage.lab.view().camera;
+    let from = (scene.x + 10, scene.y + 5);
+    desk.does(Did::Press, from);
+    desk.does(Did::Drag, (from.0 + 4, from.1 + 1));
+    let turned = desk.stage.lab.view().camera;
+    assert_ne!(
+        (turned.yaw_deg, turned.pitch_deg),
+        (camera.yaw_deg, camera.pitch_deg)
+    );
+    desk.does(Did::Drag, from);
+    let back = desk.stage.lab.view().camera;
+    assert!((back.yaw_deg - camera.yaw_deg).abs() < 1e-9);
+}
+
+#[test]
+fn a_press_in_the_browser_selects_and_another_opens() {
+    let mut desk = Desk::open("method-2", SMALL);
+    desk.stage.press("o");
+    let cusps = desk.place("cusps");
+    desk.does(Did::Press, cusps);
+    let selected = desk.stage.lab.on_top().browser().choice().cloned().unwrap();
+    assert_eq!(selected.name, "cusps");
+    desk.does(Did::Press, cusps);
+    desk.stage.shows(" Cusps ");
+    assert!(!desk.stage.picture().contains("/ filters by name"));
+}
+
+#[test]
+fn a_mouse_outside_or_one_that_is_the_terminals_does_nothing() {
+    let mut desk = Desk::open("method-2", SMALL);
+    let before = desk.stage.picture();
+    let all = [
+        Did::Press,
+        Did::Drag,
+        Did::Release,
+        Did::WheelUp,
+        Did::WheelDown,
+    ];
+    for did in all {
+        for at in [
+            (u16::MAX, u16::MAX),
+            (80, 3),
+            (3, 24),
+            (u16::MAX, 3),
+            (3, u16::MAX),
+        ] {
+            desk.does(did, at);
+        }
+    }
+    assert_eq!(desk.stage.picture(), before);
+    desk.stage
+        .press("M")
+        .shows("the mouse is the terminal's")
+        .wait(6.0);
+    let before = desk.stage.picture();
+    for did in all {
+        desk.does(did, (10, 10));
+    }
+    assert_eq!(desk.stage.picture(), before);
+    // Whatever lies on top, and however small the screen: nothing breaks.
+    for size in [(1, 1), (9, 3), (40, 12), (80, 24), (200, 50)] {
+        let mut desk = Desk::open("wobble-push", Rect::new(0, 0, size.0, size.1));
+        for keys in ["", "?", "\u{1b}o", "\u{1b}\u{1b}x", "\u{1b}e", "B"] {
+            desk.stage.press(keys);
+            for did in all {
+                for x in (0..size.0).step_by(7) {
+                    desk.does(did, (x, size.1 / 2)).does(did, (x, size.1 - 1));
+                }
+            }
+            desk.stage.picture();
+        }
+    }
+}
+
+#[test]
+fn health_predictions_and_all_but_two_panes_are_hidden_by_a_key_each() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage
+        .wait(3.0)
+        .commands("pause = true")
+        .shows("turns a step")
+        .shows("predicted");
+    stage
+        .press("H")
+        .shows_no("turns a step")
+        .press("H")
+        .shows("turns a step");
+    stage
+        .press("T")
+        .shows_no("predicted")
+        .press("T")
+        .shows("predicted");
+    stage.press("B").wait(6.0);
+    stage
+        .shows("from above")
+        .shows("over time")
+        .shows(" Method 2 ");
+    for words in [
+        "parameters",
+        "q quit",
+        "turns a step",
+        "almost a circle",
+        "scheme",
+        "step 6",
+    ] {
+        stage.shows_no(words);
+    }
+    assert_eq!(stage.picture().lines().next().unwrap().trim_end(), {
+        format!(" Method 2{:>70}", "t     60.0 s")
+    });
+    stage.press("B").shows("parameters").shows("q quit");
+}
+
+#[test]
+fn every_preset_says_what_to_try_next_in_the_room_there_is() {
+    for preset in gyrolab::scenario::presets::PRESETS {
+        assert!((20..=84).contains(&preset.next.len()), "{}", preset.name);
+        for word in preset.next.split([' ', ':', ',']) {
+            let named = gyrolab::scenario::presets::find(word);
+            assert!(named.is_none_or(|other| other.name != preset.name));
+        }
+    }
+    let set = ["motion.steps=20", "view.next=\"look again\""];
+    Stage::open("method-2", &set, SMALL)
+        .wait(3.0)
+        .shows("Next: look again");
+    // What was changed is no longer what the preset's line speaks of.
+    let mut changed = Stage::open("method-2", &["motion.steps=20"], SMALL);
+    changed.commands("set = { 'motion.gravity_m_per_s2' = 9.0 }");
+    changed
+        .wait(3.0)
+        .shows("end of the scenario's run")
+        .shows_no("Next");
+}
+
+#[test]
+fn the_lab_without_a_name_goes_on_and_says_what_to_try() {
+    let mut stage = Stage::open("method-2", &["motion.steps=20"], SMALL);
+    stage.lab.play_on();
+    stage.shows("almost a circle").wait(3.0);
+    assert!(stage.step() > 500, "{}", stage.step());
+    stage.shows("t draws the exact motion").shows_no("paused");
+    stage
+        .commands("open = 'cusps'")
+        .commands("go_to = 9990")
+        .commands("run = true");
+    stage.wait(3.0);
+    assert_eq!(stage.step(), 10000, "what was opened by name stops");
+}
