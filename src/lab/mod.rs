@@ -26,6 +26,7 @@ mod on_top;
 mod opening;
 mod player;
 pub mod preview;
+mod rerun;
 mod script;
 mod steering;
 mod traces;
@@ -143,6 +144,7 @@ impl Lab {
 
     /// Says why the run has stopped by itself.
     fn halted(&mut self, halt: Halt) {
+        self.player.has_halted(halt);
         if let Some(text) = halt_in_words(halt) {
             self.tell(text);
         }

@@ -108,6 +108,7 @@ impl Lab {
             Action::Undo => one(Command::Undo(times.unsigned_abs())),
             Action::Redo => one(Command::Redo(times.unsigned_abs())),
             Action::Push => one(Command::Push(PushChoice::default())),
+            Action::TogglePin => one(Command::Pin(!self.player.is_pinned())),
             Action::ToggleExact => one(Command::Exact(self.player.run().overlay().is_none())),
             Action::FillScreen => one(Command::Fill(
                 (!self.view.filled).then_some(self.view.focus),
@@ -283,6 +284,7 @@ impl Lab {
             | Action::Redo
             | Action::Push
             | Action::ToggleExact
+            | Action::TogglePin
             | Action::FillScreen
             | Action::StepCursor(_)
             | Action::ToTurn(_)

@@ -91,6 +91,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('u')], Action::Undo, "undo", "take back what was done last"),
     row(&[Lab], &[Char('U'), Ctrl('r')], Action::Redo, "", "do it again"),
     row(&[Lab], &[Char('t')], Action::ToggleExact, "exact", "the exact motion beside the run, and how far apart they are"),
+    row(&[Lab], &[Char('i')], Action::TogglePin, "", "pin this run as the reference beside every other, or take it away"),
     row(&[Lab], &[Char('x')], Action::Export, "export", "write the run up to here as CSV"),
     row(&[Lab], &[Char('s')], Action::SaveRun, "", "save the run file: scenario and all that was done"),
     row(&[Lab], &[Char('S')], Action::SavePresent, "", "save the present state as a scenario"),
@@ -229,6 +230,7 @@ mod tests {
             A::Undo,
             A::Redo,
             A::Push,
+            A::TogglePin,
             A::ChoosePush,
             A::Parameters,
             A::Edit,
@@ -289,6 +291,7 @@ mod tests {
                 | A::Undo
                 | A::Redo
                 | A::Push
+                | A::TogglePin
                 | A::ChoosePush
                 | A::Parameters
                 | A::Edit

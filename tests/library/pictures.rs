@@ -69,6 +69,7 @@ fn traces(run: &LiveRun, ghost: Option<&Ghost>, window_s: Option<f64>, marker: M
         Traces {
             run,
             ghost,
+            pinned: None,
             view,
             detail,
             cursor: None,
@@ -232,6 +233,7 @@ fn fast_and_slow_motion_are_both_seen() {
             Traces {
                 run: &now,
                 ghost: None,
+                pinned: None,
                 view,
                 detail,
                 cursor: None,
@@ -684,7 +686,7 @@ proptest! {
         for pane in 0..3 {
             let mut buf = Buffer::filled(around, Cell::new("#"));
             match pane {
-                0 => Traces { run, ghost, view, detail, cursor: None }.render(inside, &mut buf),
+                0 => Traces { run, ghost, pinned: None, view, detail, cursor: None }.render(inside, &mut buf),
                 1 => FromAbove {
                     run,
                     ghost,
