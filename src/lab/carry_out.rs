@@ -165,6 +165,7 @@ impl Lab {
             Command::Cursor(to) => self.set_cursor(*to),
             Command::Window(window_s) => self.set_window(*window_s),
             Command::Exact(shown) => Ok(self.player.set_exact(*shown)),
+            Command::TakeAdvice => self.follow_advice(),
             Command::Pin(pinned) => Ok(self.player.set_pinned(*pinned)),
             Command::Show(panes) => {
                 self.view.shown.clone_from(panes);

@@ -11,6 +11,7 @@
 //! - `keeping`: the content of a session.
 
 pub mod action;
+mod advised;
 pub mod browser;
 mod carry_out;
 pub mod command;

@@ -1,5 +1,6 @@
 //! The player: the run on the screen with its speed, the reading of its numbers, its ghost, and the advice about it.
 
+use super::advised::Offer;
 use super::carry_out::{Answer, Done, UnderWay};
 use super::command::Place;
 use super::numbers::{self, Numbers};
@@ -39,7 +40,8 @@ pub struct Player {
     pub(super) pinned: Option<Pinned>,
     /// Whether to look for a scheme or time step that would make doubtful numbers right.
     pub(super) is_advised: bool,
-    advisor: Option<Advisor>,
+    pub(super) advisor: Option<Advisor>,
+    pub(super) offer: Option<Offer>,
     reading: Reading,
     read_at: Duration,
     detail: Detail,
@@ -69,6 +71,7 @@ impl Player {
             ghost: None,
             is_advised: false,
             advisor: None,
+            offer: None,
             read_at: Duration::ZERO,
             pinned: None,
             heading: None,
@@ -88,7 +91,7 @@ impl Player {
 
     /// Forgets the advice: the scenario has changed.
     pub(super) fn forget_advice(&mut self) {
-        self.advisor = None;
+        (self.advisor, self.offer) = (None, None);
     }
 
     /// Advances the run and the exact motion by `wall`, the time up to `now`; `clock` returns the present time. Returns why
@@ -106,7 +109,7 @@ impl Player {
             self.playback.follow_exact(clock);
             is_new = true;
         }
-        is_new |= self.advisor.as_mut().is_some_and(Advisor::take_news);
+        is_new |= self.take_advice_news();
         (halt, is_new)
     }
 

@@ -84,6 +84,11 @@ impl Playback {
         }
     }
 
+    /// Time at which the scenario's run ends, s.
+    pub fn end_s(&self) -> f64 {
+        self.end_s
+    }
+
     /// The step at which the scenario's run ends.
     pub fn end_step(&self) -> u64 {
         Simulation::step_at(self.run.scenario(), self.end_s)

@@ -191,3 +191,91 @@ fn a_pinned_run_that_is_edited_is_kept_as_it_was() {
     desk.press(&[Key::Char('i')]);
     assert!(!desk.lab.player().is_pinned());
 }
+
+/// The line about the numbers.
+fn health(stage: &Stage) -> String {
+    let picture = stage.picture();
+    let line = picture.lines().rev().find(|line| line.contains("energy"));
+    line.unwrap_or_default().to_owned()
+}
+
+/// Waits until the search for advice, which goes on in the background, has found some.
+fn wait_for_advice(stage: &mut Stage) {
+    for _ in 0..6000 {
+        if stage.wait(0.0).lab.player().advice().is_some() {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    panic!("no advice");
+}
+
+#[test]
+fn advice_is_taken_by_one_key() {
+    let mut stage = Stage::open("method-2", &[], LARGE);
+    stage.lab.take_advice();
+    stage.commands("pause = true\npush = { point = 'top', force_N = [0, 0, -100], for_s = 2 }");
+    stage.commands("go_to = '40 s'");
+    wait_for_advice(&mut stage);
+    let line = health(&stage);
+    assert!(line.contains("mends it: a takes it"), "{line}");
+    stage.press("a").shows("from the start; the run before is dotted");
+    assert_eq!(stage.lab.player().run().now().time_s, 40.0);
+    assert!(stage.lab.player().motion().time_step_s < 0.1);
+    assert_eq!(stage.lab.player().run().scenario().file.push.len(), 1);
+    assert_eq!(ghost_s(&stage.lab), Some(40.0));
+    let line = health(&stage);
+    assert!(!line.contains("mends it"), "{line}");
+    stage.press("a").shows("nothing is advised");
+    stage.press("u").wait(0.1);
+    assert_eq!(stage.lab.player().motion().time_step_s, 0.1);
+    assert_eq!(stage.step(), 400);
+}
+
+#[test]
+fn advice_is_taken_by_a_command_and_holds() {
+    let mut desk = Desk::open("wobble-push");
+    desk.commands("go_to = '10 s'\ntake_advice = true");
+    assert_eq!(time_s(&desk), 10.0);
+    let health = &desk.lab.player().reading().readouts.health;
+    assert_ne!(health.is_believed(), Some(false));
+    let again = &crate::support::desk::commands("take_advice = true")[0];
+    let refusal = desk.carry_out(again).unwrap_err().to_string();
+    assert!(refusal.starts_with("there is nothing to mend"), "{refusal}");
+}
+
+#[test]
+fn accumulating_pushes_offer_no_other_time_step() {
+    let mut stage = Stage::open("wobble-push-accumulating", &[], LARGE);
+    stage.lab.take_advice();
+    stage.wait(1.0).commands("pause = true\ngo_to = 40");
+    wait_for_advice(&mut stage);
+    stage.shows_no("a takes it");
+    stage.press("a").shows("nothing is advised");
+    let command = &crate::support::desk::commands("take_advice = true")[0];
+    let refusal = stage.lab.carry_out(command).unwrap_err().to_string();
+    assert!(refusal.contains("no time step or scheme is known"), "{refusal}");
+}
+
+#[test]
+fn no_advice_outlasts_the_settings_it_was_for() {
+    let mut stage = Stage::open("method-2", &[], LARGE);
+    stage.lab.take_advice();
+    stage.commands("pause = true\ngo_to = '40 s'");
+    for edit in [
+        "set = { 'motion.time_step_s' = 0.02 }",
+        "undo = 1",
+        "set = { 'start.tilt_deg' = 20 }",
+        "undo = 1",
+        "go_to = 'start'\nset = { 'motion.time_step_s' = 0.05 }",
+        "set = { 'motion.scheme' = 'exact' }",
+        "undo = 2",
+    ] {
+        if stage.step() > 0 {
+            wait_for_advice(&mut stage);
+        }
+        stage.commands(edit);
+        println!("{edit}: {}", health(&stage));
+        stage.shows_no("a takes it");
+    }
+}

@@ -138,6 +138,7 @@ fn a_command() -> impl Strategy<Value = Command> {
         a_number().prop_map(Command::Window),
         any::<bool>().prop_map(Command::Exact),
         any::<bool>().prop_map(Command::Pin),
+        Just(Command::TakeAdvice),
         "[a-zA-Z\"'=#]{1,20}".prop_map(Command::LookAt),
         prop::collection::vec(pane(), 0..4).prop_map(Command::Show),
         prop::collection::vec(part, 0..4).prop_map(Command::Hide),
