@@ -207,6 +207,8 @@ fn every_row_of_the_table_is_written_under_its_name() {
         magnify = 4
         cursor = 'next turn'
         exact = true
+        pin = true
+        take_advice = true
         show = ['traces', '3d']
         hide = ['health']
         fill = 'above'
@@ -363,7 +365,7 @@ fn body_and_start_begin_one_new_run() {
         "set = { 'start.tilt_deg' = 30, 'body.rim.radius_m' = 0.5, 'motion.time_step_s' = 0.05 }",
     );
     let file = desk.scenario().file;
-    assert_eq!(desk.step(), 0);
+    assert_eq!(desk.step(), 200, "it is played to the same time");
     assert_eq!(file.start.tilt_deg, Some(30.0));
     assert_eq!(file.body.rim.unwrap().radius_m, 0.5);
     assert_eq!(desk.lab.player().motion().time_step_s, 0.05);
