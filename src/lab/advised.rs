@@ -72,7 +72,8 @@ impl Lab {
         self.values.suit(&scenario);
         self.player.begin(scenario, false);
         self.scenario_has_changed();
-        let said = format!("{what} from the start; the run before is dotted, and u goes back to it");
+        let said =
+            format!("{what} from the start; the run before is dotted, and u goes back to it");
         Ok(self.on_its_way(Done::saying(said)))
     }
 }

@@ -108,9 +108,9 @@ impl Lab {
             Action::Undo => one(Command::Undo(times.unsigned_abs())),
             Action::Redo => one(Command::Redo(times.unsigned_abs())),
             Action::Push => one(Command::Push(PushChoice::default())),
-            Action::TakeAdvice if self.player.offer().is_none() => {
-                Err("nothing is advised: the line about the numbers says when a mends them".to_owned())
-            }
+            Action::TakeAdvice if self.player.offer().is_none() => Err(
+                "nothing is advised: the line about the numbers says when a mends them".to_owned(),
+            ),
             Action::TakeAdvice => one(Command::TakeAdvice),
             Action::TogglePin => one(Command::Pin(!self.player.is_pinned())),
             Action::ToggleExact => one(Command::Exact(self.player.run().overlay().is_none())),

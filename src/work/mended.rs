@@ -42,7 +42,10 @@ pub fn mended(
             .filter(|(key, _)| !REPLACED.contains(&key.as_str()))
             .map(|(key, value)| (key.clone(), value.clone()))
             .collect();
-        if let Some((key, _)) = set.iter().find(|(key, value)| is_other && counts(key, value)) {
+        if let Some((key, _)) = set
+            .iter()
+            .find(|(key, value)| is_other && counts(key, value))
+        {
             let rule = "is counted in steps, which are others at another time step";
             return Err(refused(Problem::at(key.clone(), rule)));
         }

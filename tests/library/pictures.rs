@@ -94,6 +94,7 @@ fn from_above(run: &LiveRun, ghost: Option<&Ghost>, marker: Marker) -> String {
     let pane = FromAbove {
         run,
         ghost,
+        pinned: None,
         view,
         reading,
     };
@@ -337,6 +338,7 @@ fn a_circle_is_round_to_a_dot() {
             let pane = FromAbove {
                 run: &run,
                 ghost: None,
+                pinned: None,
                 view: &view,
                 reading: None,
             };
@@ -380,6 +382,7 @@ fn the_point_stays_in_the_picture_however_large_it_is() {
             let pane = FromAbove {
                 run: &run,
                 ghost: None,
+                pinned: None,
                 view: &view,
                 reading: None,
             };
@@ -690,6 +693,7 @@ proptest! {
                 1 => FromAbove {
                     run,
                     ghost,
+                    pinned: None,
                     view,
                     reading,
                 }
