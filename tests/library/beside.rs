@@ -272,9 +272,12 @@ fn the_line_about_the_numbers_is_right_as_soon_as_an_edit_is_made() {
         health.is_believed() == Some(false)
     };
     for (edit, turns) in [
-        ("set = { 'motion.time_step_s' = 0.02 }", "0.995 times a step"),
+        (
+            "set = { 'motion.time_step_s' = 0.02 }",
+            "0.995 times a step",
+        ),
         ("undo = 1", "4.97 times a step"),
-        ("set = { 'start.tilt_deg' = 80 }", "4.97 times a step"),
+        ("set = { 'start.tilt_deg' = 80 }", "4.98 times a step"),
         ("undo = 1", "4.97 times a step"),
         (
             "go_to = 'start'\nset = { 'motion.time_step_s' = 0.05 }",
