@@ -410,14 +410,16 @@ mod tests {
     #[test]
     fn a_run_that_was_played_stays_as_a_ghost() {
         let mut player = Player::new(scenario(), false);
-        player.begin(scenario());
+        player.begin(scenario(), false);
         assert!(player.ghost().is_none(), "it stood at its start");
         player.step(100).unwrap();
-        player.begin(scenario());
+        player.begin(scenario(), false);
         let end_s = player.ghost().map(Ghost::end_s);
         assert!(end_s.is_some_and(|end_s| (end_s - 10.0).abs() < 1e-9));
+        assert_eq!(player.playback.step_number(), 100, "to the same time");
+        player.playback.begin(scenario()); // a run that was stopped on its way there
         player.step(1).unwrap();
-        player.begin(scenario());
+        player.begin(scenario(), false);
         assert_eq!(
             player.ghost().map(Ghost::end_s),
             end_s,
