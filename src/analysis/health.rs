@@ -10,7 +10,8 @@ use crate::physics::loads::torque;
 use crate::physics::{SchemeInfo, SymmetricTop, observables};
 use crate::run::resample::resampled;
 use crate::run::{Clock, EnergyUnit, Step};
-use crate::scenario::{Edit, Scenario, rescale};
+use crate::scenario::{Edit, Motion, Scenario, rescale};
+use crate::work::restart::in_force;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -114,7 +115,9 @@ impl Health {
         swing_deg: Option<f64>,
     ) -> Self {
         let scenario = step.scenario();
-        let (state, motion) = (step.after(), step.motion());
+        // What is edited at this step is said at once: it is true of the step to come.
+        let (motion, _) = in_force(scenario, step.number());
+        let state = step.after();
         let psi = length(step.angular_velocity()) * motion.time_step_s;
         let axle = state.axle();
         // As a direction: the squares of a very large L leave the range of numbers.
@@ -127,7 +130,7 @@ impl Health {
                 psi,
                 scenario.file.body.rim.as_ref().map_or(1, |rim| rim.points),
             ),
-            nutation: Nutation::of(step, psi),
+            nutation: Nutation::of(step, &motion, psi),
             swing_deg,
             lag_deg: if lag.is_finite() {
                 lag.to_degrees()
@@ -193,9 +196,9 @@ impl Picture {
 }
 
 impl Nutation {
-    fn of(step: &Step, psi: f64) -> Option<Self> {
+    fn of(step: &Step, motion: &Motion, psi: f64) -> Option<Self> {
         let scenario = step.scenario();
-        let (state, motion) = (step.after(), step.motion());
+        let state = step.after();
         let body = &scenario.body.mechanics;
         let top = SymmetricTop::of(body).filter(|_| motion.scheme.name == "report")?;
         let (kappa, momentum) = (top.kappa(), state.momentum.norm());

@@ -17,6 +17,10 @@ pub enum Action {
     Redo,
     /// Gives the push to come, now.
     Push,
+    /// Begins the run anew as the advice about its numbers says.
+    TakeAdvice,
+    /// Pins the present run as the reference, or takes the pinned one away.
+    TogglePin,
     /// Moves the focus to the values of the push to come.
     ChoosePush,
     /// Moves the focus to the values of the scenario.

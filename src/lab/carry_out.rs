@@ -116,7 +116,7 @@ impl Lab {
             Command::GoTo(place) => self.player.go_to(*place),
             Command::RunUntil(condition) => self.player.run_until(condition),
             Command::Run => {
-                self.player.playback.set_running(true);
+                self.player.play();
                 Ok(Done::SILENT)
             }
             Command::Pause => Ok(self.player.pause()),
@@ -176,6 +176,8 @@ impl Lab {
             Command::Cursor(to) => self.set_cursor(*to),
             Command::Window(window_s) => self.set_window(*window_s),
             Command::Exact(shown) => Ok(self.player.set_exact(*shown)),
+            Command::TakeAdvice => self.follow_advice(),
+            Command::Pin(pinned) => Ok(self.player.set_pinned(*pinned)),
             Command::Show(panes) => {
                 self.view.shown.clone_from(panes);
                 Ok(Done::SILENT)
@@ -222,12 +224,11 @@ impl Lab {
             false => self.begin_with(&new, acts, false),
             true => {
                 let made_way = self.act_all(acts, false)?;
-                Ok(Done::saying(made_way.unwrap_or_else(
-                    || match table.len() {
-                        1 => table.keys().map(|key| self.said_of(key)).collect(),
-                        more => format!("{more} values; u takes them back"),
-                    },
-                )))
+                let done = Done::saying(made_way.unwrap_or_else(|| match table.len() {
+                    1 => table.keys().map(|key| self.said_of(key)).collect(),
+                    more => format!("{more} values; u takes them back"),
+                }));
+                Ok(self.on_its_way(done))
             }
         }
     }
@@ -254,7 +255,8 @@ impl Lab {
             keys::Effect::NewRun => self.begin_with(&table, Vec::new(), is_again)?,
             keys::Effect::FromHere | keys::Effect::None => {
                 let made_way = self.act_all(acts(table), is_again)?;
-                Done::saying(made_way.unwrap_or_else(|| self.said_of(key)))
+                let said = made_way.unwrap_or_else(|| self.said_of(key));
+                self.on_its_way(Done::saying(said))
             }
         };
         self.values.note_nudge(key, now);

@@ -102,6 +102,10 @@ pub enum Command {
     Cursor(CursorTo),
     /// Whether the exact motion is drawn beside the run.
     Exact(bool),
+    /// Begins the run anew with the time step or scheme that mends doubtful numbers.
+    TakeAdvice,
+    /// Whether the present run is pinned as the reference; false: no run is.
+    Pin(bool),
     /// The panes that share the screen; none: as many as there is room for.
     Show(Vec<Pane>),
     /// The parts of the screen that are hidden.

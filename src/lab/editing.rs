@@ -42,17 +42,25 @@ impl Lab {
     /// Begins a new run with the values of `set` in its scenario, and does `acts` at its beginning. With `is_again` it
     /// replaces the present run, which began with another value of the same key.
     pub(super) fn begin_with(&mut self, set: &Table, acts: Vec<Act>, is_again: bool) -> Answer {
-        // The new run begins as the old one moves at the step on the screen, even if that is on its way to another step.
-        let here = self.player.playback.step_number();
-        self.work.leave_at(here, self.values.next_push());
+        let left_at = self.player.step_to_leave_at();
+        self.work.leave_at(left_at, self.values.next_push());
         let scenario = self.work.begin_with(set, acts, is_again)?;
         self.values.suit(&scenario);
-        self.player.begin(scenario);
+        self.player.begin(scenario, is_again);
         self.scenario_has_changed();
-        Ok(match here > 0 {
+        let done = match left_at > 0 {
             true => Done::saying("a new run; the one before is dotted, and u goes back to it"),
             false => Done::SILENT,
-        })
+        };
+        Ok(self.on_its_way(done))
+    }
+
+    /// `done`, after which the run may be on its way to the time at which the lab stood.
+    pub(super) fn on_its_way(&self, done: Done) -> Done {
+        match self.player.is_replaying() {
+            true => done.going_on(UnderWay::Going),
+            false => done,
+        }
     }
 
     /// The message after setting `key`.
@@ -64,6 +72,9 @@ impl Lab {
                 "that push is over and acts no more: u takes this back, \
                 and g goes to before it"
                     .to_owned()
+            }
+            _ if self.player.acts_at_start_again() => {
+                format!("{value}, from the start; the run before is dotted, u takes it back")
             }
             _ => format!("{value}, from the next step on; u takes it back"),
         }
@@ -78,13 +89,19 @@ impl Lab {
     }
 
     /// Does `acts` at the present step as one act, all or none; with `is_again`, undo takes them back together with the
-    /// act before. Returns a message if later acts were discarded.
+    /// act before. An edit at step 0 of a run that was played further plays it as far again. Returns a message if later acts were discarded.
     pub(super) fn act_all(
         &mut self,
         acts: Vec<Act>,
         is_again: bool,
     ) -> Result<Option<String>, String> {
-        let step = self.player.playback.step_number();
+        let is_edited = acts.iter().any(|act| matches!(act, Act::Edit(_)));
+        let acts_at_start_again = is_again && self.player.acts_at_start_again();
+        let from_start = is_edited && (acts_at_start_again || self.player.stands_at_start());
+        let step = match from_start {
+            true => 0,
+            false => self.player.playback.step_number(),
+        };
         let steps = self.player.run().scenario().steps;
         let is_described = acts.iter().all(|act| matches!(act, Act::Describe(_)));
         let later = self.work.journal().later_than(step);
@@ -93,7 +110,8 @@ impl Lab {
         };
         match is_described {
             true => self.player.playback.describe_as(&scenario),
-            false => self.player.playback.go_on_in(&scenario),
+            false if from_start => self.player.begin_with_act(&scenario, is_again),
+            false => self.player.go_on_in(&scenario),
         }
         self.scenario_has_changed();
         if scenario.steps != steps {
@@ -126,7 +144,7 @@ impl Lab {
                     match act {
                         Act::Describe(_) => self.player.playback.describe_as(&scenario),
                         Act::Edit(_) | Act::Push(_) => {
-                            self.player.playback.continue_at(step, &scenario);
+                            self.player.continue_at(step, &scenario);
                         }
                     }
                     self.player.playback.set_end(self.work.present().end_s);

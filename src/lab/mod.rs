@@ -11,6 +11,7 @@
 //! - `keeping`: the content of a session.
 
 pub mod action;
+mod advised;
 pub mod browser;
 mod carry_out;
 pub mod command;
@@ -26,6 +27,7 @@ mod on_top;
 mod opening;
 mod player;
 pub mod preview;
+mod rerun;
 mod script;
 mod steering;
 mod traces;
@@ -170,6 +172,7 @@ impl Lab {
 
     /// Says why the run has stopped by itself.
     fn halted(&mut self, halt: Halt) {
+        self.player.has_halted(halt);
         let next = self.next().filter(|_| halt == Halt::EndOfRun);
         let said = next.map(|next| format!("{END_OF_RUN}. Next: {next}"));
         if let Some(text) = said.or_else(|| halt_in_words(halt)) {

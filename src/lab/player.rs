@@ -1,8 +1,10 @@
 //! The player: the run on the screen with its speed, the reading of its numbers, its ghost, and the advice about it.
 
+use super::advised::Offer;
 use super::carry_out::{Answer, Done, UnderWay};
 use super::command::Place;
 use super::numbers::{self, Numbers};
+use super::rerun::{Heading, Pinned, Replay};
 use crate::analysis::health::Advice;
 use crate::lab::view::View;
 use crate::observe::advisor::Advisor;
@@ -25,9 +27,6 @@ use std::time::Duration;
 const FAST: f64 = 0.1;
 /// If a step takes longer than this at the chosen speed, s, a message says so.
 const LONG_STEP_S: f64 = 3.0;
-/// A run that is shorter than this share of its ghost does not replace the ghost: a value was only nudged once more.
-const SHORT: f64 = 0.1;
-
 /// A window of the fast motion that passes in less than this, s, stands still meanwhile.
 const PASSES_S: f64 = 8.0;
 /// How long it stands still.
@@ -37,18 +36,22 @@ const HOLD: Duration = Duration::from_secs(1);
 pub struct Player {
     pub(super) playback: Playback,
     /// The run before, where an edit has begun this one anew.
-    ghost: Option<Ghost>,
+    pub(super) ghost: Option<Ghost>,
+    pub(super) pinned: Option<Pinned>,
     /// Whether to look for a scheme or time step that would make doubtful numbers right.
     pub(super) is_advised: bool,
-    advisor: Option<Advisor>,
+    pub(super) advisor: Option<Advisor>,
+    pub(super) offer: Option<Offer>,
     reading: Reading,
     read_at: Duration,
     detail: Detail,
     detail_at: Duration,
     /// The numbers at the cursor, and the scenario of their run.
     at_cursor: Option<(Arc<Scenario>, Sample)>,
-    /// The step to which the run is on its way after an undo or after a session was resumed.
-    returning_to: Option<u64>,
+    /// The step to which the run is on its way by itself; out of date where other steps were asked for since.
+    pub(super) heading: Option<Heading>,
+    /// What the last edit that began the run anew was played to; `None` if another act came after it.
+    pub(super) replay: Option<Replay>,
 }
 
 impl Player {
@@ -68,8 +71,11 @@ impl Player {
             ghost: None,
             is_advised: false,
             advisor: None,
+            offer: None,
             read_at: Duration::ZERO,
-            returning_to: None,
+            pinned: None,
+            heading: None,
+            replay: None,
         }
     }
 
@@ -77,46 +83,15 @@ impl Player {
     pub(super) fn open(&mut self, scenario: Arc<Scenario>) {
         let shows_exact = self.run().overlay().is_some();
         let exact = begins_with_exact(&scenario).unwrap_or(shows_exact);
-        self.ghost = None;
+        self.keep_pinned();
+        (self.ghost, self.heading, self.replay) = (None, None, None);
         self.playback = Playback::new(scenario, false);
         self.playback.set_exact(exact);
     }
 
-    /// Begins the run of `scenario`, which differs from the present one by an edit. The present run stays as a ghost.
-    pub(super) fn begin(&mut self, scenario: Arc<Scenario>) {
-        let left = Ghost::of(self.run());
-        let is_short = |before: &Ghost| left.end_s() < SHORT * before.end_s();
-        if left.end_s() > 0.0 && !self.ghost.as_ref().is_some_and(is_short) {
-            self.ghost = Some(left);
-        }
-        self.playback.begin(scenario);
-    }
-
-    /// As [`begin`](Self::begin), after an undo or redo: the present run stays as a ghost if it was played; an earlier
-    /// ghost does not stay.
-    pub(super) fn go_over_to(&mut self, scenario: Arc<Scenario>) {
-        self.ghost = None;
-        self.begin(scenario);
-    }
-
-    /// Goes to `step`, at which the run was left.
-    pub(super) fn return_to(&mut self, step: u64) {
-        self.playback.go_to(step);
-        self.returning_to = Some(step);
-    }
-
-    /// The present step, or the step to which the run is on its way back.
-    pub(super) fn step_to_keep(&self) -> u64 {
-        let to_go = self.playback.steps_to_go();
-        let bound_for = to_go.map(|to_go| self.playback.step_number().saturating_add(to_go));
-        let returning_to = self.returning_to.filter(|step| bound_for == Some(*step));
-        let destination = self.run().destination().or(returning_to);
-        destination.unwrap_or(self.playback.step_number())
-    }
-
     /// Forgets the advice: the scenario has changed.
     pub(super) fn forget_advice(&mut self) {
-        self.advisor = None;
+        (self.advisor, self.offer) = (None, None);
     }
 
     /// Advances the run and the exact motion by `wall`, the time up to `now`; `clock` returns the present time. Returns why
@@ -134,7 +109,7 @@ impl Player {
             self.playback.follow_exact(clock);
             is_new = true;
         }
-        is_new |= self.advisor.as_mut().is_some_and(Advisor::take_news);
+        is_new |= self.take_advice_news();
         (halt, is_new)
     }
 
@@ -217,6 +192,7 @@ impl Player {
 
     pub(super) fn step(&mut self, steps: i64) -> Answer {
         let here = self.playback.step_number();
+        self.heading = None;
         match steps {
             0.. => self.playback.take_steps(steps.unsigned_abs()),
             _ if here == 0 => return Err("the run begins here".into()),
@@ -234,6 +210,7 @@ impl Player {
             Place::Start => 0,
             Place::End => self.playback.end_step(),
         };
+        self.heading = None;
         self.playback.go_to(step);
         Ok(Done::SILENT.going_on(UnderWay::Going))
     }
@@ -254,6 +231,7 @@ impl Player {
         let bound = condition
             .bind(|name| Ok(numbers::find(name)?.of(run)))
             .map_err(|fault| fault.to_string())?;
+        self.heading = None;
         let mut numbers = Numbers::default();
         let holds = move |run: &mut LiveRun| {
             let mut now = numbers.at(run);
@@ -295,8 +273,15 @@ impl Player {
         toml::to_string(&scenario.file).map_err(|error| error.to_string())
     }
 
+    /// Lets the run go on.
+    pub(super) fn play(&mut self) {
+        self.heading = None;
+        self.playback.set_running(true);
+    }
+
     pub(super) fn pause(&mut self) -> Done {
         let to_go = self.playback.steps_to_go();
+        self.heading = None;
         self.playback.set_running(false);
         to_go.map_or(Done::SILENT, |left| {
             Done::saying(format!("stopped with {} steps to go", HumanCount(left)))
@@ -361,6 +346,12 @@ impl Player {
     /// The message while steps are taken.
     pub(super) fn in_words(&self) -> Option<String> {
         let left = self.playback.steps_to_go()?;
+        if self.is_replaying() {
+            return Some(format!(
+                "playing the new run to the same time: {} steps to go, Esc stops",
+                HumanCount(left)
+            ));
+        }
         Some(format!("stepping: {} to go, Esc stops", HumanCount(left)))
     }
 }
@@ -419,14 +410,16 @@ mod tests {
     #[test]
     fn a_run_that_was_played_stays_as_a_ghost() {
         let mut player = Player::new(scenario(), false);
-        player.begin(scenario());
+        player.begin(scenario(), false);
         assert!(player.ghost().is_none(), "it stood at its start");
         player.step(100).unwrap();
-        player.begin(scenario());
+        player.begin(scenario(), false);
         let end_s = player.ghost().map(Ghost::end_s);
         assert!(end_s.is_some_and(|end_s| (end_s - 10.0).abs() < 1e-9));
+        assert_eq!(player.playback.step_number(), 100, "to the same time");
+        player.playback.begin(scenario()); // a run that was stopped on its way there
         player.step(1).unwrap();
-        player.begin(scenario());
+        player.begin(scenario(), false);
         assert_eq!(
             player.ghost().map(Ghost::end_s),
             end_s,

@@ -129,6 +129,11 @@ impl Lab {
             Action::Undo => one(Command::Undo(times.unsigned_abs())),
             Action::Redo => one(Command::Redo(times.unsigned_abs())),
             Action::Push => one(Command::Push(PushChoice::default())),
+            Action::TakeAdvice if self.player.offer().is_none() => Err(
+                "nothing is advised: the line about the numbers says when a mends them".to_owned(),
+            ),
+            Action::TakeAdvice => one(Command::TakeAdvice),
+            Action::TogglePin => one(Command::Pin(!self.player.is_pinned())),
             Action::ToggleExact => one(Command::Exact(self.player.run().overlay().is_none())),
             Action::ToggleHealth => one(Command::Hide(self.view.toggled(Part::Health))),
             Action::TogglePredicted => one(Command::Hide(self.view.toggled(Part::Predicted))),
@@ -324,6 +329,8 @@ impl Lab {
             | Action::Redo
             | Action::Push
             | Action::ToggleExact
+            | Action::TogglePin
+            | Action::TakeAdvice
             | Action::FillScreen
             | Action::ToggleHealth
             | Action::TogglePredicted

@@ -124,6 +124,12 @@ impl Work {
         self.file = Arc::clone(scenario);
     }
 
+    /// Leaves the present run and begins that of `scenario`, which follows the advice about it.
+    pub(super) fn begin_as_advised(&mut self, scenario: &Arc<Scenario>) {
+        let name = self.name().to_owned();
+        self.change().begin(&name, scenario);
+    }
+
     /// Begins a new run: the present one with the values of `set`, to which it does `acts` at step 0. With `is_again` it
     /// replaces the present run, which began with another value of the same key. Returns the new run's scenario.
     ///

@@ -21,6 +21,10 @@ const COST_OF_A_STEP: u64 = 60;
 /// The greatest cost of steps that are taken before the next key is read, so that keys that arrive together act one by
 /// one; it takes a few milliseconds.
 const MOST_COST_PER_KEY: u64 = 1_000_000;
+/// The same for the steps of an edit, after which the run is played to the time at which it stood: about 50 ms for the
+/// first one, and less for each further nudge of a held key.
+const MOST_COST_PER_EDIT: u64 = 25_000_000;
+const MOST_COST_PER_NUDGE: u64 = 8_000_000;
 /// The number of steps after which playing until a condition holds is given up.
 const MOST_UNTIL: u64 = 10_000_000;
 
@@ -318,11 +322,33 @@ impl Playback {
     /// Takes `steps` time steps as fast as it can and stops. A few steps are taken before returning, many over the next
     /// frames.
     pub fn take_steps(&mut self, steps: u64) {
+        let at_once = match self.cost(steps) <= MOST_COST_PER_KEY {
+            true => steps,
+            false => 0,
+        };
+        self.take_in_parts(steps, at_once);
+    }
+
+    /// Plays on to `step` and stops there, after an edit or, with `is_again`, after one more nudge of the same value. As
+    /// many steps as take about 50 ms (15 ms for a nudge) are taken before returning, and the others over the next frames.
+    /// Returns whether it has arrived.
+    pub fn catch_up(&mut self, step: u64, is_again: bool) -> bool {
+        let most = match is_again {
+            true => MOST_COST_PER_NUDGE,
+            false => MOST_COST_PER_EDIT,
+        };
+        let steps = step.saturating_sub(self.step_number());
+        self.take_in_parts(steps, steps.min(most / self.cost(1)));
+        !self.hurries
+    }
+
+    /// Takes `steps` time steps and stops: the first `at_once` before returning, the others over the next frames.
+    fn take_in_parts(&mut self, steps: u64, at_once: u64) {
         self.set_running(false);
-        self.stop = self.step_number().saturating_add(steps);
-        if self.cost(steps) <= MOST_COST_PER_KEY {
-            while self.step_number() < self.stop && self.run.step().is_ok() {}
-        }
+        let here = self.step_number();
+        self.stop = here.saturating_add(steps);
+        let first = here.saturating_add(at_once);
+        while self.step_number() < first && self.run.step().is_ok() {}
         self.hurries = self.step_number() < self.stop; // a failed step is tried again by advance(), which reports it
         if !self.hurries {
             self.stop = self.next_stop();

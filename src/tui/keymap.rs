@@ -91,6 +91,8 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('u')], Action::Undo, "undo", "take back what was done last"),
     row(&[Lab], &[Char('U'), Ctrl('r')], Action::Redo, "", "do it again"),
     row(&[Lab], &[Char('t')], Action::ToggleExact, "exact", "the exact motion beside the run, and how far apart they are"),
+    row(&[Lab], &[Char('i')], Action::TogglePin, "", "pin this run as the reference beside every other, or take it away"),
+    row(&[Lab], &[Char('a')], Action::TakeAdvice, "", "take the advice about the numbers: the run from the start with what mends them"),
     row(&[Lab], &[Char('x')], Action::Export, "export", "write the run up to here as CSV"),
     row(&[Lab], &[Char('s')], Action::SaveRun, "", "save the run file: scenario and all that was done"),
     row(&[Lab], &[Char('S')], Action::SavePresent, "", "save the present state as a scenario"),
@@ -239,6 +241,8 @@ mod tests {
             A::Undo,
             A::Redo,
             A::Push,
+            A::TogglePin,
+            A::TakeAdvice,
             A::ChoosePush,
             A::Parameters,
             A::Edit,
@@ -305,6 +309,8 @@ mod tests {
                 | A::Undo
                 | A::Redo
                 | A::Push
+                | A::TogglePin
+                | A::TakeAdvice
                 | A::ChoosePush
                 | A::Parameters
                 | A::Edit

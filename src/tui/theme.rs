@@ -33,6 +33,8 @@ pub enum Role {
     Exact,
     /// The previous run.
     Ghost,
+    /// The pinned run.
+    Pinned,
     /// Pushes and their times.
     Push,
     /// What has the focus.
@@ -71,9 +73,32 @@ fn colour(role: Role, background: Background) -> Color {
         Role::X => choose(Color::Cyan, Color::Blue),
         Role::Y => choose(Color::Yellow, Color::Red),
         Role::Z => choose(Color::Magenta, Color::Cyan),
-        Role::Exact | Role::Warning => choose(Color::LightRed, Color::Red),
+        // No curve, push or warning has the colour of the exact motion.
+        Role::Exact => choose(Color::LightRed, Color::Magenta),
+        Role::Warning => choose(Color::LightYellow, Color::Red),
         Role::Push => Color::Green,
         Role::Focus => choose(Color::LightBlue, Color::Blue),
         _ => Color::Reset,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_else_on_the_traces_has_the_colour_of_the_exact_motion() {
+        use Role::{Exact, Ghost, Old, Path, Pinned, Push, Quiet, Recent, Warning, X, Y, Z};
+        for background in [Background::Dark, Background::Light] {
+            for role in [
+                X, Y, Z, Path, Recent, Old, Push, Warning, Ghost, Pinned, Quiet,
+            ] {
+                assert_ne!(
+                    colour(role, background),
+                    colour(Exact, background),
+                    "{role:?} on {background:?}"
+                );
+            }
+        }
     }
 }

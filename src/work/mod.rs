@@ -10,6 +10,7 @@ pub mod changed;
 pub mod expression;
 pub mod history;
 pub mod journal;
+pub mod mended;
 pub mod next_push;
 pub mod parameters;
 pub mod restart;

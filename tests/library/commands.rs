@@ -137,6 +137,8 @@ fn a_command() -> impl Strategy<Value = Command> {
         Just(Command::Speed(Speed::Top)),
         a_number().prop_map(Command::Window),
         any::<bool>().prop_map(Command::Exact),
+        any::<bool>().prop_map(Command::Pin),
+        Just(Command::TakeAdvice),
         "[a-zA-Z\"'=#]{1,20}".prop_map(Command::LookAt),
         "[a-zA-Z\"'=#]{1,20}".prop_map(Command::Next),
         any::<bool>().prop_map(Command::Bare),
@@ -207,6 +209,8 @@ fn every_row_of_the_table_is_written_under_its_name() {
         magnify = 4
         cursor = 'next turn'
         exact = true
+        pin = true
+        take_advice = true
         show = ['traces', '3d']
         hide = ['health']
         fill = 'above'
@@ -363,7 +367,7 @@ fn body_and_start_begin_one_new_run() {
         "set = { 'start.tilt_deg' = 30, 'body.rim.radius_m' = 0.5, 'motion.time_step_s' = 0.05 }",
     );
     let file = desk.scenario().file;
-    assert_eq!(desk.step(), 0);
+    assert_eq!(desk.step(), 200, "it is played to the same time");
     assert_eq!(file.start.tilt_deg, Some(30.0));
     assert_eq!(file.body.rim.unwrap().radius_m, 0.5);
     assert_eq!(desk.lab.player().motion().time_step_s, 0.05);

@@ -69,6 +69,7 @@ fn traces(run: &LiveRun, ghost: Option<&Ghost>, window_s: Option<f64>, marker: M
         Traces {
             run,
             ghost,
+            pinned: None,
             view,
             detail,
             cursor: None,
@@ -93,6 +94,7 @@ fn from_above(run: &LiveRun, ghost: Option<&Ghost>, marker: Marker) -> String {
     let pane = FromAbove {
         run,
         ghost,
+        pinned: None,
         view,
         reading,
     };
@@ -232,6 +234,7 @@ fn fast_and_slow_motion_are_both_seen() {
             Traces {
                 run: &now,
                 ghost: None,
+                pinned: None,
                 view,
                 detail,
                 cursor: None,
@@ -335,6 +338,7 @@ fn a_circle_is_round_to_a_dot() {
             let pane = FromAbove {
                 run: &run,
                 ghost: None,
+                pinned: None,
                 view: &view,
                 reading: None,
             };
@@ -378,6 +382,7 @@ fn the_point_stays_in_the_picture_however_large_it_is() {
             let pane = FromAbove {
                 run: &run,
                 ghost: None,
+                pinned: None,
                 view: &view,
                 reading: None,
             };
@@ -685,10 +690,11 @@ proptest! {
         for pane in 0..3 {
             let mut buf = Buffer::filled(around, Cell::new("#"));
             match pane {
-                0 => Traces { run, ghost, view, detail, cursor: None }.render(inside, &mut buf),
+                0 => Traces { run, ghost, pinned: None, view, detail, cursor: None }.render(inside, &mut buf),
                 1 => FromAbove {
                     run,
                     ghost,
+                    pinned: None,
                     view,
                     reading,
                 }

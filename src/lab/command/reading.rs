@@ -434,6 +434,11 @@ pub(super) fn exact(value: &Value) -> Read {
     Ok(Command::Exact(shown))
 }
 
+pub(super) fn pin(value: &Value) -> Read {
+    let pinned = checked(Kind::Flag, value)?.as_bool().unwrap_or_default();
+    Ok(Command::Pin(pinned))
+}
+
 pub(super) fn show(value: &Value) -> Read {
     let list = of_view("show", value)?.as_array();
     let ids = list.into_iter().flatten().map(text_in);

@@ -3,8 +3,8 @@
 use super::Command;
 use super::reading::{
     Read, bare, camera, count, cursor, detail, exact, export, fill, go_to, hide, look_at, magnify,
-    next, next_push, nudge, open, push, run_until, save, set, show, since, speed, step, told, wait,
-    window, zoom,
+    next, next_push, nudge, open, pin, push, run_until, save, set, show, since, speed, step, told,
+    wait, window, zoom,
 };
 use crate::scenario::Problem;
 use toml::Value;
@@ -71,6 +71,8 @@ pub static COMMANDS: &[Row] = &[
     row("magnify", "4", "how many times the values of the traces are magnified, 1 to 1000000", magnify),
     row("cursor", "400, \"60 s\", \"next turn\", \"turn before\" or \"none\"", "the step at which the traces are read off; turns are those of the tilt", cursor),
     row("exact", "true or false", "whether the exact motion is drawn beside the run", exact),
+    row("pin", "true or false", "pin the present run as the reference, which stays in view; false: none is pinned", pin),
+    row("take_advice", "true", "begin the run anew at the time step, or by the scheme, that mends doubtful numbers, up to the same time", |value| told(value, Command::TakeAdvice)),
     row("show", "[\"traces\", \"3d\"]", "the panes that share the screen, of traces, above, 3d, parameters; none: as many as there is room for", show),
     row("hide", "[\"health\"]", "what is not shown: panes, health, predicted, look_at", hide),
     row("fill", "\"above\"", "the pane that fills the screen, or \"none\"", fill),

@@ -61,6 +61,8 @@ pub(super) fn written(command: &Command) -> (&'static str, Value) {
         Command::Cursor(to) => ("cursor", cursor_written(*to)),
         Command::Window(window_s) => ("window_s", (*window_s).into()),
         Command::Exact(shown) => ("exact", (*shown).into()),
+        Command::TakeAdvice => ("take_advice", true.into()),
+        Command::Pin(pinned) => ("pin", (*pinned).into()),
         Command::Show(panes) => ("show", words(panes.iter().map(|pane| pane.id()))),
         Command::Hide(parts) => ("hide", words(parts.iter().map(|part| part.id()))),
         Command::Fill(pane) => ("fill", pane.map_or("none", Pane::id).into()),

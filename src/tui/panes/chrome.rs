@@ -1,7 +1,7 @@
 //! The lines around the panes: title, health, hint and keys.
 
 use super::{shortened, wrapped_to, write};
-use crate::analysis::remarks::remarks;
+use crate::analysis::remarks::{Remark, remarks};
 use crate::lab::Lab;
 use crate::lab::action::Action;
 use crate::observe::reading::Reading;
@@ -16,6 +16,8 @@ use ratatui::widgets::{Clear, Widget};
 const LEAST_TITLE: usize = 8;
 /// What a screen says that has no room for everything.
 const CRAMPED: &str = "80x24 shows more";
+/// Remarks before what would mend the numbers: the turns in a step and the distance.
+const BEFORE_OFFER: usize = 2;
 /// Between two remarks.
 const SEPARATOR: &str = " · ";
 
@@ -100,10 +102,15 @@ fn clock(reading: &Reading, time_step_s: f64, width: usize) -> String {
 /// What the time step makes of the numbers, in words: at length if all of it fits, else in short, as much as fits.
 pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let remarks = remarks(
-        &lab.player().reading().readouts.health,
-        lab.player().advice(),
-    );
+    let mut remarks = remarks(&lab.player().reading().readouts.health, None);
+    if let Some(offer) = lab.player().offer() {
+        let offer = Remark {
+            long: offer.clone(),
+            short: offer,
+            warns: false,
+        };
+        remarks.insert(BEFORE_OFFER.min(remarks.len()), offer);
+    }
     let length = |text: &String| text.chars().count() + SEPARATOR.chars().count();
     let whole: usize = remarks.iter().map(|remark| length(&remark.long)).sum();
     let mut x = 1;

@@ -33,6 +33,9 @@ const DOT: (usize, usize) = (1, 3);
 /// The run before where dots are as large as cells.
 const LARGE_DOT: (usize, usize) = (1, 2);
 
+/// The pinned run: long dashes.
+const LONG_DASH: (usize, usize) = (5, 7);
+
 /// Length of a push's line, of the radius shown: its direction is what there is to see.
 const ARROW: f64 = 0.35;
 /// A force with less than this part of it in the plane is straight up or down as far as one sees from above.
@@ -65,6 +68,7 @@ pub const ROW: PaneRow = PaneRow {
         FromAbove {
             run: lab.player().run(),
             ghost: lab.player().ghost(),
+            pinned: lab.player().pinned(),
             view: lab.view(),
             reading: Some(lab.player().reading()),
         }
@@ -79,6 +83,8 @@ pub struct FromAbove<'a> {
     pub run: &'a LiveRun,
     /// The run before, faint under it.
     pub ghost: Option<&'a Ghost>,
+    /// The run that was pinned as the reference, unless it is the present one.
+    pub pinned: Option<&'a Ghost>,
     /// How it is looked at.
     pub view: &'a View,
     /// The latest reading of the run, if it is read at all: by it the path is recent or old.
@@ -120,7 +126,8 @@ impl FromAbove<'_> {
         let middle = self.circled().unwrap_or_default();
         let exact = self.run.overlay().map(Overlay::path);
         let before = self.ghost.map(Ghost::path);
-        let paths = [Some(self.run.path()), exact, before];
+        let pinned = self.pinned.map(Ghost::path);
+        let paths = [Some(self.run.path()), exact, before, pinned];
         let about = |path: &Path| match middle == Vector2::zeros() {
             true => path.radius(),
             false => path.radius_about(middle.x, middle.y).max(middle.norm()),
@@ -189,6 +196,12 @@ impl FromAbove<'_> {
             };
             for (x, y) in on_and_off(before, dotted) {
                 dots.set(x, y, Ink::Ghost);
+            }
+        }
+        if let Some(pinned) = self.pinned {
+            let kept = pinned.path().dots().map(|(x, y)| plan.dot(x, y));
+            for (x, y) in on_and_off(kept, LONG_DASH) {
+                dots.set(x, y, Ink::Faint(Role::Pinned));
             }
         }
         let mut trail = Trail::new(&dots, false);
@@ -287,6 +300,11 @@ impl FromAbove<'_> {
         let bar = format!("├{}┤ {length_m} m", "─".repeat(cells.saturating_sub(2)));
         let end = write(area, (0, 0), &bar, theme.style(Role::Quiet), buf);
         let legends: &[&str] = match self.run.overlay() {
+            _ if self.pinned.is_some() => &[
+                "o now, long dashes: pinned",
+                "long dashes: pinned",
+                "-- pinned",
+            ],
             Some(_) => &["o now e exact * both", "o now e exact", "e exact"],
             None if self.ghost.is_some() => {
                 &["o now, dotted: the other run", "o now, dotted: other"]

@@ -50,6 +50,13 @@ const Z_LEAST: f64 = 0.05;
 const TILT_LEAST: f64 = 0.02;
 /// Least reach of x and y, of the same distance.
 const PLANE_LEAST: f64 = 1e-4;
+/// What the title says of bands where there is room.
+const BANDS: &str = "bands: lowest, mean (dotted) and highest of fast swings";
+/// What the title says of the exact motion, the run before and the pinned run: at length, in short and shorter.
+const EXACT: [&str; 3] = ["dashed: exact motion", "- - exact", "--exact"];
+const OTHER: [&str; 3] = ["dotted: other run", "··· other run", "···other"];
+const PINNED: [&str; 3] = ["long and short: pinned", "-- - pinned", "-- -pinned"];
+
 /// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
     id: Pane::TRACES,
@@ -88,6 +95,8 @@ pub struct Traces<'a> {
     pub run: &'a LiveRun,
     /// The run before, faint under it.
     pub ghost: Option<&'a Ghost>,
+    /// The run that was pinned as the reference, unless it is the present one.
+    pub pinned: Option<&'a Ghost>,
     /// How it is looked at.
     pub view: &'a View,
     /// The time that the strip of the fast motion shows.
@@ -140,31 +149,35 @@ impl Traces<'_> {
         }
         let named = self.run.scenario().file.trace.as_deref();
         let point = named.unwrap_or("axle top");
-        let (exact, ghost) = (self.run.overlay().is_some(), self.ghost.is_some());
-        let legends: &[&str] = match (exact, ghost) {
-            (false, false) if self.detail.window_s < 0.999 * self.view.window_s => &[
-                "over time; bands: lowest, mean (dotted) and highest of fast swings",
-                ROW.title,
-            ],
-            (false, false) => &[ROW.title],
-            (true, false) => &[
-                "over time, dashed: exact motion; bands: lowest, mean (dotted) and highest of fast swings",
-                "over time, dashed: exact motion",
-                "- - exact",
-                "--exact",
-            ],
-            (false, true) => &["over time, dotted: other run", "··· other run", "···other"],
-            (true, true) => &[
-                "over time, dashed: exact motion, dotted: other run",
-                "- - exact ··· other",
-                "--exact ···other",
-            ],
+        let beside = [
+            (self.run.overlay().is_some(), EXACT),
+            (self.ghost.is_some(), OTHER),
+            (self.pinned.is_some(), PINNED),
+        ];
+        let legend = |length: usize, between: &str| {
+            let shown = beside.iter().filter(|(is_shown, _)| *is_shown);
+            let words: Vec<_> = shown.map(|(_, legends)| legends[length]).collect();
+            words.join(between)
         };
-        let titles = legends.iter().map(|legend| format!("{point} {legend}"));
-        let fitting = titles.clone().find(|title| title.len() <= room);
-        fitting
-            .or_else(|| legends.last().map(|legend| (*legend).to_owned()))
-            .unwrap_or_default()
+        let long = [ROW.title.to_owned(), legend(0, ", ")];
+        let long = long.into_iter().filter(|part| !part.is_empty());
+        let long = long.collect::<Vec<_>>().join(", ");
+        let mut titles = vec![format!("{point} {long}")];
+        let is_divided = self.detail.window_s < 0.999 * self.view.window_s;
+        let has_exact = self.run.overlay().is_some();
+        if self.ghost.is_none() && self.pinned.is_none() && (is_divided || has_exact) {
+            titles.insert(0, format!("{point} {long}; {BANDS}"));
+        }
+        let shortest = match legend(2, " ") {
+            none if none.is_empty() => ROW.title.to_owned(),
+            shortest => {
+                titles.push(format!("{point} {}", legend(1, " ")));
+                titles.push(format!("{point} {shortest}"));
+                shortest
+            }
+        };
+        let fits = |title: &String| title.chars().count() <= room;
+        titles.into_iter().find(fits).unwrap_or(shortest)
     }
 
     /// Columns for the values beside the strips.
@@ -342,6 +355,11 @@ impl Traces<'_> {
             let before = columns(ghost.recording(), &ghost.marks().edits);
             draw(&mut dots, &before, scale, Stroke::Dotted, Ink::Ghost);
         }
+        if let Some(pinned) = self.pinned {
+            let kept = columns(pinned.recording(), &pinned.marks().edits);
+            let ink = Ink::Faint(Role::Pinned);
+            draw(&mut dots, &kept, scale, Stroke::LongAndShort, ink);
+        }
         if let Some(overlay) = self.run.overlay() {
             let exact = columns(overlay.recording(), &[]);
             draw(
@@ -418,12 +436,13 @@ impl Traces<'_> {
         }
     }
 
-    /// Everything the strip of `curve` has to show: the run, and where they are shown the exact motion and the run
-    /// before: the whole of it at once, so that the picture stays while the run comes after it.
+    /// Everything the strip of `curve` has to show: the run, and where they are shown the exact motion, the run before
+    /// and the pinned one: the whole of it at once, so that the picture stays while the run comes after it.
     fn extent(&self, curve: Curve, strip: Option<&Strip>) -> Extent {
         let exact = self.run.overlay().map(Overlay::recording);
         let before = self.ghost.map(Ghost::recording);
-        let recordings = [Some(self.run.recording()), exact, before];
+        let pinned = self.pinned.map(Ghost::recording);
+        let recordings = [Some(self.run.recording()), exact, before, pinned];
         let extent = |recording: &Recording| match strip {
             Some(strip) => recording
                 .between(strip.begin_s, strip.end_s())

@@ -10,6 +10,9 @@ const THINNEST_BAND: usize = 4;
 /// A mean nearer to an edge than this, in dots, is not drawn.
 const CLEAR_OF_EDGE: usize = 2;
 
+/// Cells after which long and short dashes repeat.
+const LONG_AND_SHORT: usize = 6;
+
 /// Which dots of a curve are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stroke {
@@ -19,6 +22,8 @@ pub enum Stroke {
     Dashed,
     /// Single ones: the run before.
     Dotted,
+    /// Those in three cells, then in one, with a cell between: the pinned run.
+    LongAndShort,
 }
 
 /// Draws `columns` on `dots`.
@@ -35,6 +40,7 @@ pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: 
     let keeps = |x: usize, y: usize| match stroke {
         Stroke::Full => true,
         Stroke::Dashed => (x / across).is_multiple_of(2),
+        Stroke::LongAndShort => !matches!(x / across % LONG_AND_SHORT, 3 | 5),
         Stroke::Dotted => x.is_multiple_of(across.max(2)) && y.is_multiple_of((down / 2).max(1)),
     };
     let mut before: Option<(usize, usize)> = None;

@@ -10,6 +10,7 @@ impl<'a> Traces<'a> {
         Self {
             run: lab.player().run(),
             ghost: lab.player().ghost(),
+            pinned: lab.player().pinned(),
             view: lab.view(),
             detail: lab.player().detail(),
             cursor: lab.player().cursor(),

@@ -1,0 +1,79 @@
+//! The advice about doubtful numbers: what is offered, and the run that follows it.
+
+use super::Lab;
+use super::carry_out::{Answer, Done};
+use super::player::Player;
+use crate::analysis::health::{Advice, BETTER_SCHEME, advise};
+use crate::scenario::Scenario;
+use crate::text::number::shortest;
+use crate::work::mended::mended;
+use std::sync::Arc;
+
+/// What would mend the present run, and can be done to it.
+pub(super) struct Offer {
+    /// In words: a scheme and a time step.
+    what: String,
+    /// The run from its start, as advised.
+    scenario: Arc<Scenario>,
+}
+
+impl Player {
+    /// What `advice` offers; `None` where there is nothing to do, or where it cannot be done to this run.
+    fn offered(&self, advice: &Advice) -> Option<Offer> {
+        let (time_step_s, scheme) = match *advice {
+            Advice::TimeStep(time_step_s) => (time_step_s, None),
+            Advice::Scheme { time_step_s, .. } => (time_step_s, Some(BETTER_SCHEME)),
+            Advice::Holds | Advice::Nothing | Advice::BoundToItsTimeStep => return None,
+        };
+        let end_s = self.playback.end_s();
+        let scenario = mended(self.run().scenario(), time_step_s, scheme, end_s).ok()?;
+        let scheme = scheme.map_or(String::new(), |scheme| format!("{scheme}, "));
+        Some(Offer {
+            what: format!("{scheme}dt {} s", shortest(time_step_s)),
+            scenario: Arc::new(scenario),
+        })
+    }
+
+    /// Takes the answer of the search for advice, if it has just come. Returns whether it has.
+    pub(super) fn take_advice_news(&mut self) -> bool {
+        let has_come = self.advisor.as_mut().is_some_and(|it| it.take_news());
+        if has_come {
+            self.offer = self.advice().and_then(|advice| self.offered(advice));
+        }
+        has_come
+    }
+
+    /// What would mend doubtful numbers, in words, with the key that does it; `None` where nothing is known to, or where it
+    /// cannot be done to this run.
+    pub fn offer(&self) -> Option<String> {
+        let is_doubted = self.reading().readouts.health.is_believed() == Some(false);
+        let offer = self.offer.as_ref().filter(|_| is_doubted)?;
+        Some(format!("{} mends it: a takes it", offer.what))
+    }
+}
+
+impl Lab {
+    /// Begins the run anew as the advice says, and plays it to the same time. Where no advice has come yet, it is looked for
+    /// at once.
+    pub(super) fn follow_advice(&mut self) -> Answer {
+        if self.player.reading().readouts.health.is_believed() != Some(false) {
+            return Err("there is nothing to mend: the run keeps to the exact motion".into());
+        }
+        if self.player.offer.is_none() && self.player.advice().is_none() {
+            let advice = advise(self.player.run().scenario());
+            self.player.offer = self.player.offered(&advice);
+        }
+        let Some(Offer { what, scenario }) = self.player.offer.take() else {
+            return Err("no time step or scheme is known that mends this run".into());
+        };
+        let left_at = self.player.step_to_leave_at();
+        self.work.leave_at(left_at, self.values.next_push());
+        self.work.begin_as_advised(&scenario);
+        self.values.suit(&scenario);
+        self.player.begin(scenario, false);
+        self.scenario_has_changed();
+        let said =
+            format!("{what} from the start; the run before is dotted, and u goes back to it");
+        Ok(self.on_its_way(Done::saying(said)))
+    }
+}
