@@ -6,7 +6,7 @@ use crate::physics::observables::Azimuth;
 use crate::physics::{LagrangeTop, SymmetricTop};
 use crate::run::Step;
 use nalgebra::Vector3;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// A swing of the height below this part of the squared sine of the tilt is no nutation.
 const STEADY: f64 = 1e-9;
@@ -26,6 +26,10 @@ const HIDES_RAD: f64 = 1.5;
 /// Axles that turn by more than this between two rows (rad) are not followed.
 const TOO_FAR_RAD: f64 = 60.0;
 
+/// The turning points of a nutation that moves the height no faster than so many times the error that a scheme of the first
+/// order has in that rate are not where the rate changes its sign.
+const BEYOND_ERROR: f64 = 2.0;
+
 /// The instruments for one such top.
 #[derive(Clone, Debug)]
 pub(super) struct Between {
@@ -37,6 +41,7 @@ pub(super) struct Between {
     /// Rates that the motion is made of, rad/s: of the body, and of the axle.
     rates: [f64; 2],
     is_first_order: bool,
+    is_exact: bool,
     /// Whether the azimuth's way has to be followed in every time step.
     may_turn_far: bool,
     /// The least and greatest height of the axle that the start leads to; `None` where it swings.
@@ -130,6 +135,10 @@ impl Between {
             }
         };
         let range = if range.is_finite() { range } else { 0.0 };
+        let rate_error = 0.5 * motion.time_step_s * pull.norm() * swing.level();
+        if motion.scheme.order == Some(1) && range * PI / period < BEYOND_ERROR * rate_error {
+            return None;
+        }
         let is_steady = range < (STEADY * swing.level().powi(2)).max(LEAST_SWING);
         let (climb, bend) = (swing.climb(), swing.bend(&pull));
         let starts_at_turn = !is_steady && climb.abs() <= AT_TURN * motion.time_step_s * bend.abs();
@@ -145,6 +154,7 @@ impl Between {
             rates: [spin, axle_rate],
             may_turn_far: axle_rate * motion.time_step_s > HIDES_RAD,
             is_first_order: motion.scheme.order == Some(1),
+            is_exact: motion.scheme.order.is_none(),
             steady_swing: is_steady.then_some(range),
             confirmed_by: match is_steady {
                 true => ROUNDING,
@@ -333,12 +343,21 @@ impl Between {
         self.turns.line_to(*number, self.turn(crossing))
     }
 
-    /// What the error of a scheme of the first order may do to a single turning point.
+    /// What the error of a scheme may do to a single turning point, s. Where the scheme lets the tilt drift, highest points
+    /// come late and lowest ones early, so that half nutations have another length than whole ones have halves.
     fn lag_s(&self, line: &Line) -> f64 {
-        match self.is_first_order && line.between < 3 {
-            true => 0.5 * self.time_step_s,
-            false => 0.0,
+        if line.between >= 3 || self.is_exact {
+            return 0.0; // more of them show it
         }
+        if self.is_first_order {
+            return 0.5 * self.time_step_s;
+        }
+        if line.intervals.is_multiple_of(2) {
+            return 0.0;
+        }
+        // The error of a step is known in the rate of the height; the drift is that of the height, by so many times more.
+        let of_ends = line.first.time_error_s.hypot(line.last.time_error_s);
+        of_ends / (self.rates[1] * self.time_step_s)
     }
 
     pub fn nutation_period_s(&self) -> Option<Measured> {

@@ -8,9 +8,11 @@
 //! either of them: the difference is what the scheme's step has done otherwise. With rounding, and with the distance of
 //! the turning points from a steady rate, it makes the uncertainty. Half a nutation is enough then.
 //!
-//! Of other runs, those of a lopsided body, under a load aside, or whose time step is too long, a parabola through three
-//! rows gives the highest points, and it takes four nutations to say how much they differ. A run without nutation has its
-//! precession from the whole way of the azimuth. Where less was seen than that there is no number.
+//! Of other runs, those of a lopsided body, under a load aside, whose time step is too long, or whose nutation is no larger
+//! than the error of a scheme of the first order, a parabola through three rows gives the highest points, and it takes four
+//! nutations to say how much they differ, of a lopsided body sixteen. Rows so few that a nutation may lie unseen between
+//! them give no period. A run without nutation has its precession from the whole way of the azimuth. Where less was seen
+//! than that there is no number.
 //!
 //! A turning point is read by interpolation between two rows, and how far that reading is off is known from the equations
 //! of motion. It is stated in the uncertainty and not taken away from the value. Taken away, the value would no longer be

@@ -192,7 +192,7 @@ pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
     if health.is_believed() == Some(false) {
         remarks.extend(advice.and_then(|advice| mend(health, advice)));
     }
-    remarks.push(Remark::new(energy(health), false));
+    remarks.push(energy(health));
     remarks.extend(
         health
             .nutation
@@ -292,14 +292,24 @@ fn distance(health: &Health) -> Remark {
     }
 }
 
-fn energy(health: &Health) -> String {
-    match health.energy_drift {
-        Some(drift) => format!(
-            "energy drift {} {}",
-            signed(drift, 4),
-            short_unit(health.energy_unit)
-        ),
-        None => "energy n/a".to_owned(),
+fn energy(health: &Health) -> Remark {
+    let Some(drift) = health.energy_drift else {
+        return Remark {
+            long: format!("energy drift {NONE}: {}", no_drift(health)),
+            short: format!("energy {NONE}"),
+            warns: false,
+        };
+    };
+    let unit = short_unit(health.energy_unit);
+    let text = format!("energy drift {} {unit}", signed(drift, 4));
+    Remark::new(text, false)
+}
+
+/// Why there is no energy drift.
+fn no_drift(health: &Health) -> &'static str {
+    match health.energy_unit {
+        None => "neither weight nor kinetic energy to measure it by",
+        Some(_) => "beyond the range of numbers",
     }
 }
 
@@ -325,8 +335,7 @@ fn length(metres: f64) -> String {
 pub fn energy_in_full(health: &Health) -> String {
     match (health.energy_drift, health.energy_unit) {
         (Some(drift), Some(unit)) => format!("{} of {unit}", signed_exponent(drift, 3)),
-        (_, None) => format!("{NONE}: neither weight nor kinetic energy to measure it by"),
-        (None, Some(_)) => format!("{NONE}: beyond the range of numbers"),
+        _ => format!("{NONE}: {}", no_drift(health)),
     }
 }
 

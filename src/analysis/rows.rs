@@ -2,12 +2,18 @@
 //! of the axle by parabolas through three rows.
 
 use super::turns::{Line, Measured, ROUNDING, Turn, Turns};
+use crate::physics::SymmetricTop;
 use crate::physics::observables::Azimuth;
 use crate::run::Step;
 use std::f64::consts::TAU;
 
-/// Fewer nutations than this do not say how much they differ from one another.
-const FEWEST: u64 = 4;
+/// Fewer nutations than this do not say how much they differ from one another: of a symmetric body, and of a lopsided one,
+/// whose nutations grow longer and shorter over several of them.
+const FEWEST: [u64; 2] = [4, 16];
+/// Between rows that are further apart than this part of a nutation a highest point may be missed.
+const ROWS_TO_SEE_IT: f64 = 8.0;
+/// By so many rows nutations of the same length differ at most, as the rows show them.
+const ROWS_OF_CHANCE: f64 = 1.5;
 /// How much more the scatter of nutations that differ at random counts than that of single points.
 const AT_RANDOM: f64 = 1.75;
 
@@ -23,6 +29,9 @@ pub(super) struct Rows {
     last: Option<(u64, Turn)>,
     count: u64,
     turns: Turns,
+    fewest: u64,
+    /// The shortest and the longest time between two highest points, s.
+    nutations_s: [f64; 2],
     heights: [f64; 2],
     /// Whether the azimuth has turned so far in one step that it cannot be told which way.
     is_ambiguous: bool,
@@ -58,6 +67,7 @@ impl Rows {
     /// Instruments for the run that begins at `step`.
     pub fn new(step: &Step) -> Self {
         let look = Look::at(step);
+        let body = &step.scenario().body.mechanics;
         Self {
             looks: [look; 3],
             seen: 1,
@@ -66,6 +76,8 @@ impl Rows {
             last: None,
             count: 0,
             turns: Turns::new(),
+            fewest: FEWEST[usize::from(SymmetricTop::of(body).is_none())],
+            nutations_s: [f64::INFINITY, 0.0],
             heights: [look.axle[2]; 2],
             is_ambiguous: false,
             start: look,
@@ -132,6 +144,11 @@ impl Rows {
         if self.turns.wants(self.count) {
             self.turns.keep(self.count, turn);
         }
+        if let Some((_, last)) = self.last {
+            let [shortest, longest] = self.nutations_s;
+            let time_s = turn.time_s - last.time_s;
+            self.nutations_s = [shortest.min(time_s), longest.max(time_s)];
+        }
         self.last = Some((self.count, turn));
         self.count += 1;
     }
@@ -139,7 +156,7 @@ impl Rows {
     /// The line through the highest points, with what a parabola may be off by at its ends: through three steps of a
     /// swing's top, ψ apart, up to (2/3√3) ψ²/12 of a step.
     fn line(&self) -> Option<Line> {
-        let (number, last) = self.last.filter(|(number, _)| *number >= FEWEST)?;
+        let (number, last) = self.last.filter(|(number, _)| *number >= self.fewest)?;
         let mut line = self.turns.line_to(number, last)?;
         let step = self.looks[2].time_s - self.looks[1].time_s;
         let psi = TAU * step * number as f64 / line.time_s();
@@ -151,8 +168,16 @@ impl Rows {
         Some(line)
     }
 
+    /// Whether the rows are near enough to one another to show each highest point: where they are not, nutations seem to
+    /// differ because some are taken for one.
+    fn shows_each(&self) -> bool {
+        let row = self.looks[2].time_s - self.looks[1].time_s;
+        let [shortest, longest] = self.nutations_s;
+        shortest >= ROWS_TO_SEE_IT * row || longest - shortest <= ROWS_OF_CHANCE * row
+    }
+
     pub fn nutation_period_s(&self) -> Option<Measured> {
-        let line = self.line()?;
+        let line = self.line().filter(|_| self.shows_each())?;
         let count = line.intervals as f64;
         let value = line.time_s() / count;
         let uncertainty = line.time_error_s(AT_RANDOM) / count;

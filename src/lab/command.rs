@@ -13,7 +13,7 @@ pub use table::{COMMANDS, Row};
 use crate::lab::view::{Pane, Part};
 use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
-use crate::scenario::problem::nearest;
+use crate::scenario::problem::{Found, nearest};
 use crate::scenario::{Document, Problem, Problems};
 use crate::work::expression::Expression;
 use crate::work::next_push::Toward;
@@ -236,11 +236,11 @@ pub fn open(path: &Path) -> Result<Commands, Problems> {
 /// # Errors
 /// What is wrong with it, in the order of the file.
 pub fn read(document: &Document) -> Result<Commands, Problems> {
-    let mut problems = Vec::new();
+    let mut problems = Found::default();
     let mut list = Vec::new();
     for name in document.table().keys().filter(|name| *name != "do") {
         let rule = "unknown key: a file of commands holds [[do]] and nothing else";
-        problems.push(Problem::at(name, rule));
+        problems.add(|| Problem::at(name, rule));
     }
     match document.table().get("do") {
         Some(Value::Array(tables)) => {
@@ -249,21 +249,22 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
             for ((index, value), line) in tables.iter().enumerate().zip(lines) {
                 match one(index, value) {
                     Ok(command) => list.push(Placed { command, line }),
-                    Err(found) => problems.extend(found),
+                    Err(found) => found
+                        .into_iter()
+                        .for_each(|problem| problems.add(|| problem)),
                 }
             }
         }
-        Some(other) => problems.push(Problem::with_value(
-            "do",
-            other,
-            "must be an array of tables: write [[do]]",
-        )),
-        None => problems.push(Problem::at(
-            "",
-            "holds no command: write a table [[do]] for each",
-        )),
+        Some(other) => problems.add(|| {
+            let rule = "must be an array of tables: write [[do]]";
+            Problem::with_value("do", other, rule)
+        }),
+        None => problems.add(|| {
+            let rule = "holds no command: write a table [[do]] for each";
+            Problem::at("", rule)
+        }),
     }
-    match problems.is_empty() {
+    match problems.list.is_empty() {
         true => Ok(Commands {
             origin: document.origin().to_owned(),
             list,

@@ -3,7 +3,7 @@
 
 use super::keeping;
 use crate::run::Clock;
-use crate::scenario::{Document, Problems, Scenario};
+use crate::scenario::{Problems, Scenario};
 use crate::storage::session::Text;
 use crate::work::changed;
 use crate::work::history::{History, Reversal, RunRecord};
@@ -262,15 +262,15 @@ impl Work {
                 "there is nothing to {to} yet: the run stands at step 0"
             ));
         }
-        let file = self.journal().file_until(step);
-        let run = Document::from_file("the run", &file).and_then(|document| document.scenario());
-        run.map(Arc::new).map_err(|problems| problems.in_one_line())
+        let run = self.journal().scenario_until(step);
+        run.map_err(|problems| problems.in_one_line())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::Document;
     use toml::Value;
 
     fn opened(name: &str) -> Arc<Scenario> {

@@ -3,7 +3,7 @@
 use super::checks;
 use super::dotted::{find, is_in, set_key};
 use super::problem::{Found, Problem, Problems, nearest};
-use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, start};
+use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, start, tables};
 use crate::text::printable::{brief, printable, printable_lines};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -111,6 +111,7 @@ impl Document {
             let rule = format!("has {lines} lines: at most {MOST_LINES} are allowed");
             return Err(Problems::one(origin, Problem::at("", rule)));
         }
+        tables::few_enough(&text).map_err(|problem| Problems::one(origin, problem))?;
         match text.parse() {
             Ok(table) => Ok(Self {
                 origin: origin.to_owned(),

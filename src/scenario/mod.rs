@@ -22,6 +22,7 @@ mod pushes;
 pub mod rescale;
 pub mod screen;
 pub mod start;
+mod tables;
 
 pub use document::Document;
 pub use file::ScenarioFile;

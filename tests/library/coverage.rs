@@ -1,5 +1,7 @@
 //! Stated uncertainties hold the truth: measured precession and nutation of random runs, beside theory.
 
+mod others;
+
 use crate::support::dice::Dice;
 use gyrolab::analysis::{Instruments, Measured, Monitor};
 use gyrolab::run::Simulation;

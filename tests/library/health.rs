@@ -3,6 +3,7 @@
 use crate::support::dice::Dice;
 use crate::support::scenarios::{find_scheme, parse, preset};
 use gyrolab::analysis::health::{Advice, BELIEVED_WITHIN, Health, Picture, advise};
+use gyrolab::analysis::remarks::remarks;
 use gyrolab::analysis::{Monitor, Trial};
 use gyrolab::physics::scheme::SCHEMES;
 use gyrolab::run::resample::resampled;
@@ -664,4 +665,24 @@ fn a_time_step_that_would_be_refused_is_not_advised() {
     for remark in gyrolab::analysis::remarks::remarks(&health, Some(&advice)) {
         assert!(!remark.long.contains("--time-step"), "{remark:?}");
     }
+}
+
+#[test]
+fn a_drift_that_cannot_be_told_is_told_why() {
+    let told = |set: &[&str]| {
+        let health = health_at(preset("method-2", set), 5);
+        let remarks = remarks(&health, None);
+        let energy = remarks
+            .into_iter()
+            .find(|remark| remark.short.starts_with("energy"));
+        energy.unwrap()
+    };
+    let still = told(&["motion.gravity_m_per_s2=0", "start.momentum_Js=[0,0,0]"]);
+    assert_eq!(
+        still.long,
+        "energy drift n/a: neither weight nor kinetic energy to measure it by"
+    );
+    assert_eq!(still.short, "energy n/a");
+    let usual = told(&[]);
+    assert!(usual.long.starts_with("energy drift +") || usual.long.starts_with("energy drift -"));
 }

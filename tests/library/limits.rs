@@ -127,3 +127,32 @@ fn an_edit_is_refused_for_what_it_sets() {
         assert!(problems.list[0].key.starts_with(key), "{set}: {problems}");
     }
 }
+
+#[test]
+fn a_file_of_more_tables_than_any_scenario_needs_is_refused_at_their_line() {
+    // Each asks for 400 000 tables in other words; only then is the last line no TOML.
+    let many = |line: &dyn Fn(usize) -> String, count: usize| {
+        let mut text: String = (0..count).map(line).collect();
+        text.push_str("]\n");
+        refusal(&text)
+    };
+    for told in [
+        many(&|k| format!("x{k}.a.b.c.d=1\n"), 100_000),
+        many(&|k| format!("[x{k}.a.b.c]\n"), 100_000),
+        many(&|k| format!("x{k}={{a={{}}}}\n"), 200_000),
+        many(&|_| "[[edit]]\nset.a.b=1.5\n".to_owned(), 140_000),
+    ] {
+        assert!(told.contains("asks for more than 300000 tables"), "{told}");
+        assert!(told.starts_with("file.toml:"), "{told}");
+    }
+}
+
+#[test]
+fn decimals_strings_and_repeated_headings_ask_for_no_tables() {
+    let mut text = "x = [\n".to_owned();
+    text.push_str(&"1.5, 'a.b.c={', 2.5,\n".repeat(200_000));
+    text.push_str("]\n# a.b.c.d = 1\n");
+    text.push_str(&"[[body.point]]\nat_m = [0.1, 0.2, 0.3]\n".repeat(200_000));
+    let told = refusal(&text);
+    assert!(!told.contains("tables, the most"), "{told}");
+}

@@ -118,9 +118,26 @@ fn words(name: &str) -> String {
 
 /// A figure in a text of the preset `name`: `before` it, the number with so many decimals, and `after` it.
 fn figure(name: &str, before: &str, number: f64, decimals: usize, after: &str) {
-    let text = words(name).replace('\n', " ");
+    let text = words(name);
     let wanted = format!("{before}{number:.decimals$}{after}");
-    assert!(text.contains(&wanted), "{name}: no {wanted:?} in {text}");
+    assert!(says(&text, &wanted), "{name}: no {wanted:?} in {text}");
+}
+
+/// Whether `wanted` stands in `text`, however its lines are broken.
+fn says(text: &str, wanted: &str) -> bool {
+    text.replace('\n', " ").contains(wanted)
+}
+
+#[test]
+fn a_figure_that_is_changed_is_no_longer_found() {
+    let text = words("wobble-push-accumulating");
+    let (place, wanted) = (text.find("100 N at each").unwrap(), "grows by 100 N");
+    assert!(says(&text, wanted));
+    for digit in 0..3 {
+        let mut changed = text.clone();
+        changed.replace_range(place + digit..=place + digit, "7");
+        assert!(!says(&changed, wanted), "{changed}");
+    }
 }
 
 #[test]
@@ -239,6 +256,17 @@ fn every_figure_in_the_texts_is_that_of_the_run() {
     let second = of("method-2");
     figure("method-2", "turns ", second("turns_per_step"), 2, " times");
     figure("method-2", "one turn in ", TAU / second(MEASURED), 1, " s");
+    let literal = preset_named("wobble-push-accumulating", &[]);
+    let [pushed] = &literal.file.push[..] else {
+        panic!("{} pushes", literal.file.push.len());
+    };
+    let force_down = -pushed.force_N[2];
+    let name = "wobble-push-accumulating";
+    figure(name, "F(12,3) - ", force_down, 0, " on a force array");
+    figure(name, "grows by ", force_down, 0, " N");
+    let pushed_steps = pushed.steps.unwrap() as f64;
+    figure(name, "at each of ", pushed_steps, 0, " steps");
+    figure(name, "its first ", literal.steps as f64, 0, " steps");
     let push = of("wobble-push");
     let percent = |z: f64| 100.0 * (z / 0.8 - 1.0);
     figure(

@@ -104,6 +104,19 @@ impl Journal {
         file
     }
 
+    /// The checked scenario of the run file up to `step`, see [`file_until`](Self::file_until).
+    ///
+    /// # Errors
+    /// As [`scenario`](Self::scenario).
+    pub fn scenario_until(&self, step: u64) -> Result<Arc<Scenario>, Problems> {
+        let mut run = self.scenario_of(&self.in_force_by(step))?;
+        // No check depends on the number of steps.
+        let changed = Arc::make_mut(&mut run);
+        changed.steps = step.max(1);
+        changed.file.motion.steps = changed.steps;
+        Ok(run)
+    }
+
     /// How many entries in force stand at steps later than `step`.
     pub fn later_than(&self, step: u64) -> usize {
         let entries = self.in_force();

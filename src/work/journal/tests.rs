@@ -60,6 +60,23 @@ fn an_act_drops_entries_at_later_steps_until_it_is_undone() {
 }
 
 #[test]
+fn the_run_up_to_a_step_is_what_its_file_says() {
+    let mut journal = journal("method-2");
+    for step in [5, 10, 10, 20] {
+        journal.act(step, gravity(step as f64)).unwrap();
+    }
+    journal.act(30, push(5.0)).unwrap();
+    let title = Act::set("title", Value::String("Mine".to_owned()));
+    journal.act(40, title).unwrap();
+    for step in [0, 4, 5, 10, 15, 20, 30, 50] {
+        let whole = Document::check_file("the run", journal.file_until(step)).map(Arc::new);
+        let run = journal.scenario_until(step);
+        assert_eq!(run.as_ref().unwrap().steps, step.max(1));
+        super::known::assert_same(&run, &whole);
+    }
+}
+
+#[test]
 fn the_act_is_written_last() {
     let entry = Entry {
         step: 3,

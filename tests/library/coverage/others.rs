@@ -1,0 +1,214 @@
+//! The same for what theory has no number of: the motion that a scheme makes of a symmetric body, strobed runs, and
+//! lopsided bodies.
+//!
+//! What is measured is the run as its steps show it. The truth is therefore the same motion seen for longer: the same
+//! scheme and time step where these make the motion, finer rows of the exact motion where they only show it. A scheme
+//! that changes the motion as it goes on has no such truth: a run is held against one only where both halves of the longer
+//! run agree.
+
+use super::{Case, between, log_between, preset, random};
+use crate::support::dice::Dice;
+use gyrolab::analysis::{Instruments, Measured};
+use gyrolab::run::Simulation;
+use gyrolab::scenario::{Document, Scenario};
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// Precession (rad/s) and nutation (s).
+type Both = [Option<Measured>; 2];
+
+/// What a short run says, and what a longer one does: the whole of it, and each half.
+struct Pair {
+    seed: u64,
+    short: Both,
+    long: [Both; 3],
+}
+
+fn both(instruments: &Instruments) -> Both {
+    [
+        instruments.precession_rad_per_s(),
+        instruments.nutation_period_s(),
+    ]
+}
+
+/// The whole run, its first half and its second; `None` where it leaves the range of numbers.
+fn measured(scenario: &Arc<Scenario>) -> Option<[Both; 3]> {
+    let mut simulation = Simulation::new(Arc::clone(scenario));
+    let mut whole = Instruments::new(simulation.now());
+    let (mut first, mut second) = (whole.clone(), whole.clone());
+    while simulation.step_number() < scenario.steps {
+        simulation.step().ok()?;
+        whole.follow(simulation.now());
+        if simulation.step_number() == scenario.steps / 2 {
+            (first, second) = (whole.clone(), Instruments::new(simulation.now()));
+        } else {
+            second.follow(simulation.now());
+        }
+    }
+    Some([&whole, &first, &second].map(both))
+}
+
+fn dice(seed: u64) -> Dice {
+    let mut dice = Dice(seed.wrapping_mul(0xD134_2543_DE82_EF95) | 1);
+    (0..20).for_each(|_| {
+        dice.unit();
+    });
+    dice
+}
+
+/// `scenario` with other keys of `[motion]`.
+fn again(scenario: &Scenario, scheme: &str, time_step_s: f64, steps: u64) -> Arc<Scenario> {
+    let mut file = scenario.file.clone();
+    file.motion.scheme = Some(scheme.to_owned());
+    file.motion.time_step_s = time_step_s;
+    file.motion.steps = steps;
+    let document = Document::from_file("again", &file).unwrap();
+    Arc::new(document.scenario().unwrap())
+}
+
+/// A symmetric body stepped by `scheme`, so many steps to a turn of the body and to a nutation, and the same for 20 times
+/// as long.
+fn stepped(seed: u64, scheme: &str, rows: [f64; 2]) -> Option<Pair> {
+    let Case {
+        scenario, truth, ..
+    } = random(seed)?;
+    let mut dice = dice(seed);
+    let start = Simulation::new(Arc::clone(&scenario));
+    let turn_s = TAU / start.now().angular_velocity().norm();
+    let quickest_s = match rows[0] < 2.0 {
+        true => truth[1],
+        false => truth[1].min(turn_s),
+    };
+    let time_step_s = quickest_s / log_between(&mut dice, rows[0], rows[1]);
+    let nutations = match rows[0] < 2.0 {
+        true => log_between(&mut dice, 20.0, 400.0),
+        false => log_between(&mut dice, 0.6, 40.0),
+    };
+    let steps = (nutations * truth[1] / time_step_s).max(2.0) as u64;
+    let run = |steps| measured(&again(&scenario, scheme, time_step_s, steps));
+    Some(Pair {
+        seed,
+        short: run(steps)?[0],
+        long: run(20 * steps)?,
+    })
+}
+
+/// A lopsided body under `exact`; the same in rows of a 40th of a nutation, for 10 times as long.
+fn lopsided(seed: u64) -> Option<Pair> {
+    let mut dice = dice(seed);
+    let dice = &mut dice;
+    let (radius, height) = (between(dice, 0.3, 1.5), between(dice, 0.2, 1.5));
+    let extra = log_between(dice, 0.003, 0.5);
+    let mass = 3.0;
+    let across = mass * (0.5 * radius * radius + height * height);
+    let spin = 2.0 * (across * mass * 9.8 * height).sqrt() * log_between(dice, 1.0, 6.0);
+    let tilt = between(dice, 10.0, 100.0);
+    let aside = [(); 2].map(|()| between(dice, -0.3, 0.3) * spin);
+    let build = |step: f64, steps: u64| {
+        let text = format!(
+            "title = 'x'\n[body.rim]\npoints = 6\nradius_m = {radius}\nheight_m = {height}\n\
+             point_mass_kg = 0.5\n[[body.point]]\nname = 'top'\nat_m = [0, 0, {}]\n[[body.point]]\n\
+             name = 'more'\nat_m = [{radius}, 0, {height}]\nmass_kg = {extra}\n\
+             [start]\ntilt_deg = {tilt}\nmomentum_Js = [{}, {}, {spin}]\nmomentum_frame = 'body'\n\
+             [motion]\nscheme = 'exact'\ntime_step_s = {step}\nsteps = {steps}\n",
+            2.0 * height,
+            aside[0],
+            aside[1],
+        );
+        let document = Document::parse("x.toml", &text).unwrap();
+        Arc::new(document.scenario().unwrap())
+    };
+    let guess_s = TAU * across / spin;
+    let period_s = measured(&build(guess_s / 40.0, 800))?[0][1]?.value;
+    let per_nutation = log_between(dice, 2.2, 60.0);
+    let nutations = log_between(dice, 3.0, 40.0);
+    let steps = (nutations * per_nutation) as u64;
+    Some(Pair {
+        seed,
+        short: measured(&build(period_s / per_nutation, steps))?[0],
+        long: measured(&build(period_s / 40.0, (400.0 * nutations) as u64))?,
+    })
+}
+
+/// Holds the short runs against the long ones; at least `fewest` of them must have a truth.
+fn hold(what: &str, pairs: &[Pair], fewest: usize) {
+    let is_exact = ["strobed", "lopsided"].contains(&what);
+    for (which, name) in ["precession", "nutation"].into_iter().enumerate() {
+        let mut off: Vec<(f64, u64)> = Vec::new();
+        for pair in pairs {
+            let [whole, first, second] = pair.long.map(|both| both[which]);
+            let (Some(short), Some(long)) = (pair.short[which], whole) else {
+                continue;
+            };
+            let apart = first.zip(second);
+            let apart = apart.map_or(f64::INFINITY, |(a, b)| (a.value - b.value).abs());
+            let error = short.uncertainty.hypot(long.uncertainty);
+            // Halves that differ are of another motion each. The exact motion stays what it is: its halves differ by beats.
+            if is_exact || apart <= 0.5 * short.uncertainty {
+                off.push(((short.value - long.value).abs() / error, pair.seed));
+            }
+        }
+        off.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let within = off.partition_point(|(off, _)| *off <= 2.0);
+        let worst = off.last().copied().unwrap_or_default();
+        let count = off.len();
+        println!("{what} {name}: {count} held, {within} within 2 standard errors, worst {worst:?}");
+        assert!(count >= fewest, "{what} {name}: {count} held");
+        assert!(
+            within as f64 >= 0.93 * count as f64,
+            "{what} {name}: {within} of {count}"
+        );
+        let pair = pairs.iter().find(|pair| pair.seed == worst.1);
+        let told = pair.map(|pair| (pair.short[which], pair.long.map(|both| both[which])));
+        assert!(worst.0 < 6.0, "{what} {name}: {worst:?}, {told:?}");
+    }
+}
+
+#[test]
+fn stated_uncertainties_hold_what_a_scheme_makes_of_the_motion() {
+    for (scheme, fewest) in [("rk4", 20), ("strang", 80), ("srkn11b", 80)] {
+        let seeds = (1..=120_u64).into_par_iter();
+        let pairs: Vec<_> = seeds
+            .filter_map(|seed| stepped(seed, scheme, [20.0, 200.0]))
+            .collect();
+        hold(scheme, &pairs, fewest);
+    }
+}
+
+#[test]
+fn stated_uncertainties_hold_the_picture_of_strobed_runs() {
+    let seeds = (1..=400_u64).into_par_iter();
+    let pairs: Vec<_> = seeds
+        .filter_map(|seed| stepped(seed, "exact", [0.6, 1.9]))
+        .collect();
+    hold("strobed", &pairs, 100);
+}
+
+#[test]
+fn stated_uncertainties_hold_for_lopsided_bodies() {
+    let pairs: Vec<_> = (1..=400_u64).into_par_iter().filter_map(lopsided).collect();
+    hold("lopsided", &pairs, 100);
+}
+
+#[test]
+fn a_nutation_that_only_the_scheme_makes_has_its_own_period() {
+    // A steady start has none; the first order of the scheme makes a small one of it.
+    for (spin_rpm, period_s) in [(300, 0.2031), (180, 0.348)] {
+        let start = format!("start.spin_rpm={spin_rpm}");
+        let steady = preset(
+            "method-2",
+            &[
+                "start.tilt_deg=30",
+                &start,
+                "start.steady=true",
+                "motion.time_step_s=0.001",
+                "motion.steps=10000",
+            ],
+        );
+        let [_, nutation] = measured(&steady).unwrap()[0];
+        let nutation = nutation.unwrap();
+        let off = (nutation.value - period_s).abs();
+        assert!(off < 2e-3, "{spin_rpm}: {nutation:?}");
+    }
+}
