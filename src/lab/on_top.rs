@@ -324,7 +324,7 @@ impl OnTop {
                 }
             }
             _ => {
-                let text = "what is pasted goes into fields and the filter; here it does nothing";
+                let text = "what is pasted goes into fields and filters; here it does nothing";
                 self.notice.say(text, now);
             }
         }
