@@ -38,7 +38,7 @@ pub(super) enum Pinned {
     /// The present run: nothing has changed it since.
     Present,
     /// An earlier run, or the present one before an edit.
-    Before(Ghost),
+    Before(Box<Ghost>),
 }
 
 impl Player {
@@ -214,7 +214,7 @@ impl Player {
     /// Keeps the pictures of the present run if it is pinned. To be called before it changes.
     pub(super) fn keep_pinned(&mut self) {
         if matches!(self.pinned, Some(Pinned::Present)) {
-            self.pinned = Some(Pinned::Before(Ghost::of(self.run())));
+            self.pinned = Some(Pinned::Before(Box::new(Ghost::of(self.run()))));
         }
     }
 
