@@ -51,6 +51,13 @@ impl Player {
         let offer = self.offer.as_ref().filter(|_| is_doubted)?;
         Some(format!("{} mends it: a takes it", offer.what))
     }
+
+    /// As [`offer`](Self::offer), in fewer words.
+    pub fn offer_in_short(&self) -> Option<String> {
+        self.offer()?;
+        let offer = self.offer.as_ref()?;
+        Some(format!("a: {} mends it", offer.what))
+    }
 }
 
 impl Lab {

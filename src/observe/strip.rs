@@ -275,7 +275,11 @@ impl<'a> Pen<'a> {
                 < MOST_CARRIED * (band.max - band.min);
             Some(Column {
                 extent,
-                mean: mean(index).clamp(band.min, band.max),
+                mean: if is_band {
+                    mean(index).clamp(band.min, band.max)
+                } else {
+                    mean(index).clamp(extent.min, extent.max)
+                },
                 band: is_band.then_some(band),
             })
         };
@@ -367,7 +371,11 @@ mod tests {
             prop_assert_eq!(lowest.into_iter().fold(2.0, f64::min), values.iter().copied().fold(2.0, f64::min));
             prop_assert_eq!(highest.into_iter().fold(-2.0, f64::max), values.iter().copied().fold(-2.0, f64::max));
             prop_assert!(drawn.iter().all(Option::is_some), "a gap in a whole run");
-            prop_assert!(drawn.iter().flatten().all(|c| c.extent.min <= c.mean && c.mean <= c.extent.max));
+            let is_between = |c: &Column| {
+                let extent = c.band.unwrap_or(c.extent);
+                extent.min <= c.mean && c.mean <= extent.max
+            };
+            prop_assert!(drawn.iter().flatten().all(is_between));
         }
 
         #[test]

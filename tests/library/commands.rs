@@ -203,6 +203,7 @@ fn every_row_of_the_table_is_written_under_its_name() {
         save = 'run.toml'
         speed = 'top'
         look_at = 'the dip'
+        next = 'raise the tilt'
         window_s = 60
         detail_s = 0.5
         since_s = 12.5
@@ -214,6 +215,7 @@ fn every_row_of_the_table_is_written_under_its_name() {
         show = ['traces', '3d']
         hide = ['health']
         fill = 'above'
+        bare = true
         camera = { yaw_deg = 30 }
         zoom = { above = 4, 3d = 2 }";
     let named: Vec<_> = commands(examples)

@@ -33,7 +33,7 @@ fn the_help_does_the_entry_that_is_found() {
         .press(ESC);
     stage.press("?\u{1b}");
     assert_eq!(stage.lab.on_top().mode(), Mode::Lab);
-    for key in "?leave".chars() {
+    for key in "?quit".chars() {
         stage.key(Key::Char(key));
     }
     assert_eq!(stage.key(Key::Enter), Some(Request::Quit));

@@ -549,6 +549,7 @@ fn extent_of_the_path(picture: &str) -> (f64, f64) {
     let at: Vec<(usize, usize)> = picture
         .lines()
         .enumerate()
+        .filter(|(_, line)| line.starts_with('│')) // not the timeline
         .flat_map(|(y, line)| {
             line.chars()
                 .enumerate()

@@ -210,10 +210,13 @@ impl Terminal {
     pub fn values(&self, label: &str) -> Vec<String> {
         let screen = self.screen();
         let cells = screen.split(['│', '\n']);
+        // The strips of the traces are headed by a name and a range.
+        let is_headed = |cell: &&str| cell.contains(" .. ");
         let value = |cell: &str| {
             let mut words = cell.trim_start_matches(['►', ' ']).split_whitespace();
             (words.next()? == label).then(|| words.next().unwrap_or_default().to_owned())
         };
+        let cells = cells.filter(|cell| !is_headed(cell));
         cells.filter_map(value).collect()
     }
 

@@ -103,10 +103,11 @@ fn clock(reading: &Reading, time_step_s: f64, width: usize) -> String {
 pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     let mut remarks = remarks(&lab.player().reading().readouts.health, None);
-    if let Some(offer) = lab.player().offer() {
+    let player = lab.player();
+    if let (Some(long), Some(short)) = (player.offer(), player.offer_in_short()) {
         let offer = Remark {
-            long: offer.clone(),
-            short: offer,
+            long,
+            short,
             warns: false,
         };
         remarks.insert(BEFORE_OFFER.min(remarks.len()), offer);

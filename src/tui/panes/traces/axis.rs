@@ -51,7 +51,7 @@ fn round_times(strip: &Strip, width: usize, most: usize) -> Option<Vec<Placed>> 
         if at < free_from {
             return None;
         }
-        free_from = at + length + APART;
+        free_from = at + length + if index == 0 { 1 } else { APART };
         placed.push((at, label + unit));
     }
     Some(placed)
@@ -121,7 +121,7 @@ mod tests {
     fn times_are_round_and_stand_under_their_place() {
         let of = |begin_s, window_s, width| line(&Strip::new(begin_s, window_s, 2 * width), width);
         assert_eq!(of(0.0, 230.0, 25), "0 s 50   100   150  200");
-        assert_eq!(of(0.0, 230.0, 12), "0 s     200");
+        assert_eq!(of(0.0, 230.0, 12), "0 s 100  200");
         assert_eq!(of(12.0, 0.5, 30), "12.0 s   12.2         12.4");
         assert_eq!(of(0.0, 230.0, 4), "0 s");
         assert_eq!(of(0.0, 230.0, 1), "");
