@@ -88,7 +88,7 @@ impl Lab {
             thread::sleep(Duration::from_millis(137));
             let (from, begin) = (self.sent(), Instant::now());
             self.press("?");
-            self.wait_for("closes", from);
+            self.wait_for("search", from);
             slowest = slowest.max(begin.elapsed());
             self.press("?");
         }
