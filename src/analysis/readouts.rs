@@ -125,6 +125,18 @@ impl Readouts {
         }
     }
 
+    /// The period of the tilt's swings as the steps show them, s: measured, or before that predicted where the time step
+    /// shows the nutation as it is; `None` where there are no swings.
+    pub fn swing_s(&self) -> Option<f64> {
+        let measured = self.nutation.filter(Measured::is_settled);
+        let predicted = || {
+            let is_seen = self.nutation_is_resolved() != Some(false);
+            self.theory_about_z()?.nutation_period_s.filter(|_| is_seen)
+        };
+        let swing_s = measured.map(|measured| measured.value).or_else(predicted);
+        swing_s.filter(|swing_s| *swing_s > 0.0 && swing_s.is_finite())
+    }
+
     /// By how much the body turns in a time step, or the axle about L where that is more, rad.
     fn turn_rad(&self) -> f64 {
         let turn = self.health.turns_per_step * 2.0 * PI;

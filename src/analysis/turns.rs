@@ -14,6 +14,22 @@ pub struct Measured {
     pub nutations: u64,
 }
 
+impl Measured {
+    /// A value measured without whole nutations is settled once its relative uncertainty is at most this, one measured with
+    /// them once the uncertainty is at most half of the value. (An axle that passes through the vertical has nutations but no well-defined azimuth.)
+    const SETTLED: f64 = 0.05;
+
+    /// Whether the uncertainty is small enough for the value to be shown and gone by.
+    pub fn is_settled(&self) -> bool {
+        let within = if self.nutations > 0 {
+            0.5
+        } else {
+            Self::SETTLED
+        };
+        self.uncertainty <= within * self.value.abs()
+    }
+}
+
 /// A swing of the axle's height smaller than this is rounding, not nutation.
 pub(super) const ROUNDING: f64 = 1e-9;
 

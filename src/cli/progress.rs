@@ -5,13 +5,16 @@ use crate::export::Destination;
 use crate::export::destination::DestinationError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use signal_hook::consts::{SIGHUP, TERM_SIGNALS};
+use signal_hook::flag;
+use signal_hook::iterator::Signals;
 use std::io::{self, IsTerminal};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use std::time::{Duration, Instant};
 
-/// What a signal to end does: the first one raises a flag, a second one ends the process on the spot, should it be stuck.
+/// What a signal to end does: the first one raises a flag, a later one ends the process on the spot, should it be stuck.
 #[derive(Clone, Debug)]
 pub(super) struct Interruption {
     has_come: Arc<AtomicBool>,
@@ -29,6 +32,37 @@ impl Interruption {
     pub(super) fn may_act_at_once(&self) -> bool {
         self.at_once.store(true, Ordering::SeqCst);
         self.has_come()
+    }
+}
+
+/// A signal that comes again within this time is the same one: `timeout` sends its own to the process and then to the
+/// process group. A user who has seen that nothing happens takes longer.
+const SAME: Duration = Duration::from_millis(200);
+
+impl Interruption {
+    /// Waits for `signals`: the first raises the flag, and one that comes later ends the process.
+    fn listen(&self, signals: &mut Signals) {
+        let mut first: Option<Instant> = None;
+        for _ in signals.forever() {
+            let is_second = first.is_some_and(|first| first.elapsed() > SAME);
+            if is_second || self.at_once.load(Ordering::SeqCst) {
+                signal_hook::low_level::exit(INTERRUPTED.into());
+            }
+            self.has_come.store(true, Ordering::SeqCst);
+            first.get_or_insert_with(Instant::now);
+        }
+    }
+
+    /// The same in the handlers of `signals` themselves, where every second signal ends the process.
+    fn listen_without_thread(&self, signals: &[i32]) -> io::Result<()> {
+        for &signal in signals {
+            for condition in [&self.has_come, &self.at_once] {
+                let condition = Arc::clone(condition);
+                flag::register_conditional_shutdown(signal, INTERRUPTED.into(), condition)?;
+            }
+            flag::register(signal, Arc::clone(&self.has_come))?;
+        }
+        Ok(())
     }
 }
 
@@ -52,7 +86,8 @@ pub(super) fn open(
     Ok((open()?, interruption))
 }
 
-/// Has signals raise the flag.
+/// Has signals raise the flag: on a thread of its own, which tells a signal that is sent twice at once from a second one, or
+/// without it where the system gives no thread.
 ///
 /// A write past the limit on a file's size (`ulimit -f`) fails like one to a full disk: its signal, left to itself,
 /// would end the process with the temporary file still there.
@@ -62,18 +97,17 @@ fn interruption() -> io::Result<Interruption> {
         at_once: Arc::default(),
     };
     let hangup = (!hangup_is_ignored()).then_some(SIGHUP);
-    for signal in TERM_SIGNALS.iter().copied().chain(hangup) {
-        for condition in [&interruption.has_come, &interruption.at_once] {
-            signal_hook::flag::register_conditional_shutdown(
-                signal,
-                INTERRUPTED.into(),
-                Arc::clone(condition),
-            )?;
-        }
-        signal_hook::flag::register(signal, Arc::clone(&interruption.has_come))?;
+    let ends: Vec<_> = TERM_SIGNALS.iter().copied().chain(hangup).collect();
+    let mut signals = Signals::new(&ends)?;
+    let handle = signals.handle();
+    let heard = interruption.clone();
+    let listener = thread::Builder::new().name("signals".to_owned());
+    if listener.spawn(move || heard.listen(&mut signals)).is_err() {
+        handle.close();
+        interruption.listen_without_thread(&ends)?;
     }
     #[cfg(unix)]
-    signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
+    flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
     Ok(interruption)
 }
 

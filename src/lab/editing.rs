@@ -4,6 +4,7 @@ use super::Lab;
 use super::carry_out::{Answer, Done, UnderWay};
 use super::view::Pane;
 use super::work::{Turned, Way};
+use crate::run::Simulation;
 use crate::run::pushes::acts_s;
 use crate::scenario::Scenario;
 use crate::scenario::keys::Effect;
@@ -209,6 +210,11 @@ impl Lab {
     /// Brings up to date what depends on the run's scenario. To be called after every change of it.
     pub(super) fn scenario_has_changed(&mut self) {
         self.player.forget_advice();
+        // The cursor stays at its time, which may be another step now.
+        if let (Some(_), Some(cursor)) = (self.view.cursor, self.player.cursor()) {
+            let step = Simulation::step_at(self.player.run().scenario(), cursor.time_s);
+            self.view.cursor = Some(step);
+        }
         self.work.compare_with_file(self.player.run().scenario());
         self.list_parameters();
     }

@@ -40,6 +40,9 @@ struct KeptPlace {
     speed: Option<f64>,
     shows_exact: bool,
     window_s: f64,
+    /// The time that the strip of the fast motion shows; `None` where the motion or `[view]` of the scenario tells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    detail_s: Option<f64>,
     /// The id of the pane in focus.
     focus: String,
     filled: bool,
@@ -153,6 +156,7 @@ impl Lab {
             speed,
             shows_exact: self.player.run().overlay().is_some(),
             window_s: self.view.window_s,
+            detail_s: self.view.detail_s,
             focus: self.view.focus.id().to_owned(),
             filled: self.view.filled,
             exporting: self.files.exported_to().map(|path| Shown(path).to_string()),
@@ -256,6 +260,8 @@ impl Lab {
         if place.window_s.is_finite() && place.window_s >= 2.0 * scenario.motion.time_step_s {
             view.window_s = place.window_s;
         }
+        let is_time = |time_s: &f64| time_s.is_finite() && *time_s > 0.0;
+        view.detail_s = place.detail_s.filter(is_time).or(view.detail_s);
         let mut lab = Self::new(&present.name.clone(), scenario, view, false);
         if let Some(folder) = confined {
             lab.files.confine(folder.clone());

@@ -12,9 +12,11 @@
 
 pub mod action;
 mod advised;
+mod answering;
 pub mod browser;
 mod carry_out;
 pub mod command;
+mod commands_of;
 mod dialog;
 mod editing;
 pub mod editor;

@@ -1,8 +1,13 @@
 //! Opening a preset or a file while the lab is on the screen.
 
+use super::Lab;
+use super::carry_out::{Answer, Done};
+use super::command::Command;
+use super::preview::Preview;
 use crate::export::Destination;
 use crate::scenario::{Document, Problem, Problems, presets};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Reads the preset or the file called `name`. A FIFO or a device is refused: reading it may wait for any length of time,
 /// which only the command line can do.
@@ -15,4 +20,56 @@ pub(super) fn read(name: &str) -> Result<Document, Problems> {
         return Err(Problems::one(name, Problem::at("", rule)));
     }
     Document::open(name)
+}
+
+impl Lab {
+    /// Opens the entry that is selected in the browser, and plays its run.
+    pub(super) fn open_chosen(&mut self) {
+        let Some(entry) = self.on_top.browser().choice().cloned() else {
+            return self.say("nothing is selected: Esc clears the filter");
+        };
+        let path = Path::new(&entry.name);
+        if !entry.is_file || Destination::may_wait(path) || self.files.admit(path).is_err() {
+            let answer = self.carry_out(&Command::Open(entry.name));
+            return self.play_opened(answer);
+        }
+        self.on_top.choose();
+        self.open_what_was_read();
+        if self.on_top.browser().is_loading() {
+            self.say("reading it: it opens when it has been read, Esc stays here");
+        }
+    }
+
+    /// Opens the file that was chosen in the browser, once it has been read in the background.
+    pub(super) fn open_what_was_read(&mut self) {
+        let Some((name, preview)) = self.on_top.take_chosen() else {
+            return;
+        };
+        let Preview::Known(known) = preview else {
+            // There is no thread to read it.
+            let answer = self.carry_out(&Command::Open(name));
+            return self.play_opened(answer);
+        };
+        let answer = match known.as_ref() {
+            Ok(scenario) => {
+                self.values.forget_nudge();
+                self.open(&name, Arc::new(scenario.clone()));
+                self.view.keep_focus();
+                self.read_now();
+                Ok(Done::SILENT)
+            }
+            Err(reason) => Err(reason.lines().next().unwrap_or_default().into()),
+        };
+        self.play_opened(answer);
+    }
+
+    /// Closes the browser and plays what has been opened, or says why nothing was.
+    fn play_opened(&mut self, answer: Answer) {
+        self.changed = true;
+        if answer.is_ok() {
+            self.on_top.close_browser();
+            self.carry_out_all(&[Command::Run]);
+        }
+        self.tell_answer(answer);
+    }
 }

@@ -23,6 +23,13 @@ impl Lab {
         Ok(Done::saying(format!("the traces show {window_s} s")))
     }
 
+    /// The command that shows the next longer or shorter time; none at the end of the ladder.
+    pub(super) fn other_window(&self, wider: bool) -> Option<Vec<Command>> {
+        let time_step_s = self.player.run().simulation().motion().time_step_s;
+        let window_s = self.view.zoomed(wider, time_step_s)?;
+        Some(vec![Command::Window(window_s)])
+    }
+
     pub(super) fn set_detail(&mut self, detail_s: f64) -> Answer {
         let least_s = 2.0 * self.player.motion().time_step_s;
         if detail_s < least_s {

@@ -1,8 +1,7 @@
 //! How old the parts of a path are, in the measures of the motion itself: the last swings, the last turn, and what came
 //! before.
 
-use crate::analysis::Measured;
-use crate::analysis::Readouts;
+use crate::analysis::{Measured, Readouts};
 use std::f64::consts::TAU;
 
 /// So many swings are recent.
@@ -14,8 +13,6 @@ const LEAST_SWINGS: f64 = 2.0;
 const RECENT_TURN: f64 = 1.0 / 3.0;
 /// Where no turn is known, the last turn is so many times as long as what is recent.
 const TURN: f64 = 6.0;
-/// A turn or a swing is measured well enough to be gone by where its uncertainty is at most this part of it.
-const SETTLED: f64 = 0.5;
 /// Ages grow by this factor's exponential, or not at all: what is measured changes a little all the time, and the
 /// picture shall not.
 const GRADE: f64 = 0.1;
@@ -57,15 +54,11 @@ impl Ages {
 
     /// The ages of the motion that `readouts` tell of: by what was measured, or else by what theory predicts.
     pub fn of(readouts: &Readouts) -> Self {
-        let theory = readouts.theory_about_z();
-        // A run whose time step is too long for its nutation is seen to swing at another period.
-        let predicted = theory
-            .and_then(|theory| theory.nutation_period_s)
-            .filter(|_| readouts.nutation_is_resolved() != Some(false));
-        let swing_s = settled(readouts.nutation).or(predicted);
-        let rate = settled(readouts.precession).or(theory.and_then(|theory| theory.precession));
+        let measured = readouts.precession.filter(Measured::is_settled);
+        let predicted = || readouts.theory_about_z()?.precession;
+        let rate = measured.map(|measured| measured.value).or_else(predicted);
         let turn_s = rate.map(|rate| TAU / rate.abs());
-        Self::new(swing_s, turn_s)
+        Self::new(readouts.swing_s(), turn_s)
     }
 
     /// The ages where a swing and a turn take so long, s.
@@ -116,11 +109,6 @@ impl Ages {
         let notch_s = NOTCH * self.recent_s;
         ((now_s - length_s) / notch_s).floor() * notch_s
     }
-}
-
-fn settled(measured: Option<Measured>) -> Option<f64> {
-    let is_settled = |measured: &Measured| measured.uncertainty <= SETTLED * measured.value.abs();
-    measured.filter(is_settled).map(|measured| measured.value)
 }
 
 fn graded(length_s: f64) -> f64 {

@@ -67,7 +67,7 @@ impl Wanted {
 impl Detail {
     /// The window for `run` with these `readouts`; `before` is the last one.
     pub fn new(run: &LiveRun, readouts: &Readouts, wanted: &Wanted, before: Option<&Self>) -> Self {
-        let (curve, swing_s) = match swing_s(readouts) {
+        let (curve, swing_s) = match readouts.swing_s() {
             None => of_x(run.recording(), wanted.long_s),
             some => (Curve::Tilt, some),
         };
@@ -96,20 +96,6 @@ impl Detail {
             window_s,
         }
     }
-}
-
-/// The period of the tilt's swings as the steps show them, s: measured, or before that predicted; `None` where there are
-/// none.
-fn swing_s(readouts: &Readouts) -> Option<f64> {
-    let measured = readouts.nutation.map(|measured| measured.value);
-    let predicted = || {
-        let theory = readouts.theory_about_z()?;
-        let is_seen = readouts.nutation_is_resolved() == Some(true);
-        theory.nutation_period_s.filter(|_| is_seen)
-    };
-    measured
-        .or_else(predicted)
-        .filter(|swing_s| *swing_s > 0.0 && swing_s.is_finite())
 }
 
 /// What is shown where the tilt does not swing: x with its period, s, where that is short beside `long_s` (s).
@@ -176,7 +162,7 @@ mod tests {
         ] {
             let (run, readouts) = at(preset, steps);
             let detail = Detail::new(&run, &readouts, &Wanted::following(230.0), None);
-            let Some(swing_s) = swing_s(&readouts) else {
+            let Some(swing_s) = readouts.swing_s() else {
                 panic!("{preset} has no swings");
             };
             let swings = detail.window_s / swing_s;

@@ -179,14 +179,18 @@ impl LiveRun {
         }
     }
 
-    /// The run at the last stored state that is at `step` or before.
-    pub(super) fn stored_before(&self, step: u64) -> &Simulation {
+    /// A copy of the run at the last stored state that is at `step` or before, to step through what it has been through.
+    pub(super) fn again_before(&self, step: u64) -> Simulation {
         let stored = &self.checkpoints.before(step).simulation;
         let here = self.simulation.step_number();
         if (stored.step_number()..=step).contains(&here) && !self.simulation.has_ended() {
-            return &self.simulation;
+            return self.simulation.clone();
         }
-        stored
+        let mut again = stored.clone();
+        if !Arc::ptr_eq(again.scenario(), self.scenario()) {
+            again.go_on_in(Arc::clone(self.scenario()));
+        }
+        again
     }
 
     /// Puts the run at the latest stored state that is not later than `latest`: a checkpoint, or the present one, which is
@@ -357,8 +361,7 @@ impl LiveRun {
         if let Some((_, workings)) = known.filter(|(step, _)| *step == before + 1) {
             return Some(Arc::clone(workings));
         }
-        let mut again = self.checkpoints.before(before).simulation.clone();
-        again.go_on_in(Arc::clone(now.scenario()));
+        let mut again = self.again_before(before);
         again.step_to(before).ok()?;
         again.keep_workings(true);
         let workings = again.step().ok()?.workings()?;

@@ -2,7 +2,6 @@
 
 use super::live::LiveRun;
 use crate::run::{Sample, Simulation};
-use std::sync::Arc;
 
 /// The most time steps of a body of one point that are computed for an answer; a body of n points has 1/n of that.
 const MOST_STEPS: u64 = 4_000_000;
@@ -85,14 +84,9 @@ struct Steps {
 impl Steps {
     /// From the last stored state at `step` or before.
     fn before(run: &LiveRun, step: u64) -> Result<Self, Missing> {
-        let mut simulation = run.stored_before(step).clone();
-        let scenario = run.scenario();
-        if !Arc::ptr_eq(simulation.scenario(), scenario) {
-            simulation.go_on_in(Arc::clone(scenario));
-        }
-        let points = scenario.body.mechanics.points().len() as u64;
+        let points = run.scenario().body.mechanics.points().len() as u64;
         Ok(Self {
-            simulation,
+            simulation: run.again_before(step),
             left: MOST_STEPS / points.max(1),
             change: 0.0,
         })
@@ -127,6 +121,7 @@ impl Steps {
 mod tests {
     use super::*;
     use crate::scenario::Document;
+    use std::sync::Arc;
 
     fn played(preset: &str, steps: u64) -> LiveRun {
         let document = Document::open(preset).unwrap();

@@ -11,9 +11,6 @@ use std::time::Duration;
 /// Time between two updates while the run goes on.
 pub const EVERY: Duration = Duration::from_millis(250);
 
-/// A precession measured without whole nutations is shown once its relative uncertainty is at most this.
-const SETTLED: f64 = 0.05;
-
 /// The numbers shown at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
@@ -39,16 +36,9 @@ impl Reading {
     pub fn precession_deg_per_s(&self) -> Option<f64> {
         self.readouts
             .precession
-            .filter(is_settled)
+            .filter(Measured::is_settled)
             .map(|measured| measured.value.to_degrees())
     }
-}
-
-/// Whether the uncertainty is small enough to show the value: at most half of it where whole nutations were measured, else
-/// at most [`SETTLED`] of it. (An axle that passes through the vertical has nutations but no well-defined azimuth.)
-fn is_settled(measured: &Measured) -> bool {
-    let within = if measured.nutations > 0 { 0.5 } else { SETTLED };
-    measured.uncertainty <= within * measured.value.abs()
 }
 
 fn pace_in_words(pace: &Pace) -> String {

@@ -60,6 +60,8 @@ static PANICS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 /// How long a terminal that accepts no bytes may delay the end of the process.
 const PATIENCE: Duration = Duration::from_millis(500);
+/// How long the signal that resumes the process may take to be heard of.
+const HEARD_WITHIN: Duration = Duration::from_millis(200);
 /// The most events taken at once; a held key on a slow line may send many.
 const MOST_EVENTS: usize = 256;
 
@@ -168,8 +170,14 @@ impl Screen {
     pub fn suspend(&mut self) -> io::Result<()> {
         at_exit::run_hooks(Release::Suspend);
         give_back();
-        signal_hook::low_level::emulate_default_handler(SIGTSTP)?;
         RESUMED.store(false, Ordering::Relaxed);
+        signal_hook::low_level::emulate_default_handler(SIGTSTP)?;
+        // The thread that handles signals may hear of SIGCONT only later: the terminal would be taken over twice.
+        let begin = Instant::now();
+        while !RESUMED.swap(false, Ordering::Relaxed) && begin.elapsed() < HEARD_WITHIN {
+            listen_without_thread();
+            thread::sleep(Duration::from_millis(1));
+        }
         self.resume()
     }
 

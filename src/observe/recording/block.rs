@@ -1,6 +1,7 @@
 //! What a recording stores: the curves, their values at one moment, and their extremes over many.
 
 use crate::physics::State;
+use crate::run::Sample;
 use nalgebra::Vector3;
 
 /// The curves that are recorded.
@@ -28,6 +29,16 @@ impl Curve {
     /// The unit of its extents, as it is written after numbers.
     pub fn unit(self) -> &'static str {
         self.named().1
+    }
+
+    /// Its value at `sample`, in its unit.
+    pub fn at(self, sample: &Sample) -> f64 {
+        match self {
+            Self::X => sample.position.x,
+            Self::Y => sample.position.y,
+            Self::Z => sample.position.z,
+            Self::Tilt => sample.tilt_deg,
+        }
     }
 
     /// Name and unit.

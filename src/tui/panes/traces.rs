@@ -5,57 +5,40 @@ mod axis;
 mod curve;
 mod pointing;
 mod pushes;
+mod range;
+mod title;
+mod uprights;
 
 use super::{PaneRow, Width, frame, write};
+use crate::lab::Lab;
 use crate::lab::action::{Action, Direction};
 use crate::lab::view::{Pane, View};
 use crate::observe::detail::Detail;
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::marks::Marks;
-use crate::observe::overlay::Overlay;
-use crate::observe::recording::{Curve, Extent, Recording};
+use crate::observe::recording::{Curve, Recording};
 use crate::observe::scale::Scale;
 use crate::observe::strip::Strip;
 use crate::run::Sample;
-use crate::text::number::{decimal, fixed};
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
 use curve::{Stroke, draw};
-use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::style::Style;
 use ratatui::widgets::Widget;
 
 /// Fewest rows of a strip: its label and one row of dots.
 const STRIP: u16 = 2;
 /// From this width on the values stand beside the strips, and not on a line above each.
 const BESIDE_FROM: u16 = 48;
+/// A strip that shows less than this part of the time of the others shows the fast motion alone.
+const ALL: f64 = 0.999;
 /// What marks the strip that shows less time than the others.
 const ZOOM: &str = "zoom";
 /// Columns of a strip's name beside it.
 const NAME: u16 = 5;
-/// What marks the time of an edit, and the time where the run stands.
-const EDIT: char = ':';
-const PEN: char = '│';
-/// What marks the cursor.
-const CURSOR: char = '┃';
-/// Digits after the point of a value at the cursor.
-const DECIMALS: usize = 6;
-/// Least range of z, of the distance between pivot and traced point: a swing below it is small, and shall look small.
-const Z_LEAST: f64 = 0.05;
-/// Least range of the tilt, degrees: below it there is rounding to see, and no end to the digits of its ends.
-const TILT_LEAST: f64 = 0.02;
-/// Least reach of x and y, of the same distance.
-const PLANE_LEAST: f64 = 1e-4;
-/// What the title says of bands where there is room.
-const BANDS: &str = "bands: lowest, mean (dotted) and highest of fast swings";
-/// What the title says of the exact motion, the run before and the pinned run: at length, in short and shorter.
-const EXACT: [&str; 3] = ["dashed: exact motion", "- - exact", "--exact"];
-const OTHER: [&str; 3] = ["dotted: other run", "··· other run", "···other"];
-const PINNED: [&str; 3] = ["long and short: pinned", "-- - pinned", "-- -pinned"];
 
 /// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
@@ -114,6 +97,20 @@ struct Group {
     strip: Strip,
 }
 
+impl<'a> Traces<'a> {
+    /// The traces of the run in `lab`.
+    pub fn of(lab: &'a Lab) -> Self {
+        Self {
+            run: lab.player().run(),
+            ghost: lab.player().ghost(),
+            pinned: lab.player().pinned(),
+            view: lab.view(),
+            detail: lab.player().detail(),
+            cursor: lab.player().cursor(),
+        }
+    }
+}
+
 impl Widget for Traces<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
@@ -141,45 +138,6 @@ impl Widget for Traces<'_> {
 }
 
 impl Traces<'_> {
-    /// What is drawn: the point, and the runs beside it where there are any, as far as there is room.
-    fn title(&self, room: usize) -> String {
-        if let Some(cursor) = self.cursor {
-            let (step, time_s) = (cursor.step, decimal(cursor.time_s));
-            return format!("step {step} at {time_s} s");
-        }
-        let named = self.run.scenario().file.trace.as_deref();
-        let point = named.unwrap_or("axle top");
-        let beside = [
-            (self.run.overlay().is_some(), EXACT),
-            (self.ghost.is_some(), OTHER),
-            (self.pinned.is_some(), PINNED),
-        ];
-        let legend = |length: usize, between: &str| {
-            let shown = beside.iter().filter(|(is_shown, _)| *is_shown);
-            let words: Vec<_> = shown.map(|(_, legends)| legends[length]).collect();
-            words.join(between)
-        };
-        let long = [ROW.title.to_owned(), legend(0, ", ")];
-        let long = long.into_iter().filter(|part| !part.is_empty());
-        let long = long.collect::<Vec<_>>().join(", ");
-        let mut titles = vec![format!("{point} {long}")];
-        let is_divided = self.detail.window_s < 0.999 * self.view.window_s;
-        let has_exact = self.run.overlay().is_some();
-        if self.ghost.is_none() && self.pinned.is_none() && (is_divided || has_exact) {
-            titles.insert(0, format!("{point} {long}; {BANDS}"));
-        }
-        let shortest = match legend(2, " ") {
-            none if none.is_empty() => ROW.title.to_owned(),
-            shortest => {
-                titles.push(format!("{point} {}", legend(1, " ")));
-                titles.push(format!("{point} {shortest}"));
-                shortest
-            }
-        };
-        let fits = |title: &String| title.chars().count() <= room;
-        titles.into_iter().find(fits).unwrap_or(shortest)
-    }
-
     /// Columns for the values beside the strips.
     fn beside(&self, inside: Rect) -> u16 {
         if inside.width < BESIDE_FROM {
@@ -248,7 +206,7 @@ impl Traces<'_> {
 
     /// Whether `strip` shows less time than the others: the fast motion.
     fn is_detail(&self, strip: &Strip) -> bool {
-        strip.window_s < 0.999 * self.view.window_s
+        strip.window_s < ALL * self.view.window_s
     }
 
     fn group(&self, group: &Group, marks: &Marks, buf: &mut Buffer) {
@@ -379,147 +337,6 @@ impl Traces<'_> {
             Ink::Strong(role(curve)),
         );
         dots.render(&self.view.theme, buf);
-    }
-
-    /// The cursor: a line at its time, and the value there where it does not stand above the strip.
-    fn cursor(&self, curve: Curve, group: &Group, area: Rect, buf: &mut Buffer) {
-        let Some((column, value)) = self.at_cursor(curve, &group.strip) else {
-            return;
-        };
-        let style = self.view.theme.style(Role::Focus);
-        let column = (column / self.view.marker.dots().0) as u16;
-        self.upright(column, CURSOR, style, area, buf);
-        if group.beside > 0 {
-            let width = value.len() as u16;
-            let right = column + 2;
-            let at = if right + width <= area.width {
-                right
-            } else {
-                column.saturating_sub(width + 1)
-            };
-            write(area, (at, 0), &value, style, buf);
-        }
-    }
-
-    /// The column (of dots) of the cursor on `strip`, and what `curve` has there.
-    fn at_cursor(&self, curve: Curve, strip: &Strip) -> Option<(usize, String)> {
-        let cursor = self.cursor?;
-        let column = strip.column(cursor.time_s)?;
-        let value = fixed(value(curve, &cursor.position, cursor.tilt_deg), DECIMALS);
-        Some((column, format!("{value} {}", curve.unit())))
-    }
-
-    /// `scale`, magnified as it is looked at.
-    fn magnified(&self, curve: Curve, scale: Scale) -> Scale {
-        if self.view.magnified <= 1.0 {
-            return scale;
-        }
-        let about = match self.cursor {
-            Some(cursor) => value(curve, &cursor.position, cursor.tilt_deg),
-            None => self.run.now().value(curve),
-        };
-        scale.zoomed(self.view.magnified, about)
-    }
-
-    /// The range of values a strip shows: x and y share one about 0, z and tilt have their own. It is that of the whole
-    /// run, or of the time of `strip` alone.
-    fn scale(&self, curve: Curve, strip: Option<&Strip>) -> Scale {
-        let extent = |curve| self.extent(curve, strip);
-        let arm_m = self.run.scenario().arm_m();
-        match curve {
-            Curve::X | Curve::Y => {
-                let both = extent(Curve::X).and(extent(Curve::Y));
-                Scale::about_zero(both.max.max(-both.min).max(PLANE_LEAST * arm_m))
-            }
-            Curve::Z => Scale::around(extent(curve), Z_LEAST * arm_m),
-            Curve::Tilt => Scale::around(extent(curve), TILT_LEAST),
-        }
-    }
-
-    /// Everything the strip of `curve` has to show: the run, and where they are shown the exact motion, the run before
-    /// and the pinned one: the whole of it at once, so that the picture stays while the run comes after it.
-    fn extent(&self, curve: Curve, strip: Option<&Strip>) -> Extent {
-        let exact = self.run.overlay().map(Overlay::recording);
-        let before = self.ghost.map(Ghost::recording);
-        let pinned = self.pinned.map(Ghost::recording);
-        let recordings = [Some(self.run.recording()), exact, before, pinned];
-        let extent = |recording: &Recording| match strip {
-            Some(strip) => recording
-                .between(strip.begin_s, strip.end_s())
-                .map(|block| block.extent(curve))
-                .reduce(Extent::and),
-            None => recording.whole().map(|block| block.extent(curve)),
-        };
-        let extents = recordings.into_iter().flatten().filter_map(extent);
-        extents.reduce(Extent::and).unwrap_or(Extent::of(0.0))
-    }
-
-    /// The pen: a line where the run stands.
-    fn pen(&self, strip: &Strip, area: Rect, buf: &mut Buffer) {
-        let Some(column) = strip.column(self.run.now().time_s) else {
-            return;
-        };
-        let column = (column / self.view.marker.dots().0 + 1) as u16;
-        self.upright(column, PEN, self.view.theme.style(Role::Quiet), area, buf);
-    }
-
-    /// A dotted line where an edit was made.
-    fn edits(&self, marks: &Marks, strip: &Strip, area: Rect, buf: &mut Buffer) {
-        let across = self.view.marker.dots().0;
-        let places = marks.edits.iter().filter_map(|&at_s| strip.column(at_s));
-        let style = self.view.theme.style(Role::Quiet);
-        for column in places {
-            self.upright((column / across) as u16, EDIT, style, area, buf);
-        }
-    }
-
-    /// A line from top to bottom behind everything else.
-    fn upright(&self, column: u16, sign: char, style: Style, area: Rect, buf: &mut Buffer) {
-        if column >= area.width {
-            return;
-        }
-        for y in area.top()..area.bottom() {
-            let cell = buf.cell_mut((area.x + column, y));
-            if let Some(cell) = cell.filter(|cell| cell.symbol() == " ") {
-                cell.set_char(sign).set_style(style);
-            }
-        }
-    }
-
-    /// Where pushes act: on the border below the strips, with the word beside it where there is room.
-    fn pushes(&self, marks: &Marks, strip: &Strip, border: Rect, buf: &mut Buffer) {
-        let across = self.view.marker.dots().0;
-        let mut pushed = vec![false; border.width as usize];
-        let shown =
-            |&(begin_s, end_s): &(f64, f64)| strip.shown(begin_s, end_s.min(self.reach_s()));
-        for column in marks.pushes.iter().flat_map(shown) {
-            if let Some(cell) = pushed.get_mut(column / across) {
-                *cell = true;
-            }
-        }
-        let style = self.view.theme.style(Role::Push);
-        for (x, _) in (0..).zip(&pushed).filter(|(_, pushed)| **pushed) {
-            write(border, (x, 0), pushes::BAR, style, buf);
-        }
-        for x in pushes::words(&pushed) {
-            write(border, (x as u16, 0), pushes::WORD, style, buf);
-        }
-    }
-
-    /// The time up to which there is something to see, s.
-    fn reach_s(&self) -> f64 {
-        let before = self.ghost.map_or(0.0, Ghost::end_s);
-        self.run.now().time_s.max(before)
-    }
-}
-
-/// What `curve` has where the traced point is at `position` (world frame, m) and the axle at `tilt_deg` (degrees).
-fn value(curve: Curve, position: &Vector3<f64>, tilt_deg: f64) -> f64 {
-    match curve {
-        Curve::X => position.x,
-        Curve::Y => position.y,
-        Curve::Z => position.z,
-        Curve::Tilt => tilt_deg,
     }
 }
 

@@ -1,22 +1,9 @@
 //! Which time a cell of the traces shows.
 
 use super::Traces;
-use crate::lab::Lab;
 use ratatui::layout::{Margin, Position, Rect};
 
-impl<'a> Traces<'a> {
-    /// The traces of the run in `lab`.
-    pub fn of(lab: &'a Lab) -> Self {
-        Self {
-            run: lab.player().run(),
-            ghost: lab.player().ghost(),
-            pinned: lab.player().pinned(),
-            view: lab.view(),
-            detail: lab.player().detail(),
-            cursor: lab.player().cursor(),
-        }
-    }
-
+impl Traces<'_> {
     /// The time that the cell `at` of the screen shows where the traces are drawn on `area`, s; `None` beside the strips.
     pub fn time_s(&self, area: Rect, at: Position) -> Option<f64> {
         let inside = area.inner(Margin::new(1, 1));

@@ -1,12 +1,48 @@
 //! Where pushes act on a run: a bar under the time axis, with a word at it.
 
+use super::{Traces, write};
+use crate::observe::ghost::Ghost;
+use crate::observe::marks::Marks;
+use crate::observe::strip::Strip;
+use crate::tui::theme::Role;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
 /// What marks time with a push.
-pub const BAR: &str = "═";
+const BAR: &str = "═";
 /// The word at it.
-pub const WORD: &str = "push";
+const WORD: &str = "push";
+
+impl Traces<'_> {
+    /// Where pushes act: on the border below the strips, with the word beside it where there is room.
+    pub(super) fn pushes(&self, marks: &Marks, strip: &Strip, border: Rect, buf: &mut Buffer) {
+        let across = self.view.marker.dots().0;
+        let mut pushed = vec![false; border.width as usize];
+        let shown =
+            |&(begin_s, end_s): &(f64, f64)| strip.shown(begin_s, end_s.min(self.reach_s()));
+        for column in marks.pushes.iter().flat_map(shown) {
+            if let Some(cell) = pushed.get_mut(column / across) {
+                *cell = true;
+            }
+        }
+        let style = self.view.theme.style(Role::Push);
+        for (x, _) in (0..).zip(&pushed).filter(|(_, pushed)| **pushed) {
+            write(border, (x, 0), BAR, style, buf);
+        }
+        for x in words(&pushed) {
+            write(border, (x as u16, 0), WORD, style, buf);
+        }
+    }
+
+    /// The time up to which there is something to see, s.
+    fn reach_s(&self) -> f64 {
+        let before = self.ghost.map_or(0.0, Ghost::end_s);
+        self.run.now().time_s.max(before)
+    }
+}
 
 /// The columns at which [`WORD`] stands for the stretches of `pushed` columns: in the stretch, or beside it.
-pub fn words(pushed: &[bool]) -> Vec<usize> {
+fn words(pushed: &[bool]) -> Vec<usize> {
     let mut places: Vec<usize> = Vec::new();
     let mut begin = 0;
     for stretch in pushed.chunk_by(|a, b| a == b) {

@@ -1,0 +1,83 @@
+//! The dialogs: what the one for a file says at first, and the command that an answered dialog asks for.
+
+use super::Lab;
+use super::action::Action;
+use super::carry_out::{Answer, Done};
+use super::command::{Command, Place};
+use super::dialog::{Dialog, Question};
+
+impl Lab {
+    /// The dialog that asks for the file of an export, a run file or a scenario of the present state.
+    ///
+    /// # Errors
+    /// Why there is nothing to write now.
+    pub(super) fn dialog_for_a_file(&self, action: Action) -> Result<Dialog, String> {
+        let free_name = |about, extension| self.files.free_name(self.work.name(), about, extension);
+        match action {
+            Action::Export if self.files.is_exporting() => {
+                Err("one export at a time: Esc stops the one under way".to_owned())
+            }
+            Action::Export => {
+                let scenario = self.run_up_to(None, "export")?;
+                Ok(Dialog::export(scenario, free_name("", "csv")))
+            }
+            Action::SaveRun => {
+                let step = self.run_up_to(None, "save")?.steps;
+                let later = self.work.journal().later_than(step);
+                Ok(Dialog::save_run(step, later, free_name("-run", "toml")))
+            }
+            _ => {
+                let content = self.player.present_as_text()?;
+                Ok(Dialog::save_present(
+                    content,
+                    free_name("-from-here", "toml"),
+                ))
+            }
+        }
+    }
+
+    /// Carries out the command that the open dialog asked for. If it is refused, the dialog stays and shows the reason.
+    pub(super) fn accept(&mut self) {
+        let Some(dialog) = self.on_top.take_dialog() else {
+            return;
+        };
+        let answer = self.answer_to(&dialog);
+        match answer {
+            Ok(_) => self.tell_answer(answer),
+            Err(refusal) => self.on_top.open_dialog(dialog.refused(refusal)),
+        }
+    }
+
+    fn answer_to(&mut self, dialog: &Dialog) -> Answer {
+        let text = dialog.form().text(0);
+        let path = self.files.path_of(text);
+        let force = dialog.may_replace(&path);
+        let command = match dialog.question() {
+            Question::Value => {
+                let run = self.player.run();
+                let time_step_s = self.player.motion().time_step_s;
+                self.values.value_typed(text, run.scenario(), time_step_s)?
+            }
+            Question::GoTo => {
+                let step = self.player.step_meant(text)?;
+                Some(Command::GoTo(Place::Step(step)))
+            }
+            Question::Export(scenario) => Some(Command::Export {
+                path: text.to_owned(),
+                every: dialog.every()?,
+                to_step: Some(scenario.steps),
+                force,
+            }),
+            Question::SaveRun(to_step) => Some(Command::Save {
+                path: text.to_owned(),
+                from_here: false,
+                to_step: Some(*to_step),
+                force,
+            }),
+            Question::SavePresent(content) => {
+                return self.files.save("the scenario", content, &path, force);
+            }
+        };
+        command.map_or(Ok(Done::SILENT), |command| self.carry_out(&command))
+    }
+}

@@ -1,0 +1,119 @@
+//! The body in the scene: axle, hub, spokes, rim and masses, of which some are near and some are far.
+
+use super::{PARTS, Subject};
+use crate::physics::State;
+use crate::tui::dots::Ink;
+use crate::tui::scene::{Scene, Stroke};
+use crate::tui::theme::Role;
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+
+/// Spokes, and free masses, that are drawn at most.
+const MOST_SPOKES: usize = 6;
+/// Radius of the hub, of that of the rim.
+const HUB: f64 = 0.14;
+/// A mass is near or far where it is nearer or farther than the hub by this part of the rim's radius.
+const NEAR: f64 = 0.33;
+/// Signs of masses stand no closer than this on the rim, cells.
+const CLOSEST: f64 = 2.0;
+
+impl Subject<'_> {
+    /// The axle from the pivot to its top, hub, spokes and rim, and what joins free masses to the axle.
+    pub(super) fn body(&self, scene: &mut Scene) {
+        let state = self.state;
+        let axle = state.axle();
+        scene.line(
+            &(axle * self.shape.axle.0),
+            &(axle * self.shape.axle.1),
+            Stroke::Thick,
+            Ink::Strong(Role::Text),
+        );
+        for at in &self.shape.free {
+            let foot = axle * at.z;
+            scene.line(
+                &foot,
+                &(state.orientation * at),
+                Stroke::Dotted(2),
+                Ink::Strong(Role::Text),
+            );
+        }
+        if let Some((radius, height, points)) = self.shape.rim {
+            let middle = scene.depth(&(axle * height));
+            let look = |depth: f64| match is_near(depth, middle, radius) {
+                Some(true) => (Stroke::Thick, Ink::Strong(Role::Text)),
+                None => (Stroke::Thin, Ink::Strong(Role::Text)),
+                Some(false) => (Stroke::Dotted(2), Ink::Faint(Role::Quiet)),
+            };
+            scene.ring(&circle(state, radius, height), look);
+            let hub = circle(state, HUB * radius, height);
+            scene.ring(&hub, |_| (Stroke::Thin, Ink::Strong(Role::Text)));
+            let every = points.div_ceil(MOST_SPOKES).max(1);
+            for point in (0..points).step_by(every) {
+                let at = on_circle(state, radius, height, point, points);
+                let hub = on_circle(state, HUB * radius, height, point, points);
+                // One of them is told from the others, so that the wheel is seen to turn.
+                let stroke = match point {
+                    0 => Stroke::Thin,
+                    _ => Stroke::Dotted(3),
+                };
+                scene.line(&hub, &at, stroke, Ink::Strong(Role::Text));
+            }
+        }
+    }
+
+    /// The masses, the nearest last: a larger sign is nearer.
+    pub(super) fn masses(&self, scene: &Scene) -> Vec<(&'static str, Role, (u16, u16))> {
+        let state = self.state;
+        let middle = scene.depth(&self.wheel());
+        let mut masses: Vec<Vector3<f64>> = Vec::new();
+        let mut radius = self.reach;
+        if let Some((rim, height, points)) = self.shape.rim {
+            radius = rim;
+            // From the side the rim is at least as long as twice its width.
+            let length = 4.0 * rim * scene.scale.1 / self.view.marker.dots().1 as f64;
+            if length * 2.0 >= CLOSEST * points as f64 {
+                masses
+                    .extend((0..points).map(|point| on_circle(state, rim, height, point, points)));
+            }
+        }
+        masses.extend(self.shape.free.iter().map(|at| state.orientation * at));
+        masses.retain(|at| scene.shows(at));
+        masses.sort_by(|a, b| scene.depth(b).total_cmp(&scene.depth(a)));
+        let signs = masses.iter().map(|at| {
+            let (sign, role) = match is_near(scene.depth(at), middle, radius) {
+                Some(true) => ("O", Role::Heading),
+                None => ("o", Role::Text),
+                Some(false) => ("·", Role::Quiet),
+            };
+            (sign, role, scene.cell(at))
+        });
+        signs.collect()
+    }
+
+    /// The middle of the wheel, or the axle's top where there is none.
+    pub(super) fn wheel(&self) -> Vector3<f64> {
+        let height = self
+            .shape
+            .rim
+            .map_or(self.shape.axle.1, |(_, height, _)| height);
+        self.state.axle() * height
+    }
+}
+
+/// Whether something is in front of `middle`, behind it, or beside it, by `depth`.
+fn is_near(depth: f64, middle: f64, radius: f64) -> Option<bool> {
+    let share = (depth - middle) / radius;
+    (share.abs() > NEAR).then_some(share < 0.0)
+}
+
+/// The place of `point` of `points` on a circle across the axle.
+fn on_circle(state: &State, radius: f64, height: f64, point: usize, points: usize) -> Vector3<f64> {
+    let (sin, cos) = (TAU * point as f64 / points as f64).sin_cos();
+    state.orientation * Vector3::new(radius * cos, radius * sin, height)
+}
+
+fn circle(state: &State, radius: f64, height: f64) -> Vec<Vector3<f64>> {
+    (0..PARTS)
+        .map(|part| on_circle(state, radius, height, part, PARTS))
+        .collect()
+}
