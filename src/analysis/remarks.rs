@@ -296,7 +296,7 @@ fn energy(health: &Health) -> Remark {
     let Some(drift) = health.energy_drift else {
         return Remark {
             long: format!("energy drift {NONE}: {}", no_drift(health)),
-            short: format!("energy {NONE}"),
+            short: format!("energy {NONE}: {}", short_no_drift(health.energy_unit)),
             warns: false,
         };
     };
@@ -310,6 +310,14 @@ fn no_drift(health: &Health) -> &'static str {
     match health.energy_unit {
         None => "neither weight nor kinetic energy to measure it by",
         Some(_) => "beyond the range of numbers",
+    }
+}
+
+/// Why there is no energy drift, in few letters, as a column of the lab has it.
+pub fn short_no_drift(unit: Option<EnergyUnit>) -> &'static str {
+    match unit {
+        None => "no scale",
+        Some(_) => "overflow",
     }
 }
 

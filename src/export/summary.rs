@@ -2,7 +2,7 @@
 
 use crate::analysis::theory::{Axis, Theory};
 use crate::analysis::{Measured, Readouts, remarks};
-use crate::text::number::{exponent, fixed, shortest};
+use crate::text::number::{NONE, exponent, fixed, shortest};
 use serde::Serialize;
 use std::fmt;
 use std::time::Duration;
@@ -204,7 +204,7 @@ impl fmt::Display for Summary {
             )?;
         }
         let number =
-            |name, write: fn(f64) -> String| readouts.number(name).map_or("n/a".to_owned(), write);
+            |name, write: fn(f64) -> String| readouts.number(name).map_or(NONE.to_owned(), write);
         writeln!(
             f,
             "  wall time     {} s, {} steps a second",

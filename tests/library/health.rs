@@ -2,6 +2,7 @@
 
 use crate::support::dice::Dice;
 use crate::support::scenarios::{find_scheme, parse, preset};
+use crate::support::stage::{SMALL, Stage};
 use gyrolab::analysis::health::{Advice, BELIEVED_WITHIN, Health, Picture, advise};
 use gyrolab::analysis::remarks::remarks;
 use gyrolab::analysis::{Monitor, Trial};
@@ -682,7 +683,15 @@ fn a_drift_that_cannot_be_told_is_told_why() {
         still.long,
         "energy drift n/a: neither weight nor kinetic energy to measure it by"
     );
-    assert_eq!(still.short, "energy n/a");
+    assert_eq!(still.short, "energy n/a: no scale");
     let usual = told(&[]);
     assert!(usual.long.starts_with("energy drift +") || usual.long.starts_with("energy drift -"));
+}
+
+#[test]
+fn the_lab_says_why_there_is_no_drift() {
+    let set = ["motion.gravity_m_per_s2=0", "start.momentum_Js=[0,0,0]"];
+    let mut stage = Stage::open("method-2", &set, SMALL);
+    stage.press(".").shows("E drift  no scale");
+    stage.shows("energy n/a: no scale");
 }

@@ -1,7 +1,7 @@
 //! What stands in the pane's lines, each number with as many decimals as there is room for.
 
 use super::edited::fewer_digits;
-use crate::analysis::remarks::short_unit;
+use crate::analysis::remarks::{short_no_drift, short_unit};
 use crate::observe::reading::Reading;
 use crate::physics::Body;
 use crate::scenario::{Motion, Scenario, Window};
@@ -206,8 +206,11 @@ pub(super) fn watched_rows(reading: &Reading) -> [Row; 5] {
         _ => "nutation",
     };
     let drift = readouts.health.energy_drift;
-    let drift = drift.map_or(NONE.to_owned(), |drift| signed("E drift", drift, 4));
-    let unit = short_unit(readouts.health.energy_unit);
+    let energy_unit = readouts.health.energy_unit;
+    let (drift, unit) = match drift {
+        Some(drift) => (signed("E drift", drift, 4), short_unit(energy_unit)),
+        None => (short_no_drift(energy_unit).to_owned(), ""),
+    };
     [
         number(0, "tilt", readouts.sample.tilt_deg, 3, "deg"),
         measured(0, "precession", precession, 3, "deg/s"),
