@@ -1,8 +1,10 @@
 //! What the lab costs, measured on the program itself in a pty of 80x24: bytes over the line, processor, memory, and
-//! how long until there is something to see. `cargo bench --bench workbench` prints the figures beside their budgets.
+//! how long until there is something to see. `cargo bench --bench workbench` prints the figures beside their budgets, `cargo bench --bench workbench -- presets` the
+//! bytes and the processor's share of every preset.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
+use gyrolab::scenario::presets::PRESETS;
 use portable_pty::{Child, CommandBuilder, PtySize, native_pty_system};
 use std::io::{Read, Write};
 use std::sync::{Arc, Mutex};
@@ -10,6 +12,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 const MEASURED: Duration = Duration::from_secs(8);
+/// The same for each preset on each screen.
+const MEASURED_OF_PRESET: Duration = Duration::from_secs(5);
 /// Clock ticks of /proc a second, the same on every Linux.
 const TICKS: f64 = 100.0;
 
@@ -131,11 +135,11 @@ impl Lab {
             / 1024.0
     }
 
-    /// Bytes a second, and the share of a processor's core, %, while `MEASURED` passes.
-    fn measure(&self) -> (f64, f64) {
+    /// Bytes a second, and the share of a processor's core, %, while `length` passes.
+    fn measure(&self, length: Duration) -> (f64, f64) {
         thread::sleep(Duration::from_secs(1));
         let (bytes, processor, begin) = (self.sent(), self.processor_s(), Instant::now());
-        thread::sleep(MEASURED);
+        thread::sleep(length);
         let seconds = begin.elapsed().as_secs_f64();
         let bytes = (self.sent() - bytes) as f64 / seconds;
         (bytes, (self.processor_s() - processor) / seconds * 100.0)
@@ -148,13 +152,16 @@ impl Lab {
 }
 
 fn main() {
+    if std::env::args().any(|arg| arg == "presets") {
+        return report_presets();
+    }
     println!(
         "80x24, method-2 with the defaults, {} s each",
         MEASURED.as_secs()
     );
     for (fps, budget) in [("10", "3000"), ("15", "5000")] {
         let mut lab = Lab::open(&["--fps", fps], SMALL);
-        let (bytes, core) = lab.measure();
+        let (bytes, core) = lab.measure(MEASURED);
         println!(
             "{fps} frames a second: {bytes:.0} bytes/s (budget {budget}), {core:.1} % of a core (budget 2)"
         );
@@ -163,7 +170,7 @@ fn main() {
             lab.first_frame.as_secs_f64() * 1e3
         );
         lab.press(" ");
-        let (bytes, core) = lab.measure();
+        let (bytes, core) = lab.measure(MEASURED);
         println!("  paused: {bytes:.0} bytes/s (budget 0), {core:.1} % of a core");
         println!("  memory {:.1} MB (budget 30)", lab.memory_mb());
         lab.close();
@@ -211,10 +218,37 @@ fn main() {
     );
 }
 
+/// Every preset at 10 frames a second, alone and with the exact motion, on a small and a large screen, with the 3-D view
+/// filling it, and at top speed.
+fn report_presets() {
+    println!("bytes/s and % of a core at 10 frames a second (budgets 3000 and 10000, 2 %)");
+    for preset in PRESETS {
+        print!("{:26}", preset.name);
+        for (keys, size) in [("", SMALL), ("t", SMALL), ("df", SMALL), ("99+", SMALL)]
+            .into_iter()
+            .chain([("", LARGE), ("t", LARGE), ("df", LARGE)])
+        {
+            let args = [
+                preset.name,
+                "--fps",
+                "10",
+                "--set",
+                "motion.steps=1000000000",
+            ];
+            let mut lab = Lab::open(&args, size);
+            lab.press(keys);
+            let (bytes, core) = lab.measure(MEASURED_OF_PRESET);
+            print!("  {keys:3} {bytes:6.0} {core:4.1}");
+            lab.close();
+        }
+        println!();
+    }
+}
+
 fn report(what: &str, args: &[&str], keys: &str, size: (u16, u16)) {
     let mut lab = Lab::open(args, size);
     lab.press(keys);
-    let (bytes, core) = lab.measure();
+    let (bytes, core) = lab.measure(MEASURED);
     let answer = lab.slowest_answer(20).as_secs_f64() * 1e3;
     let memory = lab.memory_mb();
     println!(

@@ -5,6 +5,7 @@ use crate::lab::{Lab, Request};
 use crate::storage::session::Session;
 use crate::tui::keymap::{self, Key};
 use crate::tui::mouse::Pointer;
+use crate::tui::pacing::Pacing;
 use crate::tui::panes::{self, help};
 use crate::tui::screen;
 use crate::tui::terminal::{Event, Screen};
@@ -24,14 +25,13 @@ const ATTENTIVE: Duration = Duration::from_millis(100);
 /// When there is no terminal, or it has been closed. The terminal has then been given back, if that was possible.
 pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<()> {
     let mut screen = Screen::enter()?;
-    let frame = Duration::from_secs(1) / frames.max(1);
+    let mut pacing = Pacing::new(frames);
     let begin = Instant::now();
-    let mut next_frame = Duration::ZERO;
     screen::fit(lab, screen.size()?);
     let mut pointer = Pointer::default();
     loop {
         screen.set_mouse(lab.view().mouse)?;
-        let wait = wait(lab, next_frame.saturating_sub(begin.elapsed()));
+        let wait = wait(lab, pacing.wait(begin.elapsed()));
         let events = screen.events(wait)?;
         let acted = !events.is_empty();
         for event in events {
@@ -48,9 +48,9 @@ pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<
         keep(lab, session);
         let now = begin.elapsed();
         // The answer to a key is drawn at once, without waiting for the next frame.
-        if (acted || now >= next_frame) && lab.take_changed() {
-            screen.draw(|area, buf| screen::draw(lab, true, area, buf))?;
-            next_frame = now + frame;
+        if (acted || pacing.is_due(now)) && lab.take_changed() {
+            let bytes = screen.draw(|area, buf| screen::draw(lab, true, area, buf))?;
+            pacing.drawn(now, bytes, screen.size()?.area());
         }
     }
 }

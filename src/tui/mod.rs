@@ -6,8 +6,8 @@
 //! clock ─────────────────────────────────────→ lab.advance ────┴→ Lab { player, values, files, view, ... } ─→ screen → panes
 //! ```
 //!
-//! - [`app`] is the loop, [`terminal`] the only file that talks to the terminal, [`surroundings`] what the environment
-//!   says about it.
+//! - [`app`] is the loop, [`pacing`] says how often it draws, [`terminal`] is the only file that talks to the terminal,
+//!   [`surroundings`] what the environment says about it.
 //! - [`keyboard`] takes the terminal's bytes, [`decoder`] makes keys of them; [`mouse`] says what is done where it points.
 //! - [`keymap`] is the one table of keys.
 //! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`layout`] says which
@@ -15,6 +15,7 @@
 //!   [`trail`] those of a path that fades, [`scene`] those of lines in space.
 
 pub mod app;
+pub mod counted;
 pub mod decoder;
 pub mod dots;
 pub mod keyboard;
@@ -22,6 +23,7 @@ pub mod keymap;
 pub mod layout;
 pub mod markers;
 pub mod mouse;
+pub mod pacing;
 pub mod panes;
 pub mod scene;
 pub mod screen;

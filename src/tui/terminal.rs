@@ -6,6 +6,7 @@
 //! terminal: on a slow line or in a bare pty there may be none.
 
 use crate::storage::at_exit::{self, Release};
+use crate::tui::counted::Counted;
 use crate::tui::decoder::Typed;
 use crate::tui::keyboard::{self, Keyboard};
 use crate::tui::keymap::Key;
@@ -20,10 +21,12 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGWINCH, SIGXFSZ};
 use signal_hook::iterator::Signals;
+use std::cell::Cell;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::mem::ManuallyDrop;
 use std::os::fd::AsFd;
+use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::sync::{Mutex, MutexGuard, Once, OnceLock, PoisonError, TryLockError};
@@ -85,8 +88,10 @@ pub enum Event {
 /// The terminal while this process has taken it over.
 pub struct Screen {
     /// Never dropped, because ratatui's drop prints to a stderr that may be closed.
-    terminal: ManuallyDrop<Terminal<CrosstermBackend<BufWriter<File>>>>,
+    terminal: ManuallyDrop<Terminal<CrosstermBackend<Counted<BufWriter<File>>>>>,
     keyboard: Keyboard,
+    /// The bytes of all frames.
+    sent: Rc<Cell<usize>>,
 }
 
 impl Screen {
@@ -99,13 +104,15 @@ impl Screen {
         // crossterm's own reading of NO_COLOR would take the reversed selection away too; the theme honours it.
         style::force_color_output(true);
         let taken = take_over().and_then(|()| {
-            let backend = CrosstermBackend::new(BufWriter::with_capacity(1 << 16, stdout()?));
-            Ok((Terminal::new(backend)?, Keyboard::new()?))
+            let (writer, sent) = Counted::new(BufWriter::with_capacity(1 << 16, stdout()?));
+            let backend = CrosstermBackend::new(writer);
+            Ok((Terminal::new(backend)?, Keyboard::new()?, sent))
         });
         match taken {
-            Ok((terminal, keyboard)) => Ok(Self {
+            Ok((terminal, keyboard, sent)) => Ok(Self {
                 terminal: ManuallyDrop::new(terminal),
                 keyboard,
+                sent,
             }),
             Err(error) => {
                 give_back();
@@ -114,18 +121,19 @@ impl Screen {
         }
     }
 
-    /// Draws a frame; only what differs from the previous one is sent.
+    /// Draws a frame; only what differs from the previous one is sent. Returns how many bytes that were.
     ///
     /// # Errors
     /// When the terminal cannot be written to.
-    pub fn draw(&mut self, picture: impl FnOnce(Rect, &mut Buffer)) -> io::Result<()> {
+    pub fn draw(&mut self, picture: impl FnOnce(Rect, &mut Buffer)) -> io::Result<usize> {
         let _pen = PEN.lock().unwrap_or_else(PoisonError::into_inner);
         while ENDING.load(Ordering::SeqCst) {
             thread::park(); // a signal is ending the process: nothing may be drawn after the terminal is given back
         }
+        let before = self.sent.get();
         self.terminal
-            .draw(|frame| picture(frame.area(), frame.buffer_mut()))
-            .map(|_| ())
+            .draw(|frame| picture(frame.area(), frame.buffer_mut()))?;
+        Ok(self.sent.get() - before)
     }
 
     /// Asks the terminal for the mouse, or leaves the mouse to it.
