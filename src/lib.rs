@@ -17,6 +17,7 @@
 //! - [`export`]: output of the program: columns, CSV, summaries, and the files they are written to.
 //! - [`storage`]: what the lab keeps on the disk: sessions, exports in the background, the folder it is confined to.
 //! - [`lab`]: the lab without a terminal: its state, and the commands that change it.
+//! - [`teach`]: lessons: Markdown files that say what the lab does, read, checked and played without a terminal.
 //! - [`tui`]: the terminal: keys that lead to commands, the panes that draw the lab, and the loop.
 //! - [`cli`]: the commands of the command line.
 //!
@@ -35,6 +36,7 @@ pub mod physics;
 pub mod run;
 pub mod scenario;
 pub mod storage;
+pub mod teach;
 pub mod text;
 pub mod tui;
 pub mod work;

@@ -24,7 +24,7 @@ mod files;
 pub mod form;
 mod keeping;
 pub mod notice;
-mod numbers;
+pub mod numbers;
 mod on_top;
 mod opening;
 mod player;

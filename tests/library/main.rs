@@ -15,6 +15,7 @@ mod health;
 mod journal;
 mod kept;
 mod laws;
+mod lessons;
 mod limits;
 mod mangled;
 mod mouse;

@@ -1,0 +1,403 @@
+//! The TOML in the blocks of a lesson.
+
+use super::lesson::{Asked, Check, Compare, Keep, Predict, Setup};
+use super::names::Names;
+use super::structure::on_line;
+use super::text::Text;
+use crate::lab::command::{COMMANDS, Command, Placed};
+use crate::scenario::keys;
+use crate::scenario::problem::nearest;
+use crate::scenario::{Document, Problem};
+use crate::text::printable::is_steering;
+use crate::work::expression::Expression;
+use toml::{Table, Value};
+
+/// The keys of `lab` and `task`, in the order in which they are carried out. Between `push` and `go_to` stands how the run
+/// is shown.
+const ORDER: [&str; 18] = [
+    "open", "set", "push", "speed", "look_at", "next", "window_s", "detail_s", "since_s",
+    "magnify", "exact", "show", "hide", "bare", "camera", "zoom", "fill", "go_to",
+];
+const RUN_UNTIL: &str = "run_until";
+const KEEP: &str = "keep";
+/// The longest line of text in a block, characters.
+const LONGEST_LINE: usize = 500;
+/// The most choices of a prediction.
+const MOST_CHOICES: usize = 9;
+/// The longest lesson, minutes.
+const LONGEST_LESSON: i64 = 600;
+
+type Found<T> = Result<T, Vec<Problem>>;
+
+/// Reads the keys of one block.
+pub(super) struct Reader<'a> {
+    origin: &'a str,
+    word: &'a str,
+    inside: &'a str,
+    /// The line of the block's fence.
+    pub(super) line: usize,
+    problems: Vec<Problem>,
+}
+
+/// The TOML of a block.
+struct Content {
+    document: Document,
+    word: String,
+    line: usize,
+    problems: Vec<Problem>,
+}
+
+impl<'a> Reader<'a> {
+    /// A block with `word` behind its fence, which stands on `line`, and `inside` between its fences.
+    pub(super) fn new(origin: &'a str, word: &'a str, inside: &'a str, line: usize) -> Self {
+        Self {
+            origin,
+            word,
+            inside,
+            line,
+            problems: Vec::new(),
+        }
+    }
+
+    /// The TOML of the block, of which only the keys `known` may be there.
+    fn content(&mut self, known: &[&str]) -> Found<Content> {
+        // As many empty lines before it as there are lines before it in the file: every line has its number there.
+        let text = "\n".repeat(self.line) + self.inside;
+        let document = Document::parse(self.origin, &text).map_err(|problems| problems.list)?;
+        let mut content = Content {
+            document,
+            word: self.word.to_owned(),
+            line: self.line,
+            problems: std::mem::take(&mut self.problems),
+        };
+        let keys: Vec<String> = content.document.table().keys().cloned().collect();
+        for key in keys.iter().filter(|key| !known.contains(&key.as_str())) {
+            let near = nearest(key, known.iter().copied());
+            let what = match COMMANDS.iter().any(|row| row.name == key) {
+                true => "is no key of this block",
+                false => "unknown key",
+            };
+            content.refuse(Problem::at(key, format!("{what}: {near}")));
+        }
+        if keys.is_empty() {
+            content.refuse_whole("holds nothing: its keys stand between the fences");
+        }
+        Ok(content)
+    }
+}
+
+impl Content {
+    /// Notes that `problem` was found; its key is that of the TOML.
+    fn refuse(&mut self, problem: Problem) {
+        let key = problem.key.clone();
+        let placed = self.document.placed(vec![problem]).list;
+        for mut problem in placed {
+            problem.key = format!("{}.{key}", self.word);
+            match problem.place {
+                Some(_) => self.problems.push(problem),
+                None => self.problems.push(on_line(self.line, problem)),
+            }
+        }
+    }
+
+    fn refuse_whole(&mut self, rule: &str) {
+        let problem = Problem::at(self.word.clone(), rule);
+        self.problems.push(on_line(self.line, problem));
+    }
+
+    fn get(&self, key: &str) -> Option<Value> {
+        self.document.table().get(key).cloned()
+    }
+
+    /// The line of `key` in the file.
+    fn line_of(&self, key: &str) -> usize {
+        let lines = self.document.lines_of(std::iter::once(key.to_owned()));
+        lines.into_iter().flatten().next().unwrap_or(self.line)
+    }
+
+    /// The text at `key`, empty where there is none; `may_wrap` allows line ends.
+    fn line(&mut self, key: &str, may_wrap: bool) -> String {
+        let Some(value) = self.get(key) else {
+            return String::new();
+        };
+        let rule = match value.as_str() {
+            None => "must be text in quotes",
+            Some(text) if text.trim().is_empty() => "must not be empty",
+            Some(text) if text.chars().any(|c| c != '\n' && is_steering(c)) => {
+                "must hold no control or invisible characters"
+            }
+            Some(text) if !may_wrap && text.contains('\n') => "must be one line",
+            Some(text) if text.chars().count() > LONGEST_LINE && !may_wrap => "is too long",
+            Some(text) => return text.trim().to_owned(),
+        };
+        self.refuse(Problem::with_value(key, &value, rule));
+        String::new()
+    }
+
+    /// As [`line`](Self::line), of a key that must be there.
+    fn needed(&mut self, key: &str, may_wrap: bool, meaning: &str) -> String {
+        if self.get(key).is_none() {
+            self.refuse_whole(&format!("lacks {key}: {meaning}"));
+        }
+        self.line(key, may_wrap)
+    }
+
+    /// The Markdown at `key`.
+    fn text(
+        &mut self,
+        key: &str,
+        meaning: &str,
+        find: impl Fn(&str) -> Result<(), String>,
+    ) -> Text {
+        let source = self.needed(key, true, meaning);
+        let line = self.line_of(key);
+        let read = Text::read(&source, line, find);
+        read.unwrap_or_else(|problems| {
+            let inside = |problem: Problem| Problem {
+                key: format!("{}.{key} {}", self.word, problem.key),
+                ..on_line(line, problem)
+            };
+            self.problems.extend(problems.into_iter().map(inside));
+            Text::empty(line)
+        })
+    }
+
+    /// The expression at `key`.
+    fn expression(
+        &mut self,
+        key: &str,
+        is_condition: bool,
+        find: impl Fn(&str) -> Result<(), String>,
+    ) -> Option<Expression> {
+        let value = self.get(key)?;
+        let Some(text) = value.as_str() else {
+            let rule = "must be text in quotes, such as \"t_s >= 60\"";
+            self.refuse(Problem::with_value(key, &value, rule));
+            return None;
+        };
+        expression(text, is_condition, find)
+            .map_err(|rule| self.refuse(Problem::with_value(key, &value, rule)))
+            .ok()
+    }
+
+    /// `made`, unless something was refused.
+    fn finish<T>(self, made: T) -> Found<T> {
+        match self.problems.is_empty() {
+            true => Ok(made),
+            false => Err(self.problems),
+        }
+    }
+}
+
+fn expression(
+    text: &str,
+    is_condition: bool,
+    find: impl Fn(&str) -> Result<(), String>,
+) -> Result<Expression, String> {
+    let read = match is_condition {
+        true => Expression::condition(text),
+        false => Expression::parse(text),
+    };
+    let read = read.map_err(|fault| fault.to_string())?;
+    read.bind(find).map_err(|fault| fault.to_string())?;
+    match read.is_condition() && !is_condition {
+        true => Err("compares: a number must stand here".to_owned()),
+        false => Ok(read),
+    }
+}
+
+/// What the lesson is about, and how many minutes it takes.
+pub(super) fn head(reader: &mut Reader<'_>) -> Found<(String, Option<u32>)> {
+    let mut content = reader.content(&["about", "minutes"])?;
+    let about = content.line("about", false);
+    let minutes = content.get("minutes").map(|value| {
+        let whole = value
+            .as_integer()
+            .filter(|m| (1..=LONGEST_LESSON).contains(m));
+        whole.and_then(|m| u32::try_from(m).ok()).ok_or(value)
+    });
+    let minutes = match minutes.transpose() {
+        Ok(minutes) => minutes,
+        Err(value) => {
+            let rule = format!("must be a whole number from 1 to {LONGEST_LESSON}");
+            content.refuse(Problem::with_value("minutes", &value, rule));
+            None
+        }
+    };
+    content.finish((about, minutes))
+}
+
+/// What the lab does: a `lab` or `task` block of page `page`, whose kept numbers are known from the page `known_from` on.
+pub(super) fn setup(
+    reader: &mut Reader<'_>,
+    names: &mut Names,
+    page: usize,
+    known_from: usize,
+) -> Found<Setup> {
+    let known: Vec<&str> = ORDER.into_iter().chain([RUN_UNTIL, KEEP]).collect();
+    let mut content = reader.content(&known)?;
+    let mut commands = Vec::new();
+    for name in ORDER.into_iter().chain([RUN_UNTIL]) {
+        let Some(value) = content.get(name) else {
+            continue;
+        };
+        match Command::new(name, &value) {
+            Ok(command) => commands.push(Placed {
+                command,
+                line: Some(content.line_of(name)),
+            }),
+            Err(problems) => {
+                for problem in problems {
+                    let key = keys::join(name, &problem.key);
+                    let key = key.trim_end_matches('.').to_owned();
+                    content.refuse(Problem { key, ..problem });
+                }
+            }
+        }
+    }
+    if content.get("go_to").is_some() && content.get(RUN_UNTIL).is_some() {
+        let rule = "has no place beside go_to: one of the two ends a block";
+        content.refuse(Problem::at(RUN_UNTIL, rule));
+    }
+    let keep = keep(&mut content, names, page, known_from);
+    let line = content.line;
+    content.finish(Setup {
+        line,
+        commands,
+        keep,
+    })
+}
+
+fn keep(content: &mut Content, names: &mut Names, page: usize, known_from: usize) -> Vec<Keep> {
+    let table = match content.get(KEEP) {
+        None => return Vec::new(),
+        Some(Value::Table(table)) => table,
+        Some(other) => {
+            let rule = "must be a table of names and expressions, { coarse = \"most_distance_m\" }";
+            content.refuse(Problem::with_value(KEEP, &other, rule));
+            Table::new()
+        }
+    };
+    // What is kept at the same time is not known yet to each other.
+    let earlier = names.clone();
+    let mut kept = Vec::new();
+    for (name, value) in table {
+        let key = keys::join(KEEP, &name);
+        if let Err(rule) = names.keep(&name, known_from) {
+            content.refuse(Problem::at(key, rule));
+            continue;
+        }
+        let read = match value.as_str() {
+            None => Err("must be an expression in quotes".to_owned()),
+            Some(text) => expression(text, false, |name| earlier.find(name, page)),
+        };
+        match read {
+            Ok(expression) => kept.push(Keep { name, expression }),
+            Err(rule) => content.refuse(Problem::with_value(key, &value, rule)),
+        }
+    }
+    kept
+}
+
+/// A prediction that is asked for.
+pub(super) fn predict(
+    reader: &mut Reader<'_>,
+    find: impl Fn(&str) -> Result<(), String>,
+) -> Found<Predict> {
+    let mut content = reader.content(&["name", "ask", "choices", "unit"])?;
+    let name = content.needed("name", false, "compare calls the prediction by it");
+    let ask = content.text("ask", "the question", find);
+    let asked = match (content.get("choices"), content.get("unit")) {
+        (Some(_), Some(_)) => {
+            let rule = "has no place beside choices: a choice has no unit";
+            content.refuse(Problem::at("unit", rule));
+            Asked::Choice(Vec::new())
+        }
+        (Some(value), None) => Asked::Choice(choices(&mut content, &value)),
+        (None, Some(Value::String(unit))) if unit.is_empty() => Asked::Number { unit },
+        (None, Some(_)) => Asked::Number {
+            unit: content.line("unit", false),
+        },
+        (None, None) => {
+            content.refuse_whole(
+                "lacks choices = [\"...\", \"...\"], or unit = \"deg\" where a number is asked for",
+            );
+            Asked::Choice(Vec::new())
+        }
+    };
+    let line = content.line;
+    content.finish(Predict {
+        line,
+        name,
+        ask,
+        asked,
+    })
+}
+
+fn choices(content: &mut Content, value: &Value) -> Vec<String> {
+    let items = value.as_array().cloned().unwrap_or_default();
+    let words: Vec<String> = items
+        .iter()
+        .filter_map(|item| Some(item.as_str()?.trim().to_owned()))
+        .filter(|text| !text.is_empty() && !text.chars().any(is_steering))
+        .collect();
+    let mut different = words.clone();
+    different.sort();
+    different.dedup();
+    let rule = match words.len() {
+        count if count != items.len() => "must be lines of text, none of them empty",
+        0 | 1 => "must be a list of at least two answers in quotes",
+        count if count > MOST_CHOICES => "are too many: at most 9",
+        count if count != different.len() => "must differ from each other",
+        _ => return words,
+    };
+    content.refuse(Problem::with_value("choices", value, rule));
+    Vec::new()
+}
+
+/// A prediction beside what happened.
+pub(super) fn compare(
+    reader: &mut Reader<'_>,
+    find: impl Fn(&str) -> Result<(), String>,
+) -> Found<Compare> {
+    let mut content = reader.content(&["prediction", "with", "text"])?;
+    let prediction = content.needed("prediction", false, "the name of a predict block");
+    let has_with = content.get("with").is_some();
+    let with = content.expression("with", false, &find);
+    let text = content.text(
+        "text",
+        "what is said, with {with:.2} and {prediction}",
+        |name| match name {
+            "with" if has_with => Ok(()),
+            "with" => Err("there is no with in this block".to_owned()),
+            "prediction" => Ok(()),
+            name => find(name),
+        },
+    );
+    let line = content.line;
+    content.finish(Compare {
+        line,
+        prediction,
+        with,
+        text,
+    })
+}
+
+/// What holds once the student has done the task.
+pub(super) fn check(
+    reader: &mut Reader<'_>,
+    find: impl Fn(&str) -> Result<(), String>,
+) -> Found<Check> {
+    let mut content = reader.content(&["that", "hint"])?;
+    let hint = content.line("hint", true);
+    if content.get("that").is_none() {
+        content.refuse_whole("lacks that: the condition, such as \"t_s >= 60\"");
+    }
+    let that = content.expression("that", true, find);
+    let line = content.line;
+    let made = that.map(|that| Check { line, that, hint });
+    match made {
+        Some(check) => content.finish(check),
+        None => Err(content.problems),
+    }
+}

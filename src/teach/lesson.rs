@@ -1,0 +1,235 @@
+//! A lesson as it was read: its pages, and the blocks of each in the order of the file.
+
+use super::text::Text;
+use crate::lab::command::{Command, Placed};
+use crate::lab::view::Part;
+use crate::work::expression::Expression;
+use serde::{Deserialize, Serialize};
+
+/// A lesson.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lesson {
+    /// The name of a shipped lesson, or the file as the user named it.
+    pub name: String,
+    /// The file that messages name.
+    pub origin: String,
+    /// Its level-1 heading.
+    pub title: String,
+    /// What it is about, one line; empty where the file does not say it.
+    pub about: String,
+    /// About how long it takes, minutes.
+    pub minutes: Option<u32>,
+    /// The blocks before the first page: text, code that is shown as it is, and notes.
+    pub introduction: Vec<Block>,
+    /// The pages; never empty. The page with the number N (from 1) is `pages[N - 1]`.
+    pub pages: Vec<Page>,
+}
+
+/// A page: a level-2 heading and all that stands below it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Page {
+    /// Its number, from 1.
+    pub number: usize,
+    /// The heading.
+    pub heading: String,
+    /// The heading's line in the file, from 1.
+    pub line: usize,
+    /// The blocks, in the order of the file.
+    pub blocks: Vec<Block>,
+}
+
+/// A part of a page.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Block {
+    /// Text in Markdown.
+    Text(Text),
+    /// What the lab does when the page is opened; at most one on a page.
+    Lab(Setup),
+    /// What the student is to do; the lab does it only when it is asked to show it. At most one on a page.
+    Task(Setup),
+    /// A prediction that is asked for.
+    Predict(Predict),
+    /// A prediction beside what happened.
+    Compare(Compare),
+    /// What holds once the student has done the task.
+    Check(Check),
+    /// Notes for the teacher, in Markdown.
+    Notes(Text),
+    /// Code that is shown as it is.
+    Shown(Shown),
+}
+
+/// What a `lab` or `task` block makes the lab do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// The line of its fence in the file.
+    pub line: usize,
+    /// The commands in the order in which they are carried out, with their lines in the file: `open`, `set`, `push`, how
+    /// the run is shown, then `go_to` or `run_until`.
+    pub commands: Vec<Placed>,
+    /// The numbers that are remembered once all of this is done.
+    pub keep: Vec<Keep>,
+}
+
+/// A number that is remembered for later pages.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Keep {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub expression: Expression,
+}
+
+/// A prediction that is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Predict {
+    /// The line of its fence in the file.
+    pub line: usize,
+    /// Its name; no other prediction of the lesson has it.
+    pub name: String,
+    /// The question, in Markdown.
+    pub ask: Text,
+    /// What may be answered.
+    pub asked: Asked,
+}
+
+/// What may be answered to a question.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Asked {
+    /// One of these; at least two.
+    Choice(Vec<String>),
+    /// A number in this unit, which is empty for a pure number.
+    Number {
+        /// The unit.
+        unit: String,
+    },
+}
+
+/// What was answered to a question.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Answer {
+    /// A number in the unit that was asked for.
+    Number(f64),
+    /// The words of a choice.
+    Choice(String),
+}
+
+/// A prediction beside what happened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compare {
+    /// The line of its fence in the file.
+    pub line: usize,
+    /// The name of the prediction.
+    pub prediction: String,
+    /// The number that it is compared with.
+    pub with: Option<Expression>,
+    /// What is said, in Markdown; `{with}` stands for that number and `{prediction}` for the prediction.
+    pub text: Text,
+}
+
+/// What holds once the student has done the task; where the page has no task, once its `lab` block is carried out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// The line of its fence in the file.
+    pub line: usize,
+    /// The condition.
+    pub that: Expression,
+    /// Help for one who has not got there; empty where the file has none.
+    pub hint: String,
+}
+
+/// Code that is shown as it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// The word behind its fence (`text`, `sh`, `toml`, `csv`, `python`, `matlab`), or none.
+    pub language: String,
+    /// Its lines, with a line end after each.
+    pub text: String,
+}
+
+impl Lesson {
+    /// The page with this number, from 1.
+    pub fn page(&self, number: usize) -> Option<&Page> {
+        self.pages.get(number.checked_sub(1)?)
+    }
+
+    /// The prediction of this name.
+    pub fn predict(&self, name: &str) -> Option<&Predict> {
+        let mut all = self.pages.iter().flat_map(Page::predicts);
+        all.find(|predict| predict.name == name)
+    }
+}
+
+impl Page {
+    /// What the lab does when the page is opened.
+    pub fn lab(&self) -> Option<&Setup> {
+        self.blocks.iter().find_map(|block| match block {
+            Block::Lab(setup) => Some(setup),
+            _ => None,
+        })
+    }
+
+    /// What the student is to do.
+    pub fn task(&self) -> Option<&Setup> {
+        self.blocks.iter().find_map(|block| match block {
+            Block::Task(setup) => Some(setup),
+            _ => None,
+        })
+    }
+
+    /// The predictions that the page asks for.
+    pub fn predicts(&self) -> impl Iterator<Item = &Predict> {
+        self.blocks.iter().filter_map(|block| match block {
+            Block::Predict(predict) => Some(predict),
+            _ => None,
+        })
+    }
+
+    /// What must hold once the student has done the task.
+    pub fn checks(&self) -> impl Iterator<Item = &Check> {
+        self.blocks.iter().filter_map(|block| match block {
+            Block::Check(check) => Some(check),
+            _ => None,
+        })
+    }
+
+    /// The notes for the teacher.
+    pub fn notes(&self) -> impl Iterator<Item = &Text> {
+        self.blocks.iter().filter_map(|block| match block {
+            Block::Notes(text) => Some(text),
+            _ => None,
+        })
+    }
+}
+
+impl Setup {
+    /// Whether it opens a run: it then depends on nothing before it but kept numbers.
+    pub fn opens(&self) -> bool {
+        let mut commands = self.commands.iter();
+        commands.any(|placed| matches!(placed.command, Command::Open(_)))
+    }
+
+    /// The parts of the screen that its `hide` names.
+    pub fn hides(&self) -> &[Part] {
+        let hidden = self
+            .commands
+            .iter()
+            .find_map(|placed| match &placed.command {
+                Command::Hide(parts) => Some(parts.as_slice()),
+                _ => None,
+            });
+        hidden.unwrap_or_default()
+    }
+}
+
+impl Asked {
+    /// Whether `answer` answers it.
+    pub fn takes(&self, answer: &Answer) -> bool {
+        match (self, answer) {
+            (Self::Choice(choices), Answer::Choice(choice)) => choices.contains(choice),
+            (Self::Number { .. }, Answer::Number(number)) => number.is_finite(),
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! The numbers that an expression of a lesson can name: those of a run, and those that earlier pages have kept.
+
+use crate::analysis::readouts;
+use crate::lab::{Lab, numbers};
+use crate::scenario::problem::nearest;
+use crate::work::expression::Expression;
+use std::collections::BTreeMap;
+
+/// The numbers that were kept, by their names. One that could not be stated is NaN.
+pub type Kept = BTreeMap<String, f64>;
+
+/// Names that mean something else in a lesson.
+const RESERVED: [&str; 5] = ["with", "prediction", "and", "or", "abs"];
+
+/// The names under which a lesson keeps numbers.
+#[derive(Clone, Debug, Default)]
+pub struct Names {
+    /// Each with the first page on which it is known.
+    kept: Vec<(String, usize)>,
+}
+
+impl Names {
+    /// Adds `name`, which is known from the page `from` on.
+    ///
+    /// # Errors
+    /// Why no number can be kept under that name.
+    pub(super) fn keep(&mut self, name: &str, from: usize) -> Result<(), String> {
+        let mut characters = name.chars();
+        let begins = characters.next().is_some_and(|c| c.is_ascii_alphabetic());
+        if !begins || !characters.all(|c| c.is_ascii_alphanumeric() || c == '_') {
+            return Err(
+                "must begin with a letter and go on with letters, digits and _, none of them accented"
+                    .to_owned(),
+            );
+        }
+        if RESERVED.contains(&name) {
+            return Err("means something else in a lesson: choose another name".to_owned());
+        }
+        if readouts::find(name).is_some() || numbers::find(name).is_ok() {
+            return Err("is a number of the run already: choose another name".to_owned());
+        }
+        if self.kept.iter().any(|(known, _)| known == name) {
+            return Err("is kept twice: choose another name".to_owned());
+        }
+        self.kept.push((name.to_owned(), from));
+        Ok(())
+    }
+
+    /// Whether `name` stands for a number on the page `page`.
+    ///
+    /// # Errors
+    /// Why it does not, with the nearest name that does.
+    pub(super) fn find(&self, name: &str, page: usize) -> Result<(), String> {
+        match self.kept.iter().find(|(known, _)| known == name) {
+            Some((_, from)) if *from <= page => return Ok(()),
+            Some((_, from)) => return Err(format!("{name} is known from page {from} on")),
+            None => {}
+        }
+        numbers::find(name).map(|_| ()).map_err(|reason| {
+            let kept = self.kept.iter().map(|(known, _)| known.as_str());
+            match nearest(name, kept) {
+                near if near.starts_with("did you mean") => {
+                    format!("there is no number named {name}: {near}")
+                }
+                _ => reason,
+            }
+        })
+    }
+}
+
+/// The number called `name`: what was kept under that name, or that of the run in `lab`; `None` if there is none now.
+pub fn number(name: &str, lab: &Lab, kept: &Kept) -> Option<f64> {
+    match kept.get(name) {
+        Some(number) => Some(*number).filter(|number| number.is_finite()),
+        None => lab.number(name),
+    }
+}
+
+/// The value of `expression` in `lab`; `None` where a number that it needs is not there.
+pub fn value(expression: &Expression, lab: &Lab, kept: &Kept) -> Option<f64> {
+    expression.value(|name| number(name, lab, kept))
+}

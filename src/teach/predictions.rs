@@ -1,0 +1,117 @@
+//! What a student has predicted in a lesson. A prediction is locked: it is not changed any more.
+
+use super::lesson::{Answer, Compare, Lesson, Page, Predict};
+use super::names::{Kept, value};
+use super::text::Format;
+use crate::lab::Lab;
+use crate::lab::view::Part;
+use crate::text::number::{self, NONE};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The locked predictions of one lesson, by their names. As TOML it is a table: `finer = "stays as it is"`, `lag = 3.5`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Predictions {
+    locked: BTreeMap<String, Answer>,
+}
+
+impl Predictions {
+    /// Locks `answer` as the answer to `predict`.
+    ///
+    /// # Errors
+    /// When it is locked already, or is no answer to it; nothing has changed then.
+    pub fn lock(&mut self, predict: &Predict, answer: Answer) -> Result<(), String> {
+        if self.is_locked(predict) {
+            return Err("is locked already: a prediction is not changed".to_owned());
+        }
+        if !predict.asked.takes(&answer) {
+            return Err("is no answer to this question".to_owned());
+        }
+        self.locked.insert(predict.name.clone(), answer);
+        Ok(())
+    }
+
+    /// The answer that is locked under this name.
+    pub fn answer(&self, name: &str) -> Option<&Answer> {
+        self.locked.get(name)
+    }
+
+    /// Whether `predict` is answered. An answer that it no longer takes, as the file was changed, does not count.
+    pub fn is_locked(&self, predict: &Predict) -> bool {
+        let answer = self.answer(&predict.name);
+        answer.is_some_and(|answer| predict.asked.takes(answer))
+    }
+
+    /// The predictions of `page` that are not locked yet.
+    pub fn open_on<'a>(&'a self, page: &'a Page) -> impl Iterator<Item = &'a Predict> {
+        page.predicts().filter(|predict| !self.is_locked(predict))
+    }
+
+    /// Whether `page` asks for predictions, and all of them are locked.
+    pub fn are_locked_on(&self, page: &Page) -> bool {
+        page.predicts().next().is_some() && self.open_on(page).next().is_none()
+    }
+
+    /// What is hidden once all predictions of `page` are locked, if `hidden` is hidden before: all of it but what the page
+    /// has hidden itself.
+    pub fn hidden_after_lock(page: &Page, hidden: &[Part]) -> Vec<Part> {
+        let own = page.lab().map_or(&[][..], |setup| setup.hides());
+        let others = hidden.iter().copied().filter(|part| !own.contains(part));
+        others.collect()
+    }
+}
+
+impl Answer {
+    /// It in words: the choice, or the number with the unit that `predict` asks for.
+    pub fn in_words(&self, predict: &Predict) -> String {
+        match (self, &predict.asked) {
+            (Self::Choice(words), _) => words.clone(),
+            (Self::Number(number), super::Asked::Number { unit }) => {
+                format!("{} {unit}", number::shortest(*number))
+                    .trim_end()
+                    .to_owned()
+            }
+            (Self::Number(number), super::Asked::Choice(_)) => number::shortest(*number),
+        }
+    }
+}
+
+impl Compare {
+    /// The prediction in words; `None` if there is none.
+    pub fn predicted(&self, lesson: &Lesson, predictions: &Predictions) -> Option<String> {
+        let predict = lesson.predict(&self.prediction)?;
+        Some(predictions.answer(&self.prediction)?.in_words(predict))
+    }
+
+    /// The number that came out, in `lab`.
+    pub fn came_out(&self, lab: &Lab, kept: &Kept) -> Option<f64> {
+        value(self.with.as_ref()?, lab, kept)
+    }
+
+    /// What is said, in Markdown, with the numbers of `lab` and the prediction.
+    pub fn filled(
+        &self,
+        lesson: &Lesson,
+        predictions: &Predictions,
+        lab: &Lab,
+        kept: &Kept,
+    ) -> String {
+        let with = self.came_out(lab, kept);
+        let predicted = self.predicted(lesson, predictions);
+        self.text.filled(|expression, format: Format| {
+            if expression.text() == PREDICTION {
+                return predicted.clone().unwrap_or_else(|| NONE.to_owned());
+            }
+            let number = expression.value(|name| match name {
+                WITH => with,
+                name => super::names::number(name, lab, kept),
+            });
+            format.written(number)
+        })
+    }
+}
+
+/// In the text of a comparison: the prediction, and the number that it is compared with.
+pub(super) const PREDICTION: &str = "prediction";
+const WITH: &str = "with";

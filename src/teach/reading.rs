@@ -1,0 +1,436 @@
+//! Markdown becomes a lesson.
+//!
+//! A lesson begins with its title, a level-1 heading. Each level-2 heading begins a page. A fenced block with `lesson`,
+//! `lab`, `task`, `predict`, `compare` or `check` behind its fence holds TOML, one with `notes` Markdown for the teacher;
+//! `text`, `sh`, `toml`, `csv`, `python`, `matlab` and no word at all are shown as they are, and another word is refused.
+//! An HTML comment on lines of its own is no part of the lesson.
+
+use super::blocks::{self, Reader};
+use super::lesson::{Block, Compare, Lesson, Page, Setup, Shown};
+use super::names::Names;
+use super::shipped;
+use super::structure::{Element, Kind, LANGUAGES, Lines, WORDS, on_line, structure};
+use super::text::Text;
+use crate::scenario::problem::{Found, listed, nearest};
+use crate::scenario::{Problem, Problems};
+use crate::text::printable::is_steering;
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// The longest file that is read as a lesson, bytes.
+pub const LONGEST: u64 = 1 << 20;
+/// The most lines of one.
+const MOST_LINES: usize = 20_000;
+/// The most blocks of one, pages counted.
+const MOST_BLOCKS: usize = 1000;
+
+/// Opens what NAME names: a shipped lesson, or else a file: one whose name holds a `/` or ends in `.md`.
+///
+/// # Errors
+/// When there is no such lesson, or everything that is wrong with it.
+pub fn open(name: &str) -> Result<Lesson, Problems> {
+    if name.contains('/') || name.ends_with(".md") {
+        return read_file(Path::new(name));
+    }
+    match shipped::find(name) {
+        Some(lesson) => {
+            let origin = format!("presets/lessons/{name}.md");
+            let read = read(&origin, lesson.text)?;
+            let name = name.to_owned();
+            Ok(Lesson { name, ..read })
+        }
+        None => {
+            let near = match shipped::LESSONS {
+                [] => "there is none".to_owned(),
+                lessons => nearest(name, lessons.iter().map(|lesson| lesson.name)),
+            };
+            let rule =
+                format!("no lesson of that name: {near} (a file's name holds a / or ends in .md)");
+            Err(Problems::one(name, Problem::at("", rule)))
+        }
+    }
+}
+
+/// Reads the lesson in the file at `path`.
+///
+/// # Errors
+/// When it cannot be read, is longer than [`LONGEST`], or everything that is wrong with it.
+pub fn read_file(path: &Path) -> Result<Lesson, Problems> {
+    let origin = path.display().to_string();
+    match text_of(path) {
+        Ok(text) => read(&origin, &text),
+        Err(problem) => Err(Problems::one(origin, problem)),
+    }
+}
+
+fn text_of(path: &Path) -> Result<String, Problem> {
+    let whole = |rule: String| Problem::at("", rule);
+    let cannot = |error: std::io::Error| whole(format!("cannot be read: {error}"));
+    if path.is_dir() {
+        return Err(whole("is a folder: name a file in it".to_owned()));
+    }
+    let file = File::open(path).map_err(cannot)?;
+    let length = file.metadata().map_or(0, |file| file.len());
+    let mut bytes = Vec::new();
+    if length <= LONGEST {
+        let mut start = file.take(LONGEST + 1);
+        start.read_to_end(&mut bytes).map_err(cannot)?;
+    }
+    let length = length.max(bytes.len() as u64);
+    if length > LONGEST {
+        return Err(whole(format!(
+            "is {length} bytes long: a lesson has at most 1 MiB ({LONGEST} bytes)"
+        )));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = good.iter().filter(|&&byte| byte == b'\n').count() + 1;
+        let rule = "is not text in UTF-8: save the file in that encoding";
+        on_line(line, Problem::at("", rule))
+    })
+}
+
+/// Takes `text` as the lesson that the file `origin` holds.
+///
+/// # Errors
+/// Everything that is wrong with it, in the order of the file.
+pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
+    let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
+    let text = text.replace('\t', "    ");
+    let one = |problem| Problems::one(origin, problem);
+    let lines = Lines::of(&text);
+    plain(&text, &lines).map_err(one)?;
+    let elements = structure(&text, &lines).map_err(one)?;
+    if elements.len() > MOST_BLOCKS {
+        let rule = format!("has more than {MOST_BLOCKS} pages and blocks, the most of a lesson");
+        return Err(one(Problem::at("", rule)));
+    }
+    let mut assembly = Assembly::new(origin, &elements);
+    for element in &elements {
+        assembly.add(element);
+    }
+    assembly.finish()
+}
+
+/// Holds that `text` is short enough and has no character that could steer a terminal.
+fn plain(text: &str, lines: &Lines) -> Result<(), Problem> {
+    let count = text.matches('\n').count();
+    if count > MOST_LINES {
+        let rule = format!("has {count} lines: a lesson has at most {MOST_LINES}");
+        return Err(Problem::at("", rule));
+    }
+    let mut characters = text.char_indices();
+    match characters.find(|(_, c)| *c != '\n' && is_steering(*c)) {
+        None => Ok(()),
+        Some((at, c)) => {
+            let rule = format!(
+                "holds the control or invisible character U+{:04X}, which no lesson may hold",
+                u32::from(c)
+            );
+            Err(on_line(lines.at(at), Problem::at("", rule)))
+        }
+    }
+}
+
+/// A lesson while it is put together from the elements of its file.
+struct Assembly<'a> {
+    origin: &'a str,
+    title: Option<String>,
+    about: String,
+    minutes: Option<u32>,
+    introduction: Vec<Block>,
+    pages: Vec<Page>,
+    /// The setups by their lines, which were read before everything else: they tell which numbers are kept.
+    setups: Vec<Setup>,
+    names: Names,
+    predictions: BTreeSet<String>,
+    compares: Vec<Compare>,
+    has_head: bool,
+    found: Found,
+}
+
+impl<'a> Assembly<'a> {
+    fn new(origin: &'a str, elements: &[Element<'_>]) -> Self {
+        let mut assembly = Self {
+            origin,
+            title: None,
+            about: String::new(),
+            minutes: None,
+            introduction: Vec::new(),
+            pages: Vec::new(),
+            setups: Vec::new(),
+            names: Names::default(),
+            predictions: BTreeSet::new(),
+            compares: Vec::new(),
+            has_head: false,
+            found: Found::default(),
+        };
+        assembly.read_setups(elements);
+        assembly
+    }
+
+    fn refuse(&mut self, line: usize, problem: Problem) {
+        self.found.add(|| on_line(line, problem));
+    }
+
+    fn refuse_all(&mut self, problems: Vec<Problem>) {
+        for problem in problems {
+            self.found.add(|| problem);
+        }
+    }
+
+    fn read_setups(&mut self, elements: &[Element<'_>]) {
+        let mut page = 0;
+        let mut is_opened = false;
+        for element in elements {
+            let (word, inside) = match element.kind {
+                Kind::Heading(_) => {
+                    page += 1;
+                    continue;
+                }
+                Kind::Fenced(word @ ("lab" | "task"), inside) => (word, inside),
+                _ => continue,
+            };
+            let known_from = page + usize::from(word == "task");
+            let mut reader = Reader::new(self.origin, word, inside, element.line);
+            match blocks::setup(&mut reader, &mut self.names, page, known_from) {
+                Ok(setup) => {
+                    if !is_opened && !setup.opens() {
+                        let rule = "opens nothing, and there is nothing open before it: open = \"method-2\" says which run";
+                        self.refuse(element.line, Problem::at(word, rule));
+                    }
+                    is_opened = true;
+                    self.setups.push(setup);
+                }
+                Err(problems) => {
+                    is_opened = true;
+                    self.refuse_all(problems);
+                }
+            }
+        }
+    }
+
+    fn add(&mut self, element: &Element<'_>) {
+        let line = element.line;
+        match &element.kind {
+            Kind::Title(words) => self.add_title(words, line),
+            Kind::Heading(words) => {
+                if words.is_empty() {
+                    let rule = "is a page without a heading: write it behind ##";
+                    self.refuse(line, Problem::at("##", rule));
+                }
+                self.need_title(line);
+                self.pages.push(Page {
+                    number: self.pages.len() + 1,
+                    heading: words.clone(),
+                    line,
+                    blocks: Vec::new(),
+                });
+            }
+            Kind::Text(text) => {
+                self.need_title(line);
+                if let Some(text) = self.text(text, line) {
+                    self.place(Block::Text(text));
+                }
+            }
+            Kind::Fenced(word, inside) => self.add_fenced(word, inside, line),
+        }
+    }
+
+    fn add_title(&mut self, words: &str, line: usize) {
+        let rule = match (&self.title, words.is_empty()) {
+            (Some(_), _) => "is a second title: a lesson has one, and a page begins with ##",
+            (None, true) => "is a title without words: write them behind #",
+            (None, false) => "",
+        };
+        if !rule.is_empty() {
+            self.refuse(line, Problem::at("#", rule));
+        }
+        self.title.get_or_insert_with(|| words.to_owned());
+    }
+
+    /// Complains once if nothing so far has been the title.
+    fn need_title(&mut self, line: usize) {
+        if self.title.is_none() {
+            let rule = "comes before the title: a lesson begins with # and its title";
+            self.refuse(line, Problem::at("", rule));
+            self.title = Some(String::new());
+        }
+    }
+
+    fn text(&mut self, source: &str, line: usize) -> Option<Text> {
+        let page = self.pages.len();
+        let read = Text::read(source, line, |name| self.names.find(name, page));
+        read.map_err(|problems| self.refuse_all(problems)).ok()
+    }
+
+    fn place(&mut self, block: Block) {
+        match self.pages.last_mut() {
+            Some(page) => page.blocks.push(block),
+            None => self.introduction.push(block),
+        }
+    }
+
+    fn add_fenced(&mut self, word: &str, inside: &str, line: usize) {
+        self.need_title(line);
+        if word.is_empty() || LANGUAGES.contains(&word) {
+            return self.place(Block::Shown(Shown {
+                language: word.to_owned(),
+                text: inside.to_owned(),
+            }));
+        }
+        if !WORDS.contains(&word) {
+            let near = nearest(word, WORDS.into_iter().chain(LANGUAGES));
+            let also = match near.starts_with("did you mean") {
+                true => format!(" (shown as they are: {})", listed(LANGUAGES.into_iter())),
+                false => String::new(),
+            };
+            let rule = format!("is no block of a lesson: {near}{also}");
+            return self.refuse(line, Problem::at(word, rule));
+        }
+        if word == "notes" {
+            let text = inside.trim_end();
+            if let Some(text) = self.text(text, line + 1) {
+                self.place(Block::Notes(text));
+            }
+            return;
+        }
+        if word != "lesson" && self.pages.is_empty() {
+            let rule = "stands before the first page: write its heading, ## ..., above it";
+            return self.refuse(line, Problem::at(word, rule));
+        }
+        self.add_block(word, inside, line);
+    }
+
+    fn add_block(&mut self, word: &str, inside: &str, line: usize) {
+        let mut reader = Reader::new(self.origin, word, inside, line);
+        let page = self.pages.len();
+        let find = |name: &str| self.names.find(name, page);
+        let read = match word {
+            "lesson" => return self.add_head(reader),
+            "lab" | "task" => return self.add_setup(word, line),
+            "predict" => blocks::predict(&mut reader, find).map(Block::Predict),
+            "compare" => blocks::compare(&mut reader, find).map(Block::Compare),
+            _ => blocks::check(&mut reader, find).map(Block::Check),
+        };
+        match read {
+            Ok(block) => {
+                match &block {
+                    Block::Predict(predict) if !self.predictions.insert(predict.name.clone()) => {
+                        let rule = "is the name of an earlier prediction: choose another";
+                        let name = toml::Value::from(predict.name.as_str());
+                        self.refuse(line, Problem::with_value("predict.name", &name, rule));
+                    }
+                    Block::Compare(compare) => self.compares.push(compare.clone()),
+                    _ => {}
+                }
+                self.place(block);
+            }
+            Err(problems) => self.refuse_all(problems),
+        }
+    }
+
+    fn add_head(&mut self, mut reader: Reader<'_>) {
+        let line = reader.line;
+        let misplaced = match (self.has_head, self.pages.is_empty()) {
+            (true, _) => "stands twice: a lesson has one such block",
+            (false, false) => "stands on a page: its place is below the title",
+            (false, true) => "",
+        };
+        if !misplaced.is_empty() {
+            return self.refuse(line, Problem::at("lesson", misplaced));
+        }
+        self.has_head = true;
+        match blocks::head(&mut reader) {
+            Ok((about, minutes)) => (self.about, self.minutes) = (about, minutes),
+            Err(problems) => self.refuse_all(problems),
+        }
+    }
+
+    fn add_setup(&mut self, word: &str, line: usize) {
+        let is_same = |block: &Block| match block {
+            Block::Lab(_) => word == "lab",
+            Block::Task(_) => word == "task",
+            _ => false,
+        };
+        let page = self.pages.last();
+        if page.is_some_and(|page| page.blocks.iter().any(is_same)) {
+            let rule = "stands twice on this page, which has one: begin another page with ##";
+            return self.refuse(line, Problem::at(word, rule));
+        }
+        let setup = self.setups.iter().find(|setup| setup.line == line);
+        if let Some(setup) = setup.cloned() {
+            self.place(match word {
+                "lab" => Block::Lab(setup),
+                _ => Block::Task(setup),
+            });
+        }
+    }
+
+    fn finish(mut self) -> Result<Lesson, Problems> {
+        for compare in std::mem::take(&mut self.compares) {
+            self.check_compare(&compare);
+        }
+        if self.title.is_none() {
+            let rule = "has no title: a lesson begins with # and its title";
+            self.refuse(1, Problem::at("", rule));
+        }
+        if self.pages.is_empty() {
+            let rule = "has no page: each begins with ## and its heading";
+            self.refuse(1, Problem::at("", rule));
+        }
+        if self.found.list.is_empty() {
+            return Ok(Lesson {
+                name: self.origin.to_owned(),
+                origin: self.origin.to_owned(),
+                title: self.title.unwrap_or_default(),
+                about: self.about,
+                minutes: self.minutes,
+                introduction: self.introduction,
+                pages: self.pages,
+            });
+        }
+        let Found { mut list, more } = self.found;
+        list.sort_by_key(line_of);
+        Err(Problems {
+            origin: self.origin.to_owned(),
+            list,
+            more,
+        })
+    }
+
+    /// Holds that the prediction of `compare` is asked for before it.
+    fn check_compare(&mut self, compare: &Compare) {
+        let line_of = |page: &Page| {
+            let mut asked = page.predicts();
+            let asked = asked.find(|predict| predict.name == compare.prediction)?;
+            Some(asked.line)
+        };
+        let asked = self.pages.iter().find_map(line_of);
+        let rule = match asked {
+            Some(line) if line < compare.line => return,
+            Some(line) => format!("is asked for later, on line {line}"),
+            None if self.predictions.is_empty() => {
+                "is asked for nowhere: a predict block asks".to_owned()
+            }
+            None => {
+                let known = self.predictions.iter().map(String::as_str);
+                format!(
+                    "is asked for nowhere: {}",
+                    nearest(&compare.prediction, known)
+                )
+            }
+        };
+        let name = toml::Value::from(compare.prediction.as_str());
+        let problem = Problem::with_value("compare.prediction", &name, rule);
+        self.refuse(compare.line, problem);
+    }
+}
+
+fn line_of(problem: &Problem) -> usize {
+    let place = problem.place.as_deref().unwrap_or_default();
+    let number = place.strip_prefix("line ").map(str::parse);
+    number.and_then(Result::ok).unwrap_or_default()
+}

@@ -1,0 +1,27 @@
+//! The lessons that come with the program, compiled in.
+
+/// A lesson that comes with the program.
+#[derive(Clone, Copy, Debug)]
+pub struct Shipped {
+    /// Its name on the command line; `presets/lessons/NAME.md` in the source.
+    pub name: &'static str,
+    /// The file's text.
+    pub text: &'static str,
+}
+
+macro_rules! lessons {
+    ($($name:literal)*) => {
+        &[$(Shipped {
+            name: $name,
+            text: include_str!(concat!("../../presets/lessons/", $name, ".md")),
+        }),*]
+    };
+}
+
+/// Every lesson, in the order in which they build on each other.
+pub const LESSONS: &[Shipped] = lessons![];
+
+/// The lesson of that name.
+pub fn find(name: &str) -> Option<&'static Shipped> {
+    LESSONS.iter().find(|lesson| lesson.name == name)
+}

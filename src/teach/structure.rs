@@ -1,0 +1,227 @@
+//! The structure of a lesson's Markdown: headings, fenced blocks and the text between them.
+
+use crate::scenario::Problem;
+use pulldown_cmark::{CodeBlockKind, Event, HeadingLevel, Parser, Tag, TagEnd};
+use std::ops::Range;
+
+/// The words behind a fence that mean something in a lesson.
+pub(super) const WORDS: [&str; 7] = [
+    "lesson", "lab", "task", "predict", "compare", "check", "notes",
+];
+/// The words behind a fence whose block is shown as it is.
+pub(super) const LANGUAGES: [&str; 6] = ["text", "sh", "toml", "csv", "python", "matlab"];
+
+/// A part of the file.
+#[derive(Debug)]
+pub(super) struct Element<'a> {
+    pub(super) kind: Kind<'a>,
+    /// Its first line, from 1.
+    pub(super) line: usize,
+}
+
+#[derive(Debug)]
+pub(super) enum Kind<'a> {
+    Title(String),
+    /// The heading of a page.
+    Heading(String),
+    /// A fenced block: the word behind the fence, and what stands between the fences.
+    Fenced(&'a str, &'a str),
+    Text(&'a str),
+}
+
+/// The lines of a file.
+pub(super) struct Lines(Vec<usize>);
+
+impl Lines {
+    pub(super) fn of(text: &str) -> Self {
+        Self(text.match_indices('\n').map(|(at, _)| at).collect())
+    }
+
+    /// The line of the byte at `offset`, from 1.
+    pub(super) fn at(&self, offset: usize) -> usize {
+        self.0.partition_point(|&end| end < offset) + 1
+    }
+}
+
+/// A problem that stands on `line`.
+pub(super) fn on_line(line: usize, mut problem: Problem) -> Problem {
+    problem.place = Some(format!("line {line}"));
+    problem
+}
+
+/// The parts of `text` in order.
+///
+/// # Errors
+/// A fence that is not closed, or a block or heading where none can be.
+pub(super) fn structure<'a>(text: &'a str, lines: &Lines) -> Result<Vec<Element<'a>>, Problem> {
+    let mut walk = Walk {
+        text,
+        lines,
+        elements: Vec::new(),
+        end: 0,
+    };
+    let mut depth = 0_usize;
+    let mut heading: Option<(HeadingLevel, Range<usize>, String)> = None;
+    for (event, range) in Parser::new(text).into_offset_iter() {
+        match event {
+            Event::Start(tag) => {
+                match tag {
+                    Tag::Heading { level, .. } if depth == 0 => {
+                        heading = Some((level, range, String::new()));
+                    }
+                    Tag::CodeBlock(CodeBlockKind::Fenced(info)) => {
+                        walk.fenced(&info, range, depth == 0)?;
+                    }
+                    Tag::HtmlBlock if depth == 0 && text[range.clone()].starts_with("<!--") => {
+                        walk.leave_out(range);
+                    }
+                    _ => {}
+                }
+                depth += 1;
+            }
+            Event::End(tag) => {
+                depth = depth.saturating_sub(1);
+                if let (TagEnd::Heading(_), 0, Some((level, range, words))) =
+                    (tag, depth, heading.take_if(|_| depth == 0))
+                {
+                    walk.heading(level, range, &words);
+                }
+            }
+            Event::Text(words) | Event::Code(words) => {
+                if let Some((_, _, heading)) = &mut heading {
+                    heading.push_str(&words);
+                }
+            }
+            _ => {}
+        }
+    }
+    walk.text_up_to(text.len());
+    Ok(walk.elements)
+}
+
+/// The way through a file.
+struct Walk<'a, 'b> {
+    text: &'a str,
+    lines: &'b Lines,
+    elements: Vec<Element<'a>>,
+    /// Where the last element ends.
+    end: usize,
+}
+
+impl<'a> Walk<'a, '_> {
+    /// Takes what stands between the last element and `begin` as text.
+    fn text_up_to(&mut self, begin: usize) {
+        let between = &self.text[self.end.min(begin)..begin];
+        let blank: usize = between
+            .split_inclusive('\n')
+            .take_while(|line| line.trim().is_empty())
+            .map(str::len)
+            .sum();
+        let text = between[blank..].trim_end();
+        if !text.is_empty() {
+            self.elements.push(Element {
+                kind: Kind::Text(text),
+                line: self.lines.at(self.end.min(begin) + blank),
+            });
+        }
+        self.end = begin;
+    }
+
+    /// Leaves `range` out of the text.
+    fn leave_out(&mut self, range: Range<usize>) {
+        self.text_up_to(range.start);
+        self.end = range.end;
+    }
+
+    fn add(&mut self, kind: Kind<'a>, range: Range<usize>) {
+        let line = self.lines.at(range.start);
+        self.leave_out(range);
+        self.elements.push(Element { kind, line });
+    }
+
+    fn heading(&mut self, level: HeadingLevel, range: Range<usize>, words: &str) {
+        let words = words.trim().to_owned();
+        match level {
+            HeadingLevel::H1 => self.add(Kind::Title(words), range),
+            HeadingLevel::H2 => self.add(Kind::Heading(words), range),
+            _ => {}
+        }
+    }
+
+    /// Takes the fenced block at `range`; `is_alone` says that it stands in no list and no quotation.
+    fn fenced(&mut self, info: &str, range: Range<usize>, is_alone: bool) -> Result<(), Problem> {
+        let line = self.lines.at(range.start);
+        let mut words = info.split_whitespace();
+        let word = words.next().unwrap_or_default();
+        let is_of_lessons = WORDS.contains(&word);
+        if !is_alone {
+            let rule = "stands in a list or a quotation: a block begins at the edge of the page";
+            return match is_of_lessons {
+                true => Err(on_line(line, Problem::at(word, rule))),
+                false => Ok(()),
+            };
+        }
+        let block = &self.text[range.clone()];
+        let inside = between_fences(block).ok_or_else(|| {
+            let rule = format!("is not closed: a line {} must end it", fence_of(block));
+            on_line(line, Problem::at(named(word), rule))
+        })?;
+        if is_of_lessons {
+            if let Some(extra) = words.next() {
+                let rule = format!("stands alone behind its fence, without {extra}");
+                return Err(on_line(line, Problem::at(word, rule)));
+            }
+            if let Some(at) = another_fence(inside) {
+                let begin = self.lines.at(range.start) + 1 + at;
+                let rule = format!(
+                    "is not closed before line {begin}, where another block begins: a line {} must end it",
+                    fence_of(block)
+                );
+                return Err(on_line(line, Problem::at(word, rule)));
+            }
+        }
+        let begin = inside.as_ptr() as usize - self.text.as_ptr() as usize;
+        let (begin, end) = (begin, begin + inside.len());
+        let text = self.text;
+        let word_at = text[range.clone()].find(word).unwrap_or_default() + range.start;
+        let word = &text[word_at..word_at + word.len()];
+        self.add(Kind::Fenced(word, &text[begin..end]), range);
+        Ok(())
+    }
+}
+
+/// How the block with this word behind its fence is called in messages.
+fn named(word: &str) -> &str {
+    match word {
+        "" => "```",
+        word => word,
+    }
+}
+
+/// The fence with which `block` begins.
+fn fence_of(block: &str) -> &str {
+    let block = block.trim_start();
+    let sign = block.chars().next().unwrap_or('`');
+    let rest = block.trim_start_matches(sign);
+    &block[..block.len() - rest.len()]
+}
+
+/// What stands between the fences of `block`; `None` where the second is missing.
+fn between_fences(block: &str) -> Option<&str> {
+    let fence = fence_of(block);
+    let sign = fence.chars().next()?;
+    let block = block.trim_end_matches('\n');
+    let begin = block.find('\n')? + 1;
+    let last = block.rfind('\n')? + 1;
+    let closing = block[last..].trim();
+    let closes = closing.len() >= fence.len() && closing.chars().all(|c| c == sign);
+    (closes && last >= begin).then(|| &block[begin..last])
+}
+
+/// The line of `inside`, from 0, at which another block of a lesson begins.
+fn another_fence(inside: &str) -> Option<usize> {
+    inside.lines().position(|line| {
+        let word = line.trim().trim_start_matches(['`', '~']);
+        line.starts_with("```") && WORDS.contains(&word.trim())
+    })
+}

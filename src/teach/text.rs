@@ -1,0 +1,196 @@
+//! Text in Markdown with places for numbers: `{z_m:.3}`.
+//!
+//! A place holds an expression and, after a colon, how its value is written: `.3` with three decimals, `.2e` with an
+//! exponent. Without that it has four significant digits. A brace that is meant as one is written `\{`, as Markdown has it;
+//! in code, braces are braces.
+
+use super::names::{Kept, value};
+use crate::lab::Lab;
+use crate::scenario::Problem;
+use crate::text::number;
+use crate::work::expression::Expression;
+use pulldown_cmark::{Event, Parser, Tag};
+use std::ops::Range;
+
+/// Significant digits of a number without a format.
+const DIGITS: usize = 4;
+/// The most digits after the point.
+const MOST_DIGITS: usize = 12;
+/// The most problems of one text that are told.
+const MOST_TOLD: usize = 100;
+
+/// Text with places for numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Text {
+    /// The line at which it begins in the file, from 1.
+    pub line: usize,
+    parts: Vec<Piece>,
+}
+
+/// A piece of a text.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Piece {
+    /// Markdown.
+    Plain(String),
+    /// The place for a number.
+    Number(Expression, Format),
+}
+
+/// How a number is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// With four significant digits.
+    Short,
+    /// With so many digits after the point.
+    Fixed(usize),
+    /// With an exponent, and so many digits after the point.
+    Exponent(usize),
+}
+
+impl Format {
+    /// `number` as it is written; "n/a" where there is none.
+    pub fn written(self, number: Option<f64>) -> String {
+        let Some(number) = number.filter(|number| number.is_finite()) else {
+            return number::NONE.to_owned();
+        };
+        match self {
+            Self::Short => number::significant(number, DIGITS),
+            Self::Fixed(digits) => number::fixed(number, digits),
+            Self::Exponent(digits) => number::exponent(number, digits),
+        }
+    }
+
+    fn read(text: &str) -> Result<Self, String> {
+        let wrong = || {
+            format!(
+                "{text} is no way to write a number: there is .3 for three decimals, and .2e with an exponent"
+            )
+        };
+        let digits = text.strip_prefix('.').ok_or_else(wrong)?;
+        let (digits, is_exponent) = match digits.strip_suffix('e') {
+            Some(digits) => (digits, true),
+            None => (digits, false),
+        };
+        let digits = digits.parse().ok().filter(|digits| *digits <= MOST_DIGITS);
+        let digits = digits.ok_or_else(wrong)?;
+        Ok(match is_exponent {
+            true => Self::Exponent(digits),
+            false => Self::Fixed(digits),
+        })
+    }
+}
+
+impl Text {
+    /// Reads `source`, which begins at `line`. `find` says why a name in it stands for no number.
+    ///
+    /// # Errors
+    /// Every place that cannot be read, with its line in the file as the problem's place.
+    pub(super) fn read(
+        source: &str,
+        line: usize,
+        find: impl Fn(&str) -> Result<(), String>,
+    ) -> Result<Self, Vec<Problem>> {
+        let code = code_in(source);
+        let is_code = |at: usize| {
+            let before = code.partition_point(|range| range.start <= at);
+            before > 0 && code[before - 1].contains(&at)
+        };
+        let (mut parts, mut problems) = (Vec::new(), Vec::new());
+        let (mut plain, mut at) = (0, 0);
+        while let Some(found) = source[at..].find('{') {
+            let open = at + found;
+            at = open + 1;
+            if is_code(open) || source[..open].ends_with('\\') {
+                continue;
+            }
+            match place(&source[at..], &find) {
+                Ok((expression, format, length)) => {
+                    parts.push(Piece::Plain(source[plain..open].to_owned()));
+                    parts.push(Piece::Number(expression, format));
+                    at += length;
+                    plain = at;
+                }
+                Err((key, rule)) => {
+                    let lines = source[..open].matches('\n').count();
+                    let mut problem = Problem::at(key, rule);
+                    problem.place = Some(format!("line {}", line + lines));
+                    problems.push(problem);
+                    if problems.len() == MOST_TOLD {
+                        break;
+                    }
+                }
+            }
+        }
+        parts.push(Piece::Plain(source[plain..].to_owned()));
+        parts.retain(|part| !matches!(part, Piece::Plain(text) if text.is_empty()));
+        match problems.is_empty() {
+            true => Ok(Self { line, parts }),
+            false => Err(problems),
+        }
+    }
+
+    /// No text.
+    pub(super) fn empty(line: usize) -> Self {
+        Self {
+            line,
+            parts: Vec::new(),
+        }
+    }
+
+    /// The text in Markdown, with the numbers of `lab` and those that were `kept`; "n/a" stands for a number that there is
+    /// not.
+    pub fn with_numbers(&self, lab: &Lab, kept: &Kept) -> String {
+        self.filled(|expression, format| format.written(value(expression, lab, kept)))
+    }
+
+    /// Its pieces, in order.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.parts
+    }
+
+    /// The text in Markdown, with what `written` makes of each place for a number.
+    pub fn filled(&self, mut written: impl FnMut(&Expression, Format) -> String) -> String {
+        let parts = self.parts.iter().map(|part| match part {
+            Piece::Plain(text) => text.clone(),
+            Piece::Number(expression, format) => written(expression, *format),
+        });
+        parts.collect()
+    }
+}
+
+/// What stands in a place for a number, of which `text` is what follows the brace; and how long it is, with the brace that
+/// ends it. An error is the place as it is written, and what is wrong with it.
+fn place(
+    text: &str,
+    find: &impl Fn(&str) -> Result<(), String>,
+) -> Result<(Expression, Format, usize), (String, String)> {
+    let line = text.lines().next().unwrap_or_default();
+    let Some(end) = line.find('}') else {
+        let rule = "is not closed in its line by }: a brace that is meant as one is written \\{";
+        return Err((format!("{{{line}"), rule.to_owned()));
+    };
+    let inside = &line[..end];
+    let told = |rule: String| (format!("{{{inside}}}"), rule);
+    let (written, format) = match inside.split_once(':') {
+        Some((written, format)) => (written, Format::read(format.trim()).map_err(told)?),
+        None => (inside, Format::Short),
+    };
+    let expression = Expression::parse(written.trim()).map_err(|fault| told(fault.to_string()))?;
+    expression
+        .bind(find)
+        .map_err(|fault| told(fault.to_string()))?;
+    if expression.is_condition() {
+        return Err(told("compares: a number must stand here".to_owned()));
+    }
+    Ok((expression, format, end + 1))
+}
+
+/// Where code stands in `source`.
+fn code_in(source: &str) -> Vec<Range<usize>> {
+    let events = Parser::new(source).into_offset_iter();
+    let code = events.filter_map(|(event, range)| match event {
+        Event::Code(_) | Event::Start(Tag::CodeBlock(_)) => Some(range),
+        _ => None,
+    });
+    code.collect()
+}
