@@ -14,6 +14,7 @@ use crate::storage::confined::Confined;
 use crate::storage::exporting;
 use crate::storage::session::{self, KeptAside, Session};
 use crate::storage::settings::Keeper;
+use crate::teach::Class;
 use crate::text::printable::{Shown, printable};
 use crate::tui::app;
 use crate::tui::panes;
@@ -101,8 +102,13 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     if let Some(commands) = commands {
         lab.take_commands(commands);
     }
+    let (mut class, taken) = Class::resumed(&lab);
+    if let Err(reason) = taken {
+        lab.tell(format!("the lesson cannot be taken again: {reason}"));
+    }
     let frames = args.fps.unwrap_or(settings::FPS);
-    app::run(&mut lab, session.as_ref().ok(), frames).context("the terminal cannot be used")?;
+    app::run(&mut lab, &mut class, session.as_ref().ok(), frames)
+        .context("the terminal cannot be used")?;
     if let Some(trouble) = lab.take_keeper().and_then(|keeper| keeper.close(PATIENCE)) {
         tell(format_args!("gyrolab: {}", printable(&trouble)));
     }

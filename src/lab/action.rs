@@ -113,12 +113,35 @@ pub enum Action {
     Help,
     /// Closes what lies on top, or stops what is in progress.
     Close,
+    /// Does something in the lesson.
+    Lesson(LessonKey),
     /// Draws the whole screen again.
     Redraw,
     /// Suspends the program until the shell resumes it.
     Suspend,
     /// Ends the program.
     Quit,
+}
+
+/// What a key does in the lesson. The room above the lab does it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LessonKey {
+    /// Opens the list of lessons, or closes it.
+    List,
+    /// Turns to the next page.
+    Next,
+    /// Turns to the page before.
+    Before,
+    /// Begins the page again: the run as the page wants it.
+    Again,
+    /// Does the task of the page.
+    ShowTask,
+    /// Shows or hides the notes for the teacher, the next page and a clock.
+    Notes,
+    /// Selects the answer above or below, or scrolls.
+    Move(Direction),
+    /// Gives the selected answer, asks for a number, or opens the selected lesson.
+    Take,
 }
 
 /// A change in the field of a dialog that types no character.

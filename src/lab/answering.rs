@@ -1,12 +1,19 @@
 //! The dialogs: what the one for a file says at first, and the command that an answered dialog asks for.
 
-use super::Lab;
 use super::action::Action;
 use super::carry_out::{Answer, Done};
 use super::command::{Command, Place};
 use super::dialog::{Dialog, Question};
+use super::{Lab, Request};
 
 impl Lab {
+    /// Asks for a number: `title` says for what, `label` what it is and in which unit, `about` how to answer. It comes back as
+    /// [`Request::Answer`].
+    pub fn ask_number(&mut self, title: &str, label: &str, about: &str) {
+        self.on_top.open_dialog(Dialog::number(title, label, about));
+        self.changed = true;
+    }
+
     /// The dialog that asks for the file of an export, a run file or a scenario of the present state.
     ///
     /// # Errors
@@ -37,15 +44,22 @@ impl Lab {
     }
 
     /// Carries out the command that the open dialog asked for. If it is refused, the dialog stays and shows the reason.
-    pub(super) fn accept(&mut self) {
-        let Some(dialog) = self.on_top.take_dialog() else {
-            return;
-        };
+    /// Returns the number that a room above asked for.
+    pub(super) fn accept(&mut self) -> Option<Request> {
+        let dialog = self.on_top.take_dialog()?;
+        if let Question::Number = dialog.question() {
+            match number_typed(dialog.form().text(0)) {
+                Ok(number) => return Some(Request::Answer(number)),
+                Err(reason) => self.on_top.open_dialog(dialog.refused(reason.into())),
+            }
+            return None;
+        }
         let answer = self.answer_to(&dialog);
         match answer {
             Ok(_) => self.tell_answer(answer),
             Err(refusal) => self.on_top.open_dialog(dialog.refused(refusal)),
         }
+        None
     }
 
     fn answer_to(&mut self, dialog: &Dialog) -> Answer {
@@ -74,10 +88,22 @@ impl Lab {
                 to_step: Some(*to_step),
                 force,
             }),
+            Question::Number => None, // the room above takes it
             Question::SavePresent(content) => {
                 return self.files.save("the scenario", content, &path, force);
             }
         };
         command.map_or(Ok(Done::SILENT), |command| self.carry_out(&command))
     }
+}
+
+/// The number that `text` says; a comma may stand for the point.
+///
+/// # Errors
+/// Why it is none.
+fn number_typed(text: &str) -> Result<f64, String> {
+    let text = text.trim().replace(',', ".");
+    let number: Option<f64> = text.parse().ok();
+    let number = number.filter(|number| number.is_finite());
+    number.ok_or_else(|| "must be a number, such as 2.5 or 1e-3".to_owned())
 }

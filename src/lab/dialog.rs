@@ -43,6 +43,8 @@ pub(super) enum Question {
     /// The file for this text, the scenario that starts from the present state. The text is that of the moment when the
     /// dialog was opened: the run may go on while the user types.
     SavePresent(String),
+    /// A number that a room above the lab asks for.
+    Number,
 }
 
 impl Dialog {
@@ -103,6 +105,12 @@ impl Dialog {
         let question = Question::SavePresent(content);
         let title = "save the present state";
         Self::new(question, title, &[("file", path)], &[info])
+    }
+
+    /// Asks for a number.
+    pub(super) fn number(title: &str, label: &str, about: &str) -> Self {
+        let fields = [(label, String::new())];
+        Self::new(Question::Number, title, &fields, &[about])
     }
 
     /// A dialog with `fields`, each with its label and the text that it offers, and the lines `info` below them.

@@ -70,6 +70,9 @@ struct KeptPlace {
     zoom: Option<ZoomFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     script: Option<KeptScript>,
+    /// What the room of the lessons keeps.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    lessons: Option<toml::Table>,
 }
 
 /// The camera of the 3-D view, as [`Camera`] has it.
@@ -143,6 +146,16 @@ impl Lab {
         })
     }
 
+    /// What the session keeps of the lessons, for the room above that knows what it means.
+    pub fn lessons_kept(&self) -> Option<&toml::Table> {
+        self.lessons.as_ref()
+    }
+
+    /// Makes `lessons` what the session keeps of the lessons.
+    pub fn keep_lessons(&mut self, lessons: Option<toml::Table>) {
+        self.lessons = lessons;
+    }
+
     fn place(&mut self) -> KeptPlace {
         let ids = |list: &mut dyn Iterator<Item = &'static str>| -> Vec<String> {
             list.map(str::to_owned).collect()
@@ -175,6 +188,7 @@ impl Lab {
                 three_d: Some(self.view.zoom.three_d),
             }),
             script: self.kept_script(),
+            lessons: self.lessons.clone(),
         }
     }
 
@@ -304,6 +318,7 @@ impl Lab {
                 );
             }
         }
+        lab.lessons = place.lessons;
         lab.tell(told);
         lab.read_now();
         Ok(lab)

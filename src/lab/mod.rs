@@ -31,6 +31,7 @@ mod player;
 pub mod preview;
 mod rerun;
 mod script;
+pub mod sheet;
 mod steering;
 mod traces;
 mod travel;
@@ -53,6 +54,7 @@ use crate::run::NotFinite;
 use crate::scenario::{Scenario, presets};
 use crate::storage::settings::Keeper;
 use crate::work::changed;
+use action::LessonKey;
 use player::halt_in_words;
 use std::sync::Arc;
 use std::time::Duration;
@@ -61,9 +63,13 @@ use view::{Pane, Part, View};
 /// What is said at the end of the scenario's run, before what to try next.
 const END_OF_RUN: &str = "end of the run: space goes on, r begins again";
 
-/// What only the main loop can do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What the lab leaves to the rooms above it.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Request {
+    /// Do in the lesson what a key stands for.
+    Lesson(LessonKey),
+    /// Take this number as the answer to the question of the lesson that was asked last.
+    Answer(f64),
     /// Draw the whole screen again.
     Redraw,
     /// Suspend the program until the shell resumes it.
@@ -83,6 +89,8 @@ pub struct Lab {
     script: Script,
     /// Remembers what dots and colours the user chooses; `None` where nothing is remembered.
     keeper: Option<Keeper>,
+    /// What the session keeps of the lessons.
+    lessons: Option<toml::Table>,
     /// The time since the lab was opened.
     now: Duration,
     /// Whether the picture has changed since it was drawn.
@@ -101,6 +109,7 @@ impl Lab {
             on_top: OnTop::default(),
             script: Script::default(),
             keeper: None,
+            lessons: None,
             now: Duration::ZERO,
             changed: true,
         };

@@ -124,6 +124,14 @@ impl Lab {
         self.go_on_with_script(None);
     }
 
+    /// Removes what the commands of the script have said, unless one of them was refused.
+    pub fn forget_message_of_script(&mut self) {
+        if self.script.failed.is_none() {
+            self.on_top.notice_mut().take_back();
+            self.changed = true;
+        }
+    }
+
     /// Carries out the script at once, without a clock. It waits for exports only.
     ///
     /// # Errors

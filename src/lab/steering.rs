@@ -159,9 +159,10 @@ impl Lab {
             Action::Erase => self.on_top.erase(),
             Action::DoEntry => {} // tui does it
             Action::InField(edit) => self.on_top.edit_field(edit),
-            Action::Accept => self.accept(),
+            Action::Accept => return self.accept(),
             Action::Help => self.on_top.toggle_help(),
             Action::Close => self.close(cleared.anything),
+            Action::Lesson(key) => return Some(Request::Lesson(key)),
             Action::Redraw => return Some(Request::Redraw),
             Action::Suspend if self.files.confined().is_some() => {
                 self.say("there is no shell to go back to: q leaves");

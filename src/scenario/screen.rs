@@ -1,7 +1,7 @@
 //! The names of what the lab's screen shows, as `[view]` of a scenario and commands have them.
 
 /// The panes of the lab. The table of panes in `tui` has a row for each, in this order: the compiler compares the two.
-pub const PANES: [&str; 4] = ["traces", "above", "3d", "parameters"];
+pub const PANES: [&str; 5] = ["lesson", "traces", "above", "3d", "parameters"];
 
 /// What of the lab's screen can be hidden: the panes, the line about the numbers' health, the numbers that theory
 /// predicts, the line that says what there is to see.

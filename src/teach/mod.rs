@@ -6,18 +6,27 @@
 //! - [`names`]: the numbers that an expression of a lesson can name.
 //! - [`predictions`]: what a student has predicted.
 //! - [`stage`]: what to carry out to stand on a page.
+//! - [`class`]: the lessons of a lab; [`taken`]: the one that is open, with the one who takes it; [`page`]: what stands
+//!   beside the panes, of [`markdown`]; [`clock`] and [`watch`]: the time, and a file that changes.
 //! - [`shipped`]: the lessons that come with the program.
 
 mod blocks;
+pub mod class;
+pub mod clock;
 pub mod lesson;
+pub mod markdown;
 pub mod names;
+pub mod page;
 pub mod predictions;
 pub mod reading;
 pub mod shipped;
 pub mod stage;
 mod structure;
+pub mod taken;
 pub mod text;
+pub mod watch;
 
+pub use class::Class;
 pub use lesson::{Answer, Asked, Block, Check, Compare, Keep, Lesson, Page, Predict, Setup, Shown};
 pub use names::{Kept, Names};
 pub use predictions::Predictions;

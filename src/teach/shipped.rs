@@ -19,7 +19,21 @@ macro_rules! lessons {
 }
 
 /// Every lesson, in the order in which they build on each other.
-pub const LESSONS: &[Shipped] = lessons![];
+pub const LESSONS: &[Shipped] = lessons![
+    "why-it-does-not-fall"
+    "one-step-by-hand"
+    "method-1-and-its-z"
+    "method-2-and-its-straight-line"
+    "why-it-seems-to-stand-still"
+    "is-the-wobble-real"
+    "kappa-and-the-scheme"
+    "does-a-faster-spin-precess-faster"
+    "does-steeper-precess-faster"
+    "cusps-loops-and-waves"
+    "the-sleeping-top-wakes"
+    "what-is-conserved"
+    "halve-the-step"
+];
 
 /// The lesson of that name.
 pub fn find(name: &str) -> Option<&'static Shipped> {

@@ -3,6 +3,7 @@
 use crate::lab::action::Action;
 use crate::lab::{Lab, Request};
 use crate::storage::session::Session;
+use crate::teach::Class;
 use crate::tui::keymap::{self, Key};
 use crate::tui::mouse::Pointer;
 use crate::tui::pacing::Pacing;
@@ -18,12 +19,17 @@ const IDLE: Duration = Duration::from_millis(500);
 /// The same while an export is in progress in the background, or a file is being read for the browser.
 const ATTENTIVE: Duration = Duration::from_millis(100);
 
-/// Runs `lab` on the terminal at up to `frames` frames a second until the user leaves. It saves the lab in `session`, if
-/// given.
+/// Runs `lab` and the lessons of its `class` on the terminal at up to `frames` frames a second until the user leaves. It
+/// saves the lab in `session`, if given.
 ///
 /// # Errors
 /// When there is no terminal, or it has been closed. The terminal has then been given back, if that was possible.
-pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<()> {
+pub fn run(
+    lab: &mut Lab,
+    class: &mut Class,
+    session: Option<&Session>,
+    frames: u32,
+) -> io::Result<()> {
     let mut screen = Screen::enter()?;
     let mut pacing = Pacing::new(frames);
     let begin = Instant::now();
@@ -31,17 +37,18 @@ pub fn run(lab: &mut Lab, session: Option<&Session>, frames: u32) -> io::Result<
     let mut pointer = Pointer::default();
     loop {
         screen.set_mouse(lab.view().mouse)?;
-        let wait = wait(lab, pacing.wait(begin.elapsed()));
+        let wait = wait(lab, class, pacing.wait(begin.elapsed()));
         let events = screen.events(wait)?;
         let acted = !events.is_empty();
         for event in events {
-            if handle(event, lab, &mut screen, &mut pointer, session)?.is_break() {
+            if handle(event, lab, class, &mut screen, &mut pointer, session)?.is_break() {
                 return Ok(());
             }
         }
         #[cfg(debug_assertions)]
         panic_if_asked(begin.elapsed());
         lab.advance(&mut || begin.elapsed());
+        class.advance(begin.elapsed(), lab);
         if lab.has_changed() {
             screen::refit(lab, screen.size()?);
         }
@@ -83,7 +90,7 @@ fn panic_if_asked(elapsed: Duration) {
 }
 
 /// How long to wait for events, if the next frame is due in `to_frame`.
-fn wait(lab: &Lab, to_frame: Duration) -> Duration {
+fn wait(lab: &Lab, class: &Class, to_frame: Duration) -> Duration {
     if lab.player().playback().is_flat_out() {
         Duration::ZERO
     } else if lab.player().playback().is_busy() || lab.has_changed() {
@@ -94,6 +101,7 @@ fn wait(lab: &Lab, to_frame: Duration) -> Duration {
             || lab.on_top().browser().is_loading()
             || !lab.script().is_done();
         let rest = if is_attentive { ATTENTIVE } else { IDLE };
+        let rest = class.wait().unwrap_or(rest).min(rest);
         lab.notice_ends_in().unwrap_or(rest).min(rest)
     }
 }
@@ -101,6 +109,7 @@ fn wait(lab: &Lab, to_frame: Duration) -> Duration {
 fn handle(
     event: Event,
     lab: &mut Lab,
+    class: &mut Class,
     screen: &mut Screen,
     pointer: &mut Pointer,
     session: Option<&Session>,
@@ -131,6 +140,16 @@ fn handle(
     match request {
         None => return Ok(ControlFlow::Continue(())),
         Some(Request::Quit) => return Ok(ControlFlow::Break(())),
+        Some(Request::Lesson(key)) => {
+            if let Some(direction) = class.act(key, lab) {
+                screen::scroll_page(lab, direction, screen.size()?);
+            }
+            return Ok(ControlFlow::Continue(()));
+        }
+        Some(Request::Answer(number)) => {
+            class.answer(number, lab);
+            return Ok(ControlFlow::Continue(()));
+        }
         Some(Request::Redraw) => screen.forget()?,
         Some(Request::Suspend) => screen.suspend()?,
     }

@@ -1,7 +1,7 @@
 //! The one table of keys: what is pressed, in which mode, what it means, and what the footer and the help say of it.
 
 pub use crate::lab::Mode;
-use crate::lab::action::{Action, Direction, FieldEdit};
+use crate::lab::action::{Action, Direction, FieldEdit, LessonKey};
 use Key::{
     BackTab, Backspace, Char, Ctrl, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp,
     Right, ShiftDown, ShiftLeft, ShiftRight, ShiftUp, Tab, Up,
@@ -97,6 +97,12 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('s')], Action::SaveRun, "", "save the run file: scenario and all that was done"),
     row(&[Lab], &[Char('S')], Action::SavePresent, "", "save the present state as a scenario"),
     row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file"),
+    row(&[Lab], &[Char('L')], Action::Lesson(LessonKey::List), "lessons", "the lessons: choose one; in a lesson: back to the list"),
+    row(&[Lab], &[Char('n')], Action::Lesson(LessonKey::Next), "", "the next page of the lesson"),
+    row(&[Lab], &[Char('N')], Action::Lesson(LessonKey::Before), "", "the page before"),
+    row(&[Lab], &[Char('R')], Action::Lesson(LessonKey::Again), "", "back to where the lesson stands: the page's run from its beginning"),
+    row(&[Lab], &[Char('D')], Action::Lesson(LessonKey::ShowTask), "", "show how the task of the page is done"),
+    row(&[Lab], &[Char('C')], Action::Lesson(LessonKey::Notes), "", "for a class: notes, the next page and a clock that counts up, down, or shows the time"),
     row(&[Lab], &[Tab], Action::NextPane, "pane", "the next pane"),
     row(&[Lab], &[BackTab], Action::PreviousPane, "", "the pane before"),
     row(&[Lab], &[Char('f')], Action::FillScreen, "fill", "fill the screen with the pane, or show all panes again"),
@@ -261,6 +267,12 @@ mod tests {
             A::PreviousPane,
             A::FillScreen,
             A::ThreeD,
+            A::Lesson(LessonKey::List),
+            A::Lesson(LessonKey::Next),
+            A::Lesson(LessonKey::Before),
+            A::Lesson(LessonKey::Again),
+            A::Lesson(LessonKey::ShowTask),
+            A::Lesson(LessonKey::Notes),
             A::Move(Direction::Up),
             A::Move(Direction::Down),
             A::Move(Direction::Left),
@@ -328,6 +340,7 @@ mod tests {
                 | A::PreviousPane
                 | A::FillScreen
                 | A::ThreeD
+                | A::Lesson(_)
                 | A::Move(_)
                 | A::StepCursor(_)
                 | A::ToTurn(_)

@@ -12,6 +12,11 @@ use ratatui::layout::Rect;
 const WIDTH: u16 = 80;
 /// From this width on two panes stand side by side.
 const TWO_FROM: u16 = 52;
+/// From this width on a page of a lesson stands beside a pane.
+const BESIDE_PAGE_FROM: u16 = 72;
+/// The fewest and the most columns of a page, and its share of the screen, %.
+const PAGE: (u16, u16) = (38, 64);
+const PAGE_SHARE: usize = 48;
 /// From this width on a hint fits on one line.
 const ONE_LINE_FROM: u16 = 140;
 /// The height the whole lab wants.
@@ -111,10 +116,15 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     if area.is_empty() {
         return Vec::new();
     }
+    if let Some((page, rest)) = beside_page(area, view) {
+        let mut panes = panes(rest, &without_page(view));
+        panes.insert(0, (Pane::LESSON, page));
+        return panes;
+    }
     let joined = joined(area.width);
     if view.filled || area.width < TWO_FROM {
         vec![(view.focus, area)]
-    } else if !PANES.iter().all(|row| view.may_show(row.id)) {
+    } else if !usual().all(|row| view.may_show(row.id)) {
         chosen(area, view)
     } else if joined.len() > 2 {
         columns(area, &joined)
@@ -123,10 +133,45 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     }
 }
 
+/// The panes that stand beside each other wherever there is room: all but the page of a lesson.
+fn usual() -> impl Iterator<Item = &'static PaneRow> {
+    PANES.iter().filter(|row| row.id != Pane::LESSON)
+}
+
+/// The place of a lesson's page, and the rest of `area`, where there is a page and room for both.
+fn beside_page(area: Rect, view: &View) -> Option<(Rect, Rect)> {
+    if view.filled || !view.may_show(Pane::LESSON) || area.width < BESIDE_PAGE_FROM {
+        return None;
+    }
+    let share = area.width as usize * PAGE_SHARE / 100;
+    let width = (share as u16).clamp(PAGE.0, PAGE.1);
+    let page = Rect { width, ..area };
+    let rest = Rect {
+        x: page.right(),
+        width: area.width - width,
+        ..area
+    };
+    Some((page, rest))
+}
+
+/// How the panes beside a page are shown: the page is not among them, and where there is room for one, it is the one that
+/// was there before the page had the focus.
+fn without_page(view: &View) -> View {
+    let mut view = view.clone();
+    view.sheet = None;
+    if view.focus == Pane::LESSON {
+        let before = view.side_by_side.iter().copied();
+        let mut before = before.filter(|pane| view.may_show(*pane));
+        let first = view.to_show().first().copied();
+        view.focus = before.next().or(first).unwrap_or(Pane::TRACES);
+    }
+    view
+}
+
 /// The panes that have room beside each other on `width` columns, in the table's order: by their ranks, up to the first
 /// that has none.
 fn joined(width: u16) -> Vec<&'static PaneRow> {
-    let mut ranked: Vec<_> = PANES.iter().collect();
+    let mut ranked: Vec<_> = usual().collect();
     ranked.sort_by_key(|row| row.rank);
     let mut taken = 0;
     let has_room = |row: &&PaneRow| {
@@ -135,7 +180,7 @@ fn joined(width: u16) -> Vec<&'static PaneRow> {
     };
     let last = ranked.iter().copied().take_while(has_room).count();
     let is_joined = |row: &&PaneRow| ranked[..last].iter().any(|other| other.id == row.id);
-    PANES.iter().filter(is_joined).collect()
+    usual().filter(is_joined).collect()
 }
 
 /// The pane of the first rank, and beside it the one in focus or else that of the second rank.
@@ -164,7 +209,7 @@ fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     let is_named = |row: &&PaneRow| view.shown.contains(&row.id);
     let has_room = |row: &&PaneRow| joined.iter().any(|other| other.id == row.id);
     let is_chosen = |row: &&PaneRow| view.may_show(row.id) && (is_named(row) || has_room(row));
-    let mut panes: Vec<_> = PANES.iter().filter(is_chosen).collect();
+    let mut panes: Vec<_> = usual().filter(is_chosen).collect();
     if area.width < WIDTH {
         let rest = panes.iter().skip(1).copied();
         let second = rest

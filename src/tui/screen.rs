@@ -5,8 +5,10 @@ use super::panes::browser::BrowserPane;
 use super::panes::chrome;
 use super::panes::form::FormPane;
 use super::panes::help::Help;
+use super::panes::lesson;
 use super::panes::timeline;
 use crate::lab::Lab;
+use crate::lab::action::Direction;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, Part};
 use crate::tui::keymap::Mode;
@@ -26,6 +28,15 @@ pub fn fit(lab: &mut Lab, size: Rect) {
 pub fn refit(lab: &mut Lab, size: Rect) {
     if Layout::side_by_side(size, lab.view()) != lab.view().side_by_side {
         fit(lab, size);
+    }
+}
+
+/// Scrolls the page of the lesson, on a screen of this size.
+pub fn scroll_page(lab: &mut Lab, direction: Direction, size: Rect) {
+    let layout = Layout::new(size, lab.view(), true);
+    let place = layout.panes.iter().find(|(pane, _)| *pane == Pane::LESSON);
+    if let Some(&(_, place)) = place {
+        lesson::scroll(lab, direction, place);
     }
 }
 

@@ -649,7 +649,7 @@ fn shown_panes_share_the_screen_at_every_width() {
 #[test]
 fn a_pane_has_the_name_that_files_give_it() {
     use gyrolab::scenario::screen::{FILLING, HIDEABLE, PANES};
-    assert_eq!(PANES, ["traces", "above", "3d", "parameters"]);
+    assert_eq!(PANES, ["lesson", "traces", "above", "3d", "parameters"]);
     for id in PANES {
         let pane = Pane::named(id).unwrap();
         assert_eq!(pane.id(), id);

@@ -7,11 +7,13 @@ pub mod markers;
 pub mod theme;
 
 use super::action::Direction;
+use super::sheet::Sheet;
 use crate::observe::camera::{Camera, Zoom};
 use crate::run::Clock;
 use crate::scenario::screen::PANES;
 use crate::scenario::{Scenario, keys};
 use markers::Marker;
+use std::sync::Arc;
 use theme::{Background, Theme};
 
 /// The longest time that one sweep of the traces may take at first, seconds of wall time.
@@ -51,6 +53,9 @@ impl Pane {
     pub const THREE_D: Self = Self("3d");
     /// The scenario's values and the readouts.
     pub const PARAMETERS: Self = Self("parameters");
+
+    /// The page of a lesson. It is shown as long as there is one.
+    pub const LESSON: Self = Self("lesson");
 
     /// The pane of this id.
     pub const fn new(id: &'static str) -> Self {
@@ -124,6 +129,10 @@ pub struct View {
     pub next: Option<String>,
     /// Whether the screen is bare: few panes, and nothing around them but title and time.
     pub bare: bool,
+    /// The text beside the panes.
+    pub sheet: Option<Arc<Sheet>>,
+    /// The first row of it that is shown; `None`: as its paragraph that is to be seen wants it.
+    pub sheet_scrolled: Option<usize>,
     /// Whether the lab listens to the mouse; otherwise the terminal has it, to select text.
     pub mouse: bool,
     /// The panes that stand side by side on the screen, as it is now, while none fills it: from left to right, in the
@@ -152,6 +161,8 @@ impl View {
             look_at: None,
             next: None,
             bare: false,
+            sheet: None,
+            sheet_scrolled: None,
             mouse: true,
             side_by_side: panes.to_vec(),
         };
@@ -212,6 +223,9 @@ impl View {
 
     /// Whether `pane` may be on the screen.
     pub fn may_show(&self, pane: Pane) -> bool {
+        if pane == Pane::LESSON {
+            return self.sheet.is_some() && !self.hides(Part::Pane(pane));
+        }
         let is_shown = match (self.shown.is_empty(), self.bare) {
             (true, true) => BARE.contains(&pane),
             (true, false) => true,

@@ -3,7 +3,7 @@
 use super::{shortened, wrapped_to, write};
 use crate::analysis::remarks::{Remark, remarks};
 use crate::lab::Lab;
-use crate::lab::action::Action;
+use crate::lab::action::{Action, LessonKey};
 use crate::observe::reading::Reading;
 use crate::text::number::{fixed, shortest};
 use crate::tui::keymap::{BINDINGS, Key, Mode};
@@ -265,12 +265,13 @@ fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
 /// Whether the footer names `action` as long as it can.
 fn is_kept(action: Action) -> bool {
     use Action::{
-        Accept, Browse, Choose, Export, Help, Parameters, Push, Quit, Step, ToggleExact,
+        Accept, Browse, Choose, Export, Help, Lesson, Parameters, Push, Quit, Step, ToggleExact,
         TogglePause, ZoomIn,
     };
     matches!(
         action,
-        TogglePause
+        Lesson(LessonKey::Take | LessonKey::Next)
+            | TogglePause
             | Step
             | Parameters
             | Push

@@ -1,0 +1,244 @@
+//! The lessons of a lab: the list of them, the one that is taken, and where the others were left.
+
+use super::predictions::Predictions;
+use super::taken::Taken;
+use super::{Kept, page, reading, shipped};
+use crate::lab::Lab;
+use crate::lab::action::{Direction, LessonKey};
+use crate::lab::sheet::Sheet;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::time::Duration;
+use toml::Table;
+
+/// The lessons of a lab.
+#[derive(Debug, Default)]
+pub struct Class {
+    shown: Shown,
+    /// Where the lessons were left that are not taken now, by their names.
+    left: BTreeMap<String, Place>,
+    /// The time since the lab was opened.
+    now: Duration,
+    /// Whether the page is to be written again.
+    has_changed: bool,
+}
+
+/// What is shown beside the panes.
+#[derive(Debug, Default)]
+enum Shown {
+    #[default]
+    Nothing,
+    /// The list of lessons, of which the one with this number is selected.
+    List(usize),
+    Lesson(Box<Taken>),
+}
+
+/// Where a lesson was left.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Place {
+    /// The number of the page, from 1.
+    pub page: usize,
+    /// What was predicted.
+    #[serde(default)]
+    pub predictions: Predictions,
+    /// The numbers that were kept.
+    #[serde(default)]
+    pub kept: Kept,
+}
+
+/// What a session keeps of the lessons.
+#[derive(Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct KeptLessons {
+    /// The one that is taken.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub open: Option<String>,
+    /// Where each stands, by its name.
+    #[serde(default)]
+    pub lessons: BTreeMap<String, Place>,
+}
+
+impl Class {
+    /// The lessons as the session of `lab` has kept them. The one that was taken is taken again, on its page; the run is
+    /// left where it is.
+    ///
+    /// # Errors
+    /// Why the lesson that was taken cannot be taken again; where it was left is kept.
+    pub fn resumed(lab: &Lab) -> (Self, Result<(), String>) {
+        let mut class = Self::default();
+        let kept: Option<KeptLessons> = lab
+            .lessons_kept()
+            .and_then(|kept| kept.clone().try_into().ok());
+        let Some(kept) = kept else {
+            return (class, Ok(()));
+        };
+        class.left = kept.lessons;
+        class.has_changed = true;
+        let taken = kept.open.map_or(Ok(()), |name| class.take(&name));
+        (class, taken)
+    }
+
+    /// Opens the lesson that NAME names, on the page `page` (from 1) or where it was left, and makes the lab stand there.
+    ///
+    /// # Errors
+    /// When there is no such lesson or page, or everything that is wrong with its file.
+    pub fn open(&mut self, name: &str, page: Option<usize>, lab: &mut Lab) -> Result<(), String> {
+        self.take(name)?;
+        if let Shown::Lesson(taken) = &mut self.shown {
+            taken.go_to(page, lab)?;
+        }
+        self.show(lab);
+        lab.turn_to_sheet();
+        Ok(())
+    }
+
+    /// The lesson that is taken.
+    pub fn taken(&self) -> Option<&Taken> {
+        match &self.shown {
+            Shown::Lesson(taken) => Some(taken),
+            _ => None,
+        }
+    }
+
+    /// Takes the lesson that NAME names, where it was left.
+    fn take(&mut self, name: &str) -> Result<(), String> {
+        let lesson = reading::open(name).map_err(|problems| problems.to_string())?;
+        self.leave();
+        let place = self.left.remove(&lesson.name).unwrap_or_default();
+        self.shown = Shown::Lesson(Box::new(Taken::new(lesson, place, self.now)));
+        Ok(())
+    }
+
+    /// Keeps where the lesson stands, and takes it no longer.
+    fn leave(&mut self) {
+        if let Shown::Lesson(taken) = std::mem::take(&mut self.shown) {
+            let name = taken.lesson().name.clone();
+            self.left.insert(name, taken.into_place());
+        }
+        self.has_changed = true;
+    }
+
+    /// Does what `key` stands for. Returns the direction in which the page is to be scrolled, if that is what it means.
+    pub fn act(&mut self, key: LessonKey, lab: &mut Lab) -> Option<Direction> {
+        let mut scrolls = None;
+        match (&mut self.shown, key) {
+            (Shown::List(_), LessonKey::List) => self.shown = Shown::Nothing,
+            (_, LessonKey::List) => self.open_list(),
+            (Shown::List(selected), LessonKey::Move(direction)) => {
+                let last = self.left.len().max(1) + shipped::LESSONS.len();
+                *selected = selected.saturating_add_signed(rows(direction)).min(last);
+            }
+            (Shown::List(selected), LessonKey::Take) => {
+                let selected = *selected;
+                self.open_selected(selected, lab);
+            }
+            (Shown::List(_), _) => lab.refuse("Enter opens the selected lesson, L closes the list"),
+            (Shown::Nothing, _) => lab.refuse("no lesson is open: L lists them"),
+            (Shown::Lesson(taken), key) => scrolls = taken.act(key, lab),
+        }
+        if let Shown::List(selected) = &self.shown {
+            let last = self.names().len().saturating_sub(1);
+            self.shown = Shown::List((*selected).min(last));
+        }
+        self.show(lab);
+        if key == LessonKey::List {
+            lab.turn_to_sheet();
+        }
+        scrolls
+    }
+
+    /// Leaves the lesson for the list; it is selected there.
+    fn open_list(&mut self) {
+        let here = self.taken().map(|taken| taken.lesson().name.clone());
+        self.leave();
+        let names = self.names();
+        let selected = here.and_then(|here| names.iter().position(|name| *name == here));
+        self.shown = Shown::List(selected.unwrap_or(0));
+    }
+
+    fn open_selected(&mut self, selected: usize, lab: &mut Lab) {
+        let Some(name) = self.names().get(selected).cloned() else {
+            return;
+        };
+        if let Err(reason) = self.open(&name, None, lab) {
+            lab.refuse(reason.lines().next().unwrap_or_default());
+        }
+    }
+
+    /// The names of the list: the lessons that come with the program, then the files that were opened.
+    fn names(&self) -> Vec<String> {
+        let shipped = shipped::LESSONS.iter().map(|lesson| lesson.name.to_owned());
+        let files = self.left.keys();
+        let files = files.filter(|name| shipped::find(name).is_none()).cloned();
+        shipped.chain(files).collect()
+    }
+
+    /// Takes `number` as the answer to the question that was asked last.
+    pub fn answer(&mut self, number: f64, lab: &mut Lab) {
+        if let Shown::Lesson(taken) = &mut self.shown {
+            taken.answer(number, lab);
+        }
+        self.show(lab);
+    }
+
+    /// Brings the page up to date with the lab and the file; `now` is the time since the lab was opened.
+    pub fn advance(&mut self, now: Duration, lab: &mut Lab) {
+        let second = now.as_secs() != self.now.as_secs();
+        self.now = now;
+        let Shown::Lesson(taken) = &mut self.shown else {
+            if self.has_changed {
+                self.show(lab);
+            }
+            return;
+        };
+        let is_new = taken.advance(now, lab);
+        if is_new || self.has_changed || lab.has_changed() || (second && taken.clock().is_some()) {
+            self.show(lab);
+        }
+    }
+
+    /// How long the caller may wait until the page is looked at again; `None` where nothing waits.
+    pub fn wait(&self) -> Option<Duration> {
+        self.taken().map(|_| Duration::from_secs(1))
+    }
+
+    /// Writes the sheet, and what the session keeps.
+    fn show(&mut self, lab: &mut Lab) {
+        self.has_changed = false;
+        let sheet = self.sheet(lab);
+        lab.set_sheet(sheet);
+        let kept = Table::try_from(self.kept()).unwrap_or_default();
+        lab.keep_lessons(Some(kept).filter(|kept| !kept.is_empty()));
+    }
+
+    fn sheet(&mut self, lab: &Lab) -> Option<Sheet> {
+        let names = self.names();
+        match &mut self.shown {
+            Shown::Nothing => None,
+            Shown::List(selected) => Some(page::list(&names, *selected, &self.left)),
+            Shown::Lesson(taken) => Some(page::sheet(taken, self.now, lab)),
+        }
+    }
+
+    /// What the session keeps.
+    fn kept(&self) -> KeptLessons {
+        let mut lessons = self.left.clone();
+        let open = self.taken().map(|taken| {
+            let name = taken.lesson().name.clone();
+            lessons.insert(name.clone(), taken.place().clone());
+            name
+        });
+        KeptLessons { open, lessons }
+    }
+}
+
+/// Entries by which a key moves in the list.
+fn rows(direction: Direction) -> isize {
+    match direction {
+        Direction::Up | Direction::Left => -1,
+        Direction::Down | Direction::Right => 1,
+        Direction::PageUp => -10,
+        Direction::PageDown => 10,
+    }
+}

@@ -1,0 +1,63 @@
+//! The clock of a lesson: how long it has taken, how much of its time is left, or the time of the day.
+
+use chrono::Local;
+use std::time::Duration;
+
+/// What the clock shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// The time since the lesson was opened.
+    Up,
+    /// What is left of the lesson's minutes.
+    Down,
+    /// The time of the day.
+    Day,
+}
+
+impl Clock {
+    /// The next kind of clock; `None` after the last. A lesson without a length has none that counts down.
+    pub fn next(self, minutes: Option<u32>) -> Option<Self> {
+        match self {
+            Self::Up if minutes.is_some() => Some(Self::Down),
+            Self::Up | Self::Down => Some(Self::Day),
+            Self::Day => None,
+        }
+    }
+
+    /// What it shows when the lesson was opened `since` ago and should take so many `minutes`.
+    pub fn shown(self, since: Duration, minutes: Option<u32>) -> String {
+        let whole = u64::from(minutes.unwrap_or_default()) * 60;
+        let gone = since.as_secs();
+        match self {
+            Self::Up => format!("{} since the beginning", in_minutes(gone)),
+            Self::Down if gone <= whole => format!(
+                "{} left of {} min",
+                in_minutes(whole - gone),
+                minutes.unwrap_or_default()
+            ),
+            Self::Down => format!("{} over time", in_minutes(gone - whole)),
+            Self::Day => Local::now().format("%H:%M").to_string(),
+        }
+    }
+}
+
+fn in_minutes(seconds: u64) -> String {
+    format!("{}:{:02}", seconds / 60, seconds % 60)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_counts_up_and_down() {
+        let since = Duration::from_secs(61);
+        assert_eq!(Clock::Up.shown(since, None), "1:01 since the beginning");
+        assert_eq!(Clock::Down.shown(since, Some(2)), "0:59 left of 2 min");
+        assert_eq!(Clock::Down.shown(since, Some(1)), "0:01 over time");
+        assert_eq!(Clock::Up.next(None), Some(Clock::Day));
+        assert_eq!(Clock::Up.next(Some(5)), Some(Clock::Down));
+        assert_eq!(Clock::Day.next(Some(5)), None);
+        assert_eq!(Clock::Day.shown(since, None).len(), 5);
+    }
+}

@@ -1,0 +1,179 @@
+//! Markdown as paragraphs for the page beside the run.
+
+use crate::lab::sheet::{Kind, Look, Paragraph, Words};
+use pulldown_cmark::{Event, Parser, Tag, TagEnd};
+
+/// The paragraphs of `source`; plain ones become `kind`.
+pub fn paragraphs(source: &str, kind: &Kind) -> Vec<Paragraph> {
+    let mut pen = Pen {
+        kind,
+        done: Vec::new(),
+        words: Vec::new(),
+        look: Look::Plain,
+        lists: Vec::new(),
+        mark: None,
+        is_code: false,
+        is_heading: false,
+    };
+    for event in Parser::new(source) {
+        pen.take(event);
+    }
+    pen.end();
+    pen.done
+}
+
+/// What has been read so far.
+struct Pen<'a> {
+    kind: &'a Kind,
+    done: Vec<Paragraph>,
+    words: Vec<Words>,
+    look: Look,
+    /// The lists that are open, each with the number of its next entry where it is numbered.
+    lists: Vec<Option<u64>>,
+    /// The mark of the entry that begins.
+    mark: Option<String>,
+    is_code: bool,
+    is_heading: bool,
+}
+
+impl Pen<'_> {
+    fn take(&mut self, event: Event<'_>) {
+        match event {
+            Event::Start(tag) => self.start(&tag),
+            Event::End(tag) => self.stop(tag),
+            Event::Text(text) => self.write(&text, self.look),
+            Event::Code(code) => self.write(&code, Look::Code),
+            Event::SoftBreak | Event::HardBreak => self.write(" ", self.look),
+            // What a viewer of Markdown would show of them is nothing or a line.
+            _ => {}
+        }
+    }
+
+    fn start(&mut self, tag: &Tag<'_>) {
+        match tag {
+            Tag::Strong | Tag::Emphasis => self.look = Look::Strong,
+            Tag::List(first) => {
+                self.end();
+                self.lists.push(*first);
+            }
+            Tag::Item => {
+                self.end();
+                let number = self.lists.last_mut().and_then(Option::as_mut);
+                self.mark = Some(match number {
+                    Some(number) => {
+                        *number += 1;
+                        format!("{}.", *number - 1)
+                    }
+                    None => "-".to_owned(),
+                });
+            }
+            Tag::CodeBlock(_) => {
+                self.end();
+                self.is_code = true;
+            }
+            Tag::Heading { .. } => {
+                self.end();
+                self.is_heading = true;
+            }
+            Tag::Paragraph => self.end(),
+            _ => {}
+        }
+    }
+
+    fn stop(&mut self, tag: TagEnd) {
+        match tag {
+            TagEnd::Strong | TagEnd::Emphasis => self.look = Look::Plain,
+            TagEnd::List(_) => {
+                self.end();
+                self.lists.pop();
+            }
+            TagEnd::Item | TagEnd::Paragraph => self.end(),
+            TagEnd::CodeBlock => {
+                self.end();
+                self.is_code = false;
+            }
+            TagEnd::Heading(_) => {
+                self.end();
+                self.is_heading = false;
+            }
+            _ => {}
+        }
+    }
+
+    fn write(&mut self, text: &str, look: Look) {
+        match self.words.last_mut() {
+            Some(words) if words.look == look => words.text.push_str(text),
+            _ => self.words.push(Words {
+                text: text.to_owned(),
+                look,
+            }),
+        }
+    }
+
+    /// Ends the paragraph that is being read.
+    fn end(&mut self) {
+        let words = std::mem::take(&mut self.words);
+        if words.iter().all(|words| words.text.trim().is_empty()) {
+            return;
+        }
+        let depth = self.lists.len() as u16;
+        let kind = match self.mark.take() {
+            _ if self.is_code => Kind::Code,
+            _ if self.is_heading => Kind::Heading,
+            Some(mark) => Kind::Item { mark, depth },
+            None if depth > 0 => Kind::Item {
+                mark: " ".to_owned(),
+                depth,
+            },
+            None => self.kind.clone(),
+        };
+        self.done.push(Paragraph { kind, words });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_lesson_uses_of_markdown_is_kept() {
+        let source =
+            "The **fast** top\nturns `p`.\n\n1. one\n2. two\n   - deep\n\n```text\na  b\n```\n";
+        let read = paragraphs(source, &Kind::Text);
+        let item = |mark: &str, depth| Kind::Item {
+            mark: mark.to_owned(),
+            depth,
+        };
+        let kinds: Vec<_> = read
+            .iter()
+            .map(|paragraph| paragraph.kind.clone())
+            .collect();
+        let expected = [
+            Kind::Text,
+            item("1.", 1),
+            item("2.", 1),
+            item("-", 2),
+            Kind::Code,
+        ];
+        assert_eq!(kinds, expected);
+        let texts: Vec<_> = read.iter().map(Paragraph::text).collect();
+        let expected = ["The fast top turns p.", "one", "two", "deep", "a  b\n"];
+        assert_eq!(texts, expected);
+        let looks: Vec<_> = read[0].words.iter().map(|words| words.look).collect();
+        let expected = [
+            Look::Plain,
+            Look::Strong,
+            Look::Plain,
+            Look::Code,
+            Look::Plain,
+        ];
+        assert_eq!(looks, expected);
+    }
+
+    #[test]
+    fn questions_stay_questions() {
+        let read = paragraphs("Does it **fall**?", &Kind::Question);
+        assert_eq!(read.len(), 1);
+        assert_eq!(read[0].kind, Kind::Question);
+    }
+}

@@ -1,0 +1,231 @@
+//! The page of a lesson, and the list of lessons, as a sheet beside the panes.
+
+use super::class::Place;
+use super::lesson::{Asked, Block, Predict};
+use super::markdown::paragraphs;
+use super::taken::Taken;
+use super::{reading, shipped};
+use crate::lab::Lab;
+use crate::lab::sheet::{Kind, Paragraph, Sheet};
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+/// What stands for a number that is not there yet, because the lab is still on its way.
+const SOON: &str = "…";
+
+/// The list of the lessons called `names`, of which one is `selected`; `left` tells where some of them were left.
+pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Place>) -> Sheet {
+    let mut sheet = Sheet {
+        title: "lessons".to_owned(),
+        ..Sheet::default()
+    };
+    for (index, name) in names.iter().enumerate() {
+        let lesson = reading::open(name).ok();
+        let title = lesson.as_ref().map_or(name, |lesson| &lesson.title);
+        let minutes = lesson.as_ref().and_then(|lesson| lesson.minutes);
+        let minutes = minutes.map_or(String::new(), |minutes| format!(", {minutes} min"));
+        let pages = lesson.as_ref().map_or(0, |lesson| lesson.pages.len());
+        let place = left.get(name).map_or(String::new(), |place| {
+            format!(" (page {} of {pages})", place.page)
+        });
+        let kind = Kind::Choice {
+            is_selected: index == selected,
+            is_given: left.get(name).is_some_and(|place| place.page == pages),
+        };
+        if index == selected {
+            sheet.seen = Some(sheet.paragraphs.len());
+        }
+        let text = format!("{title}{minutes}{place}");
+        sheet.paragraphs.push(Paragraph::new(kind, text));
+        if index == selected
+            && let Some(lesson) = &lesson
+            && !lesson.about.is_empty()
+        {
+            let kind = Kind::Item {
+                mark: "     ".to_owned(),
+                depth: 1,
+            };
+            let about = Paragraph::new(kind, lesson.about.clone());
+            sheet.seen = Some(sheet.paragraphs.len());
+            sheet.paragraphs.push(about);
+        }
+    }
+    let keys = match shipped::LESSONS.is_empty() && names.is_empty() {
+        true => "There is no lesson. gyrolab lesson FILE.md opens one of your own.",
+        false => "Up, Down choose; Enter opens; L closes.",
+    };
+    sheet.paragraphs.push(Paragraph::new(Kind::Hint, keys));
+    sheet
+}
+
+/// The page that is open in `taken`; `now` is the time since the lab was opened.
+pub(super) fn sheet(taken: &Taken, now: Duration, lab: &Lab) -> Sheet {
+    let lesson = taken.lesson();
+    let (page, pages) = (taken.place().page, lesson.pages.len());
+    let mut writer = Writer {
+        taken,
+        lab,
+        sheet: Sheet {
+            title: format!("{page} of {pages} · {}", lesson.title),
+            ..Sheet::default()
+        },
+    };
+    writer.page();
+    // The page begins at its top, until the student has come to the question at its end.
+    if taken.has_come_to_question() {
+        writer.sheet.seen = writer.sheet.paragraphs.len().checked_sub(1);
+    }
+    writer.notes(now);
+    writer.sheet
+}
+
+/// Writes the sheet of a page.
+struct Writer<'a> {
+    taken: &'a Taken,
+    lab: &'a Lab,
+    sheet: Sheet,
+}
+
+impl Writer<'_> {
+    fn page(&mut self) {
+        let Some(page) = self.taken.page() else {
+            return;
+        };
+        self.add(Paragraph::new(Kind::Heading, page.heading.clone()));
+        if page.number == 1 {
+            self.blocks(&self.taken.lesson().introduction);
+        }
+        let is_open = self.blocks(&page.blocks);
+        if !is_open {
+            self.next(page.number);
+        }
+    }
+
+    /// Writes `blocks` up to the first question that is not answered; returns whether there is one.
+    fn blocks(&mut self, blocks: &[Block]) -> bool {
+        for block in blocks {
+            match block {
+                Block::Text(text) => {
+                    let source = match self.taken.is_under_way() {
+                        true => text.filled(|_, _| SOON.to_owned()),
+                        false => text.with_numbers(self.lab, &self.taken.place().kept),
+                    };
+                    self.extend(paragraphs(&source, &Kind::Text));
+                }
+                Block::Predict(predict) => {
+                    self.question(predict);
+                    if !self.taken.place().predictions.is_locked(predict) {
+                        return true;
+                    }
+                }
+                Block::Compare(compare) => {
+                    let place = self.taken.place();
+                    let is_answered = place.predictions.answer(&compare.prediction).is_some();
+                    let source = match (self.taken.is_under_way(), is_answered) {
+                        (true, _) => SOON.to_owned(),
+                        (false, _) => compare.filled(
+                            self.taken.lesson(),
+                            &place.predictions,
+                            self.lab,
+                            &place.kept,
+                        ),
+                    };
+                    self.extend(paragraphs(&source, &Kind::Result));
+                }
+                Block::Check(check) => {
+                    let is_reached = self.taken.has_reached(check.line);
+                    let text = match is_reached {
+                        true => "done".to_owned(),
+                        false => format!("not yet: {}", check.that.text()),
+                    };
+                    self.add(Paragraph::new(Kind::Goal { is_reached }, text));
+                    if !is_reached && !check.hint.is_empty() {
+                        self.add(Paragraph::new(Kind::Hint, format!("Hint: {}", check.hint)));
+                    }
+                }
+                Block::Shown(shown) => {
+                    self.add(Paragraph::new(Kind::Code, shown.text.clone()));
+                }
+                Block::Lab(_) | Block::Task(_) | Block::Notes(_) => {}
+            }
+        }
+        false
+    }
+
+    fn question(&mut self, predict: &Predict) {
+        let place = self.taken.place();
+        let kept = &place.kept;
+        let ask = predict.ask.with_numbers(self.lab, kept);
+        self.extend(paragraphs(&ask, &Kind::Question));
+        let is_open = !place.predictions.is_locked(predict);
+        let given = place.predictions.answer(&predict.name);
+        let given = given.map(|answer| answer.in_words(predict));
+        match &predict.asked {
+            Asked::Choice(choices) => {
+                for (index, choice) in choices.iter().enumerate() {
+                    let kind = Kind::Choice {
+                        is_selected: is_open && index == self.taken.selected(),
+                        is_given: !is_open && given.as_deref() == Some(choice),
+                    };
+                    self.add(Paragraph::new(kind, choice.clone()));
+                }
+            }
+            Asked::Number { .. } if is_open => {}
+            Asked::Number { .. } => {
+                let text = format!("you said: {}", given.unwrap_or_default());
+                self.add(Paragraph::new(Kind::Text, text));
+            }
+        }
+        if is_open {
+            let keys = match &predict.asked {
+                Asked::Choice(_) => "Up, Down choose; Enter locks your prediction.",
+                Asked::Number { .. } => "Enter: type your prediction.",
+            };
+            self.add(Paragraph::new(Kind::Hint, keys));
+        }
+    }
+
+    /// What to do next.
+    fn next(&mut self, page: usize) {
+        let has_task = self.taken.page().is_some_and(|page| page.task().is_some());
+        let is_last = page == self.taken.lesson().pages.len();
+        let text = match (self.taken.is_under_way(), has_task, is_last) {
+            (true, ..) => "The run is on its way; space pauses it.",
+            (false, true, false) => "n: next page; D shows how it is done; R begins again.",
+            (false, true, true) => "D shows how it is done; R begins again; L: other lessons.",
+            (false, false, false) => "n: next page.",
+            (false, false, true) => "This is the end of the lesson. L: other lessons.",
+        };
+        self.add(Paragraph::new(Kind::Hint, text));
+    }
+
+    /// What the teacher sees: the clock, the notes, and the next page.
+    fn notes(&mut self, now: Duration) {
+        let Some(time) = self.taken.time(now) else {
+            return;
+        };
+        self.add(Paragraph::new(
+            Kind::Heading,
+            format!("For the class: {time}"),
+        ));
+        let lesson = self.taken.lesson();
+        let page = self.taken.page();
+        for notes in page.into_iter().flat_map(|page| page.notes()) {
+            let source = notes.with_numbers(self.lab, &self.taken.place().kept);
+            self.extend(paragraphs(&source, &Kind::Note));
+        }
+        let next = lesson.page(self.taken.place().page + 1);
+        let next = next.map_or("This is the last page.".to_owned(), |page| {
+            format!("Next page: {}", page.heading)
+        });
+        self.add(Paragraph::new(Kind::Note, next));
+    }
+
+    fn add(&mut self, paragraph: Paragraph) {
+        self.sheet.paragraphs.push(paragraph);
+    }
+
+    fn extend(&mut self, paragraphs: Vec<Paragraph>) {
+        self.sheet.paragraphs.extend(paragraphs);
+    }
+}

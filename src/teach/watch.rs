@@ -1,0 +1,75 @@
+//! Whether a file has changed: its time and its length are looked at once a second. Watchers of the system miss changes on
+//! network drives, and of editors that replace the file.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+/// The time between two looks.
+const EVERY: Duration = Duration::from_secs(1);
+
+/// A file that may change.
+#[derive(Clone, Debug)]
+pub struct Watch {
+    path: PathBuf,
+    seen: Option<(SystemTime, u64)>,
+    next: Duration,
+}
+
+impl Watch {
+    /// Watches the file at `path` as it is now.
+    pub fn new(path: &Path) -> Self {
+        Self {
+            path: path.to_owned(),
+            seen: state(path),
+            next: Duration::ZERO,
+        }
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether the file has changed since it was last looked at; `now` is the time since the lab was opened. A file that
+    /// is gone for a moment, as it is replaced, has not changed.
+    pub fn has_changed(&mut self, now: Duration) -> bool {
+        if now < self.next {
+            return false;
+        }
+        self.next = now + EVERY;
+        let state = state(&self.path);
+        let has_changed = state.is_some() && state != self.seen;
+        if has_changed {
+            self.seen = state;
+        }
+        has_changed
+    }
+}
+
+fn state(path: &Path) -> Option<(SystemTime, u64)> {
+    let file = fs::metadata(path).ok()?;
+    Some((file.modified().ok()?, file.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_is_seen_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("lesson.md");
+        fs::write(&path, "one").unwrap();
+        let mut watch = Watch::new(&path);
+        assert!(!watch.has_changed(Duration::ZERO));
+        fs::write(&path, "one and two").unwrap();
+        assert!(!watch.has_changed(Duration::from_millis(500)), "too early");
+        assert!(watch.has_changed(Duration::from_secs(2)));
+        assert!(!watch.has_changed(Duration::from_secs(4)));
+        fs::remove_file(&path).unwrap();
+        assert!(!watch.has_changed(Duration::from_secs(6)));
+        fs::write(&path, "back").unwrap();
+        assert!(watch.has_changed(Duration::from_secs(8)));
+    }
+}

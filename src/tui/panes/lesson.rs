@@ -1,0 +1,298 @@
+//! The page of a lesson beside the run: its text, the question with its answers, what is to be reached, and the keys.
+
+use super::{PaneRow, Width, frame, write};
+use crate::lab::Lab;
+use crate::lab::action::{Action, Direction, LessonKey};
+use crate::lab::sheet::{Kind, Look, Paragraph, Sheet, scrolled_by};
+use crate::lab::view::Pane;
+use crate::lab::view::theme::Theme;
+use crate::text::wrap::{columns, wrapped};
+use crate::tui::keymap::{Binding, Key, Mode, row};
+use crate::tui::theme::Role;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
+
+/// Its row in the table of panes.
+pub const ROW: PaneRow = PaneRow {
+    id: Pane::LESSON,
+    title: "lesson",
+    width: Width::Fixed,
+    rank: 9,
+    least: (36, 0),
+    draw,
+    keys: KEYS,
+};
+
+/// The keys that mean something here while the pane has the focus.
+#[rustfmt::skip]
+const KEYS: &[Binding] = &[
+    row(&[Mode::Lab], &[Key::Enter], Action::Lesson(LessonKey::Take), "answer", "lock the selected answer, or type a number; in the list: open the lesson"),
+    row(&[Mode::Lab], &[Key::Char('n')], Action::Lesson(LessonKey::Next), "next page", "the next page"),
+    row(&[Mode::Lab], &[Key::Char('N')], Action::Lesson(LessonKey::Before), "", "the page before"),
+    row(&[Mode::Lab], &[Key::Up, Key::Char('k')], Action::Lesson(LessonKey::Move(Direction::Up)), "", "the answer above; without a question: scroll"),
+    row(&[Mode::Lab], &[Key::Down, Key::Char('j')], Action::Lesson(LessonKey::Move(Direction::Down)), "", "the answer below; without a question: scroll"),
+    row(&[Mode::Lab], &[Key::PageUp], Action::Lesson(LessonKey::Move(Direction::PageUp)), "", "scroll the page up"),
+    row(&[Mode::Lab], &[Key::PageDown], Action::Lesson(LessonKey::Move(Direction::PageDown)), "", "scroll the page down"),
+];
+
+/// A line of the page: its first column, and its pieces.
+struct Line {
+    x: u16,
+    pieces: Vec<(String, Style)>,
+}
+
+fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let view = lab.view();
+    let Some(sheet) = &view.sheet else {
+        return;
+    };
+    let inside = frame(&sheet.title, area, view.focus == ROW.id, &view.theme, buf);
+    if inside.is_empty() {
+        return;
+    }
+    let page = Page::new(sheet, inside, view.sheet_scrolled, &view.theme);
+    let shown = page.lines.iter().skip(page.first).zip(0..inside.height);
+    for (line, y) in shown {
+        let mut x = line.x;
+        for (text, style) in &line.pieces {
+            x = write(inside, (x, y), text, *style, buf);
+        }
+    }
+    let quiet = view.theme.style(Role::Quiet);
+    let below = page.lines.len() > page.first + inside.height as usize;
+    let more = match (page.first > 0, below) {
+        (_, true) => " PgDn: more ",
+        (true, false) => " PgUp: back ",
+        (false, false) => return,
+    };
+    let border = Rect {
+        y: area.bottom() - 1,
+        height: 1,
+        ..inside
+    };
+    let x = border.width.saturating_sub(columns(more) as u16 + 1);
+    write(border, (x, 0), more, quiet, buf);
+}
+
+/// Scrolls the sheet of `lab`, whose pane has the area `place`, as a key does.
+pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
+    let Some(sheet) = lab.view().sheet.clone() else {
+        return;
+    };
+    let inside = place.inner(ratatui::layout::Margin::new(1, 1));
+    let shown = inside.height as usize;
+    let page = Page::new(&sheet, inside, lab.view().sheet_scrolled, &lab.view().theme);
+    let (first, all) = (page.first, page.lines.len());
+    lab.scroll_sheet(scrolled_by(direction, shown), first, shown, all);
+}
+
+/// A sheet in lines.
+struct Page {
+    lines: Vec<Line>,
+    /// The first line that is shown.
+    first: usize,
+}
+
+impl Page {
+    /// `sheet` in lines for the area `inside`, scrolled to the line `scrolled`, or to what is to be seen.
+    fn new(sheet: &Sheet, inside: Rect, scrolled: Option<usize>, theme: &Theme) -> Self {
+        let mut lines: Vec<Line> = Vec::new();
+        let mut end_of_seen = 0;
+        let mut before: Option<&Kind> = None;
+        for (index, paragraph) in sheet.paragraphs.iter().enumerate() {
+            if before.is_some_and(|before| are_apart(before, &paragraph.kind)) {
+                lines.push(Line {
+                    x: 0,
+                    pieces: Vec::new(),
+                });
+            }
+            lines.extend(lines_of(paragraph, inside.width, theme));
+            before = Some(&paragraph.kind);
+            if sheet.seen == Some(index) {
+                end_of_seen = lines.len();
+            }
+        }
+        let shown = inside.height as usize;
+        let last = lines.len().saturating_sub(shown);
+        let first = scrolled.unwrap_or_else(|| end_of_seen.saturating_sub(shown));
+        Self {
+            lines,
+            first: first.min(last),
+        }
+    }
+}
+
+/// Whether an empty line stands between two paragraphs.
+fn are_apart(before: &Kind, after: &Kind) -> bool {
+    let is_list = |kind: &Kind| matches!(kind, Kind::Item { .. } | Kind::Choice { .. });
+    !(is_list(after) && is_list(before))
+        && !matches!((before, after), (Kind::Goal { .. }, Kind::Goal { .. }))
+        && !matches!((before, after), (Kind::Question, Kind::Choice { .. }))
+}
+
+/// What stands before a paragraph's first line, and the look of its words.
+fn dressed(kind: &Kind) -> (String, u16, Role) {
+    let plain = |mark: &str, role| (mark.to_owned(), 0, role);
+    match kind {
+        Kind::Heading => plain("", Role::Heading),
+        Kind::Text => plain("", Role::Text),
+        Kind::Item { mark, depth } => (format!("{mark} "), 2 * depth.saturating_sub(1), Role::Text),
+        Kind::Code => (String::new(), 2, Role::Text),
+        Kind::Question => plain("? ", Role::Heading),
+        Kind::Choice {
+            is_selected,
+            is_given,
+        } => {
+            let pointer = if *is_selected { "> " } else { "  " };
+            let mark = if *is_given { "[x] " } else { "[ ] " };
+            let role = match is_selected {
+                true => Role::Focus,
+                false => Role::Text,
+            };
+            (format!("{pointer}{mark}"), 0, role)
+        }
+        Kind::Result => plain("= ", Role::Heading),
+        Kind::Goal { is_reached: true } => plain("[x] ", Role::Text),
+        Kind::Goal { is_reached: false } => plain("[ ] ", Role::Text),
+        Kind::Hint => plain("", Role::Quiet),
+        Kind::Note => plain("| ", Role::Text),
+    }
+}
+
+fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<Line> {
+    let (mark, indent, role) = dressed(&paragraph.kind);
+    let style = theme.style(role);
+    let hanging = indent + columns(&mark) as u16;
+    let room = width.saturating_sub(hanging).max(1) as usize;
+    let text = paragraph.text();
+    let texts: Vec<String> = match paragraph.kind {
+        Kind::Code => text.lines().map(str::to_owned).collect(),
+        _ => wrapped(&text, room),
+    };
+    let mut looks = looks(paragraph).peekable();
+    let mut lines = Vec::with_capacity(texts.len());
+    for (index, text) in texts.iter().enumerate() {
+        let mut pieces: Vec<(String, Style)> = Vec::new();
+        for letter in text.chars() {
+            // The letters of the lines are those of the paragraph, but for the blanks between words.
+            while looks
+                .peek()
+                .is_some_and(|(other, _)| *other != letter && other.is_whitespace())
+            {
+                looks.next();
+            }
+            let look = match letter {
+                ' ' => looks.peek().map(|(_, look)| *look),
+                _ => looks.next().map(|(_, look)| look),
+            };
+            let style = style.patch(styled(look.unwrap_or_default(), theme));
+            match pieces.last_mut() {
+                Some((piece, last)) if *last == style => piece.push(letter),
+                _ => pieces.push((letter.to_string(), style)),
+            }
+        }
+        let is_marked = match paragraph.kind {
+            Kind::Note => true,
+            _ => index == 0,
+        };
+        if is_marked && !mark.is_empty() {
+            pieces.insert(0, (mark.clone(), style));
+        }
+        lines.push(Line {
+            x: if is_marked { indent } else { hanging },
+            pieces,
+        });
+    }
+    lines
+}
+
+/// The letters of a paragraph with their looks.
+fn looks(paragraph: &Paragraph) -> impl Iterator<Item = (char, Look)> {
+    let pieces = paragraph.words.iter();
+    pieces.flat_map(|words| words.text.chars().map(|letter| (letter, words.look)))
+}
+
+fn styled(look: Look, theme: &Theme) -> Style {
+    match look {
+        Look::Plain => Style::new(),
+        Look::Strong => Style::new().add_modifier(Modifier::BOLD),
+        Look::Code => theme.style(Role::Focus),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::sheet::Words;
+    use crate::lab::view::theme::Background;
+
+    const THEME: Theme = Theme {
+        colour: false,
+        background: Background::Dark,
+    };
+
+    fn texts(paragraph: &Paragraph, width: u16) -> Vec<String> {
+        let lines = lines_of(paragraph, width, &THEME);
+        let text = |line: &Line| {
+            let pieces = line.pieces.iter().map(|(text, _)| text.as_str());
+            " ".repeat(line.x as usize) + &pieces.collect::<String>()
+        };
+        lines.iter().map(text).collect()
+    }
+
+    #[test]
+    fn paragraphs_hang_on_their_marks() {
+        let choice = Kind::Choice {
+            is_selected: true,
+            is_given: false,
+        };
+        let choice = Paragraph::new(choice, "is ten times smaller");
+        assert_eq!(
+            texts(&choice, 16),
+            ["> [ ] is ten", "      times", "      smaller"]
+        );
+        let item = Kind::Item {
+            mark: "-".to_owned(),
+            depth: 2,
+        };
+        let item = Paragraph::new(item, "one two");
+        assert_eq!(texts(&item, 8), ["  - one", "    two"]);
+        let code = Paragraph::new(Kind::Code, "a   b\nc");
+        assert_eq!(texts(&code, 8), ["  a   b", "  c"]);
+    }
+
+    #[test]
+    fn words_keep_their_looks_over_line_ends() {
+        let words = |text: &str, look| Words {
+            text: text.to_owned(),
+            look,
+        };
+        let paragraph = Paragraph {
+            kind: Kind::Text,
+            words: vec![
+                words("the ", Look::Plain),
+                words("fast top", Look::Strong),
+                words(" sleeps", Look::Plain),
+            ],
+        };
+        let lines = lines_of(&paragraph, 9, &THEME);
+        let pieces: Vec<Vec<(&str, bool)>> = lines
+            .iter()
+            .map(|line| {
+                let pieces = line.pieces.iter();
+                let bold = |style: &Style| style.add_modifier.contains(Modifier::BOLD);
+                pieces
+                    .map(|(text, style)| (text.as_str(), bold(style)))
+                    .collect()
+            })
+            .collect();
+        assert_eq!(
+            pieces,
+            [
+                vec![("the ", false), ("fast", true)],
+                vec![("top", true), (" ", false), ("sleeps", false)]
+            ]
+        );
+    }
+}
