@@ -14,6 +14,7 @@ use crate::storage::confined::Confined;
 use crate::storage::exporting;
 use crate::storage::session::{self, KeptAside, Session};
 use crate::storage::settings::Keeper;
+use crate::teach::{Kept, Lesson, Page, Predictions};
 use crate::text::printable::{Shown, printable};
 use crate::tui::app;
 use crate::tui::panes;
@@ -32,6 +33,16 @@ pub(super) const DEFAULT: &str = "method-2";
 
 /// How long the end waits for the disk before it says that the session is not kept.
 const PATIENCE: Duration = Duration::from_secs(3);
+
+/// Opens the lab on the terminal, at a page of a lesson.
+pub(super) fn open_lesson(lesson: &Lesson, page: &Page, look: Look) -> anyhow::Result<ExitCode> {
+    let args = WorkbenchArgs {
+        paused: true,
+        look,
+        ..WorkbenchArgs::default()
+    };
+    open_at(&args, DEFAULT, None, Some((lesson, page)))
+}
 
 /// Opens the lab; without a terminal shows its picture instead.
 pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
@@ -66,6 +77,16 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             markers: args.look.markers,
         });
     }
+    open_at(args, name, confined, None)
+}
+
+/// Opens the lab on the terminal with the scenario `name`, at a page of a lesson where one is given.
+fn open_at(
+    args: &WorkbenchArgs,
+    name: &str,
+    confined: Option<Confined>,
+    lesson: Option<(&Lesson, &Page)>,
+) -> anyhow::Result<ExitCode> {
     let commands = args.commands.as_deref().map(command::open).transpose()?;
     let folder = sessions::folder_of(confined.as_ref());
     let chosen = settings::read(
@@ -90,7 +111,14 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
         lab.files_mut().confine(folder);
     }
     lab.set_mouse(!args.look.no_mouse);
-    if args.scenario.is_none() && args.resume.is_none() && args.commands.is_none() {
+    if let Some((lesson, page)) = lesson {
+        stand_on(page, lesson, &mut lab)?;
+    }
+    if lesson.is_none()
+        && args.scenario.is_none()
+        && args.resume.is_none()
+        && args.commands.is_none()
+    {
         lab.play_on();
     }
     lab.set_trouble(session.as_ref().err().cloned());
@@ -109,6 +137,17 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     tell_of_exports(&lab)?;
     tell_of_session(session, args.folder.as_deref())?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Carries out what `page` of `lesson` stands on.
+fn stand_on(page: &Page, lesson: &Lesson, lab: &mut Lab) -> anyhow::Result<()> {
+    let mut kept = Kept::new();
+    for stage in lesson.stages_to(page.number, &kept.clone(), &Predictions::default()) {
+        // No signal is caught yet: one that ends the process here has nothing to put right.
+        let done = stage.carry_out(lab, &mut kept, |_, _| ControlFlow::Continue(()));
+        done.map_err(anyhow::Error::msg)?;
+    }
+    Ok(())
 }
 
 /// Which moment of the run a picture shows.

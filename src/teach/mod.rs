@@ -6,11 +6,15 @@
 //! - [`names`]: the numbers that an expression of a lesson can name.
 //! - [`predictions`]: what a student has predicted.
 //! - [`stage`]: what to carry out to stand on a page.
+//! - [`play`]: a lesson played to its end without a screen, and whether its checks do what they should.
+//! - [`handout`]: a lesson on paper.
 //! - [`shipped`]: the lessons that come with the program.
 
 mod blocks;
+pub mod handout;
 pub mod lesson;
 pub mod names;
+pub mod play;
 pub mod predictions;
 pub mod reading;
 pub mod shipped;
@@ -20,6 +24,7 @@ pub mod text;
 
 pub use lesson::{Answer, Asked, Block, Check, Compare, Keep, Lesson, Page, Predict, Setup, Shown};
 pub use names::{Kept, Names};
+pub use play::Walk;
 pub use predictions::Predictions;
 pub use stage::Stage;
 pub use text::Text;
