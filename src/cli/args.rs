@@ -23,6 +23,7 @@ Examples:
   gyrolab cusps --paused --at 500                   a screen prepared for the class
   gyrolab --resume                                  back to where the lab was left, or the line was lost
   gyrolab --do demo.toml                            play the commands in a file
+  gyrolab lesson is-the-wobble-real                 a lesson beside the running lab
   gyrolab sessions                                  which labs were left; gyrolab --resume 3 takes the one named 3
   gyrolab presets                                   what there is to run
   gyrolab run method-2                              the report's Method 2, how it ends
@@ -51,7 +52,9 @@ pub(super) enum Command {
     },
     /// List the numerical schemes
     Schemes,
-    /// Validate scenario files, run files, the headers of CSVs, and files of commands
+    /// List the lessons, open the lab with one, or print it for paper
+    Lesson(LessonArgs),
+    /// Validate scenario files, run files, the headers of CSVs, files of commands, and lessons (.md), which are played
     Check {
         /// Files to look at; a preset is none
         #[arg(required = true, value_name = "FILE")]
@@ -81,7 +84,7 @@ pub(super) struct ScenarioArgs {
 }
 
 /// What is changed in a scenario before it is run.
-#[derive(Clone, Debug, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub(super) struct Changes {
     /// Change a value first, such as motion.time_step_s=0.05 or push.0.force_N=[0,0,-50]; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
@@ -97,7 +100,7 @@ pub(super) struct Changes {
 }
 
 /// How the lab is opened.
-#[derive(Clone, Debug, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub(super) struct WorkbenchArgs {
     /// A preset's name, or a file (.toml or .csv): a scenario, a run file, or a CSV that gyrolab wrote [default: method-2]
     pub(super) scenario: Option<String>,
@@ -137,7 +140,7 @@ pub(super) struct WorkbenchArgs {
 }
 
 /// What the lab looks like.
-#[derive(Clone, Copy, Debug, Args)]
+#[derive(Clone, Copy, Debug, Default, Args)]
 pub(super) struct Look {
     /// Colours: auto honours NO_COLOR [default: as chosen last in the lab, or auto]
     #[arg(long, value_enum, value_name = "WHEN")]
@@ -241,6 +244,35 @@ pub(super) struct RunArgs {
     /// Replace an existing file
     #[arg(long)]
     pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct LessonArgs {
+    /// A shipped lesson's name, or a file (.md) [without it: the list of the lessons]
+    pub(super) name: Option<String>,
+
+    /// The page, counted from 1
+    #[arg(long, value_name = "N", requires = "name", value_parser = one_or_more)]
+    pub(super) page: Option<NonZeroU64>,
+
+    /// Print the lesson for paper, as Markdown: pictures as text, room for predictions, no notes
+    #[arg(long, requires = "name", conflicts_with = "page")]
+    pub(super) handout: bool,
+
+    /// Print a small lesson to begin from, with a comment on each part
+    #[arg(long, conflicts_with_all = ["name", "handout"])]
+    pub(super) template: bool,
+
+    /// Write the handout or the template to this file, or to stdout for -
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+
+    /// Replace an existing file
+    #[arg(long, requires = "output")]
+    pub(super) force: bool,
+
+    #[command(flatten)]
+    pub(super) look: Look,
 }
 
 #[derive(Debug, Args)]

@@ -1,7 +1,7 @@
 //! The commands that tell: presets, schemes, keys, readouts, check, completions, man.
 
 use super::args::Cli;
-use super::{print, tell};
+use super::{lesson, print, tell};
 use crate::analysis::readouts::READOUTS;
 use crate::lab::command::{self, COMMANDS};
 use crate::physics::scheme::SCHEMES;
@@ -99,7 +99,11 @@ pub(super) fn readouts() -> anyhow::Result<ExitCode> {
 pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
     let mut code = ExitCode::SUCCESS;
     for file in files {
-        match Document::read(file).and_then(|document| checked(&document)) {
+        let checked = match lesson::is_named_as_one(file) {
+            true => lesson::checked(file)?,
+            false => Document::read(file).and_then(|document| checked(&document)),
+        };
+        match checked {
             Ok(described) => {
                 print(&format!("{}: {described}\n", Shown(file)))?;
             }

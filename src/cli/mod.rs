@@ -5,6 +5,7 @@
 mod args;
 mod compare;
 mod info;
+mod lesson;
 mod progress;
 mod run;
 mod scenario;
@@ -54,6 +55,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Schemes => info::schemes(),
         Command::Keys => info::keys(),
         Command::Readouts => info::readouts(),
+        Command::Lesson(args) => lesson::lesson(&args),
         Command::Check { files } => info::check(&files),
         Command::Completions { shell } => info::completions(shell),
         Command::Man => info::man(),

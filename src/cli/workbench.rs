@@ -14,7 +14,7 @@ use crate::storage::confined::Confined;
 use crate::storage::exporting;
 use crate::storage::session::{self, KeptAside, Session};
 use crate::storage::settings::Keeper;
-use crate::teach::Class;
+use crate::teach::{Class, Lesson, Page};
 use crate::text::printable::{Shown, printable};
 use crate::tui::app;
 use crate::tui::panes;
@@ -33,6 +33,16 @@ pub(super) const DEFAULT: &str = "method-2";
 
 /// How long the end waits for the disk before it says that the session is not kept.
 const PATIENCE: Duration = Duration::from_secs(3);
+
+/// Opens the lab on the terminal, at a page of a lesson.
+pub(super) fn open_lesson(lesson: &Lesson, page: &Page, look: Look) -> anyhow::Result<ExitCode> {
+    let args = WorkbenchArgs {
+        paused: true,
+        look,
+        ..WorkbenchArgs::default()
+    };
+    open_at(&args, DEFAULT, None, Some((lesson, page)))
+}
 
 /// Opens the lab; without a terminal shows its picture instead.
 pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
@@ -67,6 +77,16 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             markers: args.look.markers,
         });
     }
+    open_at(args, name, confined, None)
+}
+
+/// Opens the lab on the terminal with the scenario `name`, at a page of a lesson where one is given.
+fn open_at(
+    args: &WorkbenchArgs,
+    name: &str,
+    confined: Option<Confined>,
+    lesson: Option<(&Lesson, &Page)>,
+) -> anyhow::Result<ExitCode> {
     let commands = args.commands.as_deref().map(command::open).transpose()?;
     let folder = sessions::folder_of(confined.as_ref());
     let chosen = settings::read(
@@ -91,7 +111,11 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
         lab.files_mut().confine(folder);
     }
     lab.set_mouse(!args.look.no_mouse);
-    if args.scenario.is_none() && args.resume.is_none() && args.commands.is_none() {
+    if lesson.is_none()
+        && args.scenario.is_none()
+        && args.resume.is_none()
+        && args.commands.is_none()
+    {
         lab.play_on();
     }
     lab.set_trouble(session.as_ref().err().cloned());
@@ -102,9 +126,14 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     if let Some(commands) = commands {
         lab.take_commands(commands);
     }
-    let (mut class, taken) = Class::resumed(&lab);
+    let (mut class, taken) = Class::resumed(&mut lab);
     if let Err(reason) = taken {
         lab.tell(format!("the lesson cannot be taken again: {reason}"));
+    }
+    if let Some((lesson, page)) = lesson {
+        class
+            .open(&lesson.name, Some(page.number), &mut lab)
+            .map_err(anyhow::Error::msg)?;
     }
     let frames = args.fps.unwrap_or(settings::FPS);
     app::run(&mut lab, &mut class, session.as_ref().ok(), frames)

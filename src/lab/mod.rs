@@ -250,6 +250,11 @@ impl Lab {
         self.changed = true;
     }
 
+    /// Removes the present message.
+    pub fn take_back_message(&mut self) {
+        self.changed |= self.on_top.notice_mut().take_back();
+    }
+
     /// Shows `text` before the present message, until the next key.
     pub fn tell_first(&mut self, text: &str) {
         let said = self.on_top.notice().text().unwrap_or_default();

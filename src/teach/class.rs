@@ -65,7 +65,7 @@ impl Class {
     ///
     /// # Errors
     /// Why the lesson that was taken cannot be taken again; where it was left is kept.
-    pub fn resumed(lab: &Lab) -> (Self, Result<(), String>) {
+    pub fn resumed(lab: &mut Lab) -> (Self, Result<(), String>) {
         let mut class = Self::default();
         let kept: Option<KeptLessons> = lab
             .lessons_kept()
@@ -76,6 +76,7 @@ impl Class {
         class.left = kept.lessons;
         class.has_changed = true;
         let taken = kept.open.map_or(Ok(()), |name| class.take(&name));
+        class.show(lab);
         (class, taken)
     }
 

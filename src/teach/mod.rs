@@ -1,4 +1,5 @@
-//! Lessons: Markdown files with blocks that say what the lab does, read, checked and played without a screen.
+//! Lessons: Markdown files with blocks that say what the lab does, read, checked, played without a screen, and taken beside
+//! the lab.
 //!
 //! - [`lesson`]: a lesson as it was read: its pages, and the blocks of each.
 //! - [`reading`]: Markdown becomes a [`Lesson`]; every refusal names file, line and key.
@@ -6,6 +7,8 @@
 //! - [`names`]: the numbers that an expression of a lesson can name.
 //! - [`predictions`]: what a student has predicted.
 //! - [`stage`]: what to carry out to stand on a page.
+//! - [`play`]: a lesson played to its end without a screen, and whether its checks do what they should.
+//! - [`handout`]: a lesson on paper.
 //! - [`class`]: the lessons of a lab; [`taken`]: the one that is open, with the one who takes it; [`page`]: what stands
 //!   beside the panes, of [`markdown`]; [`clock`] and [`watch`]: the time, and a file that changes.
 //! - [`shipped`]: the lessons that come with the program.
@@ -13,10 +16,12 @@
 mod blocks;
 pub mod class;
 pub mod clock;
+pub mod handout;
 pub mod lesson;
 pub mod markdown;
 pub mod names;
 pub mod page;
+pub mod play;
 pub mod predictions;
 pub mod reading;
 pub mod shipped;
@@ -29,6 +34,7 @@ pub mod watch;
 pub use class::Class;
 pub use lesson::{Answer, Asked, Block, Check, Compare, Keep, Lesson, Page, Predict, Setup, Shown};
 pub use names::{Kept, Names};
+pub use play::Walk;
 pub use predictions::Predictions;
 pub use stage::Stage;
 pub use text::Text;

@@ -17,6 +17,8 @@ const RESERVED: [&str; 5] = ["with", "prediction", "and", "or", "abs"];
 pub struct Names {
     /// Each with the first page on which it is known.
     kept: Vec<(String, usize)>,
+    /// The first page on which a run is open, once a block that opens one was read.
+    open_from: Option<usize>,
 }
 
 impl Names {
@@ -46,6 +48,11 @@ impl Names {
         Ok(())
     }
 
+    /// Notes that from the page `page` on a run is open, if none was before.
+    pub(super) fn open_from(&mut self, page: usize) {
+        self.open_from.get_or_insert(page);
+    }
+
     /// Whether `name` stands for a number on the page `page`.
     ///
     /// # Errors
@@ -56,7 +63,13 @@ impl Names {
             Some((_, from)) => return Err(format!("{name} is known from page {from} on")),
             None => {}
         }
-        numbers::find(name).map(|_| ()).map_err(|reason| {
+        let found = numbers::find(name).map(|_| ());
+        if found.is_ok() && self.open_from.is_none_or(|from| page < from) {
+            return Err(format!(
+                "{name} is a number of a run, and no lab block has opened one yet"
+            ));
+        }
+        found.map_err(|reason| {
             let kept = self.kept.iter().map(|(known, _)| known.as_str());
             match nearest(name, kept) {
                 near if near.starts_with("did you mean") => {

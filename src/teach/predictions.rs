@@ -100,7 +100,7 @@ impl Compare {
         let with = self.came_out(lab, kept);
         let predicted = self.predicted(lesson, predictions);
         self.text.filled(|expression, format: Format| {
-            if expression.text() == PREDICTION {
+            if expression.text().trim() == PREDICTION {
                 return predicted.clone().unwrap_or_else(|| NONE.to_owned());
             }
             let number = expression.value(|name| match name {
@@ -114,4 +114,4 @@ impl Compare {
 
 /// In the text of a comparison: the prediction, and the number that it is compared with.
 pub(super) const PREDICTION: &str = "prediction";
-const WITH: &str = "with";
+pub(super) const WITH: &str = "with";

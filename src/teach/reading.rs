@@ -194,6 +194,7 @@ impl<'a> Assembly<'a> {
                 _ => continue,
             };
             let known_from = page + usize::from(word == "task");
+            self.names.open_from(page);
             let mut reader = Reader::new(self.origin, word, inside, element.line);
             match blocks::setup(&mut reader, &mut self.names, page, known_from) {
                 Ok(setup) => {

@@ -39,3 +39,6 @@ pub const LESSONS: &[Shipped] = lessons![
 pub fn find(name: &str) -> Option<&'static Shipped> {
     LESSONS.iter().find(|lesson| lesson.name == name)
 }
+
+/// A small lesson with a comment on each part, to begin one's own from.
+pub const TEMPLATE: &str = include_str!("template.md");

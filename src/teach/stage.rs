@@ -144,6 +144,7 @@ impl Stage<'_> {
         let commands = self.commands(lab);
         lab.take_commands(commands);
         lab.finish_script_while(go_on)?;
+        lab.take_back_message(); // nobody has asked for what the block has done
         self.keep(lab, kept);
         Ok(())
     }

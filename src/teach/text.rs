@@ -143,6 +143,18 @@ impl Text {
         self.filled(|expression, format| format.written(value(expression, lab, kept)))
     }
 
+    /// The places for numbers, each with its line in the file.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = (usize, &Expression)> {
+        let mut line = self.line;
+        self.parts.iter().filter_map(move |part| match part {
+            Piece::Plain(text) => {
+                line += text.matches('\n').count();
+                None
+            }
+            Piece::Number(expression, _) => Some((line, expression)),
+        })
+    }
+
     /// Its pieces, in order.
     pub fn pieces(&self) -> &[Piece] {
         &self.parts

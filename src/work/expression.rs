@@ -157,6 +157,11 @@ impl Expression {
         self.is_condition
     }
 
+    /// Every name in it, once.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().map(|(name, _)| name.as_str())
+    }
+
     /// Looks every name up once, with `find`, which says in words why a name stands for no number.
     ///
     /// # Errors

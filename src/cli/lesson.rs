@@ -1,0 +1,188 @@
+//! `gyrolab lesson`: the list of lessons, a lesson in the lab, on paper, or to begin from; and `check` of one.
+
+use super::args::{Changes, LessonArgs, Look};
+use super::progress::{self, Interruption, Meter};
+use super::workbench::{self, DEFAULT};
+use super::{INTERRUPTED, print, tell};
+use crate::export::Destination;
+use crate::lab::Lab;
+use crate::lab::view::theme::{Background, Theme};
+use crate::scenario::{Problem, Problems};
+use crate::teach::play::{self, Walk};
+use crate::teach::{Lesson, Page, handout, reading, shipped};
+use crate::text::printable::printable_lines;
+use anyhow::{Context, bail};
+use std::io::{self, IsTerminal, Write};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Columns and lines of the pictures.
+const PICTURE: (u16, u16) = (80, 24);
+
+/// What is asked of a lesson.
+pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
+    if args.output.is_some() && !args.handout && !args.template {
+        bail!(
+            "-o takes what --handout or --template prints: gyrolab lesson NAME --handout -o FILE.md"
+        );
+    }
+    if args.template {
+        return write(args, |_| Ok(shipped::TEMPLATE.to_owned()));
+    }
+    let Some(name) = &args.name else {
+        return print(&list()?);
+    };
+    let lesson = reading::open(name)?;
+    if args.handout {
+        return write(args, |interruption| {
+            watched(interruption, |go_on| {
+                handout::handout(&lesson, new_lab(args.look)?, &picture, go_on)
+                    .map_err(|problem| refused(&lesson, problem))
+            })
+        });
+    }
+    let page = page_of(&lesson, args)?;
+    if io::stdin().is_terminal() && io::stdout().is_terminal() {
+        return workbench::open_lesson(&lesson, page, args.look);
+    }
+    tell(format_args!(
+        "gyrolab: there is no terminal to open the lesson on, so page {} of {} is printed",
+        page.number,
+        lesson.pages.len()
+    ));
+    let (_, interruption) = progress::open(None, false)?;
+    let text = watched(&interruption, |go_on| {
+        let mut walk = Walk::new(&lesson, new_lab(args.look)?);
+        walk.jump(page, go_on)
+            .map_err(|problem| refused(&lesson, problem))?;
+        Ok(handout::page(page, &walk, &picture))
+    })?;
+    match interruption.may_act_at_once() {
+        true => Ok(ExitCode::from(INTERRUPTED)),
+        false => print(&text),
+    }
+}
+
+/// A line for each shipped lesson: its name and its title.
+fn list() -> anyhow::Result<String> {
+    let mut text = String::new();
+    for shipped in shipped::LESSONS {
+        let lesson = reading::open(shipped.name)?;
+        text += &format!("{}: {}\n", shipped.name, lesson.title);
+    }
+    Ok(text)
+}
+
+/// The page that is asked for; the first where none is.
+fn page_of<'a>(lesson: &'a Lesson, args: &LessonArgs) -> anyhow::Result<&'a Page> {
+    let number = args.page.map_or(1, std::num::NonZeroU64::get);
+    let page = usize::try_from(number)
+        .ok()
+        .and_then(|number| lesson.page(number));
+    page.with_context(|| {
+        format!(
+            "--page {number}: {} has the pages 1 to {}",
+            lesson.name,
+            lesson.pages.len()
+        )
+    })
+}
+
+/// A new lab, of which nothing but the pictures will be seen.
+fn new_lab(look: Look) -> anyhow::Result<Lab> {
+    let plain = Theme {
+        colour: false,
+        background: Background::Dark,
+    };
+    workbench::lab(DEFAULT, &Changes::default(), look.markers, plain, false)
+}
+
+fn picture(lab: &Lab) -> String {
+    crate::tui::screen::text(lab, false, PICTURE)
+}
+
+fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {
+    Problems::one(lesson.origin.clone(), problem).into()
+}
+
+/// Does `what`, which asks now and then whether to go on, with progress where it takes long.
+fn watched<T>(
+    interruption: &Interruption,
+    what: impl FnOnce(play::GoOn<'_>) -> anyhow::Result<T>,
+) -> anyhow::Result<T> {
+    let mut meter = Meter::new();
+    let done = what(&mut |step, of| {
+        meter.show(step, of);
+        match interruption.has_come() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    });
+    meter.clear();
+    done
+}
+
+/// Writes what `make` makes to the file that is asked for, or prints it.
+fn write(
+    args: &LessonArgs,
+    make: impl FnOnce(&Interruption) -> anyhow::Result<String>,
+) -> anyhow::Result<ExitCode> {
+    let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
+    let text = make(&interruption);
+    if interruption.has_come() {
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    match output {
+        None | Some(Destination::Stdout(_)) => print(&text?),
+        Some(mut output) => {
+            output.write_all(text?.as_bytes())?;
+            output.keep()?;
+            Ok(ExitCode::SUCCESS)
+        }
+    }
+}
+
+/// Whether `check` takes `file` as a lesson.
+pub(super) fn is_named_as_one(file: &Path) -> bool {
+    file.extension().is_some_and(|extension| extension == "md")
+}
+
+/// What is in the lesson `file`, in words, or what is wrong with it; it is played to its end.
+///
+/// # Errors
+/// When the shipped preset of a new lab cannot be opened, or a signal ends the play.
+pub(super) fn checked(file: &Path) -> anyhow::Result<Result<String, Problems>> {
+    let lesson = match reading::read_file(file) {
+        Ok(lesson) => lesson,
+        Err(problems) => return Ok(Err(problems)),
+    };
+    let (_, interruption) = progress::open(None, false)?;
+    let lab = new_lab(Look::default())?;
+    let played = watched(&interruption, |go_on| Ok(play::check(&lesson, lab, go_on)))?;
+    if interruption.may_act_at_once() {
+        std::process::exit(INTERRUPTED.into());
+    }
+    Ok(played.map(|played| {
+        for problem in played.unstated {
+            let told = Problems::one(lesson.origin.clone(), problem).to_string();
+            tell(printable_lines(&told));
+        }
+        described(&lesson)
+    }))
+}
+
+fn described(lesson: &Lesson) -> String {
+    let count = |number: usize, one: &str| match number {
+        1 => format!("1 {one}"),
+        number => format!("{number} {one}s"),
+    };
+    let of_pages = |count: fn(&Page) -> usize| lesson.pages.iter().map(count).sum();
+    format!(
+        "good: \"{}\", {}, {}, {}",
+        lesson.title,
+        count(lesson.pages.len(), "page"),
+        count(of_pages(|page| page.predicts().count()), "prediction"),
+        count(of_pages(|page| page.checks().count()), "check"),
+    )
+}
