@@ -26,11 +26,11 @@ pub const LESSONS: &[Shipped] = lessons![
     "method-2-and-its-straight-line"
     "why-it-seems-to-stand-still"
     "is-the-wobble-real"
-    "kappa-and-the-scheme"
     "does-a-faster-spin-precess-faster"
     "does-steeper-precess-faster"
     "cusps-loops-and-waves"
     "the-sleeping-top-wakes"
+    "kappa-and-the-scheme"
     "what-is-conserved"
     "halve-the-step"
 ];
