@@ -1,7 +1,7 @@
 //! The page of a lesson, and the list of lessons, as a sheet beside the panes.
 
 use super::class::Place;
-use super::lesson::{Asked, Block, Predict};
+use super::lesson::{Asked, Block, Compare, Page, Predict};
 use super::markdown::paragraphs;
 use super::taken::Taken;
 use super::{reading, shipped};
@@ -118,20 +118,7 @@ impl Writer<'_> {
                         return true;
                     }
                 }
-                Block::Compare(compare) => {
-                    let place = self.taken.place();
-                    let is_answered = place.predictions.answer(&compare.prediction).is_some();
-                    let source = match (self.taken.is_under_way(), is_answered) {
-                        (true, _) => SOON.to_owned(),
-                        (false, _) => compare.filled(
-                            self.taken.lesson(),
-                            &place.predictions,
-                            self.lab,
-                            &place.kept,
-                        ),
-                    };
-                    self.extend(paragraphs(&source, &Kind::Result));
-                }
+                Block::Compare(compare) => self.comparison(compare),
                 Block::Check(check) => {
                     let is_reached = self.taken.has_reached(check.line);
                     let text = match is_reached {
@@ -150,6 +137,27 @@ impl Writer<'_> {
             }
         }
         false
+    }
+
+    fn comparison(&mut self, compare: &Compare) {
+        let (lesson, place) = (self.taken.lesson(), self.taken.place());
+        if self.taken.is_under_way() {
+            self.add(Paragraph::new(Kind::Result, SOON));
+            return;
+        }
+        let source = compare.filled(lesson, &place.predictions, self.lab, &place.kept);
+        self.extend(paragraphs(&source, &Kind::Result));
+        if place.predictions.answer(&compare.prediction).is_none() {
+            let pages = &mut lesson.pages.iter();
+            let asks = |page: &&Page| {
+                let mut predicts = page.predicts();
+                predicts.any(|predict| predict.name == compare.prediction)
+            };
+            if let Some(page) = pages.find(asks) {
+                let text = format!("You predicted nothing: page {} asks for it.", page.number);
+                self.add(Paragraph::new(Kind::Hint, text));
+            }
+        }
     }
 
     fn question(&mut self, predict: &Predict) {

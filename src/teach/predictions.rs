@@ -5,7 +5,7 @@ use super::names::{Kept, value};
 use super::text::Format;
 use crate::lab::Lab;
 use crate::lab::view::Part;
-use crate::text::number::{self, NONE};
+use crate::text::number;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -101,7 +101,7 @@ impl Compare {
         let predicted = self.predicted(lesson, predictions);
         self.text.filled(|expression, format: Format| {
             if expression.text().trim() == PREDICTION {
-                return predicted.clone().unwrap_or_else(|| NONE.to_owned());
+                return predicted.clone().unwrap_or_else(|| NOTHING.to_owned());
             }
             let number = expression.value(|name| match name {
                 WITH => with,
@@ -114,4 +114,6 @@ impl Compare {
 
 /// In the text of a comparison: the prediction, and the number that it is compared with.
 pub(super) const PREDICTION: &str = "prediction";
+/// Stands for a prediction that was not made.
+const NOTHING: &str = "…";
 pub(super) const WITH: &str = "with";

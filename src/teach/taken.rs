@@ -361,7 +361,7 @@ impl Taken {
                 Err(problems) => {
                     let text = problems.to_string();
                     let first = text.lines().next().unwrap_or_default();
-                    lab.tell(format!("{first}; the page stays as it was"));
+                    lab.tell(format!("the page stays as it was: {first}"));
                 }
             }
         }

@@ -10,6 +10,7 @@ use crate::tui::pacing::Pacing;
 use crate::tui::panes::{self, help};
 use crate::tui::screen;
 use crate::tui::terminal::{Event, Screen};
+use ratatui::layout::Rect;
 use std::io;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -137,24 +138,38 @@ fn handle(
     if matches!(request, Some(Request::Quit | Request::Suspend)) {
         keep(lab, session); // what was pressed just before it came with it
     }
+    let request = match request {
+        Some(request) => do_in_class(request, lab, class, screen.size()?),
+        None => None,
+    };
     match request {
         None => return Ok(ControlFlow::Continue(())),
         Some(Request::Quit) => return Ok(ControlFlow::Break(())),
-        Some(Request::Lesson(key)) => {
-            if let Some(direction) = class.act(key, lab) {
-                screen::scroll_page(lab, direction, screen.size()?);
-            }
-            return Ok(ControlFlow::Continue(()));
-        }
-        Some(Request::Answer(number)) => {
-            class.answer(number, lab);
-            return Ok(ControlFlow::Continue(()));
-        }
+        Some(Request::Lesson(_) | Request::Answer(_)) => {} // do_in_class
         Some(Request::Redraw) => screen.forget()?,
         Some(Request::Suspend) => screen.suspend()?,
     }
     screen::fit(lab, screen.size()?); // all of it is to be drawn, at the size there is now
     Ok(ControlFlow::Continue(()))
+}
+
+/// Does what `request` asks of the lessons, on a screen of this `size`; gives back any other request.
+pub fn do_in_class(
+    request: Request,
+    lab: &mut Lab,
+    class: &mut Class,
+    size: Rect,
+) -> Option<Request> {
+    match request {
+        Request::Lesson(key) => {
+            if let Some(direction) = class.act(key, lab) {
+                screen::scroll_page(lab, direction, size);
+            }
+        }
+        Request::Answer(number) => class.answer(number, lab),
+        other => return Some(other),
+    }
+    None
 }
 
 /// Carries out the action of `key`, or shows a message that it has none.

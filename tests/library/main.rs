@@ -16,6 +16,7 @@ mod journal;
 mod kept;
 mod laws;
 mod lessons;
+mod lessons_taken;
 mod limits;
 mod mangled;
 mod mouse;

@@ -4,6 +4,7 @@ use super::desk::commands;
 use super::scenarios::{preset, view};
 use gyrolab::lab::view::markers::Marker;
 use gyrolab::lab::{Lab, Request};
+use gyrolab::teach::Class;
 use gyrolab::tui::app;
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::screen;
@@ -28,6 +29,7 @@ pub const FRAME: Duration = Duration::from_millis(100);
 /// A lab with its screen, and a clock that only the test advances.
 pub struct Stage {
     pub lab: Lab,
+    pub class: Class,
     pub now: Duration,
     pub size: Rect,
     /// The folder of its files.
@@ -45,6 +47,7 @@ impl Stage {
         screen::fit(&mut lab, size);
         Self {
             lab,
+            class: Class::default(),
             now: Duration::ZERO,
             size,
             _folder: folder,
@@ -52,7 +55,28 @@ impl Stage {
     }
 
     pub fn key(&mut self, key: Key) -> Option<Request> {
-        app::press(key, &mut self.lab)
+        let request = app::press(key, &mut self.lab)?;
+        app::do_in_class(request, &mut self.lab, &mut self.class, self.size)
+    }
+
+    /// Opens the lesson `name` on its page `page`.
+    #[track_caller]
+    pub fn lesson(&mut self, name: &str, page: usize) -> &mut Self {
+        let opened = self.class.open(name, Some(page), &mut self.lab);
+        opened.unwrap();
+        self.wait(0.0)
+    }
+
+    /// Waits until the lab has carried out what the page wants.
+    #[track_caller]
+    pub fn arrive(&mut self) -> &mut Self {
+        for _ in 0..10_000 {
+            self.wait(0.1);
+            if self.lab.script().is_done() {
+                return self.wait(0.1);
+            }
+        }
+        panic!("the page does not come to its end");
     }
 
     pub fn press(&mut self, keys: &str) -> &mut Self {
@@ -81,6 +105,8 @@ impl Stage {
                 looks += 1;
                 now + Duration::from_micros(50) * (looks - 1)
             });
+            self.class.advance(now, &mut self.lab);
+            screen::refit(&mut self.lab, self.size);
             self.now += FRAME;
         }
         self.now -= FRAME;

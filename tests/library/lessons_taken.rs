@@ -1,0 +1,274 @@
+//! Lessons that are taken beside the lab, from the keys to the picture.
+
+use crate::support::stage::{LARGE, SMALL, Stage};
+use gyrolab::lab::Lab;
+use gyrolab::lab::view::markers::Marker;
+use gyrolab::lab::view::{Pane, Part};
+use gyrolab::teach::{Answer, Class, reading, shipped};
+use std::fs;
+
+/// A lesson with a question of each kind, a task with a check, and notes.
+const LESSON: &str = r#"# Swing
+
+```lesson
+about = "A lesson to test by."
+minutes = 5
+```
+
+## Look
+
+```lab
+open = "cusps"
+hide = ["health", "predicted"]
+go_to = "2 s"
+keep = { first = "t_s" }
+```
+
+The time is {t_s:.1} s, and **strong** words stand here.
+
+```predict
+name = "finer"
+ask = "With a finer step the tilt ..."
+choices = ["stays", "grows", "shrinks"]
+```
+
+It goes on here.
+
+```predict
+name = "lag"
+ask = "How large is it?"
+unit = "deg"
+```
+
+```notes
+Let two answers be defended.
+```
+
+## Compare
+
+```lab
+set = { "motion.gravity_m_per_s2" = 5 }
+go_to = "3 s"
+```
+
+```compare
+prediction = "finer"
+with = "t_s + first"
+text = "It is {with:.1}. You said: it {prediction}."
+```
+
+```compare
+prediction = "lag"
+text = "You said: {prediction}."
+```
+
+## Your turn
+
+Go to 4 s.
+
+```task
+go_to = "4 s"
+keep = { mine = "t_s" }
+```
+
+```check
+that = "t_s > 3.9"
+hint = "g goes to a time."
+```
+
+## End
+
+You were at {mine:.1} s.
+"#;
+
+/// A stage with that lesson in a file, open on its page `page`.
+fn taken(page: usize) -> (Stage, tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("swing.md");
+    fs::write(&path, LESSON).unwrap();
+    let name = path.display().to_string();
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.lesson(&name, page).arrive();
+    (stage, folder, name)
+}
+
+#[test]
+fn a_page_opens_its_run_and_tells_its_numbers() {
+    let (mut stage, _folder, _) = taken(1);
+    stage.shows("1 of 4 · Swing").shows("The time is 2.0 s");
+    stage.shows("strong words").shows_no("**");
+    assert_eq!(stage.focus(), "lesson");
+    assert_eq!(stage.lab.work().name(), "cusps");
+    assert!(stage.lab.view().hides(Part::Health));
+}
+
+#[test]
+fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
+    let (mut stage, _folder, _) = taken(1);
+    stage.shows("> [ ] stays").shows_no("It goes on here");
+    stage.press("n").shows("predict first").shows("1 of 4");
+    stage.press("↓↓↑\n").shows("[x] grows");
+    stage.shows("It goes on here").shows("How large is it?");
+    assert!(stage.lab.view().hides(Part::Health), "one is still open");
+    stage.press("\n").shows("your prediction").shows("lag, deg");
+    stage.press("much\n").shows("must be a number");
+    stage.press("\u{1b}\n3,5\n").shows("you said: 3.5 deg");
+    assert!(!stage.lab.view().hides(Part::Health));
+    assert!(!stage.lab.view().hides(Part::Predicted));
+    stage.press("n").arrive().shows("2 of 4");
+    stage.shows("It is 5.0. You said: it grows.");
+    stage.shows("You said: 3.5 deg.");
+    assert_eq!(stage.lab.player().motion().gravity, 5.0);
+    stage.press("N").arrive().shows("1 of 4").shows("[x] grows");
+    stage.shows("you said: 3.5 deg");
+    let place = stage.class.taken().unwrap().place();
+    let answer = place.predictions.answer("finer").cloned();
+    assert_eq!(answer, Some(Answer::Choice("grows".to_owned())));
+}
+
+#[test]
+fn an_open_prediction_can_be_left_open() {
+    let (mut stage, _folder, _) = taken(1);
+    stage.press("nn").arrive().shows("2 of 4");
+    stage.shows("You said: it ….").shows("You predicted nothing: page 1 asks");
+}
+
+#[test]
+fn play_is_free_and_one_key_leads_back() {
+    let (mut stage, _folder, _) = taken(2);
+    let before = stage.step();
+    stage.press("p..,,.....").arrive();
+    assert_ne!(stage.step(), before);
+    assert_eq!(stage.lab.work().journal().later_than(0), 2, "gravity, push");
+    stage.press("R").arrive();
+    assert_eq!(stage.step(), before);
+    assert_eq!(stage.lab.work().journal().later_than(0), 1, "gravity");
+    assert_eq!(stage.lab.player().motion().gravity, 5.0);
+}
+
+#[test]
+fn a_task_is_done_by_hand_or_shown() {
+    let (mut stage, _folder, _) = taken(3);
+    stage.shows("[ ] not yet").shows("Hint: g goes to a time.");
+    stage.press("g3.95 s\n").arrive();
+    stage.shows("[x] done").shows_no("Hint");
+    stage.press("n").shows("You were at 4.0 s");
+    let kept = &stage.class.taken().unwrap().place().kept;
+    assert!((kept["mine"] - 3.95).abs() < 0.01, "{kept:?}");
+    let (mut stage, _folder, _) = taken(3);
+    stage.press("D").arrive().shows("[x] done");
+    stage.press("nn").shows("this is the last page");
+    stage.press("NNNN").arrive().shows("this is the first page");
+}
+
+#[test]
+fn the_session_keeps_page_and_predictions() {
+    let (mut stage, _folder, _) = taken(1);
+    stage.press("↓\n").press("nn").arrive();
+    let content = stage.lab.content();
+    Lab::check(&content).unwrap();
+    let view = |scenario: &_| crate::support::scenarios::view(scenario, Marker::Braille, false);
+    let mut lab = Lab::resumed(&content, view).unwrap();
+    let (class, taken) = Class::resumed(&mut lab);
+    taken.unwrap();
+    let place = class.taken().unwrap().place();
+    assert_eq!(place.page, 2);
+    let answer = Answer::Choice("grows".to_owned());
+    assert_eq!(place.predictions.answer("finer"), Some(&answer));
+    assert_eq!(place.kept["first"], 2.0);
+    assert!(lab.view().sheet.is_some());
+}
+
+#[test]
+fn a_lesson_that_is_gone_leaves_the_lab_and_what_was_predicted() {
+    let (mut stage, folder, name) = taken(1);
+    stage.press("↓\n");
+    let content = stage.lab.content();
+    drop(folder);
+    let view = |scenario: &_| crate::support::scenarios::view(scenario, Marker::Braille, false);
+    let mut lab = Lab::resumed(&content, view).unwrap();
+    let (_, taken) = Class::resumed(&mut lab);
+    assert!(taken.unwrap_err().contains("swing.md"));
+    let kept = lab.lessons_kept().unwrap();
+    let place = &kept["lessons"][name.as_str()];
+    assert_eq!(place["predictions"]["finer"].as_str(), Some("grows"));
+}
+
+#[test]
+fn a_file_that_changes_is_read_again_and_the_page_stays() {
+    let (mut stage, _folder, name) = taken(2);
+    let step = stage.step();
+    fs::write(&name, LESSON.replace("It is {with", "Now it is {with")).unwrap();
+    stage.wait(2.0).shows("Now it is 5.0").shows("2 of 4");
+    assert_eq!(stage.step(), step, "the run stays");
+    fs::write(&name, LESSON.replace("```compare", "```compere")).unwrap();
+    stage.wait(2.0).shows("the page stays as it was");
+    stage.shows("Now it is 5.0");
+}
+
+#[test]
+fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.press("n").shows("no lesson is open: L lists them");
+    let title = |index: usize| {
+        let name = shipped::LESSONS[index].name;
+        reading::open(name).unwrap().title
+    };
+    stage.press("L").shows(&format!("> [ ] {}", title(0)));
+    stage.press("↓↓↑↓\n").arrive();
+    let words: Vec<_> = stage.class.taken().into_iter().collect();
+    assert_eq!(words[0].lesson().title, title(2));
+    stage.press("nn").arrive().shows("2 of ");
+    stage.press("L").shows("(page 2 of ");
+    stage.press("\n").arrive().shows("2 of ");
+    stage.press("LL").shows_no("lessons ──");
+    assert!(stage.lab.view().sheet.is_none());
+    assert_ne!(stage.focus(), "lesson");
+}
+
+#[test]
+fn the_teacher_has_notes_the_next_page_and_a_clock() {
+    let (mut stage, _folder, _) = taken(1);
+    stage.size = LARGE;
+    stage.shows_no("defended");
+    stage
+        .press("C")
+        .wait(61.0)
+        .shows("For the class: 1:01 since the beginning");
+    stage
+        .shows("| Let two answers be defended.")
+        .shows("Next page: Compare");
+    stage.press("C").shows("left of 5 min");
+    stage.press("C").shows_no("left of").shows("defended");
+    stage.press("C").shows_no("defended");
+}
+
+#[test]
+fn a_long_page_begins_at_its_top_and_scrolls() {
+    let long = "\n\nOne more paragraph stands here.".repeat(30);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.md");
+    let text = format!("# Long\n\n## Page\n\n{long}\n\n## Two\n\nx\n\n## Three\n\nLast words.\n");
+    fs::write(&path, text).unwrap();
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.lesson(&path.display().to_string(), 1);
+    stage.shows("│Page").shows("PgDn: more");
+    for _ in 0..20 {
+        stage.key(gyrolab::tui::keymap::Key::PageDown);
+    }
+    stage.wait(0.0).shows("n: next page.").shows("PgUp: back");
+    stage.press("↑").shows("PgDn: more");
+}
+
+#[test]
+fn a_page_never_breaks_the_screen() {
+    let (mut stage, _folder, _) = taken(1);
+    for (width, height) in [(1, 1), (20, 5), (40, 12), (71, 24), (72, 9), (300, 90)] {
+        stage.size.width = width;
+        stage.size.height = height;
+        gyrolab::tui::screen::fit(&mut stage.lab, stage.size);
+        stage.wait(0.0).press("\t↓\t");
+        assert_eq!(stage.picture().lines().count(), height as usize);
+    }
+    stage.lab.turn_to(Pane::LESSON);
+}
