@@ -256,15 +256,15 @@ pub(super) struct LessonArgs {
     pub(super) page: Option<NonZeroU64>,
 
     /// Print the lesson for paper, as Markdown: pictures as text, room for predictions, no notes
-    #[arg(long, requires = "name", conflicts_with = "page")]
+    #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]
     pub(super) handout: bool,
 
     /// Print a small lesson to begin from, with a comment on each part
-    #[arg(long, conflicts_with_all = ["name", "handout"])]
+    #[arg(long, group = "printed", conflicts_with = "name")]
     pub(super) template: bool,
 
     /// Write the handout or the template to this file, or to stdout for -
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, requires = "printed", value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
 
     /// Replace an existing file

@@ -11,7 +11,7 @@ use crate::scenario::{Problem, Problems};
 use crate::teach::play::{self, Walk};
 use crate::teach::{Lesson, Page, handout, reading, shipped};
 use crate::text::printable::printable_lines;
-use anyhow::{Context, bail};
+use anyhow::Context;
 use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -22,11 +22,6 @@ const PICTURE: (u16, u16) = (80, 24);
 
 /// What is asked of a lesson.
 pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
-    if args.output.is_some() && !args.handout && !args.template {
-        bail!(
-            "-o takes what --handout or --template prints: gyrolab lesson NAME --handout -o FILE.md"
-        );
-    }
     if args.template {
         return write(args, |_| Ok(shipped::TEMPLATE.to_owned()));
     }

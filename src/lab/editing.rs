@@ -48,6 +48,7 @@ impl Lab {
         let scenario = self.work.begin_with(set, acts, is_again)?;
         self.values.suit(&scenario);
         self.player.begin(scenario, is_again);
+        self.player.playback.set_end(self.work.present().end_s);
         self.scenario_has_changed();
         let done = match left_at > 0 {
             true => Done::saying("a new run; the one before is dotted, and u goes back to it"),

@@ -147,12 +147,17 @@ impl Work {
             true => history.begin_again_with(set),
             false => history.begin_with(set),
         };
+        let mut begun_with = None;
         let begun = begun.and_then(|begun| {
+            begun_with = Some(Arc::clone(&begun));
             let mut acts = acts.into_iter();
             acts.try_fold(begun, |_, act| history.act(0, act))
         });
         let scenario = self.or_back_to(before, begun)?;
-        self.change().set_end(Clock::end_s(&scenario));
+        // An edit of the time step holds the seconds of the run, unless the number of steps was set with it.
+        let told = begun_with.filter(|begun| begun.steps == scenario.steps);
+        let end_s = Clock::end_s(told.as_ref().unwrap_or(&scenario));
+        self.change().set_end(end_s);
         Ok(scenario)
     }
 

@@ -36,7 +36,6 @@ pub(super) struct Reader<'a> {
     inside: &'a str,
     /// The line of the block's fence.
     pub(super) line: usize,
-    problems: Vec<Problem>,
 }
 
 /// The TOML of a block.
@@ -55,12 +54,11 @@ impl<'a> Reader<'a> {
             word,
             inside,
             line,
-            problems: Vec::new(),
         }
     }
 
     /// The TOML of the block, of which only the keys `known` may be there.
-    fn content(&mut self, known: &[&str]) -> Found<Content> {
+    fn content(&self, known: &[&str]) -> Found<Content> {
         // As many empty lines before it as there are lines before it in the file: every line has its number there.
         let text = "\n".repeat(self.line) + self.inside;
         let document = Document::parse(self.origin, &text).map_err(|problems| problems.list)?;
@@ -68,7 +66,7 @@ impl<'a> Reader<'a> {
             document,
             word: self.word.to_owned(),
             line: self.line,
-            problems: std::mem::take(&mut self.problems),
+            problems: Vec::new(),
         };
         let keys: Vec<String> = content.document.table().keys().cloned().collect();
         for key in keys.iter().filter(|key| !known.contains(&key.as_str())) {
@@ -207,7 +205,7 @@ fn expression(
 }
 
 /// What the lesson is about, and how many minutes it takes.
-pub(super) fn head(reader: &mut Reader<'_>) -> Found<(String, Option<u32>)> {
+pub(super) fn head(reader: &Reader<'_>) -> Found<(String, Option<u32>)> {
     let mut content = reader.content(&["about", "minutes"])?;
     let about = content.line("about", false);
     let minutes = content.get("minutes").map(|value| {
@@ -229,13 +227,13 @@ pub(super) fn head(reader: &mut Reader<'_>) -> Found<(String, Option<u32>)> {
 
 /// What the lab does: a `lab` or `task` block of page `page`, whose kept numbers are known from the page `known_from` on.
 pub(super) fn setup(
-    reader: &mut Reader<'_>,
+    reader: &Reader<'_>,
     names: &mut Names,
     page: usize,
     known_from: usize,
 ) -> Found<Setup> {
     let known: Vec<&str> = ORDER.into_iter().chain([RUN_UNTIL, KEEP]).collect();
-    let mut content = reader.content(&known)?;
+    let mut content = reader.content(&known).inspect_err(|_| names.lose())?;
     let mut commands = Vec::new();
     for name in ORDER.into_iter().chain([RUN_UNTIL]) {
         let Some(value) = content.get(name) else {
@@ -301,7 +299,7 @@ fn keep(content: &mut Content, names: &mut Names, page: usize, known_from: usize
 
 /// A prediction that is asked for.
 pub(super) fn predict(
-    reader: &mut Reader<'_>,
+    reader: &Reader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> Found<Predict> {
     let mut content = reader.content(&["name", "ask", "choices", "unit"])?;
@@ -357,7 +355,7 @@ fn choices(content: &mut Content, value: &Value) -> Vec<String> {
 
 /// A prediction beside what happened.
 pub(super) fn compare(
-    reader: &mut Reader<'_>,
+    reader: &Reader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> Found<Compare> {
     let mut content = reader.content(&["prediction", "with", "text"])?;
@@ -385,7 +383,7 @@ pub(super) fn compare(
 
 /// What holds once the student has done the task.
 pub(super) fn check(
-    reader: &mut Reader<'_>,
+    reader: &Reader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> Found<Check> {
     let mut content = reader.content(&["that", "hint"])?;

@@ -19,6 +19,8 @@ pub struct Names {
     kept: Vec<(String, usize)>,
     /// The first page on which a run is open, once a block that opens one was read.
     open_from: Option<usize>,
+    /// Whether a block could not be read that may have kept more numbers.
+    are_lost: bool,
 }
 
 impl Names {
@@ -53,6 +55,11 @@ impl Names {
         self.open_from.get_or_insert(page);
     }
 
+    /// Notes that a block could not be read: from now on a name that is not known may be one of its own, and is taken.
+    pub(super) fn lose(&mut self) {
+        self.are_lost = true;
+    }
+
     /// Whether `name` stands for a number on the page `page`.
     ///
     /// # Errors
@@ -62,6 +69,9 @@ impl Names {
             Some((_, from)) if *from <= page => return Ok(()),
             Some((_, from)) => return Err(format!("{name} is known from page {from} on")),
             None => {}
+        }
+        if self.are_lost {
+            return Ok(());
         }
         let found = numbers::find(name).map(|_| ());
         if found.is_ok() && self.open_from.is_none_or(|from| page < from) {
@@ -91,5 +101,6 @@ pub fn number(name: &str, lab: &Lab, kept: &Kept) -> Option<f64> {
 
 /// The value of `expression` in `lab`; `None` where a number that it needs is not there.
 pub fn value(expression: &Expression, lab: &Lab, kept: &Kept) -> Option<f64> {
-    expression.value(|name| number(name, lab, kept))
+    let value = expression.value(|name| number(name, lab, kept));
+    value.filter(|value| value.is_finite())
 }

@@ -195,8 +195,8 @@ impl<'a> Assembly<'a> {
             };
             let known_from = page + usize::from(word == "task");
             self.names.open_from(page);
-            let mut reader = Reader::new(self.origin, word, inside, element.line);
-            match blocks::setup(&mut reader, &mut self.names, page, known_from) {
+            let reader = Reader::new(self.origin, word, inside, element.line);
+            match blocks::setup(&reader, &mut self.names, page, known_from) {
                 Ok(setup) => {
                     if !is_opened && !setup.opens() {
                         let rule = "opens nothing, and there is nothing open before it: open = \"method-2\" says which run";
@@ -306,15 +306,15 @@ impl<'a> Assembly<'a> {
     }
 
     fn add_block(&mut self, word: &str, inside: &str, line: usize) {
-        let mut reader = Reader::new(self.origin, word, inside, line);
+        let reader = Reader::new(self.origin, word, inside, line);
         let page = self.pages.len();
         let find = |name: &str| self.names.find(name, page);
         let read = match word {
-            "lesson" => return self.add_head(reader),
+            "lesson" => return self.add_head(&reader),
             "lab" | "task" => return self.add_setup(word, line),
-            "predict" => blocks::predict(&mut reader, find).map(Block::Predict),
-            "compare" => blocks::compare(&mut reader, find).map(Block::Compare),
-            _ => blocks::check(&mut reader, find).map(Block::Check),
+            "predict" => blocks::predict(&reader, find).map(Block::Predict),
+            "compare" => blocks::compare(&reader, find).map(Block::Compare),
+            _ => blocks::check(&reader, find).map(Block::Check),
         };
         match read {
             Ok(block) => {
@@ -333,7 +333,7 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    fn add_head(&mut self, mut reader: Reader<'_>) {
+    fn add_head(&mut self, reader: &Reader<'_>) {
         let line = reader.line;
         let misplaced = match (self.has_head, self.pages.is_empty()) {
             (true, _) => "stands twice: a lesson has one such block",
@@ -344,7 +344,7 @@ impl<'a> Assembly<'a> {
             return self.refuse(line, Problem::at("lesson", misplaced));
         }
         self.has_head = true;
-        match blocks::head(&mut reader) {
+        match blocks::head(reader) {
             Ok((about, minutes)) => (self.about, self.minutes) = (about, minutes),
             Err(problems) => self.refuse_all(problems),
         }

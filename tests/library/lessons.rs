@@ -1,6 +1,22 @@
-//! Lessons: what is read, and what is refused, with file and line.
+//! Lessons: what is read, what is refused, with file and line, and how they are played without a screen.
 
-use gyrolab::teach::{Block, Lesson, Text, reading};
+use crate::support::desk::Desk;
+use crate::support::scenarios::{preset, view};
+use gyrolab::lab::Lab;
+use gyrolab::lab::view::Part;
+use gyrolab::lab::view::markers::Marker;
+use gyrolab::run::Simulation;
+use gyrolab::scenario::{Document, Problems};
+use gyrolab::teach::{
+    Answer, Block, Kept, Lesson, Predictions, Text, Walk, handout, names, play, reading, shipped,
+};
+use gyrolab::text::printable::is_steering;
+use gyrolab::tui::screen;
+use proptest::prelude::*;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
 
 /// A lesson with a block of every kind.
 const WHOLE: &str = r#"# The push
@@ -148,12 +164,797 @@ fn places_for_numbers_are_found_and_braces_in_code_are_not() {
 
 #[test]
 fn what_is_broken_is_told_with_its_line_and_the_nearest_right_name() {
-    for (from, to, words) in [(
-        "go_to = \"60 s\"",
-        "go_too = \"60 s\"",
-        "a.md:16: lab.go_too: unknown key: did you mean go_to?",
-    )] {
+    let at = |text: &str| {
+        let line = WHOLE.lines().position(|line| line == text);
+        line.unwrap_or_else(|| panic!("{text}")) + 1
+    };
+    let open = "open = \"wobble-push\"\ndetail_s = 8";
+    for (from, to, line, words) in [
+        // blocks
+        (
+            open,
+            "open = \"wobble-psh\"",
+            at("detail_s = 8") - 1,
+            "lab.open (\"wobble-psh\") is no preset: did you mean wobble-push?",
+        ),
+        (
+            open,
+            "set = { \"motion.time_step_s\" = 0.01 }",
+            at("detail_s = 8") - 2,
+            "lab: opens nothing",
+        ),
+        (
+            "detail_s = 8",
+            "show = [\"trace\"]",
+            at("detail_s = 8"),
+            "lab.show ([\"trace\"]) each must be one of traces, above",
+        ),
+        ("detail_s = 8", "hide = 3", at("detail_s = 8"), "lab: "),
+        (
+            "detail_s = 8",
+            "detail = 8",
+            at("detail_s = 8"),
+            "lab.detail: unknown key: did you mean detail_s?",
+        ),
+        (
+            "detail_s = 8",
+            "export = \"a.csv\"",
+            at("detail_s = 8"),
+            "lab.export: is no key of this block",
+        ),
+        (
+            "detail_s = 8",
+            "detail_s = ",
+            at("detail_s = 8"),
+            "TOML parse error at line 16",
+        ),
+        (
+            "go_to = \"60 s\"",
+            "go_too = \"60 s\"",
+            at("go_to = \"60 s\""),
+            "lab.go_too: unknown key: did you mean go_to?",
+        ),
+        (
+            "go_to = \"60 s\"",
+            "go_to = 60\nrun_until = \"t_s > 1\"",
+            at("go_to = \"60 s\"") + 1,
+            "lab.run_until: has no place beside go_to",
+        ),
+        (
+            "run_until = \"t_s >= 60\"",
+            "run_until = \"t_ss >= 60\"",
+            at("run_until = \"t_s >= 60\""),
+            "column 1: there is no number named t_ss: did you mean t_s?",
+        ),
+        (
+            "{ \"motion.time_step_s\" = 0.01 }",
+            "{ \"motion.time_step\" = 0.01 }",
+            at("run_until = \"t_s >= 60\"") - 1,
+            "lab.set.\"motion.time_step\": unknown key: did you mean motion.time_step_s?",
+        ),
+        (
+            "```predict",
+            "```predikt",
+            at("```predict"),
+            "predikt: is no block of a lesson: did you mean predict?",
+        ),
+        (
+            "```predict",
+            "```predict now",
+            at("```predict"),
+            "predict: stands alone behind its fence",
+        ),
+        (
+            "```sh\n",
+            "```rust\n",
+            at("```sh"),
+            "rust: is no block of a lesson",
+        ),
+        (
+            "Stop the push.",
+            "- a\n\n  ```task\n  go_to = 1\n  ```",
+            at("Stop the push.") + 2,
+            "task: stands in a list",
+        ),
+        (
+            "Stop the push.",
+            "```task\ngo_to = 1\n```",
+            at("```task") + 2,
+            "task: stands twice on this page",
+        ),
+        // fences
+        (
+            "hint = \"g, then 10.\"\n```",
+            "hint = \"g, then 10.\"",
+            at("```check"),
+            "check: is not closed: a line ``` must end it",
+        ),
+        (
+            "is gone\"]\n```",
+            "is gone\"]",
+            at("```predict"),
+            &format!(
+                "predict: is not closed before line {}, where another block begins",
+                at("```notes") - 1
+            ),
+        ),
+        (
+            "wobble-push\n```\n\n## Your",
+            "wobble-push\n\n## Your",
+            at("```sh"),
+            "sh: is not closed",
+        ),
+        // pages and title
+        (
+            "## Watch\n",
+            "##\n",
+            at("## Watch"),
+            "##: is a page without a heading",
+        ),
+        (
+            "## Watch\n",
+            "",
+            at("## Watch") + 1,
+            "lab: stands before the first page",
+        ),
+        ("# The push", "The push", 1, "comes before the title"),
+        (
+            "# The push",
+            "# The push\n\n# Again",
+            3,
+            "#: is a second title",
+        ),
+        (
+            "minutes = 10",
+            "minutes = 0",
+            at("minutes = 10"),
+            "lesson.minutes (0) must be a whole number from 1 to 600",
+        ),
+        (
+            "minutes = 10",
+            "minute = 10",
+            at("minutes = 10"),
+            "lesson.minute: unknown key: did you mean minutes?",
+        ),
+        (
+            "Stop the push.",
+            "```lesson\nabout = \"x\"\n```",
+            at("Stop the push."),
+            "lesson: stands twice",
+        ),
+        // numbers in the text
+        (
+            "{z_m:.4}",
+            "{zz_m:.4}",
+            at("```predict") - 2,
+            "{zz_m:.4}: column 1: there is no number named zz_m: did you mean z_m?",
+        ),
+        ("{z_m:.4}", "{z_m:.4", at("```predict") - 2, "is not closed"),
+        (
+            "{z_m:.4}",
+            "{z_m:4}",
+            at("```predict") - 2,
+            "{z_m:4}: 4 is no way to write a number",
+        ),
+        (
+            "{z_m:.4}",
+            "{z_m > 1}",
+            at("```predict") - 2,
+            "compares: a number must stand here",
+        ),
+        (
+            "{z_m:.4}",
+            "{title}",
+            at("```predict") - 2,
+            "{title}: column 1: title is a text",
+        ),
+        (
+            "Before the first page.",
+            "At {z_m}.",
+            3,
+            "z_m is a number of a run, and no lab block has opened one yet",
+        ),
+        // predictions and comparisons
+        (
+            "name = \"finer\"",
+            "",
+            at("```predict"),
+            "predict: lacks name",
+        ),
+        (
+            "choices = [\"stays as it is\", \"is ten times smaller\", \"is gone\"]",
+            "choices = [\"yes\"]",
+            at("name = \"finer\"") + 2,
+            "must be a list of at least two answers",
+        ),
+        (
+            "choices = [\"stays as it is\", \"is ten times smaller\", \"is gone\"]",
+            "choices = [\"yes\", \"yes\"]",
+            at("name = \"finer\"") + 2,
+            "must differ",
+        ),
+        (
+            "choices = [\"stays as it is\", \"is ten times smaller\", \"is gone\"]",
+            "",
+            at("```predict"),
+            "predict: lacks choices",
+        ),
+        (
+            "choices = [",
+            "unit = \"m\"\nchoices = [",
+            at("name = \"finer\"") + 2,
+            "predict.unit: has no place beside choices",
+        ),
+        (
+            "Stop the push.",
+            "```predict\nname = \"finer\"\nask = \"?\"\nunit = \"\"\n```",
+            at("Stop the push."),
+            "predict.name (\"finer\") is the name of an earlier prediction",
+        ),
+        (
+            "prediction = \"finer\"",
+            "prediction = \"finner\"",
+            at("```compare"),
+            "compare.prediction (\"finner\") is asked for nowhere: did you mean finer?",
+        ),
+        (
+            "prediction = \"finer\"",
+            "prediction = \"late\"",
+            at("```compare"),
+            "is asked for nowhere",
+        ),
+        (
+            "with = \"measured_highest_tilt_deg - measured_lowest_tilt_deg\"",
+            "with = \"lowest_tilt_deg\"",
+            at("```compare") + 2,
+            "did you mean predicted_lowest_tilt_deg or measured_lowest_tilt_deg?",
+        ),
+        (
+            "with = \"measured_highest_tilt_deg - measured_lowest_tilt_deg\"",
+            "",
+            at("```compare") + 3,
+            "there is no with in this block",
+        ),
+        (
+            "{coarse:.2}",
+            "{coarze:.2}",
+            at("```compare") + 3,
+            "compare.text {coarze:.2}: column 1: there is no number named coarze: did you mean coarse?",
+        ),
+        (
+            "that = \"steps == 10\"",
+            "that = \"stepps == 10\"",
+            at("that = \"steps == 10\""),
+            "did you mean steps?",
+        ),
+        (
+            "that = \"steps == 10\"",
+            "that = \"steps\"",
+            at("that = \"steps == 10\""),
+            "must compare",
+        ),
+        (
+            "that = \"steps == 10\"",
+            "",
+            at("```check"),
+            "check: lacks that",
+        ),
+        // kept numbers
+        (
+            "keep = { coarse =",
+            "keep = { tilt_deg =",
+            at("go_to = \"60 s\"") + 1,
+            "lab.keep.tilt_deg: is a number of the run already",
+        ),
+        (
+            "keep = { coarse =",
+            "keep = { title =",
+            at("go_to = \"60 s\"") + 1,
+            "lab.keep.title: is a number of the run already",
+        ),
+        (
+            "keep = { coarse =",
+            "keep = { with =",
+            at("go_to = \"60 s\"") + 1,
+            "means something else in a lesson",
+        ),
+        (
+            "keep = { coarse =",
+            "keep = { \"größer\" =",
+            at("go_to = \"60 s\"") + 1,
+            "must begin with a letter",
+        ),
+        (
+            "go_to = 10\n",
+            "go_to = 10\nkeep = { coarse = \"t_s\" }\n",
+            at("go_to = 10") + 1,
+            "task.keep.coarse: is kept twice",
+        ),
+        (
+            "Stop the push.",
+            "{late}",
+            at("Stop the push."),
+            "there is no number named late",
+        ),
+        // characters
+        (
+            "Stop the push.",
+            "Stop\u{1b}[2J the push.",
+            at("Stop the push."),
+            "character U+001B",
+        ),
+        (
+            "Stop the push.",
+            "Stop\u{202e} the push.",
+            at("Stop the push."),
+            "character U+202E",
+        ),
+    ] {
         let told = refused(from, to);
-        assert!(told.contains(words), "{from} as {to}: {told}");
+        let place = format!("a.md:{line}: ");
+        let is_told = |told: &str| told.contains(&place) && told.contains(words);
+        assert!(is_told(&told), "{from:?} as {to:?}: {place}{words}\n{told}");
+        assert!(!told.replace('\n', "").chars().any(is_steering), "{told}");
     }
+}
+
+#[test]
+fn a_prediction_is_compared_after_it_was_asked_for() {
+    let late = "```predict\nname = \"late\"\nask = \"?\"\nunit = \"\"\n```";
+    let text = WHOLE
+        .replace("Stop the push.", late)
+        .replace("prediction = \"finer\"", "prediction = \"late\"");
+    let told = reading::read("a.md", &text).unwrap_err().to_string();
+    assert!(
+        told.contains("(\"late\") is asked for later, on line "),
+        "{told}"
+    );
+    let kept_late = WHOLE
+        .replace("Stop the push.", "{other}")
+        .replace("go_to = 10\n", "go_to = 10\nkeep = { other = \"t_s\" }\n");
+    let told = reading::read("a.md", &kept_late).unwrap_err().to_string();
+    assert!(told.contains("other is known from page 4 on"), "{told}");
+}
+
+#[test]
+fn no_lesson_without_a_page_or_a_title() {
+    for (text, words) in [
+        ("", "a.md:1: has no title"),
+        ("# A title\n\nText.\n", "a.md:1: has no page"),
+        ("# A title\n\n### A small heading\n", "a.md:1: has no page"),
+    ] {
+        let told = reading::read("a.md", text).unwrap_err().to_string();
+        assert!(told.contains(words), "{text:?}: {told}");
+    }
+}
+
+#[test]
+fn line_ends_a_byte_order_mark_and_comments_change_nothing() {
+    let lesson = read(WHOLE);
+    let of_windows = format!("\u{feff}{}", WHOLE.replace('\n', "\r\n"));
+    assert_eq!(read(&of_windows), lesson);
+    let commented = WHOLE.replace(
+        "Stop the push.",
+        "<!-- a {comment}\n\n## no page -->\n\nStop the push.",
+    );
+    let pages = |lesson: &Lesson| -> Vec<usize> {
+        lesson.pages.iter().map(|page| page.blocks.len()).collect()
+    };
+    assert_eq!(pages(&read(&commented)), pages(&lesson));
+}
+
+#[test]
+fn a_file_that_is_too_long_is_refused_with_its_length() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.md");
+    fs::write(&path, "# A\n\n## B\n\n".repeat(1_000_000)).unwrap();
+    let told = reading::read_file(&path).unwrap_err().to_string();
+    assert!(
+        told.contains("long.md: is 11000000 bytes long: a lesson has at most 1 MiB"),
+        "{told}"
+    );
+    fs::write(&path, "# A\n\n## B\n\n".to_owned() + &"\n".repeat(100_000)).unwrap();
+    let told = reading::read_file(&path).unwrap_err().to_string();
+    assert!(told.contains("at most 20000"), "{told}");
+    fs::write(&path, "# A\n\n## B\n\n".repeat(4_000)).unwrap();
+    let told = reading::read_file(&path).unwrap_err().to_string();
+    assert!(told.contains("more than 1000 pages and blocks"), "{told}");
+    fs::write(&path, b"# A\n\n\xff\n").unwrap();
+    let told = reading::read_file(&path).unwrap_err().to_string();
+    assert!(told.contains("long.md:3: is not text in UTF-8"), "{told}");
+    let told = reading::read_file(folder.path()).unwrap_err().to_string();
+    assert!(told.contains("is a folder"), "{told}");
+    let told = reading::open("no-such-lesson").unwrap_err().to_string();
+    assert!(told.contains("no lesson of that name"), "{told}");
+}
+
+proptest! {
+    #[test]
+    fn no_text_breaks_the_reader(cut in 0..2000usize, length in 0..60usize, put in 0..NASTY.len(), again in 0..2000usize) {
+        let characters: Vec<char> = WHOLE.chars().collect();
+        let at = cut.min(characters.len());
+        let end = (at + length).min(characters.len());
+        let mut mangled: Vec<char> = characters[..at].to_vec();
+        mangled.extend(NASTY[put].chars());
+        mangled.extend(&characters[end..]);
+        let again = again.min(mangled.len());
+        mangled.splice(again..again, NASTY[put].chars());
+        let text: String = mangled.into_iter().collect();
+        if let Err(problems) = reading::read("a.md", &text) {
+            let told = problems.to_string();
+            prop_assert!(told.lines().all(|line| line.starts_with("a.md") || !line.contains("panicked")));
+        }
+    }
+}
+
+const NASTY: [&str; 16] = [
+    "```", "````", "~~~", "{", "}", "`", "\\", "\n", "\"", "# ", "## ", "- ", "> ", "<!--", "é",
+    "{z_m:.3}",
+];
+
+/// A lab as the program makes one to play lessons.
+fn lab() -> Lab {
+    let scenario = Arc::new(preset("method-2", &[]));
+    let view = view(&scenario, Marker::Ascii, false);
+    Lab::new("method-2", scenario, view, false)
+}
+
+fn picture(lab: &Lab) -> String {
+    screen::text(lab, false, (80, 24))
+}
+
+fn on(_: u64, _: u64) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+fn checked(lesson: &Lesson) -> Result<play::Played, Problems> {
+    play::check(lesson, lab(), &mut on)
+}
+
+#[track_caller]
+fn not_good(from: &str, to: &str) -> String {
+    assert_eq!(WHOLE.matches(from).count(), 1, "{from}");
+    let lesson = read(&WHOLE.replace(from, to));
+    checked(&lesson).unwrap_err().to_string()
+}
+
+#[test]
+fn a_lesson_is_played_to_its_end() {
+    let played = checked(&read(WHOLE)).unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(played, play::Played::default());
+    let line = WHOLE.lines().position(|line| line == "```check").unwrap() + 1;
+    let told = not_good("that = \"steps == 10\"", "that = \"steps == 11\"");
+    let words = format!(
+        "a.md:{line}: check.that (\"steps == 11\") does not hold after the task of its page: steps is 10"
+    );
+    assert_eq!(told, words);
+    let told = not_good("that = \"steps == 10\"", "that = \"steps >= 10\"");
+    assert!(
+        told.contains("holds without the task of its page too"),
+        "{told}"
+    );
+    assert!(told.starts_with(&format!("a.md:{line}: ")), "{told}");
+    let task = WHOLE.lines().position(|line| line == "go_to = 10").unwrap() + 1;
+    let told = not_good("go_to = 10", "run_until = \"t_s < 0\"");
+    assert!(
+        told.starts_with(&format!(
+            "a.md:{task}: run_until: did not hold on any of 10,000,000 steps"
+        )),
+        "{told}"
+    );
+    let told = not_good("open = \"method-2\"", "open = \"./nowhere.toml\"");
+    assert!(
+        told.starts_with(&format!(
+            "a.md:{}: open: ./nowhere.toml: cannot be read",
+            task - 1
+        )),
+        "{told}"
+    );
+    let told = not_good("go_to = 10", "push = { point = \"nobody\" }\ngo_to = 10");
+    assert!(told.starts_with("a.md:"), "{told}");
+}
+
+#[test]
+fn a_check_without_a_task_is_about_the_lab_block() {
+    let task = "```task\nopen = \"method-2\"\ngo_to = 10\n```";
+    let told = not_good(task, "");
+    assert!(
+        told.contains("does not hold after the lab block of its page: steps is "),
+        "{told}"
+    );
+    let lab_block = task.replace("```task", "```lab");
+    assert!(checked(&read(&WHOLE.replace(task, &lab_block))).is_ok());
+    let first =
+        "# A\n\n## B\n\n```lab\nopen = \"method-2\"\n```\n\n```check\nthat = \"steps == 0\"\n```\n";
+    assert!(
+        checked(&read(first)).is_ok(),
+        "before a run is open nothing holds"
+    );
+}
+
+#[test]
+fn a_number_that_cannot_be_stated_is_told() {
+    let text = WHOLE.replace("Stop the push.", "It takes {wall_s} s.");
+    assert!(reading::read("a.md", &text).is_err());
+    let text = WHOLE.replace("{z_m:.4}", "{sleeping_limit_Js / (t_s - t_s) :.4}");
+    let lesson = read(&text);
+    let played = checked(&lesson).unwrap();
+    let line = WHOLE.lines().position(|line| line == "```predict").unwrap() - 1;
+    let told = played.unstated[0].to_string();
+    assert!(
+        told.starts_with(&format!("line {line}: ")) && told.contains("is n/a on this page"),
+        "{told}"
+    );
+}
+
+#[test]
+fn set_beside_open_holds_the_seconds_of_the_run_and_its_pushes() {
+    let text = "# A\n\n## B\n\n```lab\nopen = \"wobble-push\"\nset = { \"motion.time_step_s\" = 0.02 }\ngo_to = \"end\"\n```\n";
+    let lesson = read(text);
+    let mut walk = Walk::new(&lesson, lab());
+    walk.enter(&lesson.pages[0], &mut on).unwrap();
+    let mut document = Document::open("wobble-push").unwrap();
+    let end_s = document.scenario().unwrap().steps as f64 * 0.1;
+    document.set_time_step(0.02).unwrap();
+    let mut whole = Simulation::new(Arc::new(document.scenario().unwrap()));
+    let steps = whole.scenario().steps;
+    for _ in 0..steps {
+        whole.step().unwrap();
+    }
+    let (played, known) = (walk.lab().player().run().now(), whole.sample());
+    assert_eq!(walk.lab().player().playback().step_number(), steps);
+    assert_eq!(walk.lab().player().playback().end_s(), end_s);
+    assert!((played.time_s - known.time_s).abs() < 1e-9);
+    assert!((played.position - known.position).norm() < 1e-9);
+}
+
+#[test]
+fn start_and_time_step_set_together_hold_the_seconds_too() {
+    let mut desk = Desk::open("method-2");
+    let end_s = desk.lab.player().playback().end_s();
+    desk.commands("set = { 'start.tilt_deg' = 30, 'motion.time_step_s' = 0.01 }");
+    assert_eq!(desk.lab.player().playback().end_s(), end_s);
+    desk.commands("go_to = 100\nset = { 'motion.time_step_s' = 0.05, 'start.tilt_deg' = 20 }");
+    assert_eq!(desk.lab.player().playback().end_s(), end_s);
+    desk.commands(
+        "set = { 'start.tilt_deg' = 30, 'motion.time_step_s' = 0.1, 'motion.steps' = 40 }",
+    );
+    assert_eq!(desk.lab.player().playback().end_s(), 4.0);
+    desk.commands("undo = 1");
+    assert_eq!(desk.lab.player().playback().end_s(), end_s);
+}
+
+/// The lessons that are shipped, the template, and [`WHOLE`].
+fn lessons() -> Vec<Lesson> {
+    let shipped = shipped::LESSONS
+        .iter()
+        .map(|lesson| reading::open(lesson.name));
+    let template = reading::read("template.md", shipped::TEMPLATE);
+    let all = shipped
+        .chain([template])
+        .map(|read| read.unwrap_or_else(|problems| panic!("{problems}")));
+    all.chain([read(WHOLE)]).collect()
+}
+
+#[test]
+fn every_lesson_of_the_folder_is_in_the_table() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/lessons");
+    let files = fs::read_dir(folder).into_iter().flatten();
+    let mut files: Vec<_> = files
+        .map(|file| file.unwrap().file_name().into_string().unwrap())
+        .collect();
+    let mut table: Vec<_> = shipped::LESSONS
+        .iter()
+        .map(|lesson| format!("{}.md", lesson.name))
+        .collect();
+    files.sort();
+    table.sort();
+    assert_eq!(files, table);
+}
+
+#[test]
+fn every_lesson_plays_and_its_checks_fail_without_their_blocks() {
+    for lesson in lessons() {
+        assert!(
+            lesson.pages.len() >= 3,
+            "{} has fewer than three pages",
+            lesson.name
+        );
+        let played = checked(&lesson).unwrap_or_else(|problems| panic!("{problems}"));
+        assert_eq!(played.unstated, [], "{}", lesson.name);
+        for page in 0..lesson.pages.len() {
+            if lesson.pages[page].checks().next().is_none() {
+                continue;
+            }
+            let mut without = lesson.clone();
+            let has_task = lesson.pages[page].task().is_some();
+            without.pages[page].blocks.retain(|block| match block {
+                Block::Task(_) => false,
+                Block::Lab(_) => has_task,
+                _ => true,
+            });
+            let told = checked(&without).unwrap_err().to_string();
+            for check in lesson.pages[page].checks() {
+                let place = format!("{}:{}: check.that", lesson.origin, check.line);
+                assert!(told.contains(&place), "{told}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_page_is_the_same_whether_turned_to_or_jumped_to() {
+    for lesson in lessons() {
+        let mut walk = Walk::new(&lesson, lab());
+        for page in &lesson.pages {
+            walk.enter(page, &mut on).unwrap();
+            // A lab in which somebody has played before is put back.
+            let mut used = lab();
+            for command in crate::support::desk::commands(
+                "open = 'cusps'\nfill = '3d'\nbare = true\ncamera = { yaw_deg = 70 }\nzoom = { above = 3 }\nexact = true\npin = true\ngo_to = 100",
+            ) {
+                used.carry_out(&command).unwrap();
+            }
+            let focus = |walk: &Walk<'_>| walk.lab().view().focus;
+            for lab in [lab(), used] {
+                let mut jumped = Walk::new(&lesson, lab);
+                jumped.jump(page, &mut on).unwrap();
+                let place = format!("{}, page {}", lesson.name, page.number);
+                if focus(&jumped) == focus(&walk) {
+                    assert_eq!(picture(jumped.lab()), picture(walk.lab()), "{place}");
+                }
+                let numbers = |walk: &Walk<'_>| {
+                    let names = [
+                        "steps",
+                        "t_s",
+                        "z_m",
+                        "measured_highest_tilt_deg",
+                        "motion.time_step_s",
+                    ];
+                    names.map(|name| names::number(name, walk.lab(), walk.kept()))
+                };
+                assert_eq!(numbers(&jumped), numbers(&walk), "{place}");
+                assert_eq!(
+                    jumped.lab().view().hidden,
+                    walk.lab().view().hidden,
+                    "{place}"
+                );
+            }
+            walk.leave(page, &mut on).unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_jump_carries_out_what_the_page_stands_on_and_no_more() {
+    let lesson = read(WHOLE);
+    let lines = |page: usize, kept: &Kept| -> Vec<usize> {
+        let stages = lesson.stages_to(page, kept, &Predictions::default());
+        stages.iter().map(|stage| stage.page.number).collect()
+    };
+    assert_eq!(lines(1, &Kept::new()), [1]);
+    assert_eq!(lines(2, &Kept::new()), [1, 2], "page 1 keeps a number");
+    let kept = Kept::from([("coarse".to_owned(), 1.5)]);
+    assert_eq!(lines(2, &kept), [2]);
+    assert_eq!(
+        lines(3, &kept),
+        [2],
+        "page 3 has a task, which is the student's"
+    );
+    assert!(lesson.stage_of(3, &Predictions::default()).is_none());
+    assert!(lesson.task_of(3, &Predictions::default()).is_some());
+}
+
+#[test]
+fn what_a_page_hides_is_shown_once_its_predictions_are_locked() {
+    let lesson = read(WHOLE);
+    let page = &lesson.pages[0];
+    let finer = lesson.predict("finer").unwrap();
+    let mut predictions = Predictions::default();
+    assert_eq!(predictions.open_on(page).count(), 1);
+    let mut walk = Walk::new(&lesson, lab());
+    walk.jump(page, &mut on).unwrap();
+    let hidden = walk.lab().view().hidden.clone();
+    assert_eq!(hidden, [Part::Health, Part::Predicted]);
+    assert!(predictions.lock(finer, Answer::Number(3.0)).is_err());
+    assert!(
+        predictions
+            .lock(finer, Answer::Choice("whatever".to_owned()))
+            .is_err()
+    );
+    let answer = Answer::Choice("is gone".to_owned());
+    predictions.lock(finer, answer.clone()).unwrap();
+    assert!(predictions.lock(finer, answer).is_err(), "locked is locked");
+    assert!(predictions.are_locked_on(page) && !predictions.are_locked_on(&lesson.pages[1]));
+    assert_eq!(Predictions::hidden_after_lock(page, &hidden), []);
+    let mut lab = lab();
+    for stage in lesson.stages_to(1, &Kept::new(), &predictions) {
+        stage.carry_out(&mut lab, &mut Kept::new(), on).unwrap();
+    }
+    assert_eq!(lab.view().hidden, []);
+    // The session keeps them as TOML.
+    let text = toml::to_string(&predictions).unwrap();
+    assert_eq!(text, "finer = \"is gone\"\n");
+    assert_eq!(toml::from_str::<Predictions>(&text).unwrap(), predictions);
+    assert_eq!(
+        toml::from_str::<Predictions>("lag = 3.5")
+            .unwrap()
+            .answer("lag"),
+        Some(&Answer::Number(3.5))
+    );
+    // An answer that the question no longer offers does not count.
+    let changed = read(&WHOLE.replace("\"is gone\"", "\"has gone\""));
+    assert_eq!(predictions.open_on(&changed.pages[0]).count(), 1);
+}
+
+#[test]
+fn the_comparison_has_the_prediction_and_what_came_out() {
+    let lesson = read(WHOLE);
+    let mut walk = Walk::new(&lesson, lab());
+    walk.jump(&lesson.pages[1], &mut on).unwrap();
+    let Block::Compare(compare) = &lesson.pages[1].blocks[1] else {
+        panic!("no comparison")
+    };
+    let mut predictions = Predictions::default();
+    let said =
+        |predictions: &Predictions| compare.filled(&lesson, predictions, walk.lab(), walk.kept());
+    let with = compare.came_out(walk.lab(), walk.kept()).unwrap();
+    let coarse = walk.kept()["coarse"];
+    assert!(coarse > 10.0 * with && with > 0.0, "{coarse} {with}");
+    let words = format!("It was {coarse:.2} degrees and is {with:.2}. You said: ");
+    assert_eq!(said(&predictions), format!("{words}n/a."));
+    let finer = lesson.predict("finer").unwrap();
+    predictions
+        .lock(finer, Answer::Choice("is gone".to_owned()))
+        .unwrap();
+    assert_eq!(said(&predictions), format!("{words}is gone."));
+}
+
+#[test]
+fn the_handout_has_pictures_and_room_and_no_notes() {
+    for lesson in lessons() {
+        let paper = handout::handout(&lesson, lab(), &picture, &mut on).unwrap();
+        let headings: Vec<_> = paper
+            .lines()
+            .filter(|line| line.starts_with("## "))
+            .collect();
+        let pages: Vec<_> = lesson
+            .pages
+            .iter()
+            .map(|page| format!("## {}", page.heading))
+            .collect();
+        assert_eq!(headings, pages);
+        let labs = lesson
+            .pages
+            .iter()
+            .filter(|page| page.lab().is_some())
+            .count();
+        let pictures = paper.matches("\u{20}t  ").count();
+        assert!(pictures >= labs, "{}: {pictures} of {labs}", lesson.name);
+        for page in &lesson.pages {
+            for notes in page.notes() {
+                let notes = notes.filled(|_, _| String::new());
+                let first = notes.lines().next().unwrap();
+                assert!(!paper.contains(first), "{}: {first}", lesson.name);
+            }
+        }
+        assert!(!paper.contains("```notes") && !paper.contains("```lab"));
+    }
+    let paper = handout::handout(&read(WHOLE), lab(), &picture, &mut on).unwrap();
+    for words in [
+        "# The push\n\nA push, and what the time step has to do with it. About 10 minutes.\n\nBefore the first page.\n\n## Watch\n\n```text\n",
+        "**Prediction.** With a time step ten times shorter, the wobble ...\n\n- [ ] stays as it is\n- [ ] is ten times smaller\n- [ ] is gone\n",
+        "degrees and is ____________. You said: ____________.\n\n```sh\ngyrolab run wobble-push\n```\n\n## Your turn\n",
+        "At 60 s the top is at z = **0.",
+        "`{ code }` and \\{braces} stay.",
+    ] {
+        assert!(paper.contains(words), "{words}\n{paper}");
+    }
+    let begin = paper.find("## Watch").unwrap();
+    let end = paper.find("**Prediction.**").unwrap();
+    assert!(
+        !paper[begin..end].contains("energy drift"),
+        "the health is hidden before the prediction"
+    );
+    assert!(paper[end..].contains("energy drift"));
 }
