@@ -259,6 +259,14 @@ pub(super) struct LessonArgs {
     #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]
     pub(super) handout: bool,
 
+    /// Print what was predicted, in the newest session that holds it, beside what came out: to hand in
+    #[arg(long, requires = "name", conflicts_with_all = ["page", "handout"])]
+    pub(super) answers: bool,
+
+    /// Follow a lab of this login on a second terminal: the notes of its page, what comes next, a clock
+    #[arg(long, value_name = "SESSION", num_args = 0..=1, default_missing_value = "", conflicts_with_all = ["name", "page", "handout", "answers"])]
+    pub(super) notes: Option<String>,
+
     /// Print a small lesson to begin from, with a comment on each part
     #[arg(long, group = "printed", conflicts_with = "name")]
     pub(super) template: bool,

@@ -3,7 +3,7 @@
 use super::args::{Changes, LessonArgs, Look};
 use super::progress::{self, Interruption, Meter};
 use super::workbench::{self, DEFAULT};
-use super::{INTERRUPTED, print, tell};
+use super::{INTERRUPTED, notes, print, tell};
 use crate::export::Destination;
 use crate::lab::Lab;
 use crate::lab::view::theme::{Background, Theme};
@@ -22,12 +22,18 @@ const PICTURE: (u16, u16) = (80, 24);
 
 /// What is asked of a lesson.
 pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
+    if let Some(session) = &args.notes {
+        return notes::notes(session);
+    }
     if args.template {
         return write(args, |_| Ok(shipped::TEMPLATE.to_owned()));
     }
     let Some(name) = &args.name else {
         return print(&list()?);
     };
+    if args.answers {
+        return notes::answers(args, name);
+    }
     let lesson = reading::open(name)?;
     if args.handout {
         return write(args, |interruption| {
@@ -85,7 +91,7 @@ fn page_of<'a>(lesson: &'a Lesson, args: &LessonArgs) -> anyhow::Result<&'a Page
 }
 
 /// A new lab, of which nothing but the pictures will be seen.
-fn new_lab(look: Look) -> anyhow::Result<Lab> {
+pub(super) fn new_lab(look: Look) -> anyhow::Result<Lab> {
     let plain = Theme {
         colour: false,
         background: Background::Dark,
@@ -97,12 +103,12 @@ fn picture(lab: &Lab) -> String {
     crate::tui::screen::text(lab, false, PICTURE)
 }
 
-fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {
+pub(super) fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {
     Problems::one(lesson.origin.clone(), problem).into()
 }
 
 /// Does `what`, which asks now and then whether to go on, with progress where it takes long.
-fn watched<T>(
+pub(super) fn watched<T>(
     interruption: &Interruption,
     what: impl FnOnce(play::GoOn<'_>) -> anyhow::Result<T>,
 ) -> anyhow::Result<T> {
@@ -119,7 +125,7 @@ fn watched<T>(
 }
 
 /// Writes what `make` makes to the file that is asked for, or prints it.
-fn write(
+pub(super) fn write(
     args: &LessonArgs,
     make: impl FnOnce(&Interruption) -> anyhow::Result<String>,
 ) -> anyhow::Result<ExitCode> {

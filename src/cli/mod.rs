@@ -6,6 +6,7 @@ mod args;
 mod compare;
 mod info;
 mod lesson;
+mod notes;
 mod progress;
 mod run;
 mod scenario;

@@ -51,7 +51,7 @@ impl Files {
     ///
     /// # Errors
     /// Why it may not.
-    pub(super) fn admit(&self, path: &Path) -> Result<(), String> {
+    pub fn admit(&self, path: &Path) -> Result<(), String> {
         self.confined().map_or(Ok(()), |folder| folder.check(path))
     }
 

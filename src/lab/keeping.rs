@@ -97,7 +97,7 @@ struct KeptScript {
 }
 
 /// What a list of sessions shows of a session.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     /// The name under which the user opened the scenario: a preset or a file.
     pub name: String,
@@ -105,6 +105,8 @@ pub struct Summary {
     pub title: String,
     /// The step of the run.
     pub step: u64,
+    /// What is kept of the lessons.
+    pub lessons: Option<toml::Table>,
 }
 
 /// Why the content of a session cannot be read.
@@ -143,6 +145,7 @@ impl Lab {
             name: present.name.clone(),
             title: present.journal.file().title,
             step: place.step,
+            lessons: place.lessons,
         })
     }
 

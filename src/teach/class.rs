@@ -8,6 +8,7 @@ use crate::lab::action::{Direction, LessonKey};
 use crate::lab::sheet::Sheet;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::time::Duration;
 use toml::Table;
 
@@ -45,6 +46,9 @@ pub struct Place {
     /// The numbers that were kept.
     #[serde(default)]
     pub kept: Kept,
+    /// When it was opened first: seconds since 1970 (UTC).
+    #[serde(default)]
+    pub began_unix_s: u64,
 }
 
 /// What a session keeps of the lessons.
@@ -59,6 +63,16 @@ pub struct KeptLessons {
     pub lessons: BTreeMap<String, Place>,
 }
 
+impl KeptLessons {
+    /// What `kept`, a table of a session, says.
+    ///
+    /// # Errors
+    /// When it is no such table.
+    pub fn read(kept: &Table) -> Result<Self, toml::de::Error> {
+        kept.clone().try_into()
+    }
+}
+
 impl Class {
     /// The lessons as the session of `lab` has kept them. The one that was taken is taken again, on its page; the run is
     /// left where it is.
@@ -67,15 +81,13 @@ impl Class {
     /// Why the lesson that was taken cannot be taken again; where it was left is kept.
     pub fn resumed(lab: &mut Lab) -> (Self, Result<(), String>) {
         let mut class = Self::default();
-        let kept: Option<KeptLessons> = lab
-            .lessons_kept()
-            .and_then(|kept| kept.clone().try_into().ok());
-        let Some(kept) = kept else {
+        let kept = lab.lessons_kept().map(KeptLessons::read);
+        let Some(Ok(kept)) = kept else {
             return (class, Ok(()));
         };
         class.left = kept.lessons;
         class.has_changed = true;
-        let taken = kept.open.map_or(Ok(()), |name| class.take(&name));
+        let taken = kept.open.map_or(Ok(()), |name| class.take(&name, lab));
         class.show(lab);
         (class, taken)
     }
@@ -85,7 +97,7 @@ impl Class {
     /// # Errors
     /// When there is no such lesson or page, or everything that is wrong with its file.
     pub fn open(&mut self, name: &str, page: Option<usize>, lab: &mut Lab) -> Result<(), String> {
-        self.take(name)?;
+        self.take(name, lab)?;
         if let Shown::Lesson(taken) = &mut self.shown {
             taken.go_to(page, lab)?;
         }
@@ -103,8 +115,12 @@ impl Class {
     }
 
     /// Takes the lesson that NAME names, where it was left.
-    fn take(&mut self, name: &str) -> Result<(), String> {
-        let lesson = reading::open(name).map_err(|problems| problems.to_string())?;
+    fn take(&mut self, name: &str, lab: &Lab) -> Result<(), String> {
+        let name = reading::full_name(name);
+        if shipped::find(&name).is_none() {
+            lab.files().admit(Path::new(&name))?;
+        }
+        let lesson = reading::open(&name).map_err(|problems| problems.to_string())?;
         self.leave();
         let place = self.left.remove(&lesson.name).unwrap_or_default();
         self.shown = Shown::Lesson(Box::new(Taken::new(lesson, place, self.now)));

@@ -1,7 +1,7 @@
 //! The clock of a lesson: how long it has taken, how much of its time is left, or the time of the day.
 
 use chrono::Local;
-use std::time::Duration;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// What the clock shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +39,12 @@ impl Clock {
             Self::Day => Local::now().format("%H:%M").to_string(),
         }
     }
+}
+
+/// Seconds since 1970 (UTC).
+pub fn unix_s() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    since.unwrap_or_default().as_secs()
 }
 
 fn in_minutes(seconds: u64) -> String {

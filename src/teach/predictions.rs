@@ -32,6 +32,11 @@ impl Predictions {
         Ok(())
     }
 
+    /// Whether nothing is locked.
+    pub fn is_empty(&self) -> bool {
+        self.locked.is_empty()
+    }
+
     /// The answer that is locked under this name.
     pub fn answer(&self, name: &str) -> Option<&Answer> {
         self.locked.get(name)

@@ -53,6 +53,13 @@ pub fn open(name: &str) -> Result<Lesson, Problems> {
     }
 }
 
+/// The name by which a session keeps the lesson that NAME names: that of a shipped lesson, or the full path of its file.
+pub fn full_name(name: &str) -> String {
+    let is_file = name.contains('/') || name.ends_with(".md");
+    let path = is_file.then(|| std::path::absolute(name).ok()).flatten();
+    path.map_or_else(|| name.to_owned(), |path| path.display().to_string())
+}
+
 /// Reads the lesson in the file at `path`.
 ///
 /// # Errors

@@ -1,7 +1,7 @@
 //! A lesson that is taken: its page, the predictions of the one who takes it, and what the lab does for it.
 
 use super::class::Place;
-use super::clock::Clock;
+use super::clock::{self, Clock};
 use super::lesson::{Answer, Asked, Lesson, Page, Predict};
 use super::names::value;
 use super::predictions::Predictions;
@@ -36,9 +36,10 @@ pub struct Taken {
     was_asked: bool,
     /// The clock, where the teacher's notes are shown.
     clock: Option<Clock>,
-    /// When the lesson was opened, on the clock of the lab.
+    /// When the lesson was opened in this lab, on the clock of the lab.
     since: Duration,
-    now: Duration,
+    /// How long before that it was opened first.
+    gone_before: Duration,
 }
 
 /// A block of a page that the lab carries out.
@@ -54,6 +55,11 @@ impl Taken {
     /// `lesson` at `place`, opened at `now` on the clock of the lab.
     pub(super) fn new(lesson: Lesson, mut place: Place, now: Duration) -> Self {
         place.page = place.page.clamp(1, lesson.pages.len().max(1));
+        let unix_s = clock::unix_s();
+        if place.began_unix_s == 0 {
+            place.began_unix_s = unix_s;
+        }
+        let gone_before = Duration::from_secs(unix_s.saturating_sub(place.began_unix_s));
         let watch = match shipped::find(&lesson.name) {
             Some(_) => None,
             None => Some(Watch::new(Path::new(&lesson.name))),
@@ -69,7 +75,7 @@ impl Taken {
             was_asked: false,
             clock: None,
             since: now,
-            now,
+            gone_before,
         }
     }
 
@@ -124,7 +130,7 @@ impl Taken {
 
     /// What that clock shows.
     pub fn time(&self, now: Duration) -> Option<String> {
-        let since = now.saturating_sub(self.since);
+        let since = now.saturating_sub(self.since) + self.gone_before;
         self.clock
             .map(|clock| clock.shown(since, self.lesson.minutes))
     }
@@ -347,7 +353,6 @@ impl Taken {
 
     /// Takes note of what the lab has done, and of a file that has changed. Returns whether the page is another now.
     pub(super) fn advance(&mut self, now: Duration, lab: &mut Lab) -> bool {
-        self.now = now;
         let mut is_new = self.keep_if_done(lab);
         if !self.is_under_way() && lab.has_changed() {
             is_new |= self.note_reached(lab);

@@ -130,7 +130,9 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
 fn an_open_prediction_can_be_left_open() {
     let (mut stage, _folder, _) = taken(1);
     stage.press("nn").arrive().shows("2 of 4");
-    stage.shows("You said: it ….").shows("You predicted nothing: page 1 asks");
+    stage
+        .shows("You said: it ….")
+        .shows("You predicted nothing: page 1 asks");
 }
 
 #[test]

@@ -1,0 +1,177 @@
+//! `gyrolab lesson --notes` and `--answers`: what a session holds of a lesson, for the teacher beside the lab and for the
+//! student who hands it in.
+
+use super::args::LessonArgs;
+use super::lesson::{new_lab, refused, watched, write};
+use super::progress::{self, Interruption};
+use super::sessions;
+use crate::lab::Lab;
+use crate::storage::session::{self, Listed};
+use crate::teach::class::{KeptLessons, Place};
+use crate::teach::clock::{self, Clock};
+use crate::teach::{Lesson, answers, reading};
+use crate::text::printable::{printable, printable_lines};
+use anyhow::bail;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::{self, IsTerminal};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::thread;
+use std::time::{Duration, SystemTime};
+
+/// How often the session is looked at.
+const EVERY: Duration = Duration::from_millis(500);
+
+/// Prints or writes what was predicted in the lesson `args.name` beside what came out.
+pub(super) fn answers(args: &LessonArgs, name: &str) -> anyhow::Result<ExitCode> {
+    let lesson = reading::open(name)?;
+    let full_name = reading::full_name(name);
+    let folder = folder()?;
+    let found = session::list(&folder)?.into_iter().filter_map(|session| {
+        let mut lessons = lessons_of(&session)?.lessons;
+        let place = lessons.remove(&full_name)?;
+        (!place.predictions.is_empty()).then_some((session.written, place))
+    });
+    let newest: Option<(SystemTime, Place)> = found.max_by_key(|(written, _)| *written);
+    let Some((_, place)) = newest else {
+        bail!(
+            "no session holds a prediction for {}: gyrolab lesson {} opens it",
+            printable(name),
+            printable(name)
+        );
+    };
+    write(args, |interruption| {
+        watched(interruption, |go_on| {
+            let lab = new_lab(args.look)?;
+            answers::answers(&lesson, &place, lab, go_on)
+                .map_err(|problem| refused(&lesson, problem))
+        })
+    })
+}
+
+/// Prints the teacher's notes of the page that is open in the lab of the session called `name`, or of the newest session
+/// with an open lesson if that is empty, and goes on with the next page until Ctrl-C.
+pub(super) fn notes(name: &str) -> anyhow::Result<ExitCode> {
+    let folder = folder()?;
+    let (_, interruption) = progress::open(None, false)?;
+    let followed = match find(&folder, name)? {
+        Some(found) => found,
+        None if name.is_empty() => {
+            bail!("no lesson is open in any lab of this login: gyrolab lesson NAME opens one")
+        }
+        None => bail!(
+            "--notes {}: there is no such session with an open lesson (gyrolab sessions lists what there is)",
+            printable(name)
+        ),
+    };
+    let line = live_line();
+    follow(&folder, &followed, &line, &interruption);
+    line.finish_and_clear();
+    Ok(ExitCode::SUCCESS)
+}
+
+fn folder() -> anyhow::Result<PathBuf> {
+    sessions::folder_of(None).map_err(anyhow::Error::msg)
+}
+
+/// The name of the session that is meant: of those with an open lesson, the one in use that was written last.
+fn find(folder: &Path, name: &str) -> anyhow::Result<Option<String>> {
+    let open = session::list(folder)?.into_iter().filter(|session| {
+        let is_meant = name.is_empty() || session.name == name;
+        is_meant && open_in(session).is_some()
+    });
+    let newest = open.max_by_key(|session| (session.is_in_use, session.written));
+    Ok(newest.map(|session| session.name))
+}
+
+fn lessons_of(session: &Listed) -> Option<KeptLessons> {
+    let content = session.content.as_ref().ok()?;
+    let kept = Lab::summary(content).ok()?.lessons?;
+    KeptLessons::read(&kept).ok()
+}
+
+/// The lesson that is open in `session`, and where it stands.
+fn open_in(session: &Listed) -> Option<(String, Place)> {
+    let mut lessons = lessons_of(session)?;
+    let open = lessons.open?;
+    let place = lessons.lessons.remove(&open)?;
+    Some((open, place))
+}
+
+/// A line at the bottom of the terminal that changes; without a terminal there is none.
+fn live_line() -> ProgressBar {
+    let line = match io::stdout().is_terminal() {
+        true => ProgressBar::with_draw_target(None, indicatif::ProgressDrawTarget::stdout()),
+        false => ProgressBar::hidden(),
+    };
+    line.set_style(
+        ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_bar()),
+    );
+    line
+}
+
+/// Prints the notes of each page as it is opened, until a signal comes or the session is gone.
+fn follow(folder: &Path, name: &str, line: &ProgressBar, interruption: &Interruption) {
+    let mut shown: Option<(String, usize)> = None;
+    while !interruption.has_come() {
+        let sessions = session::list(folder).unwrap_or_default();
+        let session = sessions.iter().find(|session| session.name == name);
+        let open = session.and_then(open_in);
+        let Some((lesson_name, place)) = open else {
+            line.set_message("the lesson is closed; Ctrl-C ends this".to_owned());
+            thread::sleep(EVERY);
+            continue;
+        };
+        let page = (lesson_name.clone(), place.page);
+        let lesson = reading::open(&lesson_name).ok();
+        if let Some(lesson) = &lesson {
+            if shown.as_ref() != Some(&page) {
+                tell(line, &told(lesson, place.page));
+                shown = Some(page);
+            }
+            line.set_message(times(lesson, &place));
+        }
+        thread::sleep(EVERY);
+    }
+}
+
+/// Prints `text` above the live line.
+fn tell(line: &ProgressBar, text: &str) {
+    let text = printable_lines(text);
+    match line.is_hidden() {
+        true => println!("{text}"),
+        false => line.println(text),
+    }
+}
+
+/// The notes of a page, and what comes next.
+fn told(lesson: &Lesson, number: usize) -> String {
+    let mut text = format!("\n== {number} of {} · {}", lesson.pages.len(), lesson.title);
+    let page = lesson.page(number);
+    if let Some(page) = page {
+        text += &format!("\n{}\n", page.heading);
+        for predict in page.predicts() {
+            let ask = predict.ask.filled(|_, _| "…".to_owned());
+            text += &format!("\nasked: {ask}\n");
+        }
+        for notes in page.notes() {
+            text += &format!("\n{}\n", notes.filled(|_, _| "…".to_owned()).trim());
+        }
+    }
+    text + &match lesson.page(number + 1) {
+        Some(next) => format!("\nnext: {}", next.heading),
+        None => "\nthis is the last page".to_owned(),
+    }
+}
+
+/// The clocks: up, down, and the time of the day.
+fn times(lesson: &Lesson, place: &Place) -> String {
+    let since = Duration::from_secs(clock::unix_s().saturating_sub(place.began_unix_s));
+    let mut clock = Some(Clock::Up);
+    let mut all = Vec::new();
+    while let Some(now) = clock {
+        all.push(now.shown(since, lesson.minutes));
+        clock = now.next(lesson.minutes);
+    }
+    all.join(" · ")
+}
