@@ -260,18 +260,18 @@ pub(super) struct LessonArgs {
     pub(super) handout: bool,
 
     /// Print what was predicted, in the newest session that holds it, beside what came out: to hand in
-    #[arg(long, requires = "name", conflicts_with_all = ["page", "handout"])]
+    #[arg(long, group = "printed", requires = "name", conflicts_with = "page")]
     pub(super) answers: bool,
 
     /// Follow a lab of this login on a second terminal: the notes of its page, what comes next, a clock
-    #[arg(long, value_name = "SESSION", num_args = 0..=1, default_missing_value = "", conflicts_with_all = ["name", "page", "handout", "answers"])]
+    #[arg(long, value_name = "SESSION", num_args = 0..=1, default_missing_value = "", conflicts_with_all = ["name", "page", "printed"])]
     pub(super) notes: Option<String>,
 
     /// Print a small lesson to begin from, with a comment on each part
     #[arg(long, group = "printed", conflicts_with = "name")]
     pub(super) template: bool,
 
-    /// Write the handout or the template to this file, or to stdout for -
+    /// Write the handout, the answers or the template to this file, or to stdout for -
     #[arg(short, long, requires = "printed", value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
 

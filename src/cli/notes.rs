@@ -167,7 +167,11 @@ fn told(lesson: &Lesson, number: usize) -> String {
 /// The clocks: up, down, and the time of the day.
 fn times(lesson: &Lesson, place: &Place) -> String {
     let since = Duration::from_secs(clock::unix_s().saturating_sub(place.began_unix_s));
-    let mut clock = Some(Clock::Up);
+    // A session of an earlier version does not know when the lesson began.
+    let mut clock = match place.began_unix_s {
+        0 => Some(Clock::Day),
+        _ => Some(Clock::Up),
+    };
     let mut all = Vec::new();
     while let Some(now) = clock {
         all.push(now.shown(since, lesson.minutes));

@@ -8,7 +8,7 @@ use super::panes::chrome;
 use super::panes::timeline::Timeline;
 use super::panes::traces::Traces;
 use super::screen;
-use crate::lab::action::{Action, Direction};
+use crate::lab::action::{Action, Direction, LessonKey};
 use crate::lab::command::{Command, CursorTo, Place};
 use crate::lab::view::Pane;
 use crate::lab::{Lab, Request};
@@ -76,8 +76,8 @@ impl Pointer {
             Did::Press => return self.press(&layout, at, lab),
             Did::Drag => self.drag(&layout, at, lab),
             Did::Release => self.held = None,
-            Did::WheelUp => wheel(&layout, at, true, lab),
-            Did::WheelDown => wheel(&layout, at, false, lab),
+            Did::WheelUp => return wheel(&layout, at, true, lab),
+            Did::WheelDown => return wheel(&layout, at, false, lab),
         }
         None
     }
@@ -168,24 +168,26 @@ fn press_in_browser(layout: &Layout, at: Position, lab: &mut Lab) -> Option<Requ
 }
 
 /// Scrolls a list, or zooms the pane at `at`.
-fn wheel(layout: &Layout, at: Position, up: bool, lab: &mut Lab) {
+fn wheel(layout: &Layout, at: Position, up: bool, lab: &mut Lab) -> Option<Request> {
     let choose = |if_up, if_down| if up { if_up } else { if_down };
     let lines = choose(Action::Move(Direction::Up), Action::Move(Direction::Down));
     if lab.on_top().mode() != Mode::Lab {
         for _ in 0..LINES {
             lab.update(lines);
         }
-        return;
+        return None;
     }
-    let Some((pane, _)) = pane_at(layout, at) else {
-        return;
-    };
+    let (pane, _) = pane_at(layout, at)?;
     let zoom = match pane {
         Pane::TRACES => choose(Action::NarrowerWindow, Action::WiderWindow),
         Pane::FROM_ABOVE | Pane::THREE_D => choose(Action::ZoomIn, Action::ZoomOut),
         Pane::PARAMETERS if lab.view().focus == pane => lines,
-        _ => return,
+        Pane::LESSON => choose(
+            Action::Lesson(LessonKey::Move(Direction::PageUp)),
+            Action::Lesson(LessonKey::Move(Direction::PageDown)),
+        ),
+        _ => return None,
     };
     lab.turn_to(pane);
-    lab.update(zoom);
+    lab.update(zoom)
 }
