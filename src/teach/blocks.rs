@@ -27,6 +27,9 @@ const MOST_CHOICES: usize = 9;
 /// The longest lesson, minutes.
 const LONGEST_LESSON: i64 = 600;
 
+/// The most problems of one block that are told.
+const MOST_TOLD: usize = 20;
+
 type Found<T> = Result<T, Vec<Problem>>;
 
 /// Reads the keys of one block.
@@ -87,6 +90,9 @@ impl<'a> Reader<'a> {
 impl Content {
     /// Notes that `problem` was found; its key is that of the TOML.
     fn refuse(&mut self, problem: Problem) {
+        if self.problems.len() >= MOST_TOLD {
+            return;
+        }
         let key = problem.key.clone();
         let placed = self.document.placed(vec![problem]).list;
         for mut problem in placed {

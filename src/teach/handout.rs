@@ -28,7 +28,9 @@ pub fn handout(
     for page in &lesson.pages {
         walk.enter(page, go_on)?;
         parts.extend(paper(page, &walk, picture));
-        walk.leave(page, go_on)?;
+        if page.number < lesson.pages.len() {
+            walk.leave(page, go_on)?;
+        }
     }
     Ok(joined(&parts))
 }

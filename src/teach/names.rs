@@ -12,6 +12,9 @@ pub type Kept = BTreeMap<String, f64>;
 /// Names that mean something else in a lesson.
 const RESERVED: [&str; 5] = ["with", "prediction", "and", "or", "abs"];
 
+/// The most numbers that a lesson keeps.
+const MOST_KEPT: usize = 100;
+
 /// The names under which a lesson keeps numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
@@ -29,6 +32,11 @@ impl Names {
     /// # Errors
     /// Why no number can be kept under that name.
     pub(super) fn keep(&mut self, name: &str, from: usize) -> Result<(), String> {
+        if self.kept.len() == MOST_KEPT {
+            return Err(format!(
+                "is one too many: a lesson keeps at most {MOST_KEPT} numbers"
+            ));
+        }
         let mut characters = name.chars();
         let begins = characters.next().is_some_and(|c| c.is_ascii_alphabetic());
         if !begins || !characters.all(|c| c.is_ascii_alphanumeric() || c == '_') {

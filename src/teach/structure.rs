@@ -166,19 +166,17 @@ impl<'a> Walk<'a, '_> {
             let rule = format!("is not closed: a line {} must end it", fence_of(block));
             on_line(line, Problem::at(named(word), rule))
         })?;
-        if is_of_lessons {
-            if let Some(extra) = words.next() {
-                let rule = format!("stands alone behind its fence, without {extra}");
-                return Err(on_line(line, Problem::at(word, rule)));
-            }
-            if let Some(at) = another_fence(inside) {
-                let begin = self.lines.at(range.start) + 1 + at;
-                let rule = format!(
-                    "is not closed before line {begin}, where another block begins: a line {} must end it",
-                    fence_of(block)
-                );
-                return Err(on_line(line, Problem::at(word, rule)));
-            }
+        if let Some(extra) = words.next().filter(|_| is_of_lessons) {
+            let rule = format!("stands alone behind its fence, without {extra}");
+            return Err(on_line(line, Problem::at(word, rule)));
+        }
+        if let Some(at) = another_fence(inside, fence_of(block)) {
+            let begin = line + 1 + at;
+            let rule = format!(
+                "is not closed before line {begin}, where another block begins: a line {} must end it",
+                fence_of(block)
+            );
+            return Err(on_line(line, Problem::at(named(word), rule)));
         }
         let begin = inside.as_ptr() as usize - self.text.as_ptr() as usize;
         let (begin, end) = (begin, begin + inside.len());
@@ -218,10 +216,11 @@ fn between_fences(block: &str) -> Option<&str> {
     (closes && last >= begin).then(|| &block[begin..last])
 }
 
-/// The line of `inside`, from 0, at which another block of a lesson begins.
-fn another_fence(inside: &str) -> Option<usize> {
+/// The line of `inside`, from 0, at which another block of a lesson begins: with a `fence` like the one around it, or longer.
+fn another_fence(inside: &str, fence: &str) -> Option<usize> {
     inside.lines().position(|line| {
-        let word = line.trim().trim_start_matches(['`', '~']);
-        line.starts_with("```") && WORDS.contains(&word.trim())
+        let rest = line.strip_prefix(fence);
+        let word = rest.map(|rest| rest.trim_start_matches(['`', '~']).trim());
+        word.is_some_and(|word| WORDS.contains(&word))
     })
 }

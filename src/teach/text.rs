@@ -8,6 +8,7 @@ use super::names::{Kept, value};
 use crate::lab::Lab;
 use crate::scenario::Problem;
 use crate::text::number;
+use crate::text::printable::brief;
 use crate::work::expression::Expression;
 use pulldown_cmark::{Event, Parser, Tag};
 use std::ops::Range;
@@ -177,9 +178,12 @@ fn place(
     find: &impl Fn(&str) -> Result<(), String>,
 ) -> Result<(Expression, Format, usize), (String, String)> {
     let line = text.lines().next().unwrap_or_default();
-    let Some(end) = line.find('}') else {
+    // Where another place begins first, this one has lost its end.
+    let end = line.find(['{', '}']);
+    let Some(end) = end.filter(|&end| line[end..].starts_with('}')) else {
         let rule = "is not closed in its line by }: a brace that is meant as one is written \\{";
-        return Err((format!("{{{line}"), rule.to_owned()));
+        let begin = brief(&line[..end.unwrap_or(line.len())], 40);
+        return Err((format!("{{{}", begin.trim_end()), rule.to_owned()));
     };
     let inside = &line[..end];
     let told = |rule: String| (format!("{{{inside}}}"), rule);
