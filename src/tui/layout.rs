@@ -14,6 +14,8 @@ const WIDTH: u16 = 80;
 const TWO_FROM: u16 = 52;
 /// From this width on a hint fits on one line.
 const ONE_LINE_FROM: u16 = 140;
+/// The fewest columns of a pane beside the step pane.
+const BESIDE_STEP: u16 = 24;
 /// The height the whole lab wants.
 const HEIGHT: u16 = 24;
 /// From this height on a hint may have two lines.
@@ -114,7 +116,9 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     let joined = joined(area.width);
     if view.filled || area.width < TWO_FROM {
         vec![(view.focus, area)]
-    } else if !PANES.iter().all(|row| view.may_show(row.id)) {
+    } else if view.may_show(Pane::STEP) {
+        with_step(area, view)
+    } else if !usual().all(|row| view.may_show(row.id)) {
         chosen(area, view)
     } else if joined.len() > 2 {
         columns(area, &joined)
@@ -123,10 +127,15 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     }
 }
 
+/// The panes that are shown without being asked for.
+fn usual() -> impl Iterator<Item = &'static PaneRow> {
+    PANES.iter().filter(|row| row.id != Pane::STEP)
+}
+
 /// The panes that have room beside each other on `width` columns, in the table's order: by their ranks, up to the first
 /// that has none.
 fn joined(width: u16) -> Vec<&'static PaneRow> {
-    let mut ranked: Vec<_> = PANES.iter().collect();
+    let mut ranked: Vec<_> = usual().collect();
     ranked.sort_by_key(|row| row.rank);
     let mut taken = 0;
     let has_room = |row: &&PaneRow| {
@@ -135,7 +144,7 @@ fn joined(width: u16) -> Vec<&'static PaneRow> {
     };
     let last = ranked.iter().copied().take_while(has_room).count();
     let is_joined = |row: &&PaneRow| ranked[..last].iter().any(|other| other.id == row.id);
-    PANES.iter().filter(is_joined).collect()
+    usual().filter(is_joined).collect()
 }
 
 /// The pane of the first rank, and beside it the one in focus or else that of the second rank.
@@ -186,6 +195,41 @@ fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     };
     let mut widths: Vec<_> = others.iter().map(width).collect();
     widths.insert(0, area.width - widths.iter().sum::<u16>()); // the first has what the others leave
+    beside(area, &panes, &widths)
+}
+
+/// The step pane at the right, as wide as its numbers are, and beside it as many of the other panes that were chosen as
+/// have room; where none has, the one in focus.
+fn with_step(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
+    let rows = || PANES.iter().filter(|row| view.may_show(row.id));
+    let Some(step) = rows().find(|row| row.id == Pane::STEP) else {
+        return Vec::new();
+    };
+    let room = area.width.saturating_sub(step.least.0) / BESIDE_STEP;
+    let mut others: Vec<_> = rows().filter(|row| row.id != Pane::STEP).collect();
+    if room == 0 && view.focus != Pane::STEP {
+        return vec![(view.focus, area)];
+    }
+    others.sort_by_key(|row| row.id != view.focus);
+    others.truncate(room.into());
+    let is_kept = |row: &&PaneRow| others.iter().any(|other| other.id == row.id);
+    let panes: Vec<_> = rows()
+        .filter(|row| row.id == Pane::STEP || is_kept(row))
+        .collect();
+    let count = panes.len() as u16;
+    let share = (area.width / count).max(step.least.0.min(area.width));
+    let each = (area.width - share) / (count - 1).max(1);
+    let width = |row: &&PaneRow| match row.width {
+        _ if row.id == Pane::STEP => 0,
+        Width::Fixed => each.min(row.least.0),
+        Width::Wide => each,
+        Width::Round => each.min(2 * area.height),
+    };
+    let mut widths: Vec<_> = panes.iter().map(width).collect();
+    let left = area.width - widths.iter().sum::<u16>(); // the step pane, the last, has what the others leave
+    if let Some(last) = widths.last_mut() {
+        *last = left;
+    }
     beside(area, &panes, &widths)
 }
 

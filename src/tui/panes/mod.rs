@@ -9,6 +9,7 @@ pub mod form;
 pub mod from_above;
 pub mod help;
 pub mod parameters;
+pub mod step;
 pub mod three_d;
 pub mod timeline;
 pub mod traces;
@@ -58,7 +59,13 @@ pub enum Width {
 }
 
 /// Every pane, from left to right on the screen; the focus goes through them in this order.
-pub const PANES: &[PaneRow] = &[traces::ROW, from_above::ROW, three_d::ROW, parameters::ROW];
+pub const PANES: &[PaneRow] = &[
+    traces::ROW,
+    from_above::ROW,
+    three_d::ROW,
+    parameters::ROW,
+    step::ROW,
+];
 
 /// The ids of all panes, in the table's order.
 pub static IDS: [Pane; PANES.len()] = {
