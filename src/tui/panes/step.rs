@@ -30,6 +30,11 @@ pub use words::{Words, of as words_of};
 /// From this height on all phases are listed above the page.
 const LISTED_FROM: u16 = 24;
 
+/// The rank of what stands aside while the rows of a table are added up.
+const ASIDE: u8 = 10;
+/// Points of a rim from this number on are called by their number alone, for which there is room.
+const SHORT: usize = 1000;
+
 /// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
     id: Pane::STEP,
@@ -143,7 +148,7 @@ impl PhasePage<'_> {
         sections.push(Section::text(1, self.phase.formula, self.width, 2, Role::Focus).apart());
         sections.extend(self.quantities());
         sections.push(self.told(4, "changes", words.changes).apart());
-        sections.push(self.told(6, "see", words.seen));
+        sections.push(self.told(6, "in 3-D", words.seen));
         sections.retain(|section| !section.lines.is_empty());
         page::fit(&mut sections, room);
         self.fill_tables(&mut sections, room);
@@ -233,6 +238,12 @@ impl PhasePage<'_> {
         let adds_up = self.sum().is_some();
         let is_vector =
             |quantity: &&Quantity| matches!(quantity.value, Value::Vector(_) | Value::Matrix(_));
+        // While points are added up, what is made of all of them is less important.
+        let is_aside = |quantity: &Quantity| adds_up && is_made_of_sums(self.phase, quantity);
+        let heads = match all.iter().filter(is_vector).all(is_aside) {
+            true => ASIDE,
+            false => 5,
+        };
         let mut sections = Vec::new();
         let mut has_heads = false;
         for (index, quantity) in all.iter().enumerate() {
@@ -249,12 +260,11 @@ impl PhasePage<'_> {
             }
             if !has_heads && is_vector(&quantity) {
                 has_heads = true;
-                sections.push(numbers::heads(format).apart());
+                sections.push(numbers::heads(heads, format).apart());
             }
             sections.push(Section {
                 rank: match (is_last, quantity.symbol) {
-                    // While points are added up, what is made of all of them is less important.
-                    _ if adds_up && is_made_of_sums(self.phase, quantity) => 10,
+                    _ if is_aside(quantity) => ASIDE,
                     (true, _) => 0,
                     (_, "S") => 7,
                     _ => 3,
@@ -315,6 +325,7 @@ pub fn name_of(scenario: &Scenario, point: usize) -> String {
     let rim = body.rim.as_ref().map_or(0, |rim| rim.points);
     match point.checked_sub(rim).and_then(|free| body.point.get(free)) {
         Some(free) => free.name.clone(),
-        None => format!("rim {point}"),
+        None if point < SHORT => format!("rim {point}"),
+        None => point.to_string(),
     }
 }

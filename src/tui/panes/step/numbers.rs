@@ -144,9 +144,9 @@ fn unit_of(quantity: &Quantity) -> String {
 }
 
 /// The heads of the columns of vectors and matrices.
-pub fn heads(format: Format) -> Section {
+pub fn heads(rank: u8, format: Format) -> Section {
     let heads = ["x", "y", "z"].map(|head| format!("{head:>0$}", format.cell));
-    Section::line(5, Line::of(SYMBOL, heads.concat(), Role::Quiet))
+    Section::line(rank, Line::of(SYMBOL, heads.concat(), Role::Quiet))
 }
 
 #[cfg(test)]

@@ -146,30 +146,36 @@ impl TableView<'_> {
         group.clone().map(column).collect()
     }
 
+    /// The symbols over the columns of each group with their unit, or under them their units where these differ.
     fn heads(&self, groups: &[Range<usize>]) -> Vec<Line> {
-        let head = |(at, group): (usize, &Range<usize>)| {
+        let mut lines = Vec::new();
+        for group in groups {
             let format = self.format(group);
-            let heads = self.table.columns[group.clone()].iter();
-            let heads: String = heads
-                .map(|(symbol, _)| format!("{symbol:>0$}", format.cell))
-                .collect();
-            let units: Vec<_> = self.table.columns[group.clone()].iter().collect();
-            let is_one = units.windows(2).all(|pair| pair[0].1 == pair[1].1);
-            let name = match (at, is_one) {
-                (_, true) => units.first().map_or("", |(_, unit)| *unit),
-                _ => "",
+            let columns = &self.table.columns[group.clone()];
+            let side_by_side = |texts: &mut dyn Iterator<Item = &'static str>| -> String {
+                texts
+                    .map(|text| format!("{text:>0$}", format.cell))
+                    .collect()
             };
-            let line = Line::of(0, name, Role::Quiet);
-            let line = match self.has_mass_aside(group) {
+            let symbols = side_by_side(&mut columns.iter().map(|(symbol, _)| *symbol));
+            let mut line = Line::of(self.begin(group), symbols, Role::Quiet);
+            if self.has_mass_aside(group) {
+                let mass = self.table.columns[0].1;
+                line = line.and(NAME - 1, format!("{mass:>MASS$}"), Role::Quiet);
+            }
+            let units = side_by_side(&mut columns.iter().map(|(_, unit)| *unit));
+            match columns.iter().all(|(_, unit)| *unit == columns[0].1) {
                 true => {
-                    let mass = self.table.columns[0].0;
-                    line.and(NAME - 1, format!("{mass:>MASS$}"), Role::Quiet)
+                    let unit = format!("in {}", columns[0].1);
+                    lines.push(line.and(0, unit, Role::Quiet));
                 }
-                false => line,
-            };
-            line.and(self.begin(group), heads, Role::Quiet)
-        };
-        groups.iter().enumerate().map(head).collect()
+                false => {
+                    lines.push(line);
+                    lines.push(Line::of(self.begin(group), units, Role::Quiet));
+                }
+            }
+        }
+        lines
     }
 
     /// What the chosen row adds, and the sum up to it.

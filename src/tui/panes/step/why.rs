@@ -17,8 +17,11 @@ use nalgebra::Vector2;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-const SIDEWAYS: &str = "The forces pull down, but their torque τ = X × F is level: square to the axle. In the time dt it adds \
+const DOWN: &str = "The forces pull down, but their torque τ = X × F is level: square to the axle. In the time dt it adds \
                         dL, along τ, to L; and the axle goes with L: sideways.";
+const ANY: &str = "Each force makes a torque τ = X × F square to it. In the time dt it adds dL, along τ, to L; and the axle goes with L, \
+                   not with the force.";
+const NONE: &str = "No torque acts: L stays as it is, and the axle circles about it.";
 /// The fewest lines of a picture.
 const LEAST_PICTURE: u16 = 6;
 /// Lengths in the picture from above, of the axle as it is seen: τ, dL, and how far L goes beyond the axle's tip.
@@ -35,7 +38,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     };
     let view = lab.view();
     let width = usize::from(area.width);
-    let mut sections = vec![Section::text(0, SIDEWAYS, width, 0, Role::Text)];
+    let mut sections = vec![Section::text(0, reason(explained), width, 0, Role::Text)];
     sections.extend(vectors(explained, width));
     let room = area.height.saturating_sub(LEAST_PICTURE);
     page::fit(&mut sections, room.into());
@@ -46,6 +49,9 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         height: area.height - taken,
         ..area
     };
+    if below.height < LEAST_PICTURE {
+        return;
+    }
     let left = Rect {
         width: below.width / 2,
         ..below
@@ -58,6 +64,21 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     from_above(explained, view, left, buf);
     let is_seen = lab.player().reading().readouts.nutation_is_resolved() != Some(false);
     dip(explained.dip(), is_seen, view, right, buf);
+}
+
+/// What the axle does under the forces of the step, and why.
+fn reason(explained: &Explained) -> &'static str {
+    let Some(part) = explained.workings.parts.last() else {
+        return NONE;
+    };
+    let loads = &part.loads;
+    let is_down = |force: &nalgebra::Vector3<f64>| force.xy() == Vector2::zeros() && force.z <= 0.0;
+    let (before, after) = &explained.states;
+    match () {
+        () if before.momentum == after.momentum => NONE,
+        () if loads.gravity >= 0.0 && loads.pushes.iter().all(|push| is_down(&push.force)) => DOWN,
+        () => ANY,
+    }
 }
 
 /// The last quantity of the step that has this symbol, if it is a vector.
@@ -79,7 +100,7 @@ fn vectors(explained: &Explained, width: usize) -> Vec<Section> {
     let all = [
         (4, last(explained, &["τ"])),
         (3, Some(&before)),
-        (2, last(explained, &["dL", "ΔL"])),
+        (2, last(explained, &["dL"])),
         (1, last(explained, &["new L"])),
     ];
     let section = |(rank, quantity): (u8, Option<&Quantity>)| Section {
@@ -89,7 +110,7 @@ fn vectors(explained: &Explained, width: usize) -> Vec<Section> {
         }),
         ..Section::default()
     };
-    std::iter::once(numbers::heads(format))
+    std::iter::once(numbers::heads(5, format))
         .chain(all.map(section))
         .collect()
 }
