@@ -51,6 +51,14 @@ pub enum Action {
     FillScreen,
     /// Fills the screen with the 3-D view, or shows all panes again.
     ThreeD,
+    /// Shows the step pane beside another one, or takes it away.
+    ToggleStep,
+    /// Goes to the next phase of the time step; after the last takes the next step.
+    NextPhase,
+    /// Goes to the phase before; before the first goes one step back.
+    PhaseBack,
+    /// Shows in the step pane why the axle goes sideways, or the phases again.
+    Why,
     /// Moves a selection, nudges the selected value, or turns the camera.
     Move(Direction),
     /// As `Move`, ten times.

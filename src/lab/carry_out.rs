@@ -179,7 +179,7 @@ impl Lab {
             Command::TakeAdvice => self.follow_advice(),
             Command::Pin(pinned) => Ok(self.player.set_pinned(*pinned)),
             Command::Show(panes) => {
-                self.view.shown.clone_from(panes);
+                self.view.show(panes);
                 Ok(Done::SILENT)
             }
             Command::Hide(parts) => {
@@ -188,6 +188,11 @@ impl Lab {
             }
             Command::Fill(pane) => {
                 self.view.fill(*pane);
+                Ok(Done::SILENT)
+            }
+            Command::Phase(page) => self.show_page(*page),
+            Command::SumTo(rows) => {
+                self.view.sum_to = *rows;
                 Ok(Done::SILENT)
             }
             Command::Camera(camera) => {

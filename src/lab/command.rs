@@ -10,6 +10,7 @@ mod write;
 
 pub use table::{COMMANDS, Row};
 
+use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, Part};
 use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
@@ -112,6 +113,10 @@ pub enum Command {
     Hide(Vec<Part>),
     /// The pane that fills the screen, or none.
     Fill(Option<Pane>),
+    /// The page of the step pane.
+    Phase(Page),
+    /// How many rows of a table the step pane adds up; `None`: all.
+    SumTo(Option<usize>),
     /// Whether the screen is bare.
     Bare(bool),
     /// The direction from which the 3-D view is seen.

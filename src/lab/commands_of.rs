@@ -78,6 +78,9 @@ impl Lab {
             Action::ZoomIn => self.other_zoom(times).map(Some),
             Action::ZoomOut => self.other_zoom(-times).map(Some),
             Action::ZoomToWhole => self.zoom_to(1.0).map(Some),
+            Action::NextPhase => self.other_phase(i64::from(times)).map(Some),
+            Action::PhaseBack => self.other_phase(-i64::from(times)).map(Some),
+            Action::Why => one(self.why_toggled()),
             Action::Move(direction) => self.moved(direction, times),
             Action::MoveFar(direction) => self.moved(direction, times.saturating_mul(FAR)),
             _ => Ok(None),
@@ -120,6 +123,7 @@ impl Lab {
                 Direction::Right => self.nudged(times),
                 _ => Ok(None),
             },
+            (Mode::Lab, Pane::STEP) => self.other_sum(direction, times).map(|sum| Some(vec![sum])),
             (Mode::Lab, Pane::TRACES)
                 if matches!(direction, Direction::Left | Direction::Right) =>
             {

@@ -1,12 +1,13 @@
 //! The content of a session: the history of runs, and the place of the lab in it, each as TOML.
 
 use super::command::{self, Command, Commands, Place};
+use super::view::step::Page;
 use super::view::{Part, View};
 use super::work::Work;
 use super::{Lab, Script, UnderWay};
 use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
-use crate::scenario::file::ZoomFile;
+use crate::scenario::file::{Choice, ZoomFile};
 use crate::scenario::{Document, Problems, Scenario};
 use crate::storage::confined::Confined;
 use crate::storage::session::{Content, Text};
@@ -63,6 +64,11 @@ struct KeptPlace {
     next: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     bare: Option<bool>,
+    /// The page of the step pane, and how many rows it adds up; `None` where they are as usual.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    phase: Option<Choice>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    sum_to: Option<usize>,
     next_push: NextPush,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     camera: Option<KeptCamera>,
@@ -181,6 +187,8 @@ impl Lab {
             look_at: self.view.look_at.clone(),
             next: self.view.next.clone(),
             bare: self.view.bare.then_some(true),
+            phase: (self.view.page != Page::default()).then(|| self.view.page.choice()),
+            sum_to: self.view.sum_to,
             next_push: self.values.next_push().clone(),
             camera: Some(KeptCamera {
                 yaw_deg: self.view.camera.yaw_deg,
@@ -259,12 +267,15 @@ impl Lab {
         view.filled = place.filled;
         if let Some(ids) = &place.show {
             view.shown = ids.iter().filter_map(|id| view.kept_as(id)).collect();
+            view.side_by_side = view.to_show();
         }
         if let Some(ids) = &place.hide {
             view.hidden = ids.iter().filter_map(|id| Part::named(id)).collect();
         }
         (view.look_at, view.next) = (place.look_at, place.next);
         view.bare = place.bare.unwrap_or(false);
+        view.page = place.phase.as_ref().and_then(Page::of).unwrap_or_default();
+        view.sum_to = place.sum_to;
         if let Some(KeptCamera { yaw_deg, pitch_deg }) = place.camera
             && yaw_deg.is_finite()
             && (-90.0..=90.0).contains(&pitch_deg)

@@ -20,6 +20,7 @@ mod commands_of;
 mod dialog;
 mod editing;
 pub mod editor;
+pub mod explained;
 mod files;
 pub mod form;
 mod keeping;

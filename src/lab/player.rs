@@ -3,6 +3,7 @@
 use super::advised::Offer;
 use super::carry_out::{Answer, Done, UnderWay};
 use super::command::Place;
+use super::explained::Explained;
 use super::numbers::{self, Numbers};
 use super::rerun::{Heading, Pinned, Replay};
 use crate::analysis::health::Advice;
@@ -42,6 +43,9 @@ pub struct Player {
     pub(super) is_advised: bool,
     pub(super) advisor: Option<Advisor>,
     pub(super) offer: Option<Offer>,
+    /// Whether the step pane was shown when the run was last read, and the step that it takes apart.
+    pub(super) explains: bool,
+    pub(super) explained: Option<Explained>,
     reading: Reading,
     read_at: Duration,
     detail: Detail,
@@ -72,6 +76,8 @@ impl Player {
             is_advised: false,
             advisor: None,
             offer: None,
+            explains: false,
+            explained: None,
             read_at: Duration::ZERO,
             pinned: None,
             heading: None,
@@ -131,6 +137,7 @@ impl Player {
         self.read_at = now;
         self.read_off(view.cursor);
         self.choose_detail(now, view);
+        self.explain(view);
         if self.is_advised
             && self.advisor.is_none()
             && self.reading.readouts.health.is_believed() == Some(false)
@@ -194,6 +201,7 @@ impl Player {
         let here = self.playback.step_number();
         self.heading = None;
         match steps {
+            1 => self.take_one_step(),
             0.. => self.playback.take_steps(steps.unsigned_abs()),
             _ if here == 0 => return Err("the run begins here".into()),
             _ => self

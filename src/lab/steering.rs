@@ -117,6 +117,7 @@ impl Lab {
             Action::NextPane => self.view.shift_focus(true),
             Action::PreviousPane => self.view.shift_focus(false),
             Action::ThreeD => self.view.toggle_three_d(),
+            Action::ToggleStep => self.toggle_step(),
             Action::WiderWindow | Action::NarrowerWindow => {
                 self.say(format!("the traces show {} s", self.view.window_s));
             }
@@ -174,6 +175,9 @@ impl Lab {
             Action::Quit => return Some(Request::Quit),
             Action::Step
             | Action::StepBack
+            | Action::NextPhase
+            | Action::PhaseBack
+            | Action::Why
             | Action::Faster
             | Action::Slower
             | Action::Restart

@@ -15,6 +15,7 @@ pub mod ages;
 pub mod camera;
 pub mod checkpoints;
 pub mod detail;
+pub mod dip;
 pub mod ghost;
 pub mod live;
 pub mod lookup;

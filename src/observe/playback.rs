@@ -3,6 +3,7 @@
 use super::live::{LiveRun, PlayEnd, Played};
 use super::pace::{Pace, Speed};
 use super::reading::Reading;
+use crate::physics::Workings;
 use crate::run::{Clock, NotFinite, Simulation};
 use crate::scenario::{Scenario, keys};
 use std::sync::Arc;
@@ -384,6 +385,16 @@ impl Playback {
     /// The step it stands at.
     pub fn step_number(&self) -> u64 {
         self.run.simulation().step_number()
+    }
+
+    /// What the scheme computed in the step taken last; `None` at step 0.
+    pub fn workings(&mut self) -> Option<Arc<Workings>> {
+        self.run.workings()
+    }
+
+    /// Whether the workings of every step to come are kept.
+    pub fn keep_workings(&mut self, kept: bool) {
+        self.run.keep_workings(kept);
     }
 
     /// The run.

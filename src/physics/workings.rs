@@ -4,8 +4,13 @@
 //! that [nobody](Nobody) listens to, and costs nothing more, the explained step is the one that fills a list of
 //! [phases](Phase). So the numbers shown are the very numbers that made the step.
 
+mod names;
+mod sums;
+
 use super::Loads;
 use nalgebra::{Matrix3, Vector3};
+pub use names::NAMES;
+pub use sums::Sums;
 
 /// The workings of one time step.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -178,6 +183,13 @@ impl Table {
     pub fn rows(&self) -> impl Iterator<Item = (usize, &[f64])> {
         let rows = self.cells.chunks_exact(self.columns.len().max(1));
         self.points.iter().copied().zip(rows)
+    }
+
+    /// The numbers of this row, from 0; none where there is no such row.
+    pub fn row(&self, row: usize) -> &[f64] {
+        let columns = self.columns.len();
+        let cells = self.cells.get(row * columns..(row + 1) * columns);
+        cells.unwrap_or_default()
     }
 }
 

@@ -156,11 +156,25 @@ pub struct ViewFile {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fill: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    pub phase: Option<Choice>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sum_to: Option<Choice>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub bare: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraFile>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub zoom: Option<ZoomFile>,
+}
+
+/// A whole number or a word.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Choice {
+    /// The number.
+    Number(u64),
+    /// The word.
+    Word(String),
 }
 
 /// `[view.camera]`

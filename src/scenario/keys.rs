@@ -7,7 +7,7 @@ mod check;
 
 pub use super::kind::{Kind, Range, ZOOM};
 use super::problem::nearest;
-use super::screen::{FILLING, HIDEABLE, PANES};
+use super::screen::{ALL_ROWS, FILLING, HIDEABLE, PANES, PHASES};
 use crate::physics::scheme;
 pub use check::check;
 pub(super) use check::check_part;
@@ -107,7 +107,7 @@ pub const GRAVITY: f64 = 9.8;
 pub const SPEED: f64 = 1.0;
 
 use Absent::Word;
-use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole, Words};
+use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole, WholeOr, Words};
 use Nudge::{By, Hundredth, Ladder, Turn, Typed, WholeHundredth};
 use Range::{Any, NotNegative, Positive};
 
@@ -163,6 +163,9 @@ impl Key {
 /// The most points a body may have.
 pub const MOST_POINTS: i64 = 100_000;
 
+/// The highest number of a phase of a time step that can be chosen.
+pub const MOST_PHASES: i64 = 1000;
+
 /// What `start.momentum_Js` is, and what may stand for it.
 pub(super) const STATED: &str =
     "angular momentum L about the pivot, J s; or give spin_rpm or spin_rad_per_s instead";
@@ -207,9 +210,11 @@ pub static KEYS: &[Key] = &[
     may("view.window_s", Number(Positive), "length of time that the traces show, s (default: the run, or what is played of it in two minutes)"),
     may("view.detail_s", Number(Positive), "length of time that the strip of the fast motion shows, s (default: about ten swings of the axle)"),
     may("view.exact", Flag, "whether the exact motion is drawn beside the run (default: false)"),
-    may("view.show", Words(&PANES), "the panes that share the screen, where it has room for them; empty: as many as there is room for (default)"),
+    may("view.show", Words(&PANES), "the panes that share the screen, where it has room for them; empty: as many as there is room for, without step (default)"),
     may("view.hide", Words(&HIDEABLE), "what is not shown: panes, the line about the numbers' health, theory's predicted numbers, the line look_at (default: empty)"),
     may("view.fill", OneOf(&FILLING), "the pane that fills the screen (default: none)"),
+    may("view.phase", WholeOr(MOST_PHASES, &PHASES), "the phase that the pane step shows: its number or name, last, or why: why sideways, not down? (default: 1)"),
+    may("view.sum_to", WholeOr(MOST_POINTS, &[ALL_ROWS]), "how many rows of a phase's table the pane step adds up (default: all)"),
     may("view.bare", Flag, "whether the screen is bare: two panes, or one, and nothing around them but title and time (default: false)"),
     may("view.camera.yaw_deg", Number(Any), "from where the 3-D view is seen: angle of the eye about +z, from -y, degrees"),
     may("view.camera.pitch_deg", Number(Any), "height of the eye above the horizontal, degrees, -90 to 90"),

@@ -2,7 +2,7 @@
 
 use super::problem::nearest;
 use crate::text::printable::is_steering;
-use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole, Words};
+use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole, WholeOr, Words};
 use Range::{NotNegative, Positive};
 use toml::Value;
 
@@ -23,6 +23,8 @@ pub enum Kind {
     Number(Range),
     /// A whole number, from the least to the most.
     Whole(i64, i64),
+    /// A whole number from 1 to the most, or one of these words.
+    WholeOr(i64, &'static [&'static str]),
     /// Three finite numbers.
     Vector,
     /// true or false.
@@ -62,6 +64,10 @@ impl Kind {
             Paragraph => text(value).and_then(|text| check_text(text, LONGEST_PARAGRAPH, "\n")),
             Number(range) => number(value).and_then(|number| range.check(number)),
             Whole(least, most) => check_whole(value, least, most),
+            WholeOr(most, words) => match value {
+                Value::String(word) => check_word(word, words),
+                _ => check_whole(value, 1, most),
+            },
             Vector => check_vector(value),
             Flag => value
                 .as_bool()

@@ -1,26 +1,39 @@
 //! The names of what the lab's screen shows, as `[view]` of a scenario and commands have them.
 
+use crate::physics::workings::NAMES;
+
 /// The panes of the lab. The table of panes in `tui` has a row for each, in this order: the compiler compares the two.
-pub const PANES: [&str; 5] = ["lesson", "traces", "above", "3d", "parameters"];
+pub const PANES: [&str; 6] = ["lesson", "traces", "above", "3d", "parameters", "step"];
 
 /// What of the lab's screen can be hidden: the panes, the line about the numbers' health, the numbers that theory
 /// predicts, the line that says what there is to see.
-pub const HIDEABLE: [&str; PANES.len() + 3] = panes_and(["health", "predicted", "look_at"]);
+pub const HIDEABLE: [&str; PANES.len() + 3] = joined(&PANES, &["health", "predicted", "look_at"]);
 
 /// What can fill the screen.
-pub const FILLING: [&str; PANES.len() + 1] = panes_and(["none"]);
+pub const FILLING: [&str; PANES.len() + 1] = joined(&PANES, &["none"]);
 
-/// The panes, and `others` after them; `ALL` is how many that makes.
-const fn panes_and<const OTHERS: usize, const ALL: usize>(
-    others: [&'static str; OTHERS],
+/// The page of the step pane after those of the phases.
+pub const WHY: &str = "why";
+/// The last phase of a step, whatever it is called.
+pub const LAST: &str = "last";
+/// All rows of a table.
+pub const ALL_ROWS: &str = "all";
+
+/// What the step pane can show besides a phase by its number.
+pub const PHASES: [&str; NAMES.len() + 2] = joined(&NAMES, &[LAST, WHY]);
+
+/// The names in `first`, and then those in `others`; `ALL` is how many that makes.
+const fn joined<const ALL: usize>(
+    first: &[&'static str],
+    others: &[&'static str],
 ) -> [&'static str; ALL] {
     let mut all = [""; ALL];
     let mut at = 0;
     while at < ALL {
-        all[at] = if at < PANES.len() {
-            PANES[at]
+        all[at] = if at < first.len() {
+            first[at]
         } else {
-            others[at - PANES.len()]
+            others[at - first.len()]
         };
         at += 1;
     }

@@ -107,6 +107,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[BackTab], Action::PreviousPane, "", "the pane before"),
     row(&[Lab], &[Char('f')], Action::FillScreen, "fill", "fill the screen with the pane, or show all panes again"),
     row(&[Lab], &[Char('d')], Action::ThreeD, "3-D", "fill the screen with the 3-D view, or show all panes again"),
+    row(&[Lab], &[Char('v')], Action::ToggleStep, "", "one time step, phase by phase, with its numbers; v takes it away again"),
     row(&[Lab], &[Char('/')], Action::FindValue, "", "find a value of the scenario by a part of its name"),
     row(&[Lab, Browser], &[Up, Char('k')], Action::Move(Direction::Up), "", "up: in lists and values; in 3-D the camera"),
     row(&[Lab, Browser], &[Down, Char('j')], Action::Move(Direction::Down), "", "down"),
@@ -273,6 +274,10 @@ mod tests {
             A::Lesson(LessonKey::Again),
             A::Lesson(LessonKey::ShowTask),
             A::Lesson(LessonKey::Notes),
+            A::ToggleStep,
+            A::NextPhase,
+            A::PhaseBack,
+            A::Why,
             A::Move(Direction::Up),
             A::Move(Direction::Down),
             A::Move(Direction::Left),
@@ -341,6 +346,10 @@ mod tests {
                 | A::FillScreen
                 | A::ThreeD
                 | A::Lesson(_)
+                | A::ToggleStep
+                | A::NextPhase
+                | A::PhaseBack
+                | A::Why
                 | A::Move(_)
                 | A::StepCursor(_)
                 | A::ToTurn(_)

@@ -19,6 +19,8 @@ const PAGE: (u16, u16) = (38, 64);
 const PAGE_SHARE: usize = 48;
 /// From this width on a hint fits on one line.
 const ONE_LINE_FROM: u16 = 140;
+/// The fewest columns of a pane beside the step pane.
+const BESIDE_STEP: u16 = 24;
 /// The height the whole lab wants.
 const HEIGHT: u16 = 24;
 /// From this height on a hint may have two lines.
@@ -124,6 +126,8 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     let joined = joined(area.width);
     if view.filled || area.width < TWO_FROM {
         vec![(view.focus, area)]
+    } else if view.may_show(Pane::STEP) {
+        with_step(area, view)
     } else if !usual().all(|row| view.may_show(row.id)) {
         chosen(area, view)
     } else if joined.len() > 2 {
@@ -133,9 +137,10 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     }
 }
 
-/// The panes that stand beside each other wherever there is room: all but the page of a lesson.
+/// The panes that are shown without being asked for: all but the page of a lesson and the step pane.
 fn usual() -> impl Iterator<Item = &'static PaneRow> {
-    PANES.iter().filter(|row| row.id != Pane::LESSON)
+    let extra = [Pane::LESSON, Pane::STEP];
+    PANES.iter().filter(move |row| !extra.contains(&row.id))
 }
 
 /// The place of a lesson's page, and the rest of `area`, where there is a page and room for both.
@@ -231,6 +236,44 @@ fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     };
     let mut widths: Vec<_> = others.iter().map(width).collect();
     widths.insert(0, area.width - widths.iter().sum::<u16>()); // the first has what the others leave
+    beside(area, &panes, &widths)
+}
+
+/// The step pane at the right, as wide as its numbers are, and beside it as many of the other panes that were chosen as
+/// have room; where none has, the one in focus.
+fn with_step(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
+    let rows = || {
+        let rows = PANES.iter().filter(|row| row.id != Pane::LESSON);
+        rows.filter(|row| view.may_show(row.id))
+    };
+    let Some(step) = rows().find(|row| row.id == Pane::STEP) else {
+        return Vec::new();
+    };
+    let room = area.width.saturating_sub(step.least.0) / BESIDE_STEP;
+    let mut others: Vec<_> = rows().filter(|row| row.id != Pane::STEP).collect();
+    if room == 0 && view.focus != Pane::STEP {
+        return vec![(view.focus, area)];
+    }
+    others.sort_by_key(|row| row.id != view.focus);
+    others.truncate(room.into());
+    let is_kept = |row: &&PaneRow| others.iter().any(|other| other.id == row.id);
+    let panes: Vec<_> = rows()
+        .filter(|row| row.id == Pane::STEP || is_kept(row))
+        .collect();
+    let count = panes.len() as u16;
+    let share = (area.width / count).max(step.least.0.min(area.width));
+    let each = (area.width - share) / (count - 1).max(1);
+    let width = |row: &&PaneRow| match row.width {
+        _ if row.id == Pane::STEP => 0,
+        Width::Fixed => each.min(row.least.0),
+        Width::Wide => each,
+        Width::Round => each.min(2 * area.height),
+    };
+    let mut widths: Vec<_> = panes.iter().map(width).collect();
+    let left = area.width - widths.iter().sum::<u16>(); // the step pane, the last, has what the others leave
+    if let Some(last) = widths.last_mut() {
+        *last = left;
+    }
     beside(area, &panes, &widths)
 }
 

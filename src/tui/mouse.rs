@@ -181,7 +181,7 @@ fn wheel(layout: &Layout, at: Position, up: bool, lab: &mut Lab) -> Option<Reque
     let zoom = match pane {
         Pane::TRACES => choose(Action::NarrowerWindow, Action::WiderWindow),
         Pane::FROM_ABOVE | Pane::THREE_D => choose(Action::ZoomIn, Action::ZoomOut),
-        Pane::PARAMETERS if lab.view().focus == pane => lines,
+        Pane::PARAMETERS | Pane::STEP if lab.view().focus == pane => lines,
         Pane::LESSON => choose(
             Action::Lesson(LessonKey::Move(Direction::PageUp)),
             Action::Lesson(LessonKey::Move(Direction::PageDown)),

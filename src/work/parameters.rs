@@ -318,6 +318,10 @@ impl Parameter {
             Kind::Flag => Value::Boolean(typed_flag(text)?),
             Kind::OneOf(_) => Value::String(text.trim().to_owned()),
             Kind::Paragraph => Value::String(unescaped(text)),
+            Kind::WholeOr(..) => match typed_whole(text) {
+                Ok(whole) => Value::Integer(whole),
+                Err(_) => Value::String(text.trim().to_owned()),
+            },
             Kind::Line | Kind::Vector | Kind::Words(_) | Kind::Settings => {
                 Value::String(text.to_owned())
             }

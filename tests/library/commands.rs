@@ -6,9 +6,11 @@ use crate::support::desk::{Desk, commands};
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::lab::Refusal;
 use gyrolab::lab::command::{self, COMMANDS, Command, Force, Place, PushChoice};
+use gyrolab::lab::view::step::Page;
 use gyrolab::lab::view::{Pane, Part};
 use gyrolab::observe::camera::Camera;
 use gyrolab::observe::pace::Speed;
+use gyrolab::physics::workings::NAMES;
 use gyrolab::scenario::Document;
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::{layout::Layout, panes, screen};
@@ -97,6 +99,15 @@ fn a_set() -> impl Strategy<Value = Table> {
     prop::collection::vec(entry, 1..4).prop_map(table)
 }
 
+fn a_page() -> impl Strategy<Value = Page> {
+    prop_oneof![
+        (1..1000usize).prop_map(Page::Number),
+        prop::sample::select(&NAMES[..]).prop_map(Page::Named),
+        Just(Page::Last),
+        Just(Page::Why),
+    ]
+}
+
 /// A command of every kind.
 fn a_command() -> impl Strategy<Value = Command> {
     let place = prop_oneof![
@@ -145,6 +156,8 @@ fn a_command() -> impl Strategy<Value = Command> {
         prop::collection::vec(pane(), 0..4).prop_map(Command::Show),
         prop::collection::vec(part, 0..4).prop_map(Command::Hide),
         prop::option::of(pane()).prop_map(Command::Fill),
+        a_page().prop_map(Command::Phase),
+        prop::option::of(1..100_000usize).prop_map(Command::SumTo),
         (a_number(), -90.0..90.0)
             .prop_map(|(yaw_deg, pitch_deg)| Command::Camera(Camera { yaw_deg, pitch_deg })),
     ];
@@ -215,6 +228,8 @@ fn every_row_of_the_table_is_written_under_its_name() {
         show = ['traces', '3d']
         hide = ['health']
         fill = 'above'
+        phase = 'torque'
+        sum_to = 4
         bare = true
         camera = { yaw_deg = 30 }
         zoom = { above = 4, 3d = 2 }";
@@ -649,7 +664,8 @@ fn shown_panes_share_the_screen_at_every_width() {
 #[test]
 fn a_pane_has_the_name_that_files_give_it() {
     use gyrolab::scenario::screen::{FILLING, HIDEABLE, PANES};
-    assert_eq!(PANES, ["lesson", "traces", "above", "3d", "parameters"]);
+    let all = ["lesson", "traces", "above", "3d", "parameters", "step"];
+    assert_eq!(PANES, all);
     for id in PANES {
         let pane = Pane::named(id).unwrap();
         assert_eq!(pane.id(), id);

@@ -33,6 +33,7 @@ mod run_until;
 mod same_bits;
 mod schemes;
 mod start;
+mod step_pane;
 mod textbook;
 mod theory;
 mod truth;

@@ -280,6 +280,7 @@ fn a_push_that_acts_is_an_arrow() {
                 run: &now,
                 view,
                 reading: None,
+                explained: None,
             },
             ROUND,
         );
@@ -295,6 +296,7 @@ fn a_push_that_acts_is_an_arrow() {
                 run: &over,
                 view,
                 reading: None,
+                explained: None,
             },
             ROUND
         )
@@ -417,6 +419,7 @@ fn the_nearer_mass_is_drawn_over_the_farther_one() {
             run: &run,
             view,
             reading: None,
+            explained: None,
         };
         drawn(pane, (60, 24))
     };
@@ -703,6 +706,7 @@ proptest! {
                     run,
                     view,
                     reading,
+                    explained: None,
                 }.render(inside, &mut buf),
             }
             for position in around.positions().filter(|position| !inside.contains(*position)) {

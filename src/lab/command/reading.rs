@@ -5,9 +5,11 @@ use super::{
     Command, CursorTo, Force, MOST_MAGNIFIED, NEXT_TURN, NONE, Place, PushChoice, TURN_BEFORE,
 };
 use crate::lab::numbers;
+use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, Part};
 use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
+use crate::scenario::file::Choice;
 use crate::scenario::keys::{self, Kind, Range};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Problem, presets};
@@ -454,6 +456,28 @@ pub(super) fn hide(value: &Value) -> Read {
 pub(super) fn fill(value: &Value) -> Read {
     let id = text_in(of_view("fill", value)?);
     Ok(Command::Fill(Pane::named(id)))
+}
+
+pub(super) fn phase(value: &Value) -> Read {
+    let choice = choice_in(of_view("phase", value)?);
+    Ok(Command::Phase(Page::of(&choice).unwrap_or_default()))
+}
+
+pub(super) fn sum_to(value: &Value) -> Read {
+    let rows = match choice_in(of_view("sum_to", value)?) {
+        Choice::Number(rows) => usize::try_from(rows).ok(),
+        Choice::Word(_) => None,
+    };
+    Ok(Command::SumTo(rows))
+}
+
+/// A whole number from 0 on, or the word.
+fn choice_in(value: &Value) -> Choice {
+    let number = value.as_integer().map(u64::try_from);
+    match number {
+        Some(Ok(number)) => Choice::Number(number),
+        _ => Choice::Word(text_in(value).to_owned()),
+    }
 }
 
 pub(super) fn camera(value: &Value) -> Read {

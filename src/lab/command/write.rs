@@ -3,6 +3,8 @@
 use super::{Command, CursorTo, Force, NEXT_TURN, NONE, Place, PushChoice, TURN_BEFORE};
 use crate::lab::view::Pane;
 use crate::observe::pace::Speed;
+use crate::scenario::file::Choice;
+use crate::scenario::screen::ALL_ROWS;
 use toml::{Table, Value};
 
 /// Name and value of `command`.
@@ -66,6 +68,15 @@ pub(super) fn written(command: &Command) -> (&'static str, Value) {
         Command::Show(panes) => ("show", words(panes.iter().map(|pane| pane.id()))),
         Command::Hide(parts) => ("hide", words(parts.iter().map(|part| part.id()))),
         Command::Fill(pane) => ("fill", pane.map_or("none", Pane::id).into()),
+        Command::Phase(page) => (
+            "phase",
+            match page.choice() {
+                Choice::Number(number) => large(number),
+                Choice::Word(word) => word.into(),
+            },
+        ),
+        Command::SumTo(None) => ("sum_to", ALL_ROWS.into()),
+        Command::SumTo(Some(rows)) => ("sum_to", large(*rows as u64)),
         Command::Camera(camera) => (
             "camera",
             map([

@@ -1,9 +1,10 @@
 //! How a run is shown: which panes, which of them has the focus, how much time the traces show, and which dots and
 //! colours. `tui` draws accordingly. No number of a run depends on it.
 //!
-//! [`markers`] lists the kinds of dots, [`theme`] the choice of colours.
+//! [`markers`] lists the kinds of dots, [`theme`] the choice of colours, [`step`] the pages of the step pane.
 
 pub mod markers;
+pub mod step;
 pub mod theme;
 
 use super::action::Direction;
@@ -14,6 +15,7 @@ use crate::scenario::screen::PANES;
 use crate::scenario::{Scenario, keys};
 use markers::Marker;
 use std::sync::Arc;
+use step::Page;
 use theme::{Background, Theme};
 
 /// The longest time that one sweep of the traces may take at first, seconds of wall time.
@@ -53,6 +55,8 @@ impl Pane {
     pub const THREE_D: Self = Self("3d");
     /// The scenario's values and the readouts.
     pub const PARAMETERS: Self = Self("parameters");
+    /// One time step, phase by phase. It is shown where it is asked for.
+    pub const STEP: Self = Self("step");
 
     /// The page of a lesson. It is shown as long as there is one.
     pub const LESSON: Self = Self("lesson");
@@ -121,6 +125,12 @@ pub struct View {
     pub zoom: Zoom,
     /// The panes that share the screen; if empty, as many as there is room for.
     pub shown: Vec<Pane>,
+    /// The page that the step pane shows.
+    pub page: Page,
+    /// The phase to which the step pane returns from its last page.
+    pub page_before: Page,
+    /// How many rows of a table the step pane adds up; `None`: all.
+    pub sum_to: Option<usize>,
     /// The hidden parts.
     pub hidden: Vec<Part>,
     /// The line about what there is to see, if a command has set it; otherwise the scenario's line is shown.
@@ -157,6 +167,9 @@ impl View {
             camera: Camera::default(),
             zoom: Zoom::default(),
             shown: Vec::new(),
+            page: Page::default(),
+            page_before: Page::default(),
+            sum_to: None,
             hidden: Vec::new(),
             look_at: None,
             next: None,
@@ -177,7 +190,9 @@ impl View {
         self.detail_s = file.detail_s;
         (self.since_s, self.magnified, self.cursor) = (None, 1.0, None);
         let panes = file.show.iter().flatten();
-        self.shown = panes.filter_map(|id| Pane::named(id)).collect();
+        let panes: Vec<_> = panes.filter_map(|id| Pane::named(id)).collect();
+        self.show(&panes);
+        self.fit_step(&file);
         let parts = file.hide.iter().flatten();
         self.hidden = parts.filter_map(|id| Part::named(id)).collect();
         (self.look_at, self.next) = (None, None);
@@ -228,7 +243,7 @@ impl View {
         }
         let is_shown = match (self.shown.is_empty(), self.bare) {
             (true, true) => BARE.contains(&pane),
-            (true, false) => true,
+            (true, false) => pane != Pane::STEP,
             (false, _) => self.shown.contains(&pane),
         };
         is_shown && !self.hides(Part::Pane(pane))

@@ -159,11 +159,12 @@ pub(super) fn momentum_phase(
 ) -> Phase {
     Phase::of(
         "new momentum",
-        "L ← L + dt τ",
+        "dL = dt τ, L ← L + dL",
         vec![
             Quantity::new("L", "J s", *from),
             Quantity::new("dt", "s", dt),
             Quantity::new("τ", "N m", *torque),
+            Quantity::new("dL", "J s", dt * torque),
             Quantity::new("new L", "J s", *to),
         ],
     )

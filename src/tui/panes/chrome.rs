@@ -6,7 +6,7 @@ use crate::lab::Lab;
 use crate::lab::action::{Action, LessonKey};
 use crate::observe::reading::Reading;
 use crate::text::number::{fixed, shortest};
-use crate::tui::keymap::{BINDINGS, Key, Mode};
+use crate::tui::keymap::{BINDINGS, Binding, Key, Mode};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -231,9 +231,12 @@ fn length(key: Key, word: &str) -> u16 {
 
 fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
     let (mode, is_running) = (lab.on_top().mode(), lab.player().playback().is_running());
-    let rows = super::keys(lab.view().focus)
+    let of_pane = super::keys(lab.view().focus);
+    let of_mode = || of_pane.iter().filter(|row| row.modes.contains(&mode));
+    let is_new = |row: &&Binding| of_mode().all(|other| other.keys[0] != row.keys[0]);
+    let rows = of_pane
         .iter()
-        .chain(BINDINGS)
+        .chain(BINDINGS.iter().filter(is_new))
         .filter(|row| row.modes.contains(&mode) && !row.footer.is_empty());
     let mut words: Vec<_> = rows
         .map(|row| {
@@ -265,14 +268,17 @@ fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
 /// Whether the footer names `action` as long as it can.
 fn is_kept(action: Action) -> bool {
     use Action::{
-        Accept, Browse, Choose, Export, Help, Lesson, Parameters, Push, Quit, Step, ToggleExact,
-        TogglePause, ZoomIn,
+        Accept, Browse, Choose, Export, Help, Lesson, NextPhase, Parameters, PhaseBack, Push, Quit,
+        Step, ToggleExact, TogglePause, Why, ZoomIn,
     };
     matches!(
         action,
         Lesson(LessonKey::Take | LessonKey::Next)
             | TogglePause
             | Step
+            | NextPhase
+            | PhaseBack
+            | Why
             | Parameters
             | Push
             | ToggleExact

@@ -10,6 +10,7 @@ pub mod from_above;
 pub mod help;
 pub mod lesson;
 pub mod parameters;
+pub mod step;
 pub mod three_d;
 pub mod timeline;
 pub mod traces;
@@ -65,6 +66,7 @@ pub const PANES: &[PaneRow] = &[
     from_above::ROW,
     three_d::ROW,
     parameters::ROW,
+    step::ROW,
 ];
 
 /// The ids of all panes, in the table's order.

@@ -4,11 +4,13 @@
 //! goes where it goes. The weight g makes a torque τ about the pivot; L changes by dL along it, and the axle follows L.
 
 mod arrows;
+mod phase;
 mod room;
 mod shape;
 mod wheel;
 
 use super::{PaneRow, Width, frame, write};
+use crate::lab::explained::Explained;
 use crate::lab::view::{Pane, View};
 use crate::observe::ages::Ages;
 use crate::observe::live::LiveRun;
@@ -50,6 +52,7 @@ pub const ROW: PaneRow = PaneRow {
             run: lab.player().run(),
             view: lab.view(),
             reading: Some(lab.player().reading()),
+            explained: lab.player().explained(),
         }
         .render(area, buf);
     },
@@ -65,6 +68,8 @@ pub struct ThreeD<'a> {
     /// The latest reading of the run, if it is read at all: the scene is that of its time, and by it the path is recent or
     /// old. A wheel that turns changes most of the picture; sent with every frame it would load a slow line.
     pub reading: Option<&'a Reading>,
+    /// The time step that the step pane takes apart: the scene shows what its page is about.
+    pub explained: Option<&'a Explained>,
 }
 
 /// A letter at a place.
@@ -92,6 +97,7 @@ impl Widget for ThreeD<'_> {
         let mut labels = subject.ground(&mut scene);
         subject.path(&scene, &mut dots);
         subject.body(&mut scene);
+        labels.extend(subject.phase(&mut scene));
         labels.extend(subject.vectors(&mut scene));
         labels.extend(subject.pushes(&mut scene));
         let masses = subject.masses(&scene);
@@ -137,6 +143,8 @@ struct Subject<'a> {
     reach: f64,
     /// The direction of the torque of all forces about the pivot, where there is one.
     torque: Option<Vector3<f64>>,
+    /// The phase that the step pane is at, where that is on the screen.
+    shown_phase: Option<phase::Shown<'a>>,
 }
 
 impl<'a> Subject<'a> {
@@ -159,6 +167,7 @@ impl<'a> Subject<'a> {
             reach: shape.reach(),
             shape,
             torque: torque(run, state),
+            shown_phase: phase::Shown::of(pane.explained, pane.view),
         }
     }
 

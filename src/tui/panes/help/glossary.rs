@@ -111,6 +111,18 @@ pub(super) const GLOSSARY: &[Word] = &[
         "a column of a trace that holds several swings: from the least value to the greatest",
     ),
     (
+        "phase",
+        "a part of a time step, as the scheme takes it; v shows them one by one, with the numbers of the step",
+    ),
+    (
+        "torque",
+        "X × F summed over the forces, about the pivot: in the time dt it adds dL = dt τ to L",
+    ),
+    (
+        "inertia",
+        "I, how hard the body is to turn about each axis: the masses times their squared distances from it",
+    ),
+    (
         "segment",
         "a part of a run between edits of dt, scheme or gravity; a CSV numbers them from 0",
     ),

@@ -28,6 +28,9 @@ impl Subject<'_> {
         let direction = |vector: &Vector3<f64>| vector.try_normalize(f64::MIN_POSITIVE);
         let mut labels = Vec::new();
         let mut arrow = |name, role, from: Vector3<f64>, to: Vector3<f64>| {
+            if !self.draws(name) {
+                return;
+            }
             scene.arrow(&from, &(from + to), Ink::Strong(role));
             labels.push((name, role, from + to * 1.04));
         };
@@ -37,11 +40,12 @@ impl Subject<'_> {
             let centre = state.orientation * body.first_moment() / body.mass();
             arrow("g", Role::Push, centre, down * (WEIGHT * reach));
         }
-        if let Some(along) = direction(&observables::angular_velocity(body, state)) {
+        let omega = direction(&observables::angular_velocity(body, state));
+        if let Some(along) = self.direction("Ω", omega) {
             arrow("Ω", Role::Y, pivot, along * (OMEGA * reach));
         }
         let momentum = direction(&state.momentum).map(|along| along * (MOMENTUM * reach));
-        if let Some(torque) = self.torque {
+        if let Some(torque) = self.direction("τ", self.torque) {
             arrow("τ", Role::X, pivot, torque * (TORQUE * reach));
             if let Some(momentum) = momentum {
                 arrow("dL", Role::X, momentum, torque * (CHANGE * reach));
@@ -59,7 +63,8 @@ impl Subject<'_> {
         let points = self.run.scenario().body.mechanics.points();
         let length = PUSH * self.reach;
         let mut labels = Vec::new();
-        for push in simulation.loads().pushes.iter().take(MOST_PUSHES) {
+        let shown = if self.draws("F") { MOST_PUSHES } else { 0 };
+        for push in simulation.loads().pushes.iter().take(shown) {
             let from = self.state.orientation * points[push.point].at;
             if let Some(direction) = push.force.try_normalize(f64::MIN_POSITIVE) {
                 let tip = from + direction * length;
@@ -93,6 +98,7 @@ impl Subject<'_> {
             (torque, Role::X),
             (change, Role::X),
         ];
+        let words = self.phase_legend().unwrap_or_else(|| words.to_vec());
         let length = |at: usize| -> usize {
             let lengths = words
                 .iter()

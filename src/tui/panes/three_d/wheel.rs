@@ -61,6 +61,23 @@ impl Subject<'_> {
         }
     }
 
+    /// The wheel and the axle as they stood at `state`, dotted, and the way of one of the masses since then.
+    pub(super) fn body_before(&self, state: &State, scene: &mut Scene) {
+        let (stroke, ink) = (Stroke::Dotted(2), Ink::Strong(Role::Ghost));
+        let axle = state.axle();
+        let (foot, top) = self.shape.axle;
+        scene.line(&(axle * foot), &(axle * top), stroke, ink);
+        if let Some((radius, height, points)) = self.shape.rim {
+            scene.ring(&circle(state, radius, height), |_| (stroke, ink));
+            let spoke = on_circle(state, radius, height, 0, points);
+            scene.line(&(axle * height), &spoke, stroke, ink);
+        }
+        for at in &self.shape.free {
+            let foot = axle * at.z;
+            scene.line(&foot, &(state.orientation * at), stroke, ink);
+        }
+    }
+
     /// The masses, the nearest last: a larger sign is nearer.
     pub(super) fn masses(&self, scene: &Scene) -> Vec<(&'static str, Role, (u16, u16))> {
         let state = self.state;

@@ -1,0 +1,258 @@
+//! The time step that the step pane takes apart, and what its keys do.
+
+use super::Lab;
+use super::action::Direction;
+use super::carry_out::{Answer, Done};
+use super::command::{Command, Place};
+use super::player::Player;
+use super::view::View;
+use super::view::step::Page;
+use crate::observe::dip::Dip;
+use crate::physics::workings::{Phase, Quantity, Sums, Table, Value};
+use crate::physics::{State, Workings};
+use crate::scenario::Scenario;
+use std::sync::Arc;
+
+/// The most points of a body whose steps are taken apart while the run goes on; of a larger body that is done as soon as
+/// it stands still.
+const MOST_POINTS_MOVING: usize = 1000;
+/// Rows of a page of a table.
+const PAGE_ROWS: i64 = 10;
+
+/// A time step with what the scheme computed on its way.
+#[derive(Clone, Debug)]
+pub struct Explained {
+    /// The number of the step.
+    pub step: u64,
+    /// The state before it and after it.
+    pub states: (State, State),
+    /// What the scheme computed: the numbers of the step itself.
+    pub workings: Arc<Workings>,
+    /// The run's scenario.
+    pub scenario: Arc<Scenario>,
+    /// The sums of the table on the page, where some of its rows are added up.
+    sums: Option<(usize, Sums)>,
+    /// The first dip of the run, where the page shows it.
+    dip: Option<Dip>,
+}
+
+impl Explained {
+    /// The first dip of the run up to this step; `None` where the page does not show it, and where the axle was upright.
+    pub fn dip(&self) -> Option<&Dip> {
+        self.dip.as_ref()
+    }
+
+    /// The phase on `page` with its number, from 1, and how many there are; `None` for a page that shows none.
+    pub fn phase(&self, page: Page) -> Option<(&Phase, usize, usize)> {
+        let index = page.index(&self.workings)?;
+        let phase = self.workings.phases().nth(index)?;
+        Some((phase, index + 1, self.workings.phases().count()))
+    }
+
+    /// The sum of each column over the first `rows` rows of `table`, the one on `page`; `None` where nobody has
+    /// [asked](View::sum_to) for one.
+    pub fn sums(&self, page: Page, table: &Table, rows: usize) -> Option<Vec<f64>> {
+        let (of, sums) = self.sums.as_ref()?;
+        (Some(*of) == page.index(&self.workings)).then(|| sums.first(table, rows))
+    }
+
+    /// Makes the sums that `view` asks for, unless they are there.
+    fn add_up(&mut self, view: &View) {
+        let index = view.page.index(&self.workings);
+        let known = self.sums.as_ref().map(|(of, _)| *of);
+        if view.sum_to.is_none() || index.is_none() || known == index {
+            return;
+        }
+        let table = self
+            .phase(view.page)
+            .and_then(|(phase, ..)| table_of(phase));
+        self.sums = index.zip(table.map(Sums::of));
+    }
+}
+
+/// The table of `phase` whose rows are added up: its first, if it has rows.
+pub fn table_of(phase: &Phase) -> Option<&Table> {
+    let table = |quantity| match quantity {
+        &Quantity {
+            value: Value::Table(ref table),
+            ..
+        } => Some(table),
+        _ => None,
+    };
+    let mut tables = phase.quantities.iter().filter_map(table);
+    tables.next().filter(|table| !table.points.is_empty())
+}
+
+impl Player {
+    /// Takes the present step apart where the step pane is shown.
+    pub(super) fn explain(&mut self, view: &View) {
+        self.explains = view.shows_step();
+        let now = self.run().simulation().now();
+        let (number, scenario) = (now.number(), Arc::clone(now.scenario()));
+        let is_large = scenario.body.mechanics.points().len() > MOST_POINTS_MOVING;
+        if !self.explains || number == 0 || (is_large && self.is_moving()) {
+            self.explained = None;
+            return;
+        }
+        let is_known = |known: &Explained| {
+            known.step == number && Arc::ptr_eq(&known.scenario, self.run().scenario())
+        };
+        if !self.explained.as_ref().is_some_and(is_known) {
+            self.explained = self.taken_apart();
+        }
+        if let Some(explained) = &mut self.explained {
+            explained.add_up(view);
+            if view.page == Page::Why && explained.dip.is_none() {
+                explained.dip = Dip::of(&explained.scenario, explained.step);
+            }
+        }
+    }
+
+    /// Takes one time step, and keeps what is computed on its way where the step pane is shown: otherwise the step would
+    /// be taken a second time for it.
+    pub(super) fn take_one_step(&mut self) {
+        self.playback.keep_workings(self.explains);
+        self.playback.take_steps(1);
+        if self.explains {
+            self.explained = self.taken_apart();
+            self.playback.keep_workings(false);
+        }
+    }
+
+    fn taken_apart(&mut self) -> Option<Explained> {
+        let now = self.run().simulation().now();
+        let (step, states) = (now.number(), (*now.before()?, *now.after()));
+        let scenario = Arc::clone(now.scenario());
+        Some(Explained {
+            step,
+            states,
+            workings: self.playback.workings()?,
+            scenario,
+            sums: None,
+            dip: None,
+        })
+    }
+
+    /// The time step that the step pane takes apart; `None` at step 0, and while that pane is not shown.
+    pub fn explained(&self) -> Option<&Explained> {
+        self.explained.as_ref()
+    }
+}
+
+impl Lab {
+    /// Shows `page` in the step pane; all rows of its table are added up.
+    pub(super) fn show_page(&mut self, page: Page) -> Answer {
+        if let (Page::Named(name), Some(explained)) = (page, self.player.explained())
+            && explained.workings.phases().all(|phase| phase.name != name)
+        {
+            let scheme = self.player.run().simulation().now().motion().scheme.name;
+            let mut names: Vec<_> = explained
+                .workings
+                .phases()
+                .map(|phase| phase.name)
+                .collect();
+            names.dedup();
+            let names = names.join(", ");
+            return Err(format!("{scheme} has no phase {name}: it has {names}").into());
+        }
+        if self.view.page != Page::Why {
+            self.view.page_before = self.view.page;
+        }
+        (self.view.page, self.view.sum_to) = (page, None);
+        Ok(Done::SILENT)
+    }
+
+    /// Shows the step pane beside another one, or takes it away.
+    pub(super) fn toggle_step(&mut self) {
+        let is_filled = self.view.filled;
+        if self.view.shows_step() {
+            if !is_filled || self.view.shown.contains(&super::Pane::STEP) {
+                self.carry_out_all(&[Command::Show(self.view.with_step_toggled())]);
+            }
+            if is_filled {
+                self.carry_out_all(&[Command::Fill(None)]);
+            }
+            return;
+        }
+        if is_filled {
+            self.carry_out_all(&[Command::Fill(None)]);
+        }
+        if !self.view.shown.contains(&super::Pane::STEP) {
+            self.carry_out_all(&[Command::Show(self.view.with_step_toggled())]);
+        }
+        self.view.turn_to(super::Pane::STEP);
+    }
+
+    /// The commands that go `times` phases on, or back: after the last phase of a step comes the first of the next.
+    pub(super) fn other_phase(&self, times: i64) -> Result<Vec<Command>, String> {
+        let first = Command::Phase(Page::default());
+        if self.player.is_moving() {
+            return Ok(vec![Command::Pause]);
+        }
+        let here = self.player.playback.step_number();
+        let Some(explained) = self.player.explained() else {
+            return match times > 0 {
+                true => Ok(vec![Command::Step(1), first]),
+                false => Err("the run begins here: . takes the first time step".to_owned()),
+            };
+        };
+        let count = explained.workings.phases().count().max(1) as i64;
+        let at = match self.view.page.index(&explained.workings) {
+            Some(index) => index as i64,
+            None if times > 0 => count - 1,
+            None => count,
+        };
+        let target = at.saturating_add(times);
+        let (steps, index) = (target.div_euclid(count), target.rem_euclid(count));
+        let page = match (steps, index) {
+            (..0, index) if index == count - 1 => Page::Last,
+            _ => Page::Number(index as usize + 1),
+        };
+        if steps == 0 {
+            return Ok(vec![Command::Phase(page)]);
+        }
+        let before = steps.unsigned_abs();
+        if steps < 0 && before >= here {
+            return Ok(vec![Command::GoTo(Place::Start), first]);
+        }
+        Ok(vec![Command::Step(steps), Command::Phase(page)])
+    }
+
+    /// The command that shows why the axle goes sideways, or the first phase again.
+    pub(super) fn why_toggled(&self) -> Command {
+        Command::Phase(match self.view.page {
+            Page::Why => self.view.page_before,
+            _ => Page::Why,
+        })
+    }
+
+    /// The command that adds up more rows of the table in the step pane, or fewer. Beyond either end are all rows.
+    pub(super) fn other_sum(&self, direction: Direction, times: i32) -> Result<Command, String> {
+        let explained = self.player.explained();
+        let phase = explained.and_then(|explained| explained.phase(self.view.page));
+        let Some(table) = phase.and_then(|(phase, ..)| table_of(phase)) else {
+            return Err("no table here: . and , go through the phases".to_owned());
+        };
+        let all = table.points.len() as i64;
+        let times = i64::from(times);
+        let rows = match direction {
+            Direction::Up => -times,
+            Direction::Down => times,
+            Direction::PageUp => -PAGE_ROWS * times,
+            Direction::PageDown => PAGE_ROWS * times,
+            Direction::Left | Direction::Right => {
+                return Err("Up and Down add up the table; . and , go by phase".to_owned());
+            }
+        };
+        let now = match self.view.sum_to {
+            Some(now) => (now as i64).min(all),
+            None if rows > 0 => 0,
+            None => all,
+        };
+        let next = now + rows;
+        let next = usize::try_from(next)
+            .ok()
+            .filter(|next| (1..=all).contains(&(*next as i64)));
+        Ok(Command::SumTo(next))
+    }
+}

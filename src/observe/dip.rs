@@ -1,0 +1,101 @@
+//! How the axle moves at first: it dips, and goes sideways.
+
+use crate::run::Simulation;
+use crate::scenario::Scenario;
+use std::sync::Arc;
+
+/// The most steps that are looked at.
+const MOST_STEPS: u64 = 4000;
+/// The most steps times points of the body.
+const MOST_COST: u64 = 2_000_000;
+/// Of an axle whose tilt has a smaller sine than this no side is down.
+const UPRIGHT: f64 = 1e-6;
+
+/// The first dip of a run: where the axle points after each step, as its top would draw it on the sphere about the pivot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dip {
+    /// How far the axle has gone sideways, the way in which the weight's torque points, and down, as arcs as long as the
+    /// traced point's distance from the pivot makes them, m; of each step from 0 on.
+    pub way_m: Vec<(f64, f64)>,
+    /// Whether the axle has come up again at its end; otherwise the run has not been further, or it is not looked further.
+    pub is_whole: bool,
+}
+
+impl Dip {
+    /// Of the run of `scenario` up to step `last`, and no further than the first dip: the same steps are taken again.
+    /// `None` where the axle is upright at the start: no side of it is down.
+    pub fn of(scenario: &Arc<Scenario>, last: u64) -> Option<Self> {
+        let mut run = Simulation::new(Arc::clone(scenario));
+        let (tilt_deg, azimuth_deg) = (run.now().tilt_deg(), run.now().azimuth().degrees());
+        let across = libm::sin(tilt_deg.to_radians());
+        if across < UPRIGHT {
+            return None;
+        }
+        let arm_m = scenario.arm_m();
+        let points = scenario.body.mechanics.points().len() as u64;
+        let last = last.min(MOST_STEPS).min(MOST_COST / points.max(1));
+        let mut way_m = vec![(0.0, 0.0)];
+        let mut turns = 0;
+        let mut is_falling = None;
+        while run.step_number() < last && turns < 2 {
+            let Ok(step) = run.step() else { break };
+            let turned = (step.azimuth().degrees() - azimuth_deg).to_radians();
+            let fallen = (step.tilt_deg() - tilt_deg).to_radians();
+            let now = (arm_m * across * turned, arm_m * fallen);
+            let (_, before) = way_m[way_m.len() - 1];
+            if now.1 != before {
+                let falls = now.1 > before;
+                turns += usize::from(is_falling.is_some_and(|fell: bool| fell != falls));
+                is_falling = Some(falls);
+            }
+            way_m.push(now);
+        }
+        Some(Self {
+            way_m,
+            is_whole: turns >= 2,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Document;
+
+    fn scenario(preset: &str) -> Arc<Scenario> {
+        let document = Document::open(preset).unwrap();
+        Arc::new(document.scenario().unwrap())
+    }
+
+    #[test]
+    fn a_released_top_dips_and_comes_up_to_its_side() {
+        // A nutation of the preset cusps takes 0.8225 s, and its tilt goes from 30 to 36.689 degrees.
+        let cusps = scenario("cusps");
+        let steps = (0.8225 / cusps.motion.time_step_s) as usize;
+        let dip = Dip::of(&cusps, 1_000_000).unwrap();
+        assert!(dip.is_whole);
+        assert!(
+            dip.way_m.len().abs_diff(steps) <= steps / 20 + 3,
+            "{}",
+            dip.way_m.len()
+        );
+        let deepest = dip.way_m.iter().map(|(_, down)| *down).fold(0.0, f64::max);
+        let arm = cusps.arm_m();
+        let expected = arm * 6.689_f64.to_radians().sin();
+        assert!(
+            (deepest / expected - 1.0).abs() < 0.15,
+            "{deepest} {expected}"
+        );
+        let (side, down) = dip.way_m[dip.way_m.len() - 1];
+        assert!(
+            side > deepest && down.abs() < 1e-2 * deepest,
+            "{side} {down}"
+        );
+    }
+
+    #[test]
+    fn it_goes_no_further_than_the_run_and_an_upright_axle_has_none() {
+        assert_eq!(Dip::of(&scenario("cusps"), 7).unwrap().way_m.len(), 8);
+        assert_eq!(Dip::of(&scenario("method-1"), 100), None);
+    }
+}

@@ -1,0 +1,331 @@
+//! One time step taken apart, a phase a page: what happens, the formula, the numbers of this step, what they change, and
+//! where that is to be seen. The numbers are those that made the step: nothing is computed here.
+
+mod numbers;
+mod page;
+mod table;
+mod why;
+mod words;
+
+use super::{PaneRow, Width, frame};
+use crate::lab::Lab;
+use crate::lab::action::{Action, Direction};
+use crate::lab::explained::Explained;
+use crate::lab::view::step::Page;
+use crate::lab::view::{Pane, View};
+use crate::physics::workings::{Phase, Quantity, Value};
+use crate::scenario::Scenario;
+use crate::text::number::shortest;
+use crate::text::wrap::{columns, wrapped};
+use crate::tui::keymap::{Binding, Key, Mode, row};
+use crate::tui::theme::Role;
+use numbers::Format;
+use page::{Line, Section};
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::widgets::Widget;
+use table::{TableView, is_summed};
+pub use words::{Words, of as words_of};
+
+/// From this height on all phases are listed above the page.
+const LISTED_FROM: u16 = 24;
+
+/// The rank of what stands aside while the rows of a table are added up.
+const ASIDE: u8 = 10;
+/// Points of a rim from this number on are called by their number alone, for which there is room.
+const SHORT: usize = 1000;
+
+/// Its row in the table of panes.
+pub const ROW: PaneRow = PaneRow {
+    id: Pane::STEP,
+    title: "step",
+    width: Width::Wide,
+    rank: 4,
+    least: (44, 0),
+    draw: |lab, area, buf| StepPane { lab }.render(area, buf),
+    keys: KEYS,
+};
+
+/// The keys that go through the step.
+#[rustfmt::skip]
+const KEYS: &[Binding] = &[
+    row(&[Mode::Lab], &[Key::Char('.')], Action::NextPhase, "next phase", "the next phase of the time step; after the last, the next time step"),
+    row(&[Mode::Lab], &[Key::Char(',')], Action::PhaseBack, "back", "the phase before; before the first, the time step before"),
+    row(&[Mode::Lab], &[Key::Char('y')], Action::Why, "why sideways", "why the axle goes sideways, not down; y shows the phases again"),
+    row(&[Mode::Lab], &[Key::Down, Key::Char('j')], Action::Move(Direction::Down), "add up", "add up the table point by point: one more"),
+    row(&[Mode::Lab], &[Key::Up, Key::Char('k')], Action::Move(Direction::Up), "", "one point fewer"),
+    row(&[Mode::Lab], &[Key::PageDown], Action::Move(Direction::PageDown), "", "ten points more"),
+    row(&[Mode::Lab], &[Key::PageUp], Action::Move(Direction::PageUp), "", "ten points fewer"),
+];
+
+/// The time step at which the run of a lab stands.
+pub struct StepPane<'a> {
+    /// The lab.
+    pub lab: &'a Lab,
+}
+
+impl Widget for StepPane<'_> {
+    fn render(self, area: Rect, buf: &mut Buffer) {
+        let view = self.lab.view();
+        let inside = frame(&self.title(), area, view.focus == ROW.id, &view.theme, buf);
+        if inside.is_empty() {
+            return;
+        }
+        match self.lab.player().explained() {
+            None => self.nothing_yet(inside, buf),
+            Some(_) if view.page == Page::Why => why::draw(self.lab, inside, buf),
+            Some(explained) => {
+                if let Some((phase, number, _)) = explained.phase(view.page) {
+                    let page = PhasePage {
+                        explained,
+                        phase,
+                        number,
+                        view,
+                        width: inside.width.into(),
+                    };
+                    let sections = page.sections(inside.height.into());
+                    page::draw(&sections, inside, &view.theme, buf);
+                }
+            }
+        }
+    }
+}
+
+impl StepPane<'_> {
+    fn title(&self) -> String {
+        let page = self.lab.view().page;
+        let Some(explained) = self.lab.player().explained() else {
+            return ROW.title.to_owned();
+        };
+        let step = explained.step;
+        match explained.phase(page) {
+            Some((phase, number, count)) => {
+                format!("step {step}: {number} of {count}, {}", phase.name)
+            }
+            None => format!("step {step}: why sideways, not down?"),
+        }
+    }
+
+    /// What is to be done where there is no step to take apart.
+    fn nothing_yet(&self, area: Rect, buf: &mut Buffer) {
+        let playback = self.lab.player().playback();
+        let texts: [&str; 2] = match playback.step_number() {
+            0 => [
+                "No time step has been taken yet.",
+                "Press . to take the first: it is then shown here phase by phase, each with its formula and its numbers.",
+            ],
+            _ => [
+                "The run goes on.",
+                "Press space to stop it: the time step taken last is then shown here phase by phase.",
+            ],
+        };
+        let sections = texts.map(|text| Section::text(0, text, area.width.into(), 0, Role::Text));
+        page::draw(&sections, area, &self.lab.view().theme, buf);
+    }
+}
+
+/// The page of one phase.
+struct PhasePage<'a> {
+    explained: &'a Explained,
+    phase: &'a Phase,
+    /// Its number, from 1.
+    number: usize,
+    view: &'a View,
+    width: usize,
+}
+
+impl PhasePage<'_> {
+    /// What stands on it, for `room` lines.
+    fn sections(&self, room: usize) -> Vec<Section> {
+        let words = words_of(self.phase.name);
+        let text = |rank, text: &str, role| Section::text(rank, text, self.width, 0, role);
+        let mut sections = Vec::new();
+        if room >= LISTED_FROM.into() {
+            sections.push(self.list());
+        }
+        sections.push(text(8, &self.part(), Role::Quiet));
+        sections.push(text(2, words.happens, Role::Text).apart());
+        sections.push(Section::text(1, self.phase.formula, self.width, 2, Role::Focus).apart());
+        sections.extend(self.quantities());
+        sections.push(self.told(4, "changes", words.changes).apart());
+        sections.push(self.told(6, "in 3-D", words.seen));
+        sections.retain(|section| !section.lines.is_empty());
+        page::fit(&mut sections, room);
+        self.fill_tables(&mut sections, room);
+        page::spread(&mut sections, room);
+        sections
+    }
+
+    /// The names of all phases, the present one marked.
+    fn list(&self) -> Section {
+        let mut lines = vec![Line::default()];
+        let mut at = 0;
+        for (index, phase) in self.explained.workings.phases().enumerate() {
+            let is_present = index + 1 == self.number;
+            let mark = if is_present { "►" } else { " " };
+            let text = format!("{mark}{} {}  ", index + 1, phase.name);
+            if at + columns(text.trim_end()) > self.width {
+                lines.push(Line::default());
+                at = 0;
+            }
+            let role = if is_present { Role::Focus } else { Role::Quiet };
+            let width = columns(&text);
+            if let Some(line) = lines.last_mut() {
+                line.pieces.push((at, text, role));
+            }
+            at += width;
+        }
+        Section {
+            rank: 9,
+            lines,
+            ..Section::default()
+        }
+    }
+
+    /// Where in time the phase is.
+    fn part(&self) -> String {
+        let (before, after) = &self.explained.states;
+        let time = |time_s: f64| crate::text::number::significant(time_s, 9);
+        let parts = &self.explained.workings.parts;
+        let mut phases = 0;
+        let part = parts.iter().position(|part| {
+            phases += part.phases.len();
+            phases >= self.number
+        });
+        let whole = format!(
+            "from t = {} s to {} s",
+            time(before.time_s),
+            time(after.time_s)
+        );
+        match part.filter(|_| parts.len() > 1) {
+            None => whole,
+            Some(part) => {
+                let length_s = shortest(crate::text::number::rounded(parts[part].length_s, 6));
+                format!(
+                    "{whole}, part {} of {}, which is {length_s} s long",
+                    part + 1,
+                    parts.len()
+                )
+            }
+        }
+    }
+
+    /// A line that says `text` of what `label` names.
+    fn told(&self, rank: u8, label: &str, text: &str) -> Section {
+        if text.is_empty() {
+            return Section::default();
+        }
+        let column = label.len() + 2;
+        let lines = wrapped(text, self.width.saturating_sub(column));
+        let mut section = Section {
+            rank,
+            lines: lines
+                .into_iter()
+                .map(|line| Line::of(column, line, Role::Text))
+                .collect(),
+            ..Section::default()
+        };
+        if let Some(first) = section.lines.first_mut() {
+            first.pieces.push((0, format!("{label}:"), Role::Quiet));
+        }
+        section
+    }
+
+    /// The numbers; tables as they are where there is least room.
+    fn quantities(&self) -> Vec<Section> {
+        let all = &self.phase.quantities;
+        let format = Format::of_vectors(self.width);
+        let adds_up = self.sum().is_some();
+        let is_vector =
+            |quantity: &&Quantity| matches!(quantity.value, Value::Vector(_) | Value::Matrix(_));
+        // While points are added up, what is made of all of them is less important.
+        let is_aside = |quantity: &Quantity| adds_up && is_made_of_sums(self.phase, quantity);
+        let heads = match all.iter().filter(is_vector).all(is_aside) {
+            true => ASIDE,
+            false => 5,
+        };
+        let mut sections = Vec::new();
+        let mut has_heads = false;
+        for (index, quantity) in all.iter().enumerate() {
+            let is_last = index + 1 == all.len();
+            if let Value::Table(table) = &quantity.value {
+                if !table.points.is_empty() {
+                    sections.push(Section {
+                        table: Some(index),
+                        lines: self.table(index, 0),
+                        ..Section::default().apart()
+                    });
+                }
+                continue;
+            }
+            if !has_heads && is_vector(&quantity) {
+                has_heads = true;
+                sections.push(numbers::heads(heads, format).apart());
+            }
+            sections.push(Section {
+                rank: match (is_last, quantity.symbol) {
+                    _ if is_aside(quantity) => ASIDE,
+                    (true, _) => 0,
+                    (_, "S") => 7,
+                    _ => 3,
+                },
+                lines: numbers::lines(quantity, format, is_last),
+                ..Section::default()
+            });
+        }
+        sections
+    }
+
+    /// How many rows are added up, and their sums.
+    fn sum(&self) -> Option<(usize, Vec<f64>)> {
+        let table = crate::lab::explained::table_of(self.phase)?;
+        let rows = self.view.sum_to?.min(table.points.len());
+        Some((rows, self.explained.sums(self.view.page, table, rows)?))
+    }
+
+    /// The table that is the quantity of this index, in `room` lines, or as many as it keeps where that is less.
+    fn table(&self, index: usize, room: usize) -> Vec<Line> {
+        let Value::Table(table) = &self.phase.quantities[index].value else {
+            return Vec::new();
+        };
+        let is_first = crate::lab::explained::table_of(self.phase)
+            .is_some_and(|first| std::ptr::eq(first, table));
+        let scenario = &self.explained.scenario;
+        let view = TableView {
+            table,
+            sum: self.sum().filter(|_| is_first),
+            name: &|point| name_of(scenario, point),
+            width: self.width,
+        };
+        view.lines(room.max(view.least()))
+    }
+
+    /// Gives the tables the lines that are left.
+    fn fill_tables(&self, sections: &mut [Section], room: usize) {
+        let mut left = room.saturating_sub(page::height(sections));
+        for section in sections {
+            if let Some(index) = section.table {
+                let had = section.lines.len();
+                section.lines = self.table(index, had + left);
+                left = left.saturating_sub(section.lines.len().saturating_sub(had));
+            }
+        }
+    }
+}
+
+/// Whether `quantity` of `phase` is made of the sum of the table's rows.
+fn is_made_of_sums(phase: &Phase, quantity: &Quantity) -> bool {
+    let table = crate::lab::explained::table_of(phase);
+    table.is_some_and(is_summed) && matches!(quantity.symbol, "S" | "I" | "Σ m X")
+}
+
+/// The name of the point of this index: of those of the rim their number on it.
+pub fn name_of(scenario: &Scenario, point: usize) -> String {
+    let body = &scenario.file.body;
+    let rim = body.rim.as_ref().map_or(0, |rim| rim.points);
+    match point.checked_sub(rim).and_then(|free| body.point.get(free)) {
+        Some(free) => free.name.clone(),
+        None if point < SHORT => format!("rim {point}"),
+        None => point.to_string(),
+    }
+}

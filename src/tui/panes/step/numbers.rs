@@ -1,0 +1,192 @@
+//! The numbers of a phase in columns: vectors and matrices of x, y and z, numbers by themselves, each with its unit.
+
+use super::page::{Line, Section};
+use crate::physics::workings::{Quantity, Value};
+use crate::text::number::{NONE, exponent, significant};
+use crate::text::wrap::columns;
+use crate::tui::theme::Role;
+use std::f64::consts::{PI, TAU};
+
+/// Columns of the symbols, and of the units.
+pub const SYMBOL: usize = 6;
+const UNIT: usize = 6;
+/// Columns of a number besides its digits: sign, point, a zero before it, and a space.
+const AROUND: usize = 4;
+/// Digits of a number, where there is room for so many.
+const DIGITS: std::ops::RangeInclusive<usize> = 3..=9;
+/// A component of which fewer digits than this would be seen is written with an exponent.
+const LEAST_SEEN: i32 = 3;
+
+const DIGITS_OF_TURNS: usize = 5;
+
+/// How numbers are written on a page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Format {
+    /// Columns of a number, with a space before it.
+    pub cell: usize,
+    /// Digits of the largest number of a vector, a matrix or a column.
+    pub digits: usize,
+}
+
+impl Format {
+    /// For `count` numbers side by side on `width` columns.
+    pub fn new(width: usize, count: usize) -> Self {
+        let cell = width / count.max(1);
+        let digits = cell
+            .saturating_sub(AROUND)
+            .clamp(*DIGITS.start(), *DIGITS.end());
+        Self {
+            cell: digits + AROUND,
+            digits,
+        }
+    }
+
+    /// For vectors between their symbols and their units on `width` columns.
+    pub fn of_vectors(width: usize) -> Self {
+        Self::new(width.saturating_sub(SYMBOL + UNIT), 3)
+    }
+
+    /// `numbers` with as many decimals as the largest needs, each as wide as a cell, the point in one column. A number
+    /// that is small beside it, but not zero, is written with an exponent: it shall not look like zero.
+    pub fn aligned(self, numbers: &[f64]) -> Vec<String> {
+        let sizes = numbers.iter().map(|number| number.abs());
+        let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+        numbers
+            .iter()
+            .map(|number| format!("{:>1$}", self.one(*number, largest), self.cell))
+            .collect()
+    }
+
+    /// `number` beside others of which `largest` is the largest.
+    fn one(self, number: f64, largest: f64) -> String {
+        if !number.is_finite() {
+            return NONE.to_owned();
+        }
+        if number == 0.0 {
+            return "0".to_owned();
+        }
+        let digits = self.digits as i32;
+        let power = libm::floor(libm::log10(largest)) as i32;
+        let wanted = digits - 1 - power;
+        let decimals = wanted.min(digits);
+        let seen = libm::floor(libm::log10(number.abs())) as i32 + decimals + 1;
+        let fits = (0..=digits + 1).contains(&wanted);
+        match fits && seen >= LEAST_SEEN {
+            true => format!("{number:.*}", decimals.unsigned_abs() as usize),
+            false => {
+                // As many digits as leave room for the exponent.
+                let text = exponent(number, 0);
+                let taken = columns(&text) + 2;
+                exponent(number, self.cell.saturating_sub(taken).min(self.digits - 1))
+            }
+        }
+    }
+}
+
+/// The lines of `quantity`, which is no table; `is_result` says whether the phase was about it.
+pub fn lines(quantity: &Quantity, format: Format, is_result: bool) -> Vec<Line> {
+    let role = match is_result {
+        true => Role::Heading,
+        false => Role::Text,
+    };
+    let rows: Vec<Vec<f64>> = match &quantity.value {
+        Value::Number(number) => vec![vec![*number]],
+        Value::Vector(vector) => vec![vector.iter().copied().collect()],
+        Value::Matrix(matrix) => matrix
+            .row_iter()
+            .map(|row| row.iter().copied().collect())
+            .collect(),
+        Value::Table(_) => return Vec::new(),
+    };
+    let across = rows.first().map_or(0, Vec::len);
+    let cells = match &quantity.value {
+        Value::Number(number) => {
+            let text = significant(*number, format.digits);
+            vec![format!("{text:>0$}", format.cell)]
+        }
+        _ => format.aligned(&rows.concat()),
+    };
+    let mut lines: Vec<Line> = cells
+        .chunks(across.max(1))
+        .map(|cells| Line::of(SYMBOL, cells.concat(), role))
+        .collect();
+    if let Some(first) = lines.first_mut() {
+        let unit = SYMBOL + across * format.cell + 1;
+        first.pieces.push((unit, unit_of(quantity), Role::Quiet));
+    }
+    let symbol = (0, quantity.symbol.to_owned(), Role::Focus);
+    match columns(quantity.symbol) < SYMBOL {
+        true => {
+            if let Some(first) = lines.first_mut() {
+                first.pieces.push(symbol);
+            }
+        }
+        false => lines.insert(
+            0,
+            Line {
+                pieces: vec![symbol],
+                ..Line::default()
+            },
+        ),
+    }
+    lines
+}
+
+/// The unit of `quantity`; after an angle of more than half a turn also how many turns it is.
+fn unit_of(quantity: &Quantity) -> String {
+    match quantity.value {
+        Value::Number(angle) if quantity.unit == "rad" && angle.abs() > PI => {
+            let turns = significant(angle / TAU, DIGITS_OF_TURNS);
+            format!("rad = {turns} turns")
+        }
+        _ => quantity.unit.to_owned(),
+    }
+}
+
+/// The heads of the columns of vectors and matrices.
+pub fn heads(rank: u8, format: Format) -> Section {
+    let heads = ["x", "y", "z"].map(|head| format!("{head:>0$}", format.cell));
+    Section::line(rank, Line::of(SYMBOL, heads.concat(), Role::Quiet))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_vector_has_its_points_in_one_column() {
+        let format = Format::of_vectors(42);
+        assert_eq!((format.cell, format.digits), (10, 6));
+        let shown = |numbers: &[f64]| format.aligned(numbers).concat();
+        assert_eq!(
+            shown(&[0.0, -707.106781, 3.5]),
+            "         0  -707.107     3.500"
+        );
+        assert_eq!(
+            shown(&[1e-14, 0.5, -0.25]),
+            " 1.000e-14  0.500000 -0.250000"
+        );
+        assert_eq!(
+            shown(&[1.5e9, -2e9, 0.001]),
+            " 1.50000e9 -2.0000e9 1.0000e-3"
+        );
+        assert_eq!(shown(&[f64::NAN]), "       n/a");
+        assert_eq!(shown(&[-0.0]), "         0");
+    }
+
+    #[test]
+    fn no_number_is_wider_than_its_cell() {
+        for width in [12, 30, 42, 60, 100] {
+            let format = Format::of_vectors(width);
+            for power in -320..308 {
+                for other in [0, -3, -8, 5] {
+                    let numbers = [-9.99999999_f64, 1.0, 5.5].map(|n| n * 10f64.powi(power));
+                    let numbers = [numbers[0], numbers[1], numbers[2] * 10f64.powi(other)];
+                    for text in format.aligned(&numbers) {
+                        assert_eq!(columns(&text), format.cell, "{text} of {numbers:?}");
+                    }
+                }
+            }
+        }
+    }
+}

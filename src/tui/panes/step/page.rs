@@ -1,0 +1,120 @@
+//! A page of text in sections, of which the least important are left out where the screen is too small for all.
+
+use super::super::write;
+use crate::lab::view::theme::Theme;
+use crate::text::wrap::wrapped;
+use crate::tui::theme::Role;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+/// A line: texts with the columns where they begin.
+#[derive(Clone, Debug, Default)]
+pub struct Line {
+    pub pieces: Vec<(usize, String, Role)>,
+    /// Whether it is marked as the one that was chosen.
+    pub is_chosen: bool,
+}
+
+/// Lines that stand together.
+#[derive(Clone, Debug, Default)]
+pub struct Section {
+    /// The section of the highest rank is left out first; those of rank 0 never are.
+    pub rank: u8,
+    /// Whether an empty line stands before it where there is room for all such lines.
+    pub is_apart: bool,
+    /// The index of the quantity that is the table of these lines.
+    pub table: Option<usize>,
+    pub lines: Vec<Line>,
+}
+
+impl Line {
+    /// A line of `text` at `column`.
+    pub fn of(column: usize, text: impl Into<String>, role: Role) -> Self {
+        Self::default().and(column, text, role)
+    }
+
+    /// The same with `text` at `column`.
+    pub fn and(mut self, column: usize, text: impl Into<String>, role: Role) -> Self {
+        self.pieces.push((column, text.into(), role));
+        self
+    }
+}
+
+impl Section {
+    /// `text` in as many lines of `width` columns as it takes; those after the first begin in the column `indent`.
+    pub fn text(rank: u8, text: &str, width: usize, indent: usize, role: Role) -> Self {
+        let lines = wrapped(text, width.saturating_sub(indent)).into_iter();
+        let column = |line: usize| if line == 0 { 0 } else { indent };
+        let lines = lines.enumerate();
+        Self {
+            rank,
+            lines: lines
+                .map(|(at, text)| Line::of(column(at), text, role))
+                .collect(),
+            ..Self::default()
+        }
+    }
+
+    /// A section of one line.
+    pub fn line(rank: u8, line: Line) -> Self {
+        Self {
+            rank,
+            lines: vec![line],
+            ..Self::default()
+        }
+    }
+
+    /// The same with an empty line before it where there is room.
+    pub fn apart(self) -> Self {
+        Self {
+            is_apart: true,
+            ..self
+        }
+    }
+}
+
+/// How many lines `sections` have.
+pub fn height(sections: &[Section]) -> usize {
+    sections.iter().map(|section| section.lines.len()).sum()
+}
+
+/// Leaves sections out, those of the highest rank first, until no more than `room` lines are left, or only those of rank 0.
+pub fn fit(sections: &mut Vec<Section>, room: usize) {
+    while height(sections) > room {
+        let ranks = sections.iter().map(|section| section.rank).enumerate();
+        match ranks.max_by_key(|&(_, rank)| rank) {
+            Some((index, 1..)) => drop(sections.remove(index)),
+            _ => return,
+        }
+    }
+}
+
+/// Puts an empty line before each section that wants one, if `room` holds all of them.
+pub fn spread(sections: &mut [Section], room: usize) {
+    let wanted = |section: &&mut Section| section.is_apart;
+    let count = sections.iter_mut().skip(1).filter(wanted).count();
+    if height(sections) + count <= room {
+        for section in sections.iter_mut().skip(1).filter(wanted) {
+            section.lines.insert(0, Line::default());
+        }
+    }
+}
+
+/// Draws `sections` one under the other on `area`.
+pub fn draw(sections: &[Section], area: Rect, theme: &Theme, buf: &mut Buffer) {
+    let lines = sections.iter().flat_map(|section| &section.lines);
+    for (line, y) in lines.zip(0..area.height) {
+        for (column, text, role) in &line.pieces {
+            let column = u16::try_from(*column).unwrap_or(u16::MAX);
+            write(area, (column, y), text, theme.style(*role), buf);
+        }
+        if line.is_chosen {
+            let place = Rect {
+                y: area.y + y,
+                height: 1,
+                ..area
+            };
+            buf.set_style(place, theme.style(Role::Selected));
+        }
+    }
+}

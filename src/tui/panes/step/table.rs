@@ -1,0 +1,242 @@
+//! A table of points: only the rows that have room are looked at, however many there are. Where a sum is asked for, it
+//! stands below the last row that is in it.
+
+use super::super::shortened;
+use super::numbers::{Format, SYMBOL};
+use super::page::Line;
+use crate::physics::workings::Table;
+use crate::text::number::significant;
+use crate::tui::theme::Role;
+use std::ops::Range;
+
+/// Columns of the points' names, with a space after them.
+const NAME: usize = 8;
+/// Columns of a mass between its point's name and coordinates, where these are all that has room.
+const MASS: usize = 5;
+const MASS_DIGITS: usize = 3;
+/// The fewest columns of a number that still says something.
+const LEAST_CELL: usize = 9;
+/// How many numbers stand side by side where there is no room for all.
+const FEW: usize = 3;
+/// Rows of a table that are kept where there is little room.
+const LEAST_ROWS: usize = 4;
+
+/// A table as it is drawn.
+pub struct TableView<'a> {
+    /// The table.
+    pub table: &'a Table,
+    /// How many of its rows are added up, and the sum of each column over them; `None`: no sum is asked for.
+    pub sum: Option<(usize, Vec<f64>)>,
+    /// The names of the body's points.
+    pub name: &'a dyn Fn(usize) -> String,
+    /// Columns of the screen.
+    pub width: usize,
+}
+
+impl TableView<'_> {
+    /// How many lines it keeps where there is little room.
+    pub fn least(&self) -> usize {
+        let groups = self.groups();
+        let rows = LEAST_ROWS.min(self.table.points.len()) * groups.len();
+        self.heads(&groups).len() + rows + self.sum_lines(&groups).len()
+    }
+
+    /// Its lines, at most `room` of them, of which the heads and a sum always are.
+    pub fn lines(&self, room: usize) -> Vec<Line> {
+        let groups = self.groups();
+        let sum = self.sum_lines(&groups);
+        let heads = self.heads(&groups);
+        let in_a_row = groups.len();
+        let rows = room.saturating_sub(heads.len() + sum.len()) / in_a_row;
+        let all = self.table.points.len();
+        let chosen = self.sum.as_ref().map(|(rows, _)| (*rows).min(all));
+        let (shown, left) = match chosen {
+            Some(last) => (last.saturating_sub(rows)..last.max(rows).min(all), 0),
+            None if all > rows => (0..rows.saturating_sub(1), all + 1 - rows.max(1)),
+            None => (0..all, 0),
+        };
+        let mut lines = heads;
+        let formats: Vec<_> = groups
+            .iter()
+            .map(|group| (group.clone(), self.format(group)))
+            .collect();
+        let texts: Vec<Vec<Vec<String>>> = formats
+            .iter()
+            .map(|(group, format)| self.texts(group, *format, &shown))
+            .collect();
+        for (at, row) in shown.enumerate() {
+            let is_chosen = chosen == Some(row + 1);
+            let role = match chosen {
+                Some(last) if row >= last => Role::Quiet,
+                _ => Role::Text,
+            };
+            let name = (self.name)(self.table.points[row]);
+            for (group, texts) in texts.iter().enumerate() {
+                let cells: String = texts.iter().map(|column| column[at].as_str()).collect();
+                let name = match group {
+                    0 => shortened(&name, NAME - 1).into_owned(),
+                    _ => String::new(),
+                };
+                let mut line = Line::of(0, name, role);
+                if self.has_mass_aside(&groups[group]) {
+                    let mass = significant(self.table.row(row)[0], MASS_DIGITS);
+                    line = line.and(NAME - 1, format!("{mass:>MASS$}"), role);
+                }
+                let column = self.begin(&groups[group]);
+                lines.push(Line {
+                    is_chosen: is_chosen && group == 0,
+                    ..line.and(column, cells, role)
+                });
+            }
+        }
+        if left > 0 {
+            let what = match summed(self.table).is_empty() {
+                true => "Down goes through them",
+                false => "Down adds them up one by one",
+            };
+            let text = format!("... {left} more: {what}");
+            lines.push(Line::of(0, text, Role::Quiet));
+        }
+        lines.extend(sum);
+        lines
+    }
+
+    /// The columns that stand side by side; where not all of them do, a row takes a line for each group.
+    fn groups(&self) -> Vec<Range<usize>> {
+        let count = self.table.columns.len();
+        let fits = |count: usize| NAME + count * LEAST_CELL <= self.width;
+        match (count, summed(self.table)) {
+            (count, _) if fits(count) => std::iter::once(0..count).collect(),
+            // The coordinates; their products stand with the sum.
+            (10, products) => std::iter::once(1..products.start).collect(),
+            _ => (0..count.div_ceil(FEW))
+                .map(|group| group * FEW..((group + 1) * FEW).min(count))
+                .collect(),
+        }
+    }
+
+    /// Whether the first column, of masses, stands by itself before those of `group`.
+    fn has_mass_aside(&self, group: &Range<usize>) -> bool {
+        group.start == 1 && self.table.columns.len() == 10
+    }
+
+    /// The column of the screen in which the numbers of `group` begin.
+    fn begin(&self, group: &Range<usize>) -> usize {
+        match self.has_mass_aside(group) {
+            true => NAME - 1 + MASS,
+            false => NAME,
+        }
+    }
+
+    fn format(&self, group: &Range<usize>) -> Format {
+        Format::new(self.width.saturating_sub(self.begin(group)), group.len())
+    }
+
+    /// The numbers of each column of `group` on the rows `shown`.
+    fn texts(
+        &self,
+        group: &Range<usize>,
+        format: Format,
+        shown: &Range<usize>,
+    ) -> Vec<Vec<String>> {
+        let column = |column: usize| {
+            let cells = shown.clone().map(|row| self.table.row(row)[column]);
+            format.aligned(&cells.collect::<Vec<_>>())
+        };
+        group.clone().map(column).collect()
+    }
+
+    /// The symbols over the columns of each group with their unit, or under them their units where these differ.
+    fn heads(&self, groups: &[Range<usize>]) -> Vec<Line> {
+        let mut lines = Vec::new();
+        for group in groups {
+            let format = self.format(group);
+            let columns = &self.table.columns[group.clone()];
+            let side_by_side = |texts: &mut dyn Iterator<Item = &'static str>| -> String {
+                texts
+                    .map(|text| format!("{text:>0$}", format.cell))
+                    .collect()
+            };
+            let symbols = side_by_side(&mut columns.iter().map(|(symbol, _)| *symbol));
+            let mut line = Line::of(self.begin(group), symbols, Role::Quiet);
+            if self.has_mass_aside(group) {
+                let mass = self.table.columns[0].1;
+                line = line.and(NAME - 1, format!("{mass:>MASS$}"), Role::Quiet);
+            }
+            let units = side_by_side(&mut columns.iter().map(|(_, unit)| *unit));
+            match columns.iter().all(|(_, unit)| *unit == columns[0].1) {
+                true => {
+                    let unit = format!("in {}", columns[0].1);
+                    lines.push(line.and(0, unit, Role::Quiet));
+                }
+                false => {
+                    lines.push(line);
+                    lines.push(Line::of(self.begin(group), units, Role::Quiet));
+                }
+            }
+        }
+        lines
+    }
+
+    /// What the chosen row adds, and the sum up to it.
+    fn sum_lines(&self, groups: &[Range<usize>]) -> Vec<Line> {
+        let columns = summed(self.table);
+        let Some((rows, sums)) = self.sum.as_ref().filter(|_| !columns.is_empty()) else {
+            return Vec::new();
+        };
+        let all = self.table.points.len();
+        let rows = (*rows).min(all);
+        let caption = match rows {
+            1 => format!("the first of {all} points gives"),
+            rows => format!("the first {rows} of {all} points add up to"),
+        };
+        let mut lines = vec![Line::of(0, caption, Role::Text)];
+        if let [group] = groups
+            && group.contains(&columns.start)
+        {
+            let format = self.format(group);
+            let blank = " ".repeat((columns.start - group.start) * format.cell);
+            let sums: String = sums[columns]
+                .iter()
+                .map(|sum| format.aligned(&[*sum]).concat())
+                .collect();
+            lines.push(Line::of(0, "sum", Role::Focus).and(NAME, blank + &sums, Role::Heading));
+            return lines;
+        }
+        let adds = self.table.row(rows.saturating_sub(1));
+        let format = Format::of_vectors(self.width);
+        for begin in columns.clone().step_by(FEW) {
+            let group = begin..(begin + FEW).min(columns.end);
+            let heads: String = self.table.columns[group.clone()]
+                .iter()
+                .map(|(symbol, _)| format!("{symbol:>0$}", format.cell))
+                .collect();
+            lines.push(Line::of(SYMBOL, heads, Role::Quiet));
+            let both: Vec<_> = group
+                .clone()
+                .map(|column| format.aligned(&[adds[column], sums[column]]))
+                .collect();
+            let unit = SYMBOL + group.len() * format.cell + 1;
+            for (at, name, role) in [(0, "adds", Role::Text), (1, "sum", Role::Heading)] {
+                let cells: String = both.iter().map(|pair| pair[at].as_str()).collect();
+                let line = Line::of(0, name, Role::Focus).and(SYMBOL, cells, role);
+                lines.push(line.and(unit, self.table.columns[begin].1, Role::Quiet));
+            }
+        }
+        lines
+    }
+}
+
+/// The columns of `table` whose sums mean something.
+fn summed(table: &Table) -> Range<usize> {
+    match table.columns.first() {
+        Some(("m", _)) if table.columns.len() == 10 => 4..10,
+        Some(("m x", _)) => 0..table.columns.len(),
+        _ => 0..0,
+    }
+}
+
+/// Whether rows of `table` can be added up.
+pub fn is_summed(table: &Table) -> bool {
+    !summed(table).is_empty()
+}

@@ -1,0 +1,568 @@
+//! The step pane: a time step phase by phase. Its numbers are the run's, and those that a hand computes.
+
+use crate::support::scenarios::{parse, preset};
+use crate::support::stage::{LARGE, SMALL, Stage};
+use gyrolab::export::{CsvWriter, stream};
+use gyrolab::lab::view::step::Page;
+use gyrolab::physics::scheme::SCHEMES;
+use gyrolab::physics::workings::{NAMES, Phase, Sums, Value};
+use gyrolab::run::Simulation;
+use gyrolab::scenario::Document;
+use gyrolab::tui::keymap::Key;
+use gyrolab::tui::screen;
+use ratatui::layout::Rect;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+type Vector = [f64; 3];
+
+fn cross(a: Vector, b: Vector) -> Vector {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+fn norm(a: Vector) -> f64 {
+    a.iter().map(|c| c * c).sum::<f64>().sqrt()
+}
+
+fn determinant(m: [Vector; 3]) -> f64 {
+    let [a, b, c] = cross(m[1], m[2]);
+    m[0][0] * a + m[0][1] * b + m[0][2] * c
+}
+
+/// One step of the report's method (its section 3) on method-2, in plain arithmetic: ten masses of 0.5 kg on a circle of
+/// 0.8 m, the axle's top at twice their height, all of it turned by 45 degrees about +x.
+struct ByHand {
+    inertia: [Vector; 3],
+    omega: Vector,
+    axis: Vector,
+    angle: f64,
+    rotation: [Vector; 3],
+    rim: Vec<Vector>,
+    top: Vector,
+    torque: Vector,
+    momentum: Vector,
+}
+
+impl ByHand {
+    fn step(dt: f64) -> Self {
+        let height = 0.8 / 2f64.sqrt();
+        let (sin, cos) = 45f64.to_radians().sin_cos();
+        let tilted = |[x, y, z]: Vector| [x, y * cos - z * sin, y * sin + z * cos];
+        let rim: Vec<_> = (0..10)
+            .map(|j| {
+                let (s, c) = (2.0 * std::f64::consts::PI * f64::from(j) / 10.0).sin_cos();
+                tilted([0.8 * c, 0.8 * s, height])
+            })
+            .collect();
+        let momentum = tilted([0.0, 0.0, 1000.0]);
+        // 1. I = sum m (|X|^2 E - X X^T)
+        let mut inertia = [[0.0; 3]; 3];
+        for at in &rim {
+            let square: f64 = at.iter().map(|c| c * c).sum();
+            for row in 0..3 {
+                for column in 0..3 {
+                    let unit = if row == column { square } else { 0.0 };
+                    inertia[row][column] += 0.5 * (unit - at[row] * at[column]);
+                }
+            }
+        }
+        // 2. Omega = I \ L, by Cramer's rule; I is its own transpose.
+        let replaced = |column: usize| {
+            let mut m = inertia;
+            m[column] = momentum;
+            determinant(m) / determinant(inertia)
+        };
+        let omega = [replaced(0), replaced(1), replaced(2)];
+        // 3. u, P and R
+        let axis = omega.map(|c| c / norm(omega));
+        let angle = norm(omega) * dt;
+        let [ux, uy, uz] = axis;
+        let crossed = [[0.0, -uz, uy], [uz, 0.0, -ux], [-uy, ux, 0.0]];
+        let mut rotation = [[0.0; 3]; 3];
+        for row in 0..3 {
+            for column in 0..3 {
+                let p = axis[row] * axis[column];
+                let unit = if row == column { 1.0 } else { 0.0 };
+                rotation[row][column] =
+                    p + angle.cos() * (unit - p) + angle.sin() * crossed[row][column];
+            }
+        }
+        // 4. X <- R X
+        let turned = |x: Vector| rotation.map(|row| row[0] * x[0] + row[1] * x[1] + row[2] * x[2]);
+        let rim: Vec<_> = rim.into_iter().map(turned).collect();
+        let top = turned(tilted([0.0, 0.0, 2.0 * height]));
+        // 5. L <- L + dt sum X x F, with the new positions
+        let mut torque = [0.0; 3];
+        for at in &rim {
+            let moment = cross(*at, [0.0, 0.0, -0.5 * 9.8]);
+            (0..3).for_each(|c| torque[c] += moment[c]);
+        }
+        let momentum = [0, 1, 2].map(|c| momentum[c] + dt * torque[c]);
+        Self {
+            inertia,
+            omega,
+            axis,
+            angle,
+            rotation,
+            rim,
+            top,
+            torque,
+            momentum,
+        }
+    }
+}
+
+/// The phases of the first step of method-2.
+fn first_step() -> Vec<Phase> {
+    let mut run = Simulation::new(Arc::new(preset("method-2", &[])));
+    run.keep_workings(true);
+    let workings = run.step().unwrap().workings().cloned().unwrap();
+    workings.phases().cloned().collect()
+}
+
+#[track_caller]
+fn near(shown: f64, by_hand: f64, largest: f64) {
+    assert!(
+        (shown - by_hand).abs() <= 1e-12 * largest,
+        "{shown} {by_hand}"
+    );
+}
+
+/// Every number of `phase` under `symbol`, row by row.
+fn numbers(phase: &Phase, symbol: &str) -> Vec<f64> {
+    match phase.value(symbol).unwrap() {
+        Value::Number(number) => vec![*number],
+        Value::Vector(vector) => vector.iter().copied().collect(),
+        Value::Matrix(matrix) => matrix.transpose().iter().copied().collect(),
+        Value::Table(table) => table.cells.clone(),
+    }
+}
+
+#[test]
+fn the_numbers_of_a_step_are_those_of_a_hand() {
+    let hand = ByHand::step(0.1);
+    let phases = first_step();
+    let compare = |phase: usize, symbol: &str, by_hand: &[f64]| {
+        let shown = numbers(&phases[phase], symbol);
+        assert_eq!(shown.len(), by_hand.len(), "{symbol}");
+        let largest = by_hand
+            .iter()
+            .fold(0.0_f64, |most, number| most.max(number.abs()));
+        for (shown, by_hand) in shown.iter().zip(by_hand) {
+            near(*shown, *by_hand, largest.max(1e-3));
+        }
+    };
+    compare(0, "I", &hand.inertia.concat());
+    compare(1, "Ω", &hand.omega);
+    compare(2, "u", &hand.axis);
+    compare(2, "angle", &[hand.angle]);
+    compare(3, "R", &hand.rotation.concat());
+    let moved: Vec<f64> = numbers(&phases[4], "X")
+        .chunks(6)
+        .take(10)
+        .flat_map(|row| row[3..].to_vec())
+        .collect();
+    for (shown, by_hand) in moved.iter().zip(hand.rim.concat()) {
+        near(*shown, by_hand, 1.0);
+    }
+    compare(5, "τ", &hand.torque);
+    compare(6, "dL", &hand.torque.map(|c| 0.1 * c));
+    compare(6, "new L", &hand.momentum);
+    // And the row of the CSV.
+    let scenario = Arc::new(preset("method-2", &["motion.steps=1"]));
+    let mut run = Simulation::new(Arc::clone(&scenario));
+    let mut csv = CsvWriter::new(Vec::new(), &scenario).unwrap();
+    let watch = |_: &stream::Progress| ControlFlow::Continue(());
+    stream::play(&mut run, 1, 1, Some(&mut csv), |_| (), watch).unwrap();
+    let text = String::from_utf8(csv.finish().unwrap()).unwrap();
+    let row: Vec<f64> = text
+        .lines()
+        .last()
+        .unwrap()
+        .split(',')
+        .map(|cell| cell.parse().unwrap())
+        .collect();
+    for (column, by_hand) in hand.top.iter().enumerate() {
+        near(row[2 + column], *by_hand, 1.0);
+    }
+    assert_eq!(row[5..8], numbers(&phases[6], "new L"));
+    let top = numbers(&phases[4], "X");
+    assert_eq!(row[2..5].len(), 3);
+    for (column, cell) in row[2..5].iter().enumerate() {
+        // The CSV's point is the orientation's, the scheme's own points differ by rounding.
+        near(top[11 * 6 + 3 + column], *cell, 1.0);
+    }
+}
+
+/// The numbers behind `symbol` in the picture of the pane.
+#[track_caller]
+fn printed(stage: &Stage, symbol: &str) -> Vec<String> {
+    let picture = stage.picture();
+    let start = format!("││{symbol} ");
+    let line = picture.lines().find_map(|line| line.split_once(&start));
+    let (_, rest) = line.unwrap_or_else(|| panic!("no {symbol} in\n{picture}"));
+    let words = rest.split_whitespace();
+    words
+        .filter(|word| word.parse::<f64>().is_ok())
+        .map(str::to_owned)
+        .collect()
+}
+
+#[test]
+fn the_numbers_printed_are_the_records() {
+    for size in [SMALL, LARGE] {
+        let mut stage = Stage::open("wobble-push", &[], size);
+        stage.commands("show = ['3d', 'step']\ngo_to = 12\nphase = 'new momentum'");
+        let sample = stage.lab.player().run().simulation().sample();
+        let shown = printed(&stage, "new L");
+        assert_eq!(shown.len(), 3);
+        for (shown, exact) in shown.iter().zip(sample.momentum.iter()) {
+            let decimals = shown.split_once('.').map_or(0, |(_, digits)| digits.len());
+            assert_eq!(*shown, format!("{exact:.decimals$}"));
+            assert!(decimals >= 3, "six digits of 707");
+        }
+        stage.commands("phase = 'new positions'\nsum_to = 12");
+        let shown: Vec<f64> = stage
+            .picture()
+            .lines()
+            .skip_while(|line| !line.contains("││top "))
+            .take(2)
+            .flat_map(|line| {
+                line.split("││")
+                    .nth(1)
+                    .unwrap()
+                    .split_whitespace()
+                    .filter_map(|word| word.parse().ok())
+                    .collect::<Vec<f64>>()
+            })
+            .collect();
+        let new = match size == LARGE {
+            true => shown[3..6].to_vec(),
+            false => shown[3..6].to_vec(),
+        };
+        for (shown, exact) in new.iter().zip(sample.position.iter()) {
+            assert!(
+                (shown - exact).abs() < 1e-4,
+                "{new:?} {:?}",
+                sample.position
+            );
+        }
+    }
+}
+
+#[test]
+fn all_rows_add_up_to_the_schemes_own_sums() {
+    let phases = first_step();
+    let Some(Value::Table(points)) = phases[0].value("X") else {
+        panic!("a table")
+    };
+    let sums = Sums::of(points).first(points, 14);
+    let s = numbers(&phases[0], "S");
+    // xx, yy, zz, xy, xz, yz
+    assert_eq!(sums[4..], [s[0], s[4], s[8], s[1], s[2], s[5]]);
+    let Some(Value::Table(points)) = phases[5].value("m X") else {
+        panic!("a table")
+    };
+    let sums = Sums::of(points).first(points, 14);
+    assert_eq!(sums, numbers(&phases[5], "Σ m X"));
+}
+
+/// Step and number of the phase that the pane is at, with how many there are.
+#[track_caller]
+fn place(stage: &Stage) -> (u64, usize, usize) {
+    let lab = &stage.lab;
+    let explained = lab.player().explained().expect("a step that is shown");
+    let (_, number, count) = explained.phase(lab.view().page).expect("a phase");
+    assert_eq!(explained.step, stage.step());
+    (explained.step, number, count)
+}
+
+#[test]
+fn v_shows_the_step_and_takes_it_away_again() {
+    for size in [SMALL, LARGE] {
+        let mut stage = Stage::open("method-2", &[], size);
+        stage.commands("pause = true");
+        let before = stage.picture();
+        stage.press("v");
+        assert_eq!(stage.focus(), "step");
+        stage
+            .shows("No time step has been taken yet")
+            .shows("┌ 3-D");
+        stage.press("v");
+        assert_eq!(stage.picture(), before);
+        // From a pane that fills the screen, too.
+        stage.press("dv");
+        assert_eq!(stage.focus(), "step");
+        stage.shows("┌ 3-D").press("f");
+        stage.shows_no("┌ 3-D").press("v");
+        assert_eq!(stage.picture(), before);
+    }
+}
+
+#[test]
+fn the_keys_go_by_phase_and_on_to_the_next_step() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.commands("pause = true").press("v,");
+    stage.shows("the run begins here");
+    stage.press(".");
+    assert_eq!(place(&stage), (1, 1, 7));
+    stage.press("...");
+    assert_eq!(place(&stage), (1, 4, 7));
+    stage.shows("step 1: 4 of 7, rotation").press(",");
+    assert_eq!(place(&stage), (1, 3, 7));
+    stage.press("....");
+    assert_eq!(place(&stage), (1, 7, 7));
+    stage.press(".");
+    assert_eq!(place(&stage), (2, 1, 7));
+    stage.press(",");
+    assert_eq!(place(&stage), (1, 7, 7));
+    stage.press("15.");
+    assert_eq!(place(&stage), (4, 1, 7), "7 + 15 = 3 * 7 + 1");
+    stage.press("8,");
+    assert_eq!(place(&stage), (2, 7, 7));
+    stage.press("99,");
+    assert_eq!(stage.step(), 0);
+    stage.shows("No time step has been taken yet");
+    // Without the focus they are time steps, as ever.
+    stage.press(".\t..");
+    assert_eq!(stage.step(), 3);
+    // While the run goes on they stop it first.
+    stage.press("\t ");
+    stage.wait(1.0).press(".");
+    assert!(!stage.lab.player().playback().is_running());
+    assert_eq!(place(&stage).1, 1);
+}
+
+#[test]
+fn the_points_add_up_one_by_one() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.commands("pause = true").press("v.");
+    stage.shows("10 more: Down adds them up");
+    stage.press("↓").shows("the first of 14 points gives");
+    stage
+        .press("↓↓")
+        .shows("the first 3 of 14 points add up to");
+    stage.press("↑").shows("the first 2 of 14");
+    stage.key(Key::PageDown);
+    stage.shows("the first 12 of 14").shows("top");
+    stage.press("↓↓").shows("the first 14 of 14");
+    stage.press("↓").shows_no("add up to");
+    stage.press("↑").shows("the first 13 of 14");
+    // Another phase begins with all of its rows again.
+    stage.press(".").shows_no("add up to");
+    stage.press("↓").shows("no table here");
+}
+
+#[test]
+fn commands_and_files_say_it_too() {
+    let mut stage = Stage::open(
+        "method-2",
+        &["view.show=['step', 'above']", "view.phase='torque'"],
+        SMALL,
+    );
+    stage.commands("pause = true\nstep = 3");
+    stage.shows("┌ from above").shows("step 3: 6 of 7, torque");
+    stage
+        .commands("phase = 2")
+        .shows("step 3: 2 of 7, angular velocity");
+    stage.commands("phase = 'last'").shows("step 3: 7 of 7");
+    stage
+        .commands("phase = 'why'")
+        .shows("why sideways, not down?");
+    stage
+        .commands("fill = 'step'\nphase = 1\nsum_to = 4")
+        .shows("the first 4 of 14");
+    stage.shows_no("from above");
+    stage.commands(
+        "set = { 'motion.scheme' = 'rk4' }\nstep = 1\nphase = 'slope 1: at the beginning'",
+    );
+    stage.shows("step 4: 1 of 6");
+    let mut stage = Stage::open(
+        "method-2",
+        &["view.fill='step'", "motion.scheme='rk4'"],
+        SMALL,
+    );
+    stage.commands("pause = true\nstep = 2");
+    stage.shows("step 2: 1 of 6");
+    let command = crate::support::desk::commands("phase = 'torque'");
+    let refused = stage.lab.carry_out(&command[0]).unwrap_err().to_string();
+    assert!(
+        refused.contains("rk4 has no phase torque: it has slope 1"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn why_comes_back_to_where_it_was_asked() {
+    let mut stage = Stage::open("cusps", &[], SMALL);
+    stage.commands("pause = true\nstep = 300").press("v...");
+    let place = stage.lab.view().page;
+    assert!(matches!(place, Page::Number(2..)));
+    stage.press("y").shows("not down?").shows("first dip");
+    stage.press("y");
+    assert_eq!(stage.lab.view().page, place);
+}
+
+#[test]
+fn why_speaks_of_the_forces_that_act() {
+    for (preset, set, words) in [
+        ("cusps", "motion.scheme='report'", "The forces pull down"),
+        ("torque-free", "motion.scheme='report'", "No torque acts"),
+        ("wobble-push", "push.0.force_N=[50, 0, 0]", "X × F square"),
+        (
+            "wobble-push",
+            "push.0.force_N=[0, 0, -5]",
+            "The forces pull down",
+        ),
+    ] {
+        let mut stage = Stage::open(preset, &[set], SMALL);
+        stage.commands("pause = true\nstep = 5\nshow = ['step', '3d']\nphase = 'why'");
+        stage.shows(words);
+    }
+}
+
+#[test]
+fn every_phase_of_every_scheme_has_a_name_in_the_list_and_a_page() {
+    for scheme in SCHEMES {
+        for preset in ["wobble-push", "cusps"] {
+            let set = format!("motion.scheme='{}'", scheme.name);
+            let mut stage = Stage::open(preset, &[&set], SMALL);
+            stage.commands("pause = true\nstep = 2\nshow = ['step', '3d']");
+            let workings = Arc::clone(&stage.lab.player().explained().unwrap().workings);
+            let count = workings.phases().count();
+            for (index, phase) in workings.phases().enumerate() {
+                assert!(NAMES.contains(&phase.name), "{}", phase.name);
+                stage.commands(&format!("phase = {}", index + 1));
+                let start = format!("step 2: {} of {count}, ", index + 1);
+                stage.shows(&start);
+            }
+        }
+    }
+}
+
+#[test]
+fn no_size_is_too_small() {
+    let mut stage = Stage::open("wobble-push", &[], SMALL);
+    stage.commands("pause = true\nstep = 5\nshow = ['step', '3d']\nsum_to = 5");
+    for page in ["1", "3", "5", "6", "'why'"] {
+        for sum in ["'all'", "9"] {
+            stage.commands(&format!("phase = {page}\nsum_to = {sum}"));
+            for (width, height) in [
+                (0, 0),
+                (1, 1),
+                (5, 3),
+                (12, 40),
+                (40, 12),
+                (52, 18),
+                (70, 24),
+                (300, 90),
+            ] {
+                stage.size = Rect::new(0, 0, width, height);
+                screen::fit(&mut stage.lab, stage.size);
+                stage.picture();
+            }
+        }
+    }
+}
+
+/// The numbers at 40x12 are those at 80x24: what does not fit is left out as a whole.
+#[test]
+fn a_small_screen_has_the_result() {
+    let size = Rect::new(0, 0, 40, 12);
+    let mut stage = Stage::open("method-2", &[], size);
+    stage.commands("pause = true\nstep = 1\nfill = 'step'\nphase = 7");
+    let picture = stage.picture();
+    assert!(
+        picture.contains("new L") && picture.contains("dL = dt τ"),
+        "{picture}"
+    );
+}
+
+#[test]
+fn a_large_body_is_shown_as_any_other() {
+    let scenario = parse(
+        "title = 'x'\n[body.rim]\npoints = 99999\nradius_m = 0.8\nheight_m = 0.5\npoint_mass_kg = 0.00005\n\
+         [[body.point]]\nname = 'top'\nat_m = [0, 0, 1]\n[start]\ntilt_deg = 30\nmomentum_Js = [0, 0, 100]\n\
+         [motion]\ntime_step_s = 0.01\nsteps = 9\n",
+    );
+    let view = crate::support::scenarios::view(
+        &scenario,
+        gyrolab::lab::view::markers::Marker::Braille,
+        true,
+    );
+    let mut lab = gyrolab::lab::Lab::new("x", Arc::new(scenario), view, false);
+    screen::fit(&mut lab, SMALL);
+    for command in crate::support::desk::commands("show = ['step', '3d']\nstep = 1\nsum_to = 60000")
+    {
+        lab.carry_out(&command).unwrap();
+    }
+    let picture = screen::text(&lab, true, (80, 24));
+    assert!(
+        picture.contains("the first 60000 of 100000 points"),
+        "{picture}"
+    );
+    assert!(picture.contains("││59999 "), "{picture}");
+}
+
+#[test]
+fn it_comes_back_with_the_session() {
+    use gyrolab::lab::Lab;
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.commands("pause = true\nstep = 4").press("v....");
+    stage.commands("phase = 'torque'\nsum_to = 3");
+    let content = stage.lab.content();
+    Lab::check(&content).unwrap();
+    let view = |scenario: &gyrolab::scenario::Scenario| {
+        crate::support::scenarios::view(
+            scenario,
+            gyrolab::lab::view::markers::Marker::Braille,
+            true,
+        )
+    };
+    let mut lab = Lab::resumed(&content, view).unwrap();
+    screen::fit(&mut lab, SMALL);
+    lab.take_changed();
+    let picture = screen::text(&lab, true, (80, 24));
+    assert!(
+        picture.contains("6 of 7, torque") && picture.contains("the first 3 of 14"),
+        "{picture}"
+    );
+    assert_eq!(lab.view().focus.id(), "step");
+}
+
+#[test]
+fn a_file_may_hold_the_page_of_the_step_pane() {
+    let text = "title = 'x'\n[view]\nphase = 3\nsum_to = 'all'\nshow = ['step', 'above']";
+    let document = Document::parse("x.toml", text).unwrap();
+    let told = document.scenario().unwrap_err().to_string();
+    assert!(!told.contains("view"), "{told}");
+}
+
+#[test]
+fn pictures_of_the_step() {
+    let pages = [
+        ("inertia", "phase = 1"),
+        ("inertia_adds_up", "phase = 1\nsum_to = 4"),
+        ("axis", "phase = 3"),
+        ("positions", "phase = 5\nsum_to = 3"),
+        ("torque", "phase = 6"),
+        ("momentum", "phase = 7"),
+    ];
+    for (size, name) in [(SMALL, "small"), (LARGE, "large")] {
+        let mut stage = Stage::open("wobble-push", &[], size);
+        stage.commands("pause = true\nstep = 12\nshow = ['3d', 'step']");
+        for (page, commands) in pages {
+            stage.commands(commands);
+            insta::assert_snapshot!(format!("{page}_{name}"), stage.picture());
+        }
+        let mut stage = Stage::open("cusps", &["motion.scheme='srkn11b'"], size);
+        stage.commands("pause = true\nstep = 900\nshow = ['3d', 'step']\nphase = 'why'");
+        insta::assert_snapshot!(format!("why_{name}"), stage.picture());
+        stage.commands("phase = 2");
+        insta::assert_snapshot!(format!("splitting_{name}"), stage.picture());
+    }
+}
