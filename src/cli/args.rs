@@ -70,7 +70,10 @@ pub(super) enum Command {
         shell: clap_complete::Shell,
     },
     /// Print the manual page
-    Man,
+    Man {
+        /// class: lessons in front of a class, sharing a screen, an account for a class [without it: the manual page]
+        topic: Option<String>,
+    },
 }
 
 /// What is run, and what is changed in it first.

@@ -197,7 +197,24 @@ fn settings_page() -> String {
 }
 
 /// The manual: the page of the program, then one section for each command.
-pub(super) fn man() -> anyhow::Result<ExitCode> {
+/// The topics of the manual: name, and text.
+const TOPICS: &[(&str, &str)] = &[("class", include_str!("topics/class.txt"))];
+
+/// The manual page, or what it says about `topic`.
+pub(super) fn man(topic: Option<&str>) -> anyhow::Result<ExitCode> {
+    let Some(topic) = topic else {
+        return man_page();
+    };
+    match TOPICS.iter().find(|(name, _)| *name == topic) {
+        Some((_, text)) => print(text),
+        None => {
+            let near = nearest(topic, TOPICS.iter().map(|(name, _)| *name));
+            bail!("no topic named {}: {near}", printable(topic))
+        }
+    }
+}
+
+fn man_page() -> anyhow::Result<ExitCode> {
     let mut command = Cli::command();
     command.build();
     let mut page = Vec::new();

@@ -59,7 +59,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Lesson(args) => lesson::lesson(&args),
         Command::Check { files } => info::check(&files),
         Command::Completions { shell } => info::completions(shell),
-        Command::Man => info::man(),
+        Command::Man { topic } => info::man(topic.as_deref()),
     }
 }
 

@@ -86,8 +86,7 @@ fn find(folder: &Path, name: &str) -> anyhow::Result<Option<String>> {
 
 fn lessons_of(session: &Listed) -> Option<KeptLessons> {
     let content = session.content.as_ref().ok()?;
-    let kept = Lab::summary(content).ok()?.lessons?;
-    KeptLessons::read(&kept).ok()
+    KeptLessons::read(&Lab::lessons_in(content)?).ok()
 }
 
 /// The lesson that is open in `session`, and where it stands.
@@ -110,27 +109,28 @@ fn live_line() -> ProgressBar {
     line
 }
 
-/// Prints the notes of each page as it is opened, until a signal comes or the session is gone.
+/// Prints the notes of each page as it is opened, until a signal comes.
 fn follow(folder: &Path, name: &str, line: &ProgressBar, interruption: &Interruption) {
-    let mut shown: Option<(String, usize)> = None;
+    let mut seen = SystemTime::UNIX_EPOCH;
+    let mut open: Option<(Lesson, Place)> = None;
     while !interruption.has_come() {
-        let sessions = session::list(folder).unwrap_or_default();
-        let session = sessions.iter().find(|session| session.name == name);
-        let open = session.and_then(open_in);
-        let Some((lesson_name, place)) = open else {
-            line.set_message("the lesson is closed; Ctrl-C ends this".to_owned());
-            thread::sleep(EVERY);
-            continue;
-        };
-        let page = (lesson_name.clone(), place.page);
-        let lesson = reading::open(&lesson_name).ok();
-        if let Some(lesson) = &lesson {
-            if shown.as_ref() != Some(&page) {
+        let saved = session::saved_at(folder, name);
+        if saved != seen {
+            seen = saved;
+            let now = session::look_at(folder, name).and_then(|session| open_in(&session));
+            let now = now.and_then(|(name, place)| Some((reading::open(&name).ok()?, place)));
+            let page = |open: &(Lesson, Place)| (open.0.name.clone(), open.1.page);
+            if let Some((lesson, place)) = &now
+                && now.as_ref().map(page) != open.as_ref().map(page)
+            {
                 tell(line, &told(lesson, place.page));
-                shown = Some(page);
             }
-            line.set_message(times(lesson, &place));
+            open = now;
         }
+        line.set_message(match &open {
+            Some((lesson, place)) => times(lesson, place),
+            None => "no lesson is open there; Ctrl-C ends this".to_owned(),
+        });
         thread::sleep(EVERY);
     }
 }

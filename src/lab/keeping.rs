@@ -103,7 +103,7 @@ struct KeptScript {
 }
 
 /// What a list of sessions shows of a session.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Summary {
     /// The name under which the user opened the scenario: a preset or a file.
     pub name: String,
@@ -111,8 +111,6 @@ pub struct Summary {
     pub title: String,
     /// The step of the run.
     pub step: u64,
-    /// What is kept of the lessons.
-    pub lessons: Option<toml::Table>,
 }
 
 /// Why the content of a session cannot be read.
@@ -151,8 +149,14 @@ impl Lab {
             name: present.name.clone(),
             title: present.journal.file().title,
             step: place.step,
-            lessons: place.lessons,
         })
+    }
+
+    /// What is kept of the lessons in `content`; `None` where nothing is, or it cannot be read.
+    pub fn lessons_in(content: &Content) -> Option<toml::Table> {
+        read::<KeptPlace>("the place in it", &content.place)
+            .ok()?
+            .lessons
     }
 
     /// What the session keeps of the lessons, for the room above that knows what it means.

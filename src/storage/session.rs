@@ -187,17 +187,33 @@ pub fn list(folder: &Path) -> io::Result<Vec<Listed>> {
     let mut ids = earlier(folder)?;
     ids.retain(|id| slot::check_own(folder, id).is_ok());
     let _lock = (!ids.is_empty()).then(|| slot::lock_folder(folder));
-    let listed = ids.into_iter().map(|name| {
-        let is_in_use = slot::is_in_use(folder, &name);
-        Listed {
-            written: slot::written_at(folder, &name),
-            is_in_use,
-            owner: slot::owner(folder, &name).filter(|_| is_in_use),
-            content: slot::stored(folder, &name).map(|stored| stored.content),
-            name,
-        }
-    });
+    let listed = ids.into_iter().map(|name| listed(folder, name));
     Ok(listed.collect())
+}
+
+/// The user's own session called `name` in `folder`, as [`list`] has it; `None` if there is none.
+pub fn look_at(folder: &Path, name: &str) -> Option<Listed> {
+    let mut ids = earlier(folder).ok()?.into_iter();
+    let id = ids.find(|id| id == name)?;
+    slot::check_own(folder, &id).ok()?;
+    let _lock = slot::lock_folder(folder);
+    Some(listed(folder, id))
+}
+
+/// When the session called `name` in `folder` was saved last; long ago if there is none.
+pub fn saved_at(folder: &Path, name: &str) -> SystemTime {
+    slot::written_at(folder, name)
+}
+
+fn listed(folder: &Path, name: String) -> Listed {
+    let is_in_use = slot::is_in_use(folder, &name);
+    Listed {
+        written: slot::written_at(folder, &name),
+        is_in_use,
+        owner: slot::owner(folder, &name).filter(|_| is_in_use),
+        content: slot::stored(folder, &name).map(|stored| stored.content),
+        name,
+    }
 }
 
 /// The IDs of all sessions in `folder`, the one saved last first; none where there is no such folder.

@@ -6,6 +6,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod classes;
 mod cli;
 mod commands;
 mod compare;

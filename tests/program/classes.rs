@@ -1,0 +1,124 @@
+//! Lessons in the program itself: what a session keeps of them, and what the teacher sees beside it.
+
+use crate::support::ground::{Ground, done, failed, stdout};
+use std::io::{BufRead, BufReader};
+use std::process::Stdio;
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
+
+const LESSON: &str = "is-the-wobble-real";
+const DOWN: &str = "\x1b[B";
+
+#[test]
+fn a_prediction_survives_a_kill_and_is_handed_in() {
+    let ground = Ground::new();
+    let mut lab = ground.open(&["lesson", LESSON, "--page", "2"]);
+    lab.wait_for("> [ ] stays as it is");
+    lab.press(&format!("{DOWN}{DOWN}\r"));
+    lab.wait_for("[x] is more than a hundred times");
+    // The session is saved within half a second, or a little later on a busy machine.
+    lab.wait_until("the saved prediction", |_| {
+        let output = ground.run(&["lesson", LESSON, "--answers"]);
+        stdout(&output).contains("**Predicted.** is more than a hundred times smaller")
+    });
+    lab.kill();
+    let mut lab = ground.open(&["--resume"]);
+    lab.wait_for("[x] is more than a hundred times");
+    lab.wait_for("2 of 10");
+    lab.press("n");
+    lab.wait_for("You said: it is more than a hundred times smaller.");
+    lab.quit();
+    let answers = done(ground.run(&["lesson", LESSON, "--answers", "-o", "mine.md"]));
+    assert!(stdout(&answers).is_empty());
+    let text = ground.read("mine.md");
+    assert!(text.contains("Taken as far as page 3 of 10."), "{text}");
+    assert!(
+        text.contains("**Came out.** The tilt now stays within 0.057 degrees"),
+        "{text}"
+    );
+}
+
+#[test]
+fn answers_without_a_session_are_refused() {
+    let ground = Ground::new();
+    let output = ground.run(&["lesson", LESSON, "--answers"]);
+    failed(
+        &output,
+        &[
+            "no session holds a prediction for is-the-wobble-real",
+            "gyrolab lesson",
+        ],
+    );
+    failed(
+        &ground.run(&["lesson", "--notes"]),
+        &["no lesson is open in any lab"],
+    );
+    failed(
+        &ground.run(&["lesson", "--notes", "nobody"]),
+        &["--notes nobody", "gyrolab sessions"],
+    );
+}
+
+#[test]
+fn notes_follow_the_lab_from_page_to_page() {
+    let ground = Ground::new();
+    let mut lab = ground.open(&["lesson", LESSON, "--page", "2"]);
+    lab.wait_for("2 of 10");
+    let (sender, lines) = mpsc::channel();
+    let mut notes = loop {
+        let mut notes = ground.command(&["lesson", "--notes"]);
+        let mut notes = notes
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        thread::sleep(Duration::from_millis(300));
+        // Until the lab is saved there is nothing to follow.
+        if notes.try_wait().unwrap().is_none() {
+            break notes;
+        }
+    };
+    let output = notes.stdout.take().unwrap();
+    thread::spawn(move || {
+        for line in BufReader::new(output).lines().map_while(Result::ok) {
+            if sender.send(line).is_err() {
+                return;
+            }
+        }
+    });
+    let wait_for = |words: &str| {
+        let patience = Duration::from_secs(60);
+        while let Ok(line) = lines.recv_timeout(patience) {
+            if line.contains(words) {
+                return;
+            }
+        }
+        panic!("no {words:?}");
+    };
+    wait_for("== 2 of 10 · Is the wobble real?");
+    wait_for("let two answers be defended");
+    wait_for("next: A finer step: run");
+    lab.press("nn");
+    wait_for("== 3 of 10");
+    notes.kill().unwrap();
+    notes.wait().unwrap();
+    lab.quit();
+}
+
+#[test]
+fn the_manual_has_a_page_for_the_class() {
+    let ground = Ground::new();
+    let class = done(ground.run(&["man", "class"]));
+    for words in [
+        "MaxStartups 60:30:120",
+        "PerSourcePenaltyExemptList",
+        "tmux attach -r",
+    ] {
+        assert!(stdout(&class).contains(words), "{words}");
+    }
+    failed(
+        &ground.run(&["man", "clas"]),
+        &["no topic named clas", "did you mean class?"],
+    );
+}
