@@ -276,7 +276,7 @@ mod tests {
                 words(" sleeps", Look::Plain),
             ],
         };
-        let lines = lines_of(&paragraph, 9, &THEME);
+        let lines = lines_of(&paragraph, 10, &THEME);
         let pieces: Vec<Vec<(&str, bool)>> = lines
             .iter()
             .map(|line| {
