@@ -483,6 +483,80 @@ fn a_small_screen_has_the_result() {
 }
 
 #[test]
+fn its_place_is_as_wide_as_its_numbers() {
+    use gyrolab::tui::layout::Layout;
+    let widths = |stage: &Stage| -> Vec<(&'static str, u16)> {
+        let panes = Layout::new(stage.size, stage.lab.view(), true).panes;
+        panes
+            .iter()
+            .map(|(pane, place)| (pane.id(), place.width))
+            .collect()
+    };
+    let mut stage = Stage::open("method-2", &["view.show=['above', '3d', 'step']"], SMALL);
+    stage.commands("pause = true");
+    // Beside the pane in focus, or the first.
+    assert_eq!(widths(&stage), [("above", 36), ("step", 44)]);
+    stage.press("\t\t");
+    assert_eq!(widths(&stage), [("3d", 36), ("step", 44)]);
+    for (width, panes) in [
+        (60, vec![("3d", 60)]),
+        (40, vec![("3d", 40)]),
+        (120, vec![("above", 36), ("3d", 36), ("step", 48)]),
+        (200, vec![("above", 36), ("3d", 36), ("step", 128)]),
+    ] {
+        stage.size.width = width;
+        assert_eq!(widths(&stage), panes);
+    }
+}
+
+#[test]
+fn a_phase_shows_its_own_arrows_in_space() {
+    let mut stage = Stage::open(
+        "falling",
+        &["motion.scheme='report'", "motion.time_step_s=0.2"],
+        LARGE,
+    );
+    stage.commands("pause = true\nstep = 2\nshow = ['3d', 'step']");
+    for (page, shown, hidden) in [
+        (
+            2,
+            vec!["Ω angular velocity", "L angular momentum"],
+            vec!["torque  ", "u axis"],
+        ),
+        (3, vec!["u axis of the turn"], vec!["L angular", "before"]),
+        (5, vec!["° dotted: before the step"], vec!["L angular"]),
+        (
+            6,
+            vec!["τ torque", "g weight"],
+            vec!["L angular", "Ω angular"],
+        ),
+        (
+            7,
+            vec!["L angular momentum", "dL along τ", "new L"],
+            vec!["Ω angular"],
+        ),
+    ] {
+        stage.commands(&format!("phase = {page}"));
+        let picture = stage.picture();
+        let scene: String = picture
+            .lines()
+            .map(|line| line.split("││").next().unwrap_or_default().to_owned() + "\n")
+            .collect();
+        for words in shown {
+            assert!(scene.contains(words), "{words}\n{picture}");
+        }
+        for words in hidden {
+            assert!(!scene.contains(words), "{words}\n{picture}");
+        }
+    }
+    // Without the step pane it shows all of them.
+    stage
+        .commands("show = ['3d', 'above']")
+        .shows("Ω angular velocity")
+        .shows("where L goes");
+}
+
+#[test]
 fn a_large_body_is_shown_as_any_other() {
     let scenario = parse(
         "title = 'x'\n[body.rim]\npoints = 99999\nradius_m = 0.8\nheight_m = 0.5\npoint_mass_kg = 0.00005\n\

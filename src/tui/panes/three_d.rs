@@ -100,7 +100,8 @@ impl Widget for ThreeD<'_> {
         labels.extend(subject.phase(&mut scene));
         labels.extend(subject.vectors(&mut scene));
         labels.extend(subject.pushes(&mut scene));
-        let masses = subject.masses(&scene);
+        let mut masses = subject.signs_of_phase(&scene);
+        masses.extend(subject.masses(&scene));
         let cells: Vec<_> = labels
             .iter()
             .map(|(name, role, at)| (*name, *role, scene.cell(at)))

@@ -44,12 +44,16 @@ impl Subject<'_> {
         if let Some(along) = self.direction("Ω", omega) {
             arrow("Ω", Role::Y, pivot, along * (OMEGA * reach));
         }
-        let momentum = direction(&state.momentum).map(|along| along * (MOMENTUM * reach));
+        let momentum = self.direction("L", direction(&state.momentum));
+        let momentum = momentum.map(|along| along * (MOMENTUM * reach));
         if let Some(torque) = self.direction("τ", self.torque) {
             arrow("τ", Role::X, pivot, torque * (TORQUE * reach));
             if let Some(momentum) = momentum {
                 arrow("dL", Role::X, momentum, torque * (CHANGE * reach));
             }
+        }
+        if let Some(new) = self.new_momentum() {
+            arrow("new L", Role::Z, pivot, new * (MOMENTUM * reach));
         }
         if let Some(momentum) = momentum {
             arrow("L", Role::Z, pivot, momentum);

@@ -13,6 +13,8 @@ use nalgebra::Vector3;
 
 /// How far the axis of a turn goes beyond the body on both sides, of its size.
 const AXIS: f64 = 1.0;
+/// Directions that differ by less, in radians, are drawn as one.
+const SEEN: f64 = 0.03;
 
 /// The phase that the step pane is at.
 #[derive(Clone, Copy)]
@@ -45,7 +47,7 @@ impl<'a> Shown<'a> {
             "inertia" => &[],
             "angular velocity" => &["Ω", "L"],
             "torque" => &["τ", "g", "F"],
-            "new momentum" | "kick" => &["L", "dL"],
+            "new momentum" | "kick" => &["L", "dL", "new L"],
             "free motion" => &["L"],
             name if name.starts_with("slope") => &["Ω", "τ"],
             _ => &["u"],
@@ -131,6 +133,19 @@ impl Subject<'_> {
         labels
     }
 
+    /// The masses where they were before the step.
+    pub(super) fn signs_of_phase(&self, scene: &Scene) -> Vec<(&'static str, Role, (u16, u16))> {
+        let shown = self.shown_phase.as_ref().filter(|shown| shown.has_before());
+        shown.map_or_else(Vec::new, |shown| self.masses_before(shown.before(), scene))
+    }
+
+    /// The direction of the new L, where the phase makes one that is seen to be another than the old.
+    pub(super) fn new_momentum(&self) -> Option<Vector3<f64>> {
+        let shown = self.shown_phase.as_ref().filter(|_| self.draws("dL"))?;
+        let (old, new) = (shown.direction("L")?, shown.direction("new L")?);
+        Some(new).filter(|new| (new - old).norm() > SEEN)
+    }
+
     /// What the letters of the phase mean.
     pub(super) fn phase_legend(&self) -> Option<Vec<([&'static str; 3], Role)>> {
         let shown = self.shown_phase.as_ref()?;
@@ -149,14 +164,12 @@ impl Subject<'_> {
         let has = |letter: &&&str| match **letter {
             "F" => !self.run.simulation().loads().pushes.is_empty(),
             "u" => shown.direction("u").is_some(),
+            "new L" => false, // the arrow says it
             _ => true,
         };
         let mut words: Vec<_> = shown.letters().iter().filter(has).map(word).collect();
         if shown.has_before() {
-            words.push((
-                ["dotted: before the step", "dotted: before", "..."],
-                Role::Quiet,
-            ));
+            words.push((["° dotted: before the step", "° before", "°"], Role::Quiet));
         }
         if shown.point.is_some() {
             words.push((["@ the point", "@ point", "@"], Role::Focus));

@@ -17,6 +17,9 @@ const NEAR: f64 = 0.33;
 /// Signs of masses stand no closer than this on the rim, cells.
 const CLOSEST: f64 = 2.0;
 
+/// A sign, its role and its cell.
+type Sign = (&'static str, Role, (u16, u16));
+
 impl Subject<'_> {
     /// The axle from the pivot to its top, hub, spokes and rim, and what joins free masses to the axle.
     pub(super) fn body(&self, scene: &mut Scene) {
@@ -79,22 +82,10 @@ impl Subject<'_> {
     }
 
     /// The masses, the nearest last: a larger sign is nearer.
-    pub(super) fn masses(&self, scene: &Scene) -> Vec<(&'static str, Role, (u16, u16))> {
-        let state = self.state;
+    pub(super) fn masses(&self, scene: &Scene) -> Vec<Sign> {
         let middle = scene.depth(&self.wheel());
-        let mut masses: Vec<Vector3<f64>> = Vec::new();
-        let mut radius = self.reach;
-        if let Some((rim, height, points)) = self.shape.rim {
-            radius = rim;
-            // From the side the rim is at least as long as twice its width.
-            let length = 4.0 * rim * scene.scale.1 / self.view.marker.dots().1 as f64;
-            if length * 2.0 >= CLOSEST * points as f64 {
-                masses
-                    .extend((0..points).map(|point| on_circle(state, rim, height, point, points)));
-            }
-        }
-        masses.extend(self.shape.free.iter().map(|at| state.orientation * at));
-        masses.retain(|at| scene.shows(at));
+        let radius = self.shape.rim.map_or(self.reach, |(radius, ..)| radius);
+        let mut masses = self.places_of_masses(self.state, scene);
         masses.sort_by(|a, b| scene.depth(b).total_cmp(&scene.depth(a)));
         let signs = masses.iter().map(|at| {
             let (sign, role) = match is_near(scene.depth(at), middle, radius) {
@@ -105,6 +96,29 @@ impl Subject<'_> {
             (sign, role, scene.cell(at))
         });
         signs.collect()
+    }
+
+    /// The masses where they were at `state`.
+    pub(super) fn masses_before(&self, state: &State, scene: &Scene) -> Vec<Sign> {
+        let masses = self.places_of_masses(state, scene);
+        let sign = |at: &Vector3<f64>| ("°", Role::Ghost, scene.cell(at));
+        masses.iter().map(sign).collect()
+    }
+
+    /// Where the masses are at `state`: those in the picture, and those of the rim only if their signs have room there.
+    fn places_of_masses(&self, state: &State, scene: &Scene) -> Vec<Vector3<f64>> {
+        let mut masses: Vec<Vector3<f64>> = Vec::new();
+        if let Some((rim, height, points)) = self.shape.rim {
+            // From the side the rim is at least as long as twice its width.
+            let length = 4.0 * rim * scene.scale.1 / self.view.marker.dots().1 as f64;
+            if length * 2.0 >= CLOSEST * points as f64 {
+                masses
+                    .extend((0..points).map(|point| on_circle(state, rim, height, point, points)));
+            }
+        }
+        masses.extend(self.shape.free.iter().map(|at| state.orientation * at));
+        masses.retain(|at| scene.shows(at));
+        masses
     }
 
     /// The middle of the wheel, or the axle's top where there is none.
