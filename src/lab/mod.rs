@@ -7,6 +7,7 @@
 //!
 //! - `carry_out`: each [`Command`](command::Command), and `editing` for those that change the run;
 //! - `steering`: each [`Action`](action::Action) of the user, which stands for commands or changes the interface;
+//! - [`explained`]: the time step that the step pane takes apart, and its keys;
 //! - `script`: the commands of a script, one after the other;
 //! - `keeping`: the content of a session.
 

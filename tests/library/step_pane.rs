@@ -502,7 +502,7 @@ fn its_place_is_as_wide_as_its_numbers() {
         (60, vec![("3d", 60)]),
         (40, vec![("3d", 40)]),
         (120, vec![("above", 36), ("3d", 36), ("step", 48)]),
-        (200, vec![("above", 36), ("3d", 36), ("step", 128)]),
+        (200, vec![("above", 38), ("3d", 38), ("step", 124)]),
     ] {
         stage.size.width = width;
         assert_eq!(widths(&stage), panes);
