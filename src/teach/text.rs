@@ -177,15 +177,14 @@ fn place(
     text: &str,
     find: &impl Fn(&str) -> Result<(), String>,
 ) -> Result<(Expression, Format, usize), (String, String)> {
-    let line = text.lines().next().unwrap_or_default();
-    // Where another place begins first, this one has lost its end.
-    let end = line.find(['{', '}']);
-    let Some(end) = end.filter(|&end| line[end..].starts_with('}')) else {
+    // Where the line ends or another place begins first, this one has lost its end.
+    let first = text.find(['\n', '{', '}']);
+    let Some(end) = first.filter(|&end| text[end..].starts_with('}')) else {
         let rule = "is not closed in its line by }: a brace that is meant as one is written \\{";
-        let begin = brief(&line[..end.unwrap_or(line.len())], 40);
+        let begin = brief(&text[..first.unwrap_or(text.len())], 40);
         return Err((format!("{{{}", begin.trim_end()), rule.to_owned()));
     };
-    let inside = &line[..end];
+    let inside = &text[..end];
     let told = |rule: String| (format!("{{{inside}}}"), rule);
     let (written, format) = match inside.split_once(':') {
         Some((written, format)) => (written, Format::read(format.trim()).map_err(told)?),
