@@ -10,6 +10,7 @@ use crate::scenario::presets::{self, PRESETS, Preset};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problems, Scenario};
 use crate::storage::settings;
+use crate::teach::shipped;
 use crate::text::number::shortest;
 use crate::text::printable::{Shown, printable, printable_lines};
 use anyhow::{Context, bail};
@@ -119,13 +120,19 @@ pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
     Ok(code)
 }
 
-/// What to do instead where `file`, which is not there, is the name of a preset.
+/// What to do instead where `file`, which is not there, is the name of a preset or a lesson.
 fn hint_of_preset(file: &Path) -> Option<String> {
-    let name = presets::find(file.to_str()?)?.name;
-    (!file.exists()).then(|| {
+    let name = file.to_str().filter(|_| !file.exists())?;
+    let preset = presets::find(name).map(|_| {
         format!(
             "gyrolab check takes files, and {name} is a preset: gyrolab run {name} runs it, gyrolab presets {name} prints it"
         )
+    });
+    preset.or_else(|| {
+        shipped::find(name)?;
+        Some(format!(
+            "gyrolab check takes files, and {name} is a shipped lesson, which is good: gyrolab lesson {name} opens it"
+        ))
     })
 }
 

@@ -246,6 +246,11 @@ pub(super) fn setup(
             continue;
         };
         match Command::new(name, &value) {
+            Err(_) if name == RUN_UNTIL && names_kept(&value, names) => {
+                let rule =
+                    "names a number that the lesson has kept: here stand numbers of the run alone";
+                content.refuse(Problem::with_value(name, &value, rule));
+            }
             Ok(command) => commands.push(Placed {
                 command,
                 line: Some(content.line_of(name)),
@@ -270,6 +275,12 @@ pub(super) fn setup(
         commands,
         keep,
     })
+}
+
+/// Whether the expression in `value` names a number that is kept.
+fn names_kept(value: &Value, names: &Names) -> bool {
+    let read = value.as_str().and_then(|text| Expression::parse(text).ok());
+    read.is_some_and(|expression| expression.names().any(|name| names.is_kept(name)))
 }
 
 fn keep(content: &mut Content, names: &mut Names, page: usize, known_from: usize) -> Vec<Keep> {

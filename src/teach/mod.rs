@@ -21,6 +21,7 @@ pub mod handout;
 pub mod lesson;
 pub mod markdown;
 pub mod names;
+mod opening;
 pub mod page;
 pub mod play;
 pub mod predictions;
@@ -34,7 +35,7 @@ pub mod watch;
 
 pub use class::Class;
 pub use lesson::{Answer, Asked, Block, Check, Compare, Keep, Lesson, Page, Predict, Setup, Shown};
-pub use names::{Kept, Names};
+pub use names::Kept;
 pub use play::Walk;
 pub use predictions::Predictions;
 pub use stage::Stage;

@@ -17,7 +17,7 @@ const MOST_KEPT: usize = 100;
 
 /// The names under which a lesson keeps numbers.
 #[derive(Clone, Debug, Default)]
-pub struct Names {
+pub(super) struct Names {
     /// Each with the first page on which it is known.
     kept: Vec<(String, usize)>,
     /// The first page on which a run is open, once a block that opens one was read.
@@ -51,7 +51,7 @@ impl Names {
         if readouts::find(name).is_some() || numbers::find(name).is_ok() {
             return Err("is a number of the run already: choose another name".to_owned());
         }
-        if self.kept.iter().any(|(known, _)| known == name) {
+        if self.is_kept(name) {
             return Err("is kept twice: choose another name".to_owned());
         }
         self.kept.push((name.to_owned(), from));
@@ -61,6 +61,11 @@ impl Names {
     /// Notes that from the page `page` on a run is open, if none was before.
     pub(super) fn open_from(&mut self, page: usize) {
         self.open_from.get_or_insert(page);
+    }
+
+    /// Whether a number is kept as `name` somewhere.
+    pub(super) fn is_kept(&self, name: &str) -> bool {
+        self.kept.iter().any(|(known, _)| known == name)
     }
 
     /// Notes that a block could not be read: from now on a name that is not known may be one of its own, and is taken.

@@ -5,99 +5,22 @@
 //! `text`, `sh`, `toml`, `csv`, `python`, `matlab` and no word at all are shown as they are, and another word is refused.
 //! An HTML comment on lines of its own is no part of the lesson.
 
+pub use super::opening::{LONGEST, full_name, open, read_file};
+
 use super::blocks::{self, Reader};
 use super::lesson::{Block, Compare, Lesson, Page, Setup, Shown};
 use super::names::Names;
-use super::shipped;
 use super::structure::{Element, Kind, LANGUAGES, Lines, WORDS, on_line, structure};
 use super::text::Text;
 use crate::scenario::problem::{Found, listed, nearest};
 use crate::scenario::{Problem, Problems};
 use crate::text::printable::is_steering;
 use std::collections::BTreeSet;
-use std::fs::File;
-use std::io::Read;
-use std::path::Path;
 
-/// The longest file that is read as a lesson, bytes.
-pub const LONGEST: u64 = 1 << 20;
 /// The most lines of one.
 const MOST_LINES: usize = 20_000;
 /// The most blocks of one, pages counted.
 const MOST_BLOCKS: usize = 1000;
-
-/// Opens what NAME names: a shipped lesson, or else a file: one whose name holds a `/` or ends in `.md`.
-///
-/// # Errors
-/// When there is no such lesson, or everything that is wrong with it.
-pub fn open(name: &str) -> Result<Lesson, Problems> {
-    if name.contains('/') || name.ends_with(".md") {
-        return read_file(Path::new(name));
-    }
-    match shipped::find(name) {
-        Some(lesson) => {
-            let origin = format!("presets/lessons/{name}.md");
-            let read = read(&origin, lesson.text)?;
-            let name = name.to_owned();
-            Ok(Lesson { name, ..read })
-        }
-        None => {
-            let near = match shipped::LESSONS {
-                [] => "there is none".to_owned(),
-                lessons => nearest(name, lessons.iter().map(|lesson| lesson.name)),
-            };
-            let rule =
-                format!("no lesson of that name: {near} (a file's name holds a / or ends in .md)");
-            Err(Problems::one(name, Problem::at("", rule)))
-        }
-    }
-}
-
-/// The name by which a session keeps the lesson that NAME names: that of a shipped lesson, or the full path of its file.
-pub fn full_name(name: &str) -> String {
-    let is_file = name.contains('/') || name.ends_with(".md");
-    let path = is_file.then(|| std::path::absolute(name).ok()).flatten();
-    path.map_or_else(|| name.to_owned(), |path| path.display().to_string())
-}
-
-/// Reads the lesson in the file at `path`.
-///
-/// # Errors
-/// When it cannot be read, is longer than [`LONGEST`], or everything that is wrong with it.
-pub fn read_file(path: &Path) -> Result<Lesson, Problems> {
-    let origin = path.display().to_string();
-    match text_of(path) {
-        Ok(text) => read(&origin, &text),
-        Err(problem) => Err(Problems::one(origin, problem)),
-    }
-}
-
-fn text_of(path: &Path) -> Result<String, Problem> {
-    let whole = |rule: String| Problem::at("", rule);
-    let cannot = |error: std::io::Error| whole(format!("cannot be read: {error}"));
-    if path.is_dir() {
-        return Err(whole("is a folder: name a file in it".to_owned()));
-    }
-    let file = File::open(path).map_err(cannot)?;
-    let length = file.metadata().map_or(0, |file| file.len());
-    let mut bytes = Vec::new();
-    if length <= LONGEST {
-        let mut start = file.take(LONGEST + 1);
-        start.read_to_end(&mut bytes).map_err(cannot)?;
-    }
-    let length = length.max(bytes.len() as u64);
-    if length > LONGEST {
-        return Err(whole(format!(
-            "is {length} bytes long: a lesson has at most 1 MiB ({LONGEST} bytes)"
-        )));
-    }
-    String::from_utf8(bytes).map_err(|error| {
-        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let line = good.iter().filter(|&&byte| byte == b'\n').count() + 1;
-        let rule = "is not text in UTF-8: save the file in that encoding";
-        on_line(line, Problem::at("", rule))
-    })
-}
 
 /// Takes `text` as the lesson that the file `origin` holds.
 ///

@@ -233,6 +233,12 @@ fn what_is_broken_is_told_with_its_line_and_the_nearest_right_name() {
             "column 1: there is no number named t_ss: did you mean t_s?",
         ),
         (
+            "run_until = \"t_s >= 60\"",
+            "run_until = \"t_s >= coarse\"",
+            at("run_until = \"t_s >= 60\""),
+            "lab.run_until (\"t_s >= coarse\") names a number that the lesson has kept",
+        ),
+        (
             "{ \"motion.time_step_s\" = 0.01 }",
             "{ \"motion.time_step\" = 0.01 }",
             at("run_until = \"t_s >= 60\"") - 1,
@@ -739,6 +745,24 @@ fn start_and_time_step_set_together_hold_the_seconds_too() {
     assert_eq!(desk.lab.player().playback().end_s(), 4.0);
     desk.commands("undo = 1");
     assert_eq!(desk.lab.player().playback().end_s(), end_s);
+}
+
+#[test]
+fn a_file_that_a_lesson_opens_is_looked_for_beside_the_lesson() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = preset("cusps", &["title=Mine"]).file;
+    let scenario = toml::to_string(&scenario).unwrap();
+    fs::write(folder.path().join("mine.toml"), scenario).unwrap();
+    let path = folder.path().join("a.md");
+    let pages = "# A\n\n## B\n\n```lab\nopen = \"mine.toml\"\n```\n\n## C\n\n```lab\nopen = \"cusps\"\n```\n";
+    fs::write(&path, pages).unwrap();
+    let lesson = reading::read_file(&path).unwrap();
+    let mut walk = Walk::new(&lesson, lab());
+    for (page, title) in lesson.pages.iter().zip(["Mine", "Cusps"]) {
+        walk.enter(page, &mut on)
+            .unwrap_or_else(|problem| panic!("{problem}"));
+        assert_eq!(walk.lab().player().run().scenario().file.title, title);
+    }
 }
 
 /// The lessons that are shipped, the template, and [`WHOLE`].

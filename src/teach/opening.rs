@@ -1,0 +1,106 @@
+//! Opening a lesson: a shipped one, or a file.
+
+use super::lesson::{Block, Lesson};
+use super::reading::read;
+use super::shipped;
+use super::structure::on_line;
+use crate::lab::command::Command;
+use crate::scenario::problem::nearest;
+use crate::scenario::{Problem, Problems, presets};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// The longest file that is read as a lesson, bytes.
+pub const LONGEST: u64 = 1 << 20;
+
+/// Opens what NAME names: a shipped lesson, or else a file: one whose name holds a `/` or ends in `.md`.
+///
+/// # Errors
+/// When there is no such lesson, or everything that is wrong with it.
+pub fn open(name: &str) -> Result<Lesson, Problems> {
+    if name.contains('/') || name.ends_with(".md") {
+        return read_file(Path::new(name));
+    }
+    match shipped::find(name) {
+        Some(lesson) => {
+            let origin = format!("presets/lessons/{name}.md");
+            let read = read(&origin, lesson.text)?;
+            let name = name.to_owned();
+            Ok(Lesson { name, ..read })
+        }
+        None => {
+            let near = match shipped::LESSONS {
+                [] => "there is none".to_owned(),
+                lessons => nearest(name, lessons.iter().map(|lesson| lesson.name)),
+            };
+            let rule =
+                format!("no lesson of that name: {near} (a file's name holds a / or ends in .md)");
+            Err(Problems::one(name, Problem::at("", rule)))
+        }
+    }
+}
+
+/// The name by which a session keeps the lesson that NAME names: that of a shipped lesson, or the full path of its file.
+pub fn full_name(name: &str) -> String {
+    let is_file = name.contains('/') || name.ends_with(".md");
+    let path = is_file.then(|| std::path::absolute(name).ok()).flatten();
+    path.map_or_else(|| name.to_owned(), |path| path.display().to_string())
+}
+
+/// Reads the lesson in the file at `path`. The files that it opens are looked for in its folder.
+///
+/// # Errors
+/// When it cannot be read, is longer than [`LONGEST`], or everything that is wrong with it.
+pub fn read_file(path: &Path) -> Result<Lesson, Problems> {
+    let origin = path.display().to_string();
+    let text = text_of(path).map_err(|problem| Problems::one(origin.clone(), problem))?;
+    let mut lesson = read(&origin, &text)?;
+    if let Some(folder) = path.parent().filter(|folder| *folder != Path::new("")) {
+        look_in(folder, &mut lesson);
+    }
+    Ok(lesson)
+}
+
+/// Makes the files that `lesson` opens files in `folder`, where they are not named from the root.
+fn look_in(folder: &Path, lesson: &mut Lesson) {
+    let blocks = lesson.pages.iter_mut().flat_map(|page| &mut page.blocks);
+    let setups = blocks.filter_map(|block| match block {
+        Block::Lab(setup) | Block::Task(setup) => Some(setup),
+        _ => None,
+    });
+    for placed in setups.flat_map(|setup| &mut setup.commands) {
+        if let Command::Open(name) = &mut placed.command
+            && presets::find(name).is_none()
+        {
+            *name = folder.join(&*name).display().to_string();
+        }
+    }
+}
+
+fn text_of(path: &Path) -> Result<String, Problem> {
+    let whole = |rule: String| Problem::at("", rule);
+    let cannot = |error: std::io::Error| whole(format!("cannot be read: {error}"));
+    if path.is_dir() {
+        return Err(whole("is a folder: name a file in it".to_owned()));
+    }
+    let file = File::open(path).map_err(cannot)?;
+    let length = file.metadata().map_or(0, |file| file.len());
+    let mut bytes = Vec::new();
+    if length <= LONGEST {
+        let mut start = file.take(LONGEST + 1);
+        start.read_to_end(&mut bytes).map_err(cannot)?;
+    }
+    let length = length.max(bytes.len() as u64);
+    if length > LONGEST {
+        return Err(whole(format!(
+            "is {length} bytes long: a lesson has at most 1 MiB ({LONGEST} bytes)"
+        )));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = good.iter().filter(|&&byte| byte == b'\n').count() + 1;
+        let rule = "is not text in UTF-8: save the file in that encoding";
+        on_line(line, Problem::at("", rule))
+    })
+}
