@@ -190,6 +190,10 @@ impl Lab {
                 self.view.fill(*pane);
                 Ok(Done::SILENT)
             }
+            Command::PointAt(pane) => {
+                self.view.pointed_at = *pane;
+                Ok(Done::SILENT)
+            }
             Command::Phase(page) => self.show_page(*page),
             Command::SumTo(rows) => {
                 self.view.sum_to = *rows;

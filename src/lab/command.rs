@@ -117,6 +117,8 @@ pub enum Command {
     Phase(Page),
     /// How many rows of a table the step pane adds up; `None`: all.
     SumTo(Option<usize>),
+    /// The pane that is pointed at, or none.
+    PointAt(Option<Pane>),
     /// Whether the screen is bare.
     Bare(bool),
     /// The direction from which the 3-D view is seen.

@@ -157,6 +157,7 @@ fn put_back(lab: &Lab) -> Vec<Command> {
     let all = [
         (view.filled, Command::Fill(None)),
         (view.bare, Command::Bare(false)),
+        (view.pointed_at.is_some(), Command::PointAt(None)),
         (
             view.camera != Camera::default(),
             Command::Camera(Camera::default()),

@@ -14,8 +14,9 @@ use crate::lab::view::{Pane, Part};
 use crate::tui::keymap::Mode;
 use crate::tui::layout::Layout;
 use crate::tui::markers;
+use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Margin, Rect};
 use ratatui::widgets::Widget;
 
 /// Fits `lab` to a screen of this size; all of it is to be drawn again.
@@ -45,6 +46,9 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     let layout = Layout::new(area, lab.view(), keys);
     for &(pane, place) in &layout.panes {
         draw_pane(lab, pane, place, buf);
+        if lab.view().pointed_at == Some(pane) {
+            point_at(lab, place, buf);
+        }
     }
     chrome::title(lab, layout.title, buf);
     timeline::draw(lab, layout.timeline, buf);
@@ -58,6 +62,27 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     draw_on_top(lab, body(&layout), buf);
     if lab.view().marker == Marker::Ascii {
         to_ascii(area, buf);
+    }
+}
+
+/// Makes the frame on `area` heavy.
+fn point_at(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let style = lab.view().theme.style(Role::Push);
+    let inside = area.inner(Margin::new(1, 1));
+    for position in area.positions().filter(|at| !inside.contains(*at)) {
+        let Some(cell) = buf.cell_mut(position) else {
+            continue;
+        };
+        let heavy = match cell.symbol() {
+            "─" => "━",
+            "│" => "┃",
+            "┌" => "┏",
+            "┐" => "┓",
+            "└" => "┗",
+            "┘" => "┛",
+            _ => continue,
+        };
+        cell.set_symbol(heavy).set_style(style);
     }
 }
 

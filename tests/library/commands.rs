@@ -156,6 +156,7 @@ fn a_command() -> impl Strategy<Value = Command> {
         prop::collection::vec(pane(), 0..4).prop_map(Command::Show),
         prop::collection::vec(part, 0..4).prop_map(Command::Hide),
         prop::option::of(pane()).prop_map(Command::Fill),
+        prop::option::of(pane()).prop_map(Command::PointAt),
         a_page().prop_map(Command::Phase),
         prop::option::of(1..100_000usize).prop_map(Command::SumTo),
         (a_number(), -90.0..90.0)
@@ -659,6 +660,22 @@ fn shown_panes_share_the_screen_at_every_width() {
         picture(&desk, (80, 24)),
         picture(&opened_with(&[]), (80, 24))
     );
+}
+
+#[test]
+fn a_pane_is_pointed_at_by_a_heavy_frame() {
+    let mut desk = opened_with(&[]);
+    assert!(!picture(&desk, (80, 24)).contains('┏'));
+    desk.commands("point_at = 'above'");
+    let shown = picture(&desk, (80, 24));
+    let corner = shown.lines().nth(1).and_then(|line| line.find('┏'));
+    let light = shown.lines().nth(1).and_then(|line| line.find('┌'));
+    assert!(
+        corner > light,
+        "the traces, at the left, are not pointed at:\n{shown}"
+    );
+    desk.commands("point_at = 'none'");
+    assert!(!picture(&desk, (80, 24)).contains('┏'));
 }
 
 #[test]

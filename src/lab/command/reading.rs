@@ -458,6 +458,11 @@ pub(super) fn fill(value: &Value) -> Read {
     Ok(Command::Fill(Pane::named(id)))
 }
 
+pub(super) fn point_at(value: &Value) -> Read {
+    let id = text_in(of_view("fill", value)?); // the same words
+    Ok(Command::PointAt(Pane::named(id)))
+}
+
 pub(super) fn phase(value: &Value) -> Read {
     let choice = choice_in(of_view("phase", value)?);
     Ok(Command::Phase(Page::of(&choice).unwrap_or_default()))

@@ -3,8 +3,8 @@
 use super::Command;
 use super::reading::{
     Read, bare, camera, count, cursor, detail, exact, export, fill, go_to, hide, look_at, magnify,
-    next, next_push, nudge, open, phase, pin, push, run_until, save, set, show, since, speed, step,
-    sum_to, told, wait, window, zoom,
+    next, next_push, nudge, open, phase, pin, point_at, push, run_until, save, set, show, since,
+    speed, step, sum_to, told, wait, window, zoom,
 };
 use crate::scenario::Problem;
 use toml::Value;
@@ -78,6 +78,7 @@ pub static COMMANDS: &[Row] = &[
     row("fill", "\"above\"", "the pane that fills the screen, or \"none\"", fill),
     row("phase", "3, \"torque\", \"last\" or \"why\"", "the phase of the time step that the pane step shows; why: why sideways, not down?", phase),
     row("sum_to", "4, or \"all\"", "how many rows of a phase's table the pane step adds up", sum_to),
+    row("point_at", "\"above\"", "the pane that is pointed at, by a heavy frame, or \"none\"", point_at),
     row("bare", "true or false", "whether the screen is bare: two panes, or one, with title and time, and nothing else", bare),
     row("camera", "{ yaw_deg = 30, pitch_deg = 20 }", "from where the 3-D view is seen", camera),
     row("zoom", "{ above = 4, 3d = 2 }", "how much larger than the whole the path from above and the 3-D view are shown", zoom),

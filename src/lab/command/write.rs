@@ -68,6 +68,7 @@ pub(super) fn written(command: &Command) -> (&'static str, Value) {
         Command::Show(panes) => ("show", words(panes.iter().map(|pane| pane.id()))),
         Command::Hide(parts) => ("hide", words(parts.iter().map(|part| part.id()))),
         Command::Fill(pane) => ("fill", pane.map_or("none", Pane::id).into()),
+        Command::PointAt(pane) => ("point_at", pane.map_or("none", Pane::id).into()),
         Command::Phase(page) => (
             "phase",
             match page.choice() {

@@ -139,6 +139,8 @@ pub struct View {
     pub next: Option<String>,
     /// Whether the screen is bare: few panes, and nothing around them but title and time.
     pub bare: bool,
+    /// The pane that is pointed at.
+    pub pointed_at: Option<Pane>,
     /// The text beside the panes.
     pub sheet: Option<Arc<Sheet>>,
     /// The first row of it that is shown; `None`: as its paragraph that is to be seen wants it.
@@ -174,6 +176,7 @@ impl View {
             look_at: None,
             next: None,
             bare: false,
+            pointed_at: None,
             sheet: None,
             sheet_scrolled: None,
             mouse: true,
