@@ -408,6 +408,17 @@ fn why_comes_back_to_where_it_was_asked() {
 }
 
 #[test]
+fn a_dip_of_rounding_is_none() {
+    let mut stage = Stage::open("cusps", &["motion.scheme='report'"], SMALL);
+    stage.commands("pause = true\nstep = 1\nshow = ['step', '3d']\nphase = 'why'");
+    stage.shows("it has not moved").commands("step = 200");
+    stage
+        .shows_no("it has not moved")
+        .shows(" m ")
+        .shows("so far");
+}
+
+#[test]
 fn why_speaks_of_the_forces_that_act() {
     for (preset, set, words) in [
         ("cusps", "motion.scheme='report'", "The forces pull down"),

@@ -102,7 +102,10 @@ pub fn lines(quantity: &Quantity, format: Format, is_result: bool) -> Vec<Line> 
     let cells = match &quantity.value {
         Value::Number(number) => {
             let text = significant(*number, format.digits);
-            vec![format!("{text:>0$}", format.cell)]
+            match columns(&text) < format.cell {
+                true => vec![format!("{text:>0$}", format.cell)],
+                false => format.aligned(&[*number]),
+            }
         }
         _ => format.aligned(&rows.concat()),
     };

@@ -9,7 +9,7 @@ use crate::lab::view::View;
 use crate::observe::dip::Dip;
 use crate::physics::workings::{Quantity, Value};
 use crate::text::ladder::at_or_below;
-use crate::text::number::short;
+use crate::text::number::shortest;
 use crate::text::wrap::wrapped;
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::theme::Role;
@@ -30,6 +30,8 @@ const CHANGE: f64 = 0.45;
 const BEYOND: f64 = 1.45;
 /// An axle that is seen shorter than this part of its length is drawn so long: from above it would be a point.
 const LEAST_SEEN: f64 = 0.25;
+/// A way shorter than this part of the arm is rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// Draws the page for the step at which the run of `lab` stands.
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
@@ -63,7 +65,8 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     };
     from_above(explained, view, left, buf);
     let is_seen = lab.player().reading().readouts.nutation_is_resolved() != Some(false);
-    dip(explained.dip(), is_seen, view, right, buf);
+    let dip_and_arm = (explained.dip(), explained.scenario.arm_m());
+    dip(dip_and_arm, is_seen, view, right, buf);
 }
 
 /// What the axle does under the forces of the step, and why.
@@ -258,7 +261,13 @@ fn from_above(explained: &Explained, view: &View, area: Rect, buf: &mut Buffer) 
 }
 
 /// The way of the axle's tip at first, magnified as much as there is room for.
-fn dip(dip: Option<&Dip>, is_seen: bool, view: &View, area: Rect, buf: &mut Buffer) {
+fn dip(
+    (dip, arm_m): (Option<&Dip>, f64),
+    is_seen: bool,
+    view: &View,
+    area: Rect,
+    buf: &mut Buffer,
+) {
     let area = headed("first dip, magnified", view, area, buf);
     let text = |line: u16, text: &str, buf: &mut Buffer| {
         let lines = wrapped(text, area.width.into());
@@ -279,8 +288,8 @@ fn dip(dip: Option<&Dip>, is_seen: bool, view: &View, area: Rect, buf: &mut Buff
     if area.height < 4 || area.width < 8 {
         return;
     }
-    if far == 0.0 {
-        return text(0, "it has not moved", buf);
+    if far <= ROUNDING * arm_m {
+        return text(0, "it has not moved yet: . takes a step", buf);
     }
     let note = match (is_seen, dip.is_whole) {
         (false, _) => "dt is too long for the true dip: this one is dt's own",
@@ -322,7 +331,7 @@ fn dip(dip: Option<&Dip>, is_seen: bool, view: &View, area: Rect, buf: &mut Buff
     let bar = format!(
         "├{}┤ {} m",
         "─".repeat(cells.saturating_sub(2)),
-        short(length_m)
+        shortest(length_m)
     );
     let style = view.theme.style(Role::Quiet);
     write(area, (0, picture.height), &bar, style, buf);
