@@ -231,6 +231,7 @@ fn every_row_of_the_table_is_written_under_its_name() {
         fill = 'above'
         phase = 'torque'
         sum_to = 4
+        point_at = 'above'
         bare = true
         camera = { yaw_deg = 30 }
         zoom = { above = 4, 3d = 2 }";
