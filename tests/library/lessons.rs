@@ -188,7 +188,7 @@ fn what_is_broken_is_told_with_its_line_and_the_nearest_right_name() {
             "detail_s = 8",
             "show = [\"trace\"]",
             at("detail_s = 8"),
-            "lab.show ([\"trace\"]) each must be one of traces, above",
+            "lab.show ([\"trace\"]) each must be one of lesson, traces, above",
         ),
         (
             "hide = [\"health\", \"predicted\"]",
@@ -943,7 +943,7 @@ fn the_comparison_has_the_prediction_and_what_came_out() {
     let coarse = walk.kept()["coarse"];
     assert!(coarse > 10.0 * with && with > 0.0, "{coarse} {with}");
     let words = format!("It was {coarse:.2} degrees and is {with:.2}. You said: ");
-    assert_eq!(said(&predictions), format!("{words}n/a."));
+    assert_eq!(said(&predictions), format!("{words}…."));
     let finer = lesson.predict("finer").unwrap();
     predictions
         .lock(finer, Answer::Choice("is gone".to_owned()))
