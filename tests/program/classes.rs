@@ -27,7 +27,7 @@ fn a_prediction_survives_a_kill_and_is_handed_in() {
     lab.wait_for("[x] is more than a hundred times");
     lab.wait_for("2 of 10");
     lab.press("n");
-    lab.wait_for("You said: it is more than a hundred times smaller.");
+    lab.wait_for("= The tilt now stays within 0.057");
     lab.quit();
     let answers = done(ground.run(&["lesson", LESSON, "--answers", "-o", "mine.md"]));
     assert!(stdout(&answers).is_empty());
