@@ -218,7 +218,7 @@ impl Writer<'_> {
         ));
         let lesson = self.taken.lesson();
         let page = self.taken.page();
-        for notes in page.into_iter().flat_map(|page| page.notes()) {
+        for notes in page.into_iter().flat_map(Page::notes) {
             let source = notes.with_numbers(self.lab, &self.taken.place().kept);
             self.extend(paragraphs(&source, &Kind::Note));
         }

@@ -126,9 +126,10 @@ impl Page {
 /// Whether an empty line stands between two paragraphs.
 fn are_apart(before: &Kind, after: &Kind) -> bool {
     let is_list = |kind: &Kind| matches!(kind, Kind::Item { .. } | Kind::Choice { .. });
-    !(is_list(after) && is_list(before))
-        && !matches!((before, after), (Kind::Goal { .. }, Kind::Goal { .. }))
-        && !matches!((before, after), (Kind::Question, Kind::Choice { .. }))
+    match (before, after) {
+        (Kind::Goal { .. }, Kind::Goal { .. }) | (Kind::Question, Kind::Choice { .. }) => false,
+        _ => !is_list(before) || !is_list(after),
+    }
 }
 
 /// What stands before a paragraph's first line, and the look of its words.
