@@ -7,6 +7,7 @@ mod compare;
 mod info;
 mod lesson;
 mod notes;
+mod played;
 mod progress;
 mod run;
 mod scenario;

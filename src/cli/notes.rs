@@ -2,7 +2,7 @@
 //! student who hands it in.
 
 use super::args::LessonArgs;
-use super::lesson::{new_lab, refused, watched, write};
+use super::played::{new_lab, refused, watched, write};
 use super::progress::{self, Interruption};
 use super::sessions;
 use crate::lab::Lab;

@@ -4,13 +4,14 @@ use super::Lab;
 use super::action::{Action, Direction};
 use super::command::{Command, CursorTo, Place, PushChoice};
 use super::on_top::Mode;
-use super::steering::repeated;
 use super::values::Target;
 use super::view::{Pane, Part};
 use crate::observe::camera::Zoom;
 
 /// The factor of the arrows with Shift.
 pub(super) const FAR: i32 = 10;
+/// The most times that an action is repeated; more repetitions would make no difference on the screen.
+const MOST_REPEATED: u64 = 1000;
 
 impl Lab {
     /// The commands that `action` stands for as the lab is now; `None` for an action that only changes the interface.
@@ -160,4 +161,9 @@ fn signed(direction: Direction, times: i32) -> i32 {
         Direction::Left => -times,
         _ => times,
     }
+}
+
+/// How often an action is repeated for `count`.
+pub(super) fn repeated(count: Option<u64>) -> i32 {
+    count.unwrap_or(1).min(MOST_REPEATED) as i32
 }

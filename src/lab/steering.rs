@@ -4,14 +4,12 @@
 use super::action::{Action, Direction};
 use super::carry_out::{Answer, Done};
 use super::command::{Command, CursorTo};
-use super::commands_of::FAR;
+use super::commands_of::{FAR, repeated};
 use super::dialog::Dialog;
 use super::on_top::{Cleared, Mode};
 use super::view::Pane;
 use super::{Lab, Request};
 
-/// The most times that an action is repeated; more repetitions would make no difference on the screen.
-const MOST_REPEATED: u64 = 1000;
 /// Rows of a page in lists.
 const PAGE: isize = 10;
 
@@ -265,11 +263,6 @@ impl Lab {
             left => format!("stopped: {left} commands are left out"),
         });
     }
-}
-
-/// How often an action is repeated for `count`.
-pub(super) fn repeated(count: Option<u64>) -> i32 {
-    count.unwrap_or(1).min(MOST_REPEATED) as i32
 }
 
 fn rows(direction: Direction) -> isize {
