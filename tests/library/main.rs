@@ -17,6 +17,7 @@ mod kept;
 mod laws;
 mod limits;
 mod mangled;
+mod messages;
 mod mouse;
 mod parameters;
 mod pictures;
