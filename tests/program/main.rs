@@ -11,6 +11,7 @@ mod commands;
 mod compare;
 mod escapes;
 mod journeys;
+mod messages;
 mod mouse;
 mod readme;
 mod sessions;
