@@ -220,8 +220,8 @@ impl Lab {
         if std::mem::take(&mut self.script.plays_again) {
             self.player.play();
         }
-        let arrives = self.script.under_way.is_none();
-        if let Some(to_go) = self.player.playback.steps_to_go().filter(|_| arrives) {
+        let to_go = self.player.playback.steps_to_go();
+        if let (Some(to_go), None) = (to_go, &self.script.under_way) {
             let step = self.player.playback.step_number().saturating_add(to_go);
             let command = Command::GoTo(Place::Step(step));
             let arrive = Placed {

@@ -238,3 +238,13 @@ fn a_count_that_is_too_large_is_told() {
         .press("99999999999")
         .shows("999999999 is the most that is counted");
 }
+
+#[test]
+fn a_precession_that_there_is_not_is_no_dash() {
+    Stage::open("method-1", &[], LARGE)
+        .commands("pause = true\ngo_to = 1000")
+        .wait(1.0)
+        .shows(" precession   none")
+        .press("?precession none")
+        .shows("goes round L and not round z");
+}

@@ -147,7 +147,7 @@ pub(super) const GLOSSARY: &[Word] = &[
         "the exact motion beside the run; a - in the place of a number: nothing is known or measured yet",
     ),
     (
-        "precession -",
+        "precession none",
         "an axle that swings through the vertical goes round L and not round z: it has no precession to tell",
     ),
     (

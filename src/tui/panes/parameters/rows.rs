@@ -2,6 +2,7 @@
 
 use super::edited::fewer_digits;
 use crate::analysis::remarks::{short_no_drift, short_unit};
+use crate::analysis::theory::{Axis, Path};
 use crate::observe::reading::Reading;
 use crate::physics::Body;
 use crate::scenario::{Motion, Scenario, Window};
@@ -216,6 +217,15 @@ pub(super) fn watched_rows(reading: &Reading) -> [Row; 5] {
     let tilt = health.is_a_rotation.then_some(readouts.sample.tilt_deg);
     let drift = readouts.health.energy_drift;
     let energy_unit = readouts.health.energy_unit;
+    // An axle that goes through the vertical has no precession; else there is only none yet.
+    let has_none = readouts
+        .theory
+        .as_ref()
+        .is_some_and(|theory| theory.axis == Axis::Z && theory.path == Path::ThroughVertical);
+    let rate = |rank, label, rate: Option<f64>| match rate {
+        None if has_none => value(rank, label, "none".to_owned(), ""),
+        rate => measured(rank, label, rate, 3, "deg/s"),
+    };
     let (drift, unit) = match drift {
         Some(_) if !readouts.health.is_a_rotation => ("-".to_owned(), short_unit(energy_unit)),
         Some(drift) => (signed("E drift", drift, 4), short_unit(energy_unit)),
@@ -223,8 +233,8 @@ pub(super) fn watched_rows(reading: &Reading) -> [Row; 5] {
     };
     [
         measured(0, "tilt", tilt, 3, "deg"),
-        measured(0, "precession", precession, 3, "deg/s"),
-        measured(1, PREDICTED, predicted.map(f64::to_degrees), 3, "deg/s"),
+        rate(0, "precession", precession),
+        rate(1, PREDICTED, predicted.map(f64::to_degrees)),
         measured(
             1,
             nutation,
