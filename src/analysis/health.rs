@@ -28,6 +28,9 @@ const LEAST_SWING_DEG: f64 = 1e-6;
 /// A nutation that has changed by less than this part is as it was.
 const LEAST_CHANGE: f64 = 0.05;
 
+/// An axle whose direction's length is off 1 by more than this is that of no rotation.
+const LEAST_BENT: f64 = 0.5;
+
 /// How a run stands at one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Health {
@@ -41,6 +44,8 @@ pub struct Health {
     pub nutation: Option<Nutation>,
     /// By how much the tilt swings in the exact motion's nutation, degrees; `None` where theory does not say.
     pub swing_deg: Option<f64>,
+    /// Whether the body's orientation is a rotation, as a scheme that breaks down does not leave it.
+    pub is_a_rotation: bool,
     /// Angle between axle and L now, degrees.
     pub lag_deg: f64,
     /// (E − E0 − W)/S, see [`Step::energy_drift`].
@@ -132,6 +137,7 @@ impl Health {
             ),
             nutation: Nutation::of(step, &motion, psi),
             swing_deg,
+            is_a_rotation: (axle.norm() - 1.0).abs() < LEAST_BENT,
             lag_deg: if lag.is_finite() {
                 lag.to_degrees()
             } else {

@@ -107,8 +107,8 @@ impl Readouts {
         self.theory.as_ref().filter(|theory| theory.axis == Axis::Z)
     }
 
-    /// Whether the time step shows the nutation as it is: `Some(false)` where what is measured is a strobe's picture of
-    /// it, `None` where the step is short and theory knows no period to hold it against.
+    /// Whether the time step shows the nutation as it is: `Some(false)` where what is measured is strobed,
+    /// `None` where the step is short and theory knows no period to hold it against.
     pub fn nutation_is_resolved(&self) -> Option<bool> {
         let period_s = self
             .theory_about_z()
@@ -409,7 +409,7 @@ readouts! {
     "predicted_nutation_period_s", "s", Theory, "nutation period of the exact motion", |r| r.theory_about_z().and_then(|theory| theory.nutation_period_s);
     "measured_nutation_period_s", "s", Measured, "mean time between two turning points of the tilt", |r| value(r.nutation);
     "measured_nutation_uncertainty_s", "s", Measured, "one standard error of it", |r| uncertainty(r.nutation);
-    "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what is measured is a strobe's picture of it", |r| r.nutation_is_resolved();
+    "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what is measured is strobed", |r| r.nutation_is_resolved();
     "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation);
     "L_axle_Js", "J s", State, "L along the axle", |r| r.spin;
     "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps", |r| r.theory_about_z().map(|theory| theory.sleeping_limit);

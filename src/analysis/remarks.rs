@@ -12,6 +12,8 @@ use std::fmt;
 
 /// Radians a step beyond which no scheme that follows the rotation by polynomials keeps up.
 const TOO_FAR_RAD: f64 = 1.0;
+/// What is wrong with a run whose scheme has broken down.
+const NO_ROTATION: &str = "its orientation is no rotation any more";
 /// Distances smaller than this are what decimals leave over, m.
 const ROUNDING_M: f64 = 1e-12;
 
@@ -19,9 +21,9 @@ impl fmt::Display for Picture {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Right => "it shows as it is",
-            Self::Strobed => "its points are taken for one another, as under a strobe light",
-            Self::TooSlow => "it seems to turn too slowly",
-            Self::Backwards => "it seems to turn backwards",
+            Self::Strobed => "strobed, its points are taken for one another",
+            Self::TooSlow => "strobed, it seems to turn too slowly",
+            Self::Backwards => "strobed, it seems to turn backwards",
             Self::Unknown => "further than numbers reach",
         })
     }
@@ -58,10 +60,14 @@ fn sentence(health: &Health, advice: Option<&Advice>) -> String {
                 health.picture
             ),
         };
-        let nutation = lost_nutation(health).map_or(String::new(), |lost| format!("; but {lost}"));
-        return format!(
-            "The numbers hold: the traced point has kept within {far} of the exact motion{picture}{nutation}."
-        );
+        return match lost_nutation(health) {
+            None => format!(
+                "The numbers hold: the traced point has kept within {far} of the exact motion{picture}."
+            ),
+            Some(lost) => format!(
+                "The traced point holds, and the nutation does not: the point has kept within {far} of the exact motion{picture}, but {lost}."
+            ),
+        };
     }
     let mend = advice.map_or(String::new(), |advice| how_to_mend(health, advice));
     format!(
@@ -80,7 +86,7 @@ fn lost_nutation(health: &Health) -> Option<String> {
     };
     let (verb, percent) = change(&nutation);
     Some(format!(
-        "its nutation does not hold, a swing of {swing} degrees that should last: the scheme {verb} it by {percent} % a step, so that it {now}"
+        "the nutation, a swing of {swing} degrees that should last, is not the body's: the scheme {verb} it by {percent} % a step, so that it {now}"
     ))
 }
 
@@ -99,9 +105,12 @@ fn cause(health: &Health) -> String {
     let psi = TAU * health.turns_per_step;
     let (turns, name) = (short(health.turns_per_step), health.scheme.name);
     match health.nutation {
+        _ if !health.is_a_rotation => {
+            format!("the scheme {name} breaks down at this time step, {NO_ROTATION}")
+        }
         Some(_) if psi >= PI => {
             format!(
-                "the wheel turns {turns} times in a time step, so that the swing of the axle is the time step's"
+                "the wheel turns {turns} times in a time step, so that the swing of the axle is strobed: it is the time step's"
             )
         }
         Some(nutation) if health.nutation_is_the_cause() => {
@@ -188,18 +197,33 @@ impl Remark {
 
 /// What there is to say of `health`, and of what would mend it, where that is known; most important first.
 pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
-    let mut remarks = vec![turns(health), distance(health)];
+    let mut remarks = match health.is_a_rotation {
+        true => vec![turns(health), distance(health)],
+        false => vec![broken_down(health)],
+    };
     if health.is_believed() == Some(false) {
         remarks.extend(advice.and_then(|advice| mend(health, advice)));
     }
+    if !health.is_a_rotation {
+        return remarks; // its energy and its swing are no body's
+    }
+    let swing = health.nutation.iter();
+    let (faults, others): (Vec<_>, Vec<_>) = swing
+        .flat_map(|nutation| swing_of(health, nutation))
+        .partition(|(is_the_fault, _)| *is_the_fault);
+    remarks.extend(faults.into_iter().map(|(_, remark)| remark));
     remarks.push(energy(health));
-    remarks.extend(
-        health
-            .nutation
-            .iter()
-            .flat_map(|nutation| swing(health, nutation)),
-    );
+    remarks.extend(others.into_iter().map(|(_, remark)| remark));
     remarks
+}
+
+fn broken_down(health: &Health) -> Remark {
+    let name = health.scheme.name;
+    Remark {
+        long: format!("the scheme {name} breaks down at this time step, {NO_ROTATION}"),
+        short: format!("{name} breaks down: no rotation"),
+        warns: true,
+    }
 }
 
 fn mend(health: &Health, advice: &Advice) -> Option<Remark> {
@@ -235,22 +259,42 @@ fn mend(health: &Health, advice: &Advice) -> Option<Remark> {
     })
 }
 
-fn swing(health: &Health, nutation: &Nutation) -> Vec<Remark> {
-    let lag = nutation.lag_ratio().map(|ratio| match ratio {
-        0.5..2.0 => Remark::new("axle lags L as far as it should".to_owned(), false),
-        2.0.. => Remark::new(format!("axle lags L {} times too far", times(ratio)), true),
-        _ => Remark::new(
-            format!("axle lags L {} of what it should", times(ratio)),
-            true,
-        ),
-    });
-    let factor = format!("nutation ×{} a step", fixed(nutation.multiplier, 4));
-    let is_gone = health.changed_nutation().is_some_and(|left| left < 1e-3);
-    let factor = match is_gone {
-        true => Remark::new(format!("{factor}: gone"), true),
-        false => Remark::new(factor, false),
+/// How far the axle lags behind L, and what becomes of the nutation, which is the fault of the run where it is changed.
+fn swing_of(health: &Health, nutation: &Nutation) -> Vec<(bool, Remark)> {
+    let changed = health.changed_nutation();
+    let is_right = changed.is_none() && health.is_believed() != Some(false);
+    let lag = match nutation.lag_ratio() {
+        // A lag that is right is not said beside what is wrong.
+        Some(0.5..2.0) => {
+            is_right.then(|| Remark::new("axle lags L as far as it should".to_owned(), false))
+        }
+        Some(ratio @ 2.0..) => {
+            let text = format!("axle lags L {} times too far", times(ratio));
+            Some(Remark::new(text, true))
+        }
+        Some(ratio) => {
+            let text = format!("axle lags L {} of what it should", times(ratio));
+            Some(Remark::new(text, true))
+        }
+        None => None,
     };
-    lag.into_iter().chain([factor]).collect()
+    let (verb, percent) = change(nutation);
+    let verb = if verb == "damps" { "damped" } else { "fed" };
+    let factor = match changed {
+        Some(left) => {
+            let gone = if left < 1e-3 { ": gone" } else { "" };
+            let text = format!("nutation {verb} by {percent} % a step{gone}");
+            Remark::new(text, true)
+        }
+        None => {
+            let text = format!("nutation ×{} a step", fixed(nutation.multiplier, 4));
+            Remark::new(text, false)
+        }
+    };
+    let lag = lag.map(|lag| (false, lag));
+    lag.into_iter()
+        .chain([(changed.is_some(), factor)])
+        .collect()
 }
 
 fn turns(health: &Health) -> Remark {
@@ -259,20 +303,13 @@ fn turns(health: &Health) -> Remark {
         return Remark::new(text, true);
     }
     let turns = steady(health.turns_per_step);
-    let (long, short, warns) = match (health.picture, health.nutation) {
-        (Picture::Right, _) => (String::new(), String::new(), false),
-        (Picture::Strobed, _) => (
-            format!(": {}", health.picture),
-            ": strobed".to_owned(),
-            false,
-        ),
-        (picture, None) => (format!(": {picture}"), ": aliased".to_owned(), true),
-        (_, Some(_)) => (
-            ", so that the swing is the time step's".to_owned(),
-            " make the swing".to_owned(),
-            true,
-        ),
+    let (long, warns) = match (health.picture, health.nutation) {
+        (Picture::Right, _) => (String::new(), false),
+        (picture @ Picture::Strobed, _) => (format!(": {picture}"), false),
+        (picture, None) => (format!(": {picture}"), true),
+        (_, Some(_)) => (": strobed, the swing is the time step's".to_owned(), true),
     };
+    let short = if long.is_empty() { "" } else { ": strobed" };
     Remark {
         long: format!("the wheel turns {turns} times a step{long}"),
         short: format!("{turns} turns a step{short}"),
@@ -350,6 +387,7 @@ pub fn energy_in_full(health: &Health) -> String {
 /// What a time step does to the body and its nutation, for a line of the summary.
 pub fn step_in_full(health: &Health) -> String {
     let turns = match health.turns_per_step {
+        _ if !health.is_a_rotation => format!("turns the body {NONE}: {NO_ROTATION}"),
         turns if turns.is_finite() => format!("turns the body {} times", fixed(turns, 4)),
         _ => format!("turns the body {NONE}: further than numbers reach"),
     };

@@ -60,7 +60,7 @@ pub(super) enum Command {
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
     },
-    /// List every key that a scenario or run file may hold
+    /// List every key that a scenario or run file may hold; the keys to press are in gyrolab man, and ? in the lab
     Keys,
     /// List every number that is read off a run: name, unit, meaning, where it comes from
     Readouts,
@@ -127,7 +127,7 @@ pub(super) struct WorkbenchArgs {
     pub(super) paused: bool,
 
     /// Open at this step
-    #[arg(long, value_name = "STEP", value_parser = steps)]
+    #[arg(long, value_name = "STEP", allow_negative_numbers = true, value_parser = steps)]
     pub(super) at: Option<u64>,
 
     /// Carry out the commands in this file, [[do]] tables, or of stdin for -; gyrolab man lists them
@@ -138,7 +138,7 @@ pub(super) struct WorkbenchArgs {
     pub(super) look: Look,
 
     /// Frames a second at most [default: 15, or as config.toml says]
-    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=60))]
+    #[arg(long, value_name = "FRAMES", allow_negative_numbers = true, value_parser = frames)]
     pub(super) fps: Option<u32>,
 }
 
@@ -146,7 +146,7 @@ pub(super) struct WorkbenchArgs {
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(super) struct Look {
     /// Colours: auto honours NO_COLOR [default: as chosen last in the lab, or auto]
-    #[arg(long, value_enum, value_name = "WHEN")]
+    #[arg(long, alias = "colour", value_enum, value_name = "WHEN")]
     pub(super) color: Option<Color>,
 
     /// What the colours are for [default: as chosen last, or as COLORFGBG says, or dark]
@@ -196,7 +196,7 @@ pub(super) struct ShowArgs {
     pub(super) changes: Changes,
 
     /// Show this step instead of the run's end
-    #[arg(long, value_name = "STEP", value_parser = steps)]
+    #[arg(long, value_name = "STEP", allow_negative_numbers = true, value_parser = steps)]
     pub(super) at: Option<u64>,
 
     /// Show what the commands in this file, [[do]] tables, or of stdin for -, lead to from step 0; gyrolab man lists them
@@ -216,7 +216,7 @@ pub(super) struct ShowArgs {
 #[derive(Debug, Args)]
 pub(super) struct LengthArgs {
     /// Length of the run in time steps [default: the scenario's]
-    #[arg(long, value_name = "N", conflicts_with = "duration", value_parser = clap::value_parser!(u64).range(1..=i64::MAX as u64))]
+    #[arg(long, value_name = "N", conflicts_with = "duration", allow_negative_numbers = true, value_parser = length)]
     pub(super) steps: Option<u64>,
 
     /// Length of the run in simulated seconds
@@ -237,7 +237,7 @@ pub(super) struct RunArgs {
     pub(super) length: LengthArgs,
 
     /// Write every N-th row only, and the last
-    #[arg(long, value_name = "N", default_value = "1", value_parser = one_or_more)]
+    #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true, value_parser = one_or_more)]
     pub(super) every: NonZeroU64,
 
     /// Give the summary as one JSON object
@@ -318,7 +318,22 @@ fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
 
 fn steps(text: &str) -> Result<u64, String> {
     text.parse()
-        .map_err(|_| "must be a whole number of steps".to_owned())
+        .map_err(|_| "must be a whole number of steps, 0 or more, in digits".to_owned())
+}
+
+fn length(text: &str) -> Result<u64, String> {
+    match text.parse() {
+        Ok(steps) if (1..=i64::MAX as u64).contains(&steps) => Ok(steps),
+        Ok(0) | Err(_) => Err("must be a whole number of steps, 1 or more, in digits".to_owned()),
+        Ok(_) => Err("is more steps than can be counted".to_owned()),
+    }
+}
+
+fn frames(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(frames) if (1..=60).contains(&frames) => Ok(frames),
+        _ => Err("must be a whole number from 1 to 60".to_owned()),
+    }
 }
 
 fn setting(text: &str) -> Result<String, String> {

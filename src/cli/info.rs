@@ -3,16 +3,19 @@
 use super::args::Cli;
 use super::{lesson, print, tell};
 use crate::analysis::readouts::READOUTS;
+use crate::export::summary::steps_in_words;
 use crate::lab::command::{self, COMMANDS};
 use crate::physics::scheme::SCHEMES;
+use crate::run::Clock;
 use crate::scenario::keys::{KEYS, Key, Kind};
 use crate::scenario::presets::{self, PRESETS, Preset};
 use crate::scenario::problem::nearest;
-use crate::scenario::{Document, Problems, Scenario};
+use crate::scenario::{Document, Problems, Scenario, Window};
 use crate::storage::settings;
 use crate::teach::shipped;
-use crate::text::number::shortest;
+use crate::text::number::{decimal, shortest};
 use crate::text::printable::{Shown, printable, printable_lines};
+use crate::tui::panes::help;
 use anyhow::{Context, bail};
 use clap::CommandFactory;
 use std::fmt::Write as _;
@@ -153,13 +156,31 @@ fn described(scenario: &Scenario) -> String {
         more => format!(", {more} edits"),
     };
     format!(
-        "good: \"{}\", {} points, scheme {}, {} steps of {} s{edits}",
+        "good: \"{}\", {} points, scheme {}, steps: {}{edits}{}",
         scenario.file.title,
         scenario.body.mechanics.points().len(),
         scenario.motion.scheme.name,
-        scenario.steps,
-        shortest(scenario.motion.time_step_s),
+        steps_in_words(scenario, scenario.steps),
+        pushes_without_effect(scenario),
     )
+}
+
+/// Which pushes of `scenario` never act, since they begin when its run is over.
+fn pushes_without_effect(scenario: &Scenario) -> String {
+    let (steps, end_s) = (scenario.steps, Clock::end_s(scenario));
+    let idle = scenario.pushes.iter().enumerate();
+    let idle = idle.filter_map(|(index, push)| match push.window {
+        Window::Steps { first, .. } if first > steps => Some(format!(
+            "; push.{index} never acts: it begins at step {first}, and the run ends at step {steps}"
+        )),
+        Window::Time { from_s, .. } if from_s >= end_s => Some(format!(
+            "; push.{index} never acts: it begins at {} s, and the run ends at {} s",
+            shortest(from_s),
+            decimal(end_s)
+        )),
+        _ => None,
+    });
+    idle.collect()
 }
 
 pub(super) fn completions(shell: clap_complete::Shell) -> anyhow::Result<ExitCode> {
@@ -203,7 +224,79 @@ fn settings_page() -> String {
     page
 }
 
-/// The manual: the page of the program, then one section for each command.
+/// The manual's section about the keys of the lab, those of each purpose, pane and place under its name.
+fn keys_page() -> String {
+    let plain = |text: &str| text.replace('\\', "\\e").replace('-', "\\-");
+    let entries = help::entries();
+    let keys: Vec<_> = entries
+        .iter()
+        .filter(|entry| matches!(entry.what, help::What::Key(_)))
+        .collect();
+    let mut page = ".SH \"KEYS IN THE LAB\"\n\
+        The same list is shown by ? in the lab, with the words on its screen.\n"
+        .to_owned();
+    for group in keys.chunk_by(|one, next| one.group == next.group) {
+        let name = match group[0].pane {
+            Some(_) => format!("{}, while this pane has the focus", group[0].group),
+            None => group[0].group.to_owned(),
+        };
+        page += &format!(".SS \"{}\"\n", plain(&name));
+        for entry in group {
+            let (keys, text) = (plain(&entry.name()), plain(entry.text()));
+            page += &format!(".TP\n\\fB\\&{keys}\\fR\n\\&{text}\n");
+        }
+    }
+    page
+}
+
+/// The manual's synopsis of `command`: every option with its value.
+fn synopsis(command: &clap::Command) -> String {
+    let plain = |text: &str| text.replace('-', "\\-");
+    let mut line = format!("\\fB{}\\fR", plain(command.get_name()));
+    if let Some(name) = command.get_bin_name() {
+        line = format!("\\fB{}\\fR", plain(name));
+    }
+    let options = command.get_arguments().filter(|arg| !arg.is_hide_set());
+    let (places, options): (Vec<_>, Vec<_>) = options.partition(|arg| arg.is_positional());
+    for arg in options {
+        let names: Vec<_> = [
+            arg.get_short().map(|short| format!("-{short}")),
+            arg.get_long().map(|long| format!("--{long}")),
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
+        let names = format!("\\fB{}\\fR", plain(&names.join("|")));
+        let value = match (takes_value(arg), arg.get_num_args()) {
+            (None, _) => String::new(),
+            (Some(value), Some(number)) if number.min_values() == 0 => {
+                format!(" [\\fI{}\\fR]", plain(&value))
+            }
+            (Some(value), _) => format!(" \\fI{}\\fR", plain(&value)),
+        };
+        line += &format!(" [{names}{value}]");
+    }
+    for arg in places {
+        let name = arg.get_value_names().and_then(|names| names.first());
+        let name = name.map_or_else(|| arg.get_id().to_string(), ToString::to_string);
+        line += &match arg.is_required_set() {
+            true => format!(" <\\fI{}\\fR>", plain(&name)),
+            false => format!(" [\\fI{}\\fR]", plain(&name)),
+        };
+    }
+    if command.has_subcommands() {
+        line += "\n.br\n\\fBgyrolab\\fR <\\fICOMMAND\\fR> ...";
+    }
+    format!(".SH SYNOPSIS\n{line}\n")
+}
+
+/// What the option `arg` is given; `None` of a flag.
+fn takes_value(arg: &clap::Arg) -> Option<String> {
+    let takes = arg.get_action().takes_values();
+    let name = arg.get_value_names()?.first()?;
+    takes.then(|| name.to_string())
+}
+
 /// The topics of the manual: name, and text.
 const TOPICS: &[(&str, &str)] = &[("class", include_str!("topics/class.txt"))];
 
@@ -221,11 +314,20 @@ pub(super) fn man(topic: Option<&str>) -> anyhow::Result<ExitCode> {
     }
 }
 
+/// The manual: the page of the program, then one section for each command.
 fn man_page() -> anyhow::Result<ExitCode> {
     let mut command = Cli::command();
     command.build();
     let mut page = Vec::new();
-    clap_mangen::Man::new(command.clone()).render(&mut page)?;
+    let main = clap_mangen::Man::new(command.clone());
+    main.render_title(&mut page)?;
+    main.render_name_section(&mut page)?;
+    page.extend(synopsis(&command).as_bytes());
+    main.render_description_section(&mut page)?;
+    main.render_options_section(&mut page)?;
+    main.render_subcommands_section(&mut page)?;
+    main.render_extra_section(&mut page)?;
+    main.render_version_section(&mut page)?;
     for sub in command
         .get_subcommands()
         .filter(|sub| !sub.is_hide_set() && sub.get_name() != "help")
@@ -234,9 +336,10 @@ fn man_page() -> anyhow::Result<ExitCode> {
         let man = clap_mangen::Man::new(sub.clone());
         writeln!(page, ".SH \"{}\"", title.to_uppercase())?;
         man.render_description_section(&mut page)?;
-        man.render_synopsis_section(&mut page)?;
+        page.extend(synopsis(sub).as_bytes());
         man.render_options_section(&mut page)?;
     }
+    page.extend(keys_page().as_bytes());
     page.extend(commands_page().as_bytes());
     page.extend(settings_page().as_bytes());
     print(&String::from_utf8(page).context("the manual is not text")?)

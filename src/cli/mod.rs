@@ -16,10 +16,13 @@ mod settings;
 mod show;
 mod workbench;
 
-use crate::text::printable::{is_steering, printable_lines};
+use crate::scenario::presets;
+use crate::text::printable::{is_steering, printable, printable_lines};
 use anyhow::Context;
 use args::{Cli, Command};
-use clap::Parser;
+use clap::builder::StyledStr;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{CommandFactory, Parser};
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -32,7 +35,7 @@ const INTERRUPTED: u8 = 130;
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) => return misused(&error),
+        Err(error) => return misused(explained(error)),
     };
     match execute(cli) {
         Ok(code) => code,
@@ -64,9 +67,66 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
     }
 }
 
+/// Wrong usage, as clap counts it.
+const MISUSED: u8 = 2;
+
+/// Why arguments were refused.
+enum Refused {
+    /// For a reason that clap does not know.
+    Named(String),
+    /// As clap has it.
+    ByClap(clap::Error),
+}
+
+/// `error` with what a user may have meant: a command whose name is misspelt, an option of another command.
+fn explained(mut error: clap::Error) -> Refused {
+    if error.kind() == ErrorKind::ArgumentConflict {
+        let typed = std::env::args_os().nth(1);
+        let typed = typed.and_then(|typed| typed.into_string().ok());
+        if let Some(near) = typed.as_deref().and_then(command_near) {
+            let typed = printable(typed.as_deref().unwrap_or_default()).into_owned();
+            return Refused::Named(format!(
+                "there is no command {typed}: did you mean gyrolab {near}?"
+            ));
+        }
+    }
+    let is_folder = matches!(
+        error.get(ContextKind::InvalidArg),
+        Some(ContextValue::String(arg)) if arg.starts_with("--folder")
+    );
+    if error.kind() == ErrorKind::UnknownArgument && is_folder {
+        error.remove(ContextKind::SuggestedArg);
+        error.remove(ContextKind::Usage); // it would speak of that argument
+        let tip = "--folder is for the lab: gyrolab --folder DIR; this command reads and writes the files that it is given";
+        let tip = StyledStr::from(tip.to_owned());
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
+    }
+    Refused::ByClap(error)
+}
+
+/// The command whose name is one or two letters off `typed`, if `typed` is none and no scenario.
+fn command_near(typed: &str) -> Option<String> {
+    let is_name = !typed.starts_with('-') && !typed.contains(['/', '.']);
+    if !is_name || presets::find(typed).is_some() {
+        return None;
+    }
+    let command = Cli::command();
+    let names = command.get_subcommands().map(clap::Command::get_name);
+    let near = names.map(|name| (strsim::damerau_levenshtein(typed, name), name));
+    let (distance, name) = near.min_by_key(|(distance, _)| *distance)?;
+    (1..=2).contains(&distance).then(|| name.to_owned())
+}
+
 /// Prints what clap has to say instead of going on: help, or why it takes no such arguments. clap repeats the arguments
 /// as they are: where one holds a character that could steer a terminal, the text is printed escaped and without colours.
-fn misused(error: &clap::Error) -> ExitCode {
+fn misused(error: Refused) -> ExitCode {
+    let error = match error {
+        Refused::Named(text) => {
+            tell(format_args!("gyrolab: {}", printable_lines(&text)));
+            return ExitCode::from(MISUSED);
+        }
+        Refused::ByClap(error) => error,
+    };
     let is_hostile = |argument: OsString| argument.to_string_lossy().contains(is_steering);
     let text = error.render().to_string();
     let plain = printable_lines(&text);

@@ -3,10 +3,11 @@
 use super::INTERRUPTED;
 use crate::export::Destination;
 use crate::export::destination::DestinationError;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use signal_hook::consts::{SIGHUP, TERM_SIGNALS};
 use signal_hook::flag;
 use signal_hook::iterator::Signals;
+use std::fmt;
 use std::io::{self, IsTerminal};
 use std::path::Path;
 use std::sync::Arc;
@@ -143,9 +144,14 @@ impl Meter {
         let bar = self.bar.get_or_insert_with(|| {
             let bar =
                 ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr_with_hz(4));
-            let template = "{wide_bar} step {human_pos} of {human_len}, {per_sec}, {eta} left";
+            let template = "{wide_bar} step {human_pos} of {human_len}, {rate}/s, {eta} left";
             let style = ProgressStyle::with_template(template)
                 .unwrap_or_else(|_| ProgressStyle::default_bar());
+            let rate = |state: &ProgressState, text: &mut dyn fmt::Write| {
+                // What cannot be shown of a rate is not worth an error.
+                let _ = write!(text, "{}", HumanCount(state.per_sec().round() as u64));
+            };
+            let style = style.with_key("rate", rate);
             bar.with_style(style.progress_chars("=> "))
                 .with_elapsed(self.begin.elapsed())
         });

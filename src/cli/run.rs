@@ -29,9 +29,14 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     if args.json && to_stdout {
         let message =
             "--json and -o - both claim stdout: write the CSV to a file, or leave --json out";
-        Cli::command()
-            .error(ErrorKind::ArgumentConflict, message)
-            .exit();
+        let mut command = Cli::command();
+        command.build();
+        let run = command.find_subcommand_mut("run");
+        let error = match run {
+            Some(run) => run.error(ErrorKind::ArgumentConflict, message),
+            None => command.error(ErrorKind::ArgumentConflict, message),
+        };
+        error.exit();
     }
     let scenario = Arc::new(scenario_of(&args.scenario, &args.length)?);
     let output_path = args.output.as_deref().unwrap_or(Path::new("the output"));
@@ -54,7 +59,9 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     if ended == Ended::Stopped {
         return Ok(ExitCode::from(INTERRUPTED)); // what was written so far goes with its temporary name
     }
+    let mut rows = None;
     if let Some(csv) = output {
+        rows = Some(csv.count());
         csv.finish()
             .with_context(|| cannot_write(output_path))?
             .keep()?;
@@ -65,7 +72,15 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let health = monitor.health(simulation.now());
     let advice = advice(&health, &simulation);
     let readouts = Readouts::new(&simulation, &mut monitor, &health, advice.as_ref());
-    report(args, &Summary::new(readouts, wall))?;
+    let summary = Summary::new(readouts, wall).with_time_steps_of(&scenario);
+    report(args, &summary)?;
+    if let Some(rows) = rows.filter(|_| !to_stdout) {
+        let plural = if rows == 1 { "" } else { "s" };
+        tell(format_args!(
+            "gyrolab: {rows} row{plural} in {}",
+            Shown(output_path)
+        ));
+    }
     match ended {
         Ended::NotFinite(error) => {
             complain(&anyhow::Error::new(error).context(args.scenario.scenario.clone()));

@@ -78,7 +78,8 @@ fn first_line(problems: &Problems) -> String {
     text.lines().next().unwrap_or_default().to_owned()
 }
 
-/// The remembered `settings` that this terminal can show: dots that were chosen on another terminal may need more.
+/// The remembered `settings` that this terminal can show: dots that were chosen on another terminal may need more, and
+/// NO_COLOR takes away colours that were chosen elsewhere.
 fn shown_here(settings: Settings) -> Settings {
     let usual = surroundings::marker(variable);
     let can_be_shown = |name: &String| {
@@ -87,6 +88,9 @@ fn shown_here(settings: Settings) -> Settings {
     };
     Settings {
         marker: settings.marker.filter(can_be_shown),
+        colour: settings
+            .colour
+            .filter(|colour| colour != "always" || !surroundings::refuses_colour(variable)),
         ..settings
     }
 }

@@ -21,6 +21,7 @@ use crate::tui::panes;
 use crate::tui::surroundings::{self, ColourChoice};
 use anyhow::Context;
 use clap::CommandFactory;
+use std::fs;
 use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -63,6 +64,12 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             args.resume.is_none(),
             "--resume needs a terminal to come back to"
         );
+        if let Some(file) = &args.commands
+            && file != Path::new("-")
+        {
+            // What is not there is said before what is done with it.
+            fs::metadata(file).with_context(|| format!("{}: cannot be read", Shown(file)))?;
+        }
         tell(format_args!(
             "gyrolab: there is no terminal to open the lab on, so its picture {} is printed",
             moment(args)
@@ -111,6 +118,7 @@ fn open_at(
         lab.files_mut().confine(folder);
     }
     lab.set_mouse(!args.look.no_mouse);
+    lab.set_usual_colour(surroundings::theme(ColourChoice::Auto, variable).colour);
     if lesson.is_none()
         && args.scenario.is_none()
         && args.resume.is_none()

@@ -10,6 +10,7 @@ use std::io::{self, Write};
 #[derive(Debug)]
 pub struct CsvWriter<W: Write> {
     rows: csv::Writer<W>,
+    count: u64,
 }
 
 impl<W: Write> CsvWriter<W> {
@@ -24,7 +25,7 @@ impl<W: Write> CsvWriter<W> {
             .from_writer(out);
         rows.write_record(COLUMNS.iter().map(|column| column.name))
             .map_err(plain)?;
-        Ok(Self { rows })
+        Ok(Self { rows, count: 0 })
     }
 
     /// Adds a row.
@@ -32,7 +33,14 @@ impl<W: Write> CsvWriter<W> {
     /// # Errors
     /// When the row cannot be written.
     pub fn write(&mut self, sample: &Sample) -> io::Result<()> {
-        self.rows.serialize(Row(sample)).map_err(plain)
+        self.rows.serialize(Row(sample)).map_err(plain)?;
+        self.count += 1;
+        Ok(())
+    }
+
+    /// How many rows have been added.
+    pub fn count(&self) -> u64 {
+        self.count
     }
 
     /// Writes what is still buffered, and returns the output.

@@ -1,7 +1,8 @@
 //! The summary of a finished run, as text for a reader and as JSON for a program.
 
-use crate::analysis::theory::{Axis, Theory};
+use crate::analysis::theory::{Axis, Path, Theory};
 use crate::analysis::{Measured, Readouts, remarks};
+use crate::scenario::Scenario;
 use crate::text::number::{NONE, exponent, fixed, shortest};
 use serde::Serialize;
 use std::fmt;
@@ -12,6 +13,9 @@ use std::time::Duration;
 #[serde(transparent)]
 pub struct Summary {
     readouts: Readouts,
+    /// How many steps of which time step it had, in words, where it had several.
+    #[serde(skip)]
+    steps: Option<String>,
 }
 
 /// A measured value and the theoretical one.
@@ -29,6 +33,16 @@ impl Summary {
                 stepping: Some(wall),
                 ..readouts
             },
+            steps: None,
+        }
+    }
+
+    /// The same summary with all time steps that the run of `scenario` has had, not the last one only.
+    pub fn with_time_steps_of(self, scenario: &Scenario) -> Self {
+        let steps = steps_in_words(scenario, self.readouts.sample.step);
+        Self {
+            steps: Some(steps),
+            ..self
         }
     }
 
@@ -40,8 +54,12 @@ impl Summary {
             ..
         } = &self.readouts;
         let (at, momentum) = (&sample.position, &sample.momentum);
-        let step = shortest(self.readouts.time_step_s);
-        writeln!(f, "  steps         {} of {step} s", sample.step)?;
+        let steps = || {
+            let step = shortest(self.readouts.time_step_s);
+            format!("{} of {step} s", sample.step)
+        };
+        let steps = self.steps.clone().unwrap_or_else(steps);
+        writeln!(f, "  steps         {steps}")?;
         writeln!(f, "  t             {} s", shortest(sample.time_s))?;
         let [x, y, z] = [at.x, at.y, at.z].map(|metres| fixed(metres, 9));
         writeln!(f, "  x, y, z       {x}, {y}, {z} m")?;
@@ -77,10 +95,15 @@ impl Summary {
             measured: readouts.nutation,
             predicted: readouts.theory.and_then(|theory| theory.nutation_period_s),
         };
+        let path = readouts.theory.as_ref().map(|theory| theory.path);
+        let why = match (precession.predicted, path) {
+            (None, Some(Path::ThroughVertical)) => ": the axle passes through the vertical",
+            _ => "",
+        };
         let precession = precession.in_words(readouts);
-        writeln!(f, "  precession    {precession}")?;
+        writeln!(f, "  precession    {precession}{why}")?;
         let strobed = match readouts.nutation_is_resolved() {
-            Some(false) => ": a strobe's picture, the time step is too long to see it",
+            Some(false) => ": strobed, the time step is too long to see it",
             _ => "",
         };
         let nutation = nutation.in_words(readouts);
@@ -142,6 +165,43 @@ impl Summary {
         match remarks::constants_in_full(health) {
             Some(constants) => writeln!(f, "  L             {constants}"),
             None => Ok(()),
+        }
+    }
+}
+
+/// The first `steps` steps of `scenario` with their time steps: "2300 of 0.1 s", or "2300, 40 of them of 0.1 s, 2260 of
+/// 0.05 s" where edits have changed the time step.
+pub fn steps_in_words(scenario: &Scenario, steps: u64) -> String {
+    let mut parts: Vec<(u64, f64)> = Vec::new();
+    let (mut begin, mut time_step_s) = (0, scenario.motion.time_step_s);
+    let edits = scenario.edits.iter().filter(|edit| edit.touches.time_step);
+    for edit in edits.take_while(|edit| edit.step < steps) {
+        parts.push((edit.step - begin, time_step_s));
+        (begin, time_step_s) = (edit.step, edit.motion.time_step_s);
+    }
+    parts.push((steps - begin.min(steps), time_step_s));
+    parts.retain(|(count, _)| *count > 0);
+    parts.dedup_by(|next, before| {
+        let is_same = next.1 == before.1;
+        before.0 += if is_same { next.0 } else { 0 };
+        is_same
+    });
+    let one = |(count, step_s): &(u64, f64)| format!("{count} of {} s", shortest(*step_s));
+    match &parts[..] {
+        [] => format!("{steps} of {} s", shortest(time_step_s)),
+        [only] => one(only),
+        [first, rest @ ..] if rest.len() < 4 => {
+            let rest: Vec<_> = rest.iter().map(one).collect();
+            format!("{steps}: {}, then {}", one(first), rest.join(", then "))
+        }
+        many => {
+            let least = many.iter().map(|part| part.1).fold(f64::INFINITY, f64::min);
+            let most = many.iter().map(|part| part.1).fold(0.0, f64::max);
+            let (least, most) = (shortest(least), shortest(most));
+            format!(
+                "{steps} of {least} to {most} s, changed {} times",
+                many.len() - 1
+            )
         }
     }
 }

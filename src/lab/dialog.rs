@@ -191,10 +191,14 @@ impl Dialog {
             Ok(every) => {
                 let Estimate { rows, bytes } = exporting::estimate(scenario, every);
                 let rows = format!("{} rows, about {}", HumanCount(rows), DecimalBytes(bytes));
-                vec![
-                    rows,
-                    "every 10 writes each tenth row, and the last".to_owned(),
-                ]
+                let every = "every 10 writes each tenth row, and the last".to_owned();
+                let name = self.form.text(0).trim();
+                let is_plain = !name.is_empty() && !name.contains('/') && !name.contains(".csv");
+                let lacks = "without .csv: gyrolab run takes it as ./NAME only".to_owned();
+                [rows, every]
+                    .into_iter()
+                    .chain(is_plain.then_some(lacks))
+                    .collect()
             }
             Err(reason) => vec![reason],
         };
@@ -212,6 +216,7 @@ impl Dialog {
                 Some(path),
             ),
         };
+        self.form.info.retain(|line| *line != complaint); // it is said once
         self.form.complaint = Some(complaint);
         Self {
             asked_to_replace,

@@ -128,9 +128,19 @@ impl Lab {
 
     /// Undoes the last `times` acts, or does as many undone ones again.
     pub(super) fn turn(&mut self, way: Way, times: u32) -> Answer {
-        let (done, other_way, nothing) = match way {
-            Way::Back => ("undone", "U brings it again", "nothing to undo"),
-            Way::On => ("done again", "u takes it back", "nothing to do again"),
+        let (done, run, other_way, nothing) = match way {
+            Way::Back => (
+                "undone",
+                "the run before",
+                "U brings it again",
+                "nothing to undo",
+            ),
+            Way::On => (
+                "done again",
+                "the run after",
+                "u takes it back",
+                "nothing to do again",
+            ),
         };
         let mut answer = Done::SILENT;
         for _ in 0..times {
@@ -159,7 +169,7 @@ impl Lab {
                     scenario,
                 }) => {
                     self.return_to_run(scenario, is_of_same_name);
-                    Done::saying(format!("{done}: another run; {other_way}"))
+                    Done::saying(format!("{done}: this is {run}; {other_way}"))
                 }
             };
         }

@@ -1,6 +1,7 @@
 //! The content of a session: the history of runs, and the place of the lab in it, each as TOML.
 
 use super::command::{self, Command, Commands, Place};
+use super::script::{GO_ON_WITH_IT, GO_ON_WITH_THEM};
 use super::view::step::Page;
 use super::view::{Part, View};
 use super::work::Work;
@@ -213,7 +214,8 @@ impl Lab {
             return None;
         }
         let playback = &self.player.playback;
-        let is_playing = playback.is_running() && !playback.is_running_until();
+        let plays_again = self.script.is_held() && self.script.plays_again();
+        let is_playing = plays_again || playback.is_running() && !playback.is_running_until();
         let under_way = self.script.under_way();
         let again = under_way.and_then(|(command, under_way)| match under_way {
             UnderWay::Going => {
@@ -320,12 +322,8 @@ impl Lab {
             Some(Ok(commands)) => {
                 let (count, origin) = (commands.list.len(), &commands.origin);
                 told = match count {
-                    1 => format!(
-                        "1 command of {origin} is left: space goes on with it, Esc leaves it out"
-                    ),
-                    _ => format!(
-                        "{count} commands of {origin} are left: space goes on with them, Esc leaves them out"
-                    ),
+                    1 => format!("1 command of {origin} is left: {GO_ON_WITH_IT}"),
+                    _ => format!("{count} commands of {origin} are left: {GO_ON_WITH_THEM}"),
                 };
                 lab.script = Script::held(commands);
             }

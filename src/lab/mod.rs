@@ -45,7 +45,7 @@ pub use carry_out::{Answer, Done, Refusal, UnderWay};
 pub use dialog::Dialog;
 pub use files::Files;
 pub use keeping::{Summary, Unreadable};
-pub use on_top::{Mode, OnTop};
+pub use on_top::{MOST_COUNTED, Mode, OnTop};
 pub use player::Player;
 pub use script::Script;
 pub use values::Values;
@@ -93,6 +93,8 @@ pub struct Lab {
     keeper: Option<Keeper>,
     /// What the session keeps of the lessons.
     lessons: Option<toml::Table>,
+    /// Whether there are colours where nobody chooses; `None` where that is not known.
+    usual_colour: Option<bool>,
     /// The time since the lab was opened.
     now: Duration,
     /// Whether the picture has changed since it was drawn.
@@ -112,6 +114,7 @@ impl Lab {
             script: Script::default(),
             keeper: None,
             lessons: None,
+            usual_colour: None,
             now: Duration::ZERO,
             changed: true,
         };
@@ -134,6 +137,19 @@ impl Lab {
     /// From now on remembers what dots and colours the user chooses.
     pub fn remember_with(&mut self, keeper: Keeper) {
         self.keeper = Some(keeper);
+    }
+
+    /// Tells the lab whether its screen has colours where nobody chooses: that choice is remembered as no choice.
+    pub fn set_usual_colour(&mut self, colour: bool) {
+        self.usual_colour = Some(colour);
+    }
+
+    /// The choice of colours, as it is remembered.
+    fn colour_choice(&self) -> &'static str {
+        match self.usual_colour == Some(self.view.theme.colour) {
+            true => "auto",
+            false => self.view.theme.colour_choice(),
+        }
     }
 
     /// Ends remembering, and returns what remembers: it may have something left to write.
@@ -186,12 +202,33 @@ impl Lab {
     /// Says why the run has stopped by itself.
     fn halted(&mut self, halt: Halt) {
         self.player.has_halted(halt);
+        self.read_now();
         let next = self.next().filter(|_| halt == Halt::EndOfRun);
         let said = next.map(|next| format!("{END_OF_RUN}. Next: {next}"));
         if let Some(text) = said.or_else(|| halt_in_words(halt)) {
-            self.tell(text);
+            let help = match halt {
+                Halt::NotFinite(_) => self.what_makes_finite(),
+                _ => String::new(),
+            };
+            self.tell(text + &help);
         }
-        self.read_now();
+    }
+
+    /// What helps where the numbers have stopped being finite: a key that mends the run, and what takes back an edit.
+    fn what_makes_finite(&self) -> String {
+        let is_doubted = self.player.reading().readouts.health.is_believed() == Some(false);
+        let mend = match self.player.offer_in_short() {
+            Some(offer) => offer,
+            None if is_doubted && self.player.is_advised && self.player.advice().is_none() => {
+                "a time step or scheme that mends it is looked for".to_owned()
+            }
+            None => "a shorter time step or another scheme may mend it (e)".to_owned(),
+        };
+        let step = self.player.playback.step_number();
+        match self.work.journal().count_by(step) {
+            0 => format!(": {mend}"),
+            _ => format!(": {mend}, u takes the last edit back"),
+        }
     }
 
     /// The line about what to try after the run: as a command or the scenario has it, or else the preset, as long as its
@@ -354,7 +391,7 @@ impl Lab {
             return next;
         }
         let note = told.or(self.work.changed_from_file()).or_else(file);
-        note.unwrap_or("r begins the run again, o opens another")
+        note.unwrap_or("? lists the keys; the scenario's own line, view.look_at, would stand here")
     }
 
     /// The message at the bottom of the screen: the steps that are being taken, the message, or the export's progress.

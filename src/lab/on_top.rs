@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::Duration;
 
 /// The largest count that can be typed.
-const MOST_COUNTED: u64 = 999_999_999;
+pub const MOST_COUNTED: u64 = 999_999_999;
 
 /// What gets the keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -376,7 +376,7 @@ pub(super) fn halt_in_words(halt: Halt) -> Option<String> {
             Some("end of the scenario's run: space goes on, r begins again".to_owned())
         }
         Halt::NotFinite(error) => Some(format!(
-            "the numbers are no longer finite at step {}: u takes the last edit back, r begins again",
+            "the numbers are no longer finite at step {}",
             error.step
         )),
     }

@@ -15,6 +15,10 @@ use std::time::{Duration, Instant};
 /// How often to look whether an export is complete while there is nothing else to do.
 const LOOK: Duration = Duration::from_millis(2);
 
+/// What the keys do with one command that waits, and with several.
+pub(super) const GO_ON_WITH_IT: &str = "space goes on with it, Esc leaves it out";
+pub(super) const GO_ON_WITH_THEM: &str = "space goes on with them, Esc leaves them out";
+
 /// How long steps are taken before the caller is asked whether to go on.
 const PART: Duration = Duration::from_millis(100);
 
@@ -28,8 +32,10 @@ pub struct Script {
     under_way: Option<(Placed, UnderWay)>,
     /// The command that was refused, and why.
     failed: Option<String>,
-    /// Whether the script comes from a session and waits until the user lets it go on.
+    /// Whether the script waits until the user lets it go on: it comes from a session, or was paused.
     is_held: bool,
+    /// Whether the run played when the script was paused, and plays again when it goes on.
+    plays_again: bool,
     /// `left` as a file of commands; `None` where `left` has changed since it was written.
     kept: Option<Arc<str>>,
 }
@@ -52,9 +58,14 @@ impl Script {
         }
     }
 
-    /// Whether the script comes from a session and waits until the user lets it go on.
+    /// Whether the script waits until the user lets it go on: it comes from a session, or was paused.
     pub fn is_held(&self) -> bool {
         self.is_held
+    }
+
+    /// Whether the run played when the script was paused, and plays again when it goes on.
+    pub(super) fn plays_again(&self) -> bool {
+        self.plays_again
     }
 
     /// The file of the commands, as the user named it.
@@ -183,12 +194,42 @@ impl Lab {
         }
     }
 
-    /// Lets a script from a session go on, as soon as the run is back at the step where it was left.
+    /// Pauses the script. Its command under way is carried out again when it goes on: a run to the same step, until the
+    /// same condition holds, for what is left of a wait. An export goes on meanwhile.
+    pub(super) fn pause_script(&mut self) {
+        let playback = &self.player.playback;
+        let again = match &self.script.under_way {
+            None | Some((_, UnderWay::Exporting)) => None,
+            Some((placed, UnderWay::Playing)) => Some(placed.clone()),
+            Some((placed, UnderWay::Waiting(until))) => Some(Placed {
+                command: Command::Wait(until.saturating_sub(self.now).as_secs_f64()),
+                ..placed.clone()
+            }),
+            Some((placed, UnderWay::Going)) => playback.steps_to_go().map(|to_go| Placed {
+                command: Command::GoTo(Place::Step(playback.step_number().saturating_add(to_go))),
+                ..placed.clone()
+            }),
+        };
+        self.script.is_held = true;
+        self.script.plays_again = playback.is_running() && !playback.is_running_until();
+        if again.is_some() {
+            self.script.under_way = None;
+            self.script.kept = None;
+            self.script.left.extend(again);
+            self.script.left.rotate_right(1);
+        }
+    }
+
+    /// Lets a script go on that waits, as soon as the run is back at the step where a session left it.
     pub(super) fn release_script(&mut self) {
         if !std::mem::take(&mut self.script.is_held) {
             return;
         }
-        if let Some(to_go) = self.player.playback.steps_to_go() {
+        if std::mem::take(&mut self.script.plays_again) {
+            self.player.play();
+        }
+        let to_go = self.player.playback.steps_to_go();
+        if let (Some(to_go), None) = (to_go, &self.script.under_way) {
             let step = self.player.playback.step_number().saturating_add(to_go);
             let command = Command::GoTo(Place::Step(step));
             let arrive = Placed {

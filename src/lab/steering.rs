@@ -7,6 +7,7 @@ use super::command::{Command, CursorTo};
 use super::commands_of::{FAR, repeated};
 use super::dialog::Dialog;
 use super::on_top::{Cleared, Mode};
+use super::script::{GO_ON_WITH_IT, GO_ON_WITH_THEM};
 use super::view::Pane;
 use super::{Lab, Request};
 
@@ -93,7 +94,7 @@ impl Lab {
         match action {
             Action::Digit(digit) => self.on_top.add_digit(cleared.count, digit),
             Action::TogglePause if self.script.is_held() => self.release_script(),
-            Action::TogglePause => self.stop_script(),
+            Action::TogglePause => self.hold_script(),
             Action::GoTo => self.on_top.open_dialog(Dialog::go_to()),
             Action::ChoosePush => self.turn_to_next_push(),
             Action::Parameters | Action::GoToCursor => self.turn_to_parameters(),
@@ -129,7 +130,7 @@ impl Lab {
             Action::ToggleColour => {
                 let text = self.view.toggle_colour();
                 self.say(text);
-                self.remember("colour", self.view.theme.colour_choice());
+                self.remember("colour", self.colour_choice());
             }
             Action::ToggleBackground => {
                 let text = self.view.toggle_background();
@@ -252,6 +253,18 @@ impl Lab {
     /// Says that the help has `entries` entries that are found: the selected one is among them.
     pub fn limit_help(&mut self, entries: usize) {
         self.on_top.limit_help(entries);
+    }
+
+    /// Pauses the run and the commands that are not carried out yet.
+    fn hold_script(&mut self) {
+        let left = self.script.count();
+        self.pause_script();
+        self.carry_out_all(&[Command::Pause]);
+        let origin = self.script.origin();
+        self.tell(match left {
+            1 => format!("paused: 1 command of {origin} is left: {GO_ON_WITH_IT}"),
+            left => format!("paused: {left} commands of {origin} are left: {GO_ON_WITH_THEM}"),
+        });
     }
 
     /// Stops the run and drops the commands that are not carried out yet.

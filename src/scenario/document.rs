@@ -2,14 +2,16 @@
 
 use super::checks;
 use super::dotted::{find, is_in, set_key};
-use super::problem::{Found, Problem, Problems, nearest};
+use super::problem::{Found, PRESETS, Problem, Problems, nearest};
+use super::syntax::{mistake, offset_of, syntax_problem};
 use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, start, tables};
-use crate::text::printable::{brief, printable, printable_lines};
+use crate::text::number::shortest;
+use crate::text::printable::{brief, printable};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use toml::Value;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
 
 /// The longest file that is read as a scenario, bytes: 100 000 points take about 8 MB.
 const LONGEST: u64 = 16 << 20;
@@ -29,8 +31,18 @@ pub struct Document {
     origin: String,
     text: String,
     table: toml::Table,
-    /// Keys that `--set` wrote, with the argument as it was given.
-    set: Vec<(String, String)>,
+    /// What `--set` wrote.
+    set: Vec<Setting>,
+}
+
+/// A key that `--set` wrote.
+#[derive(Clone, Debug)]
+struct Setting {
+    key: String,
+    /// The argument as it was given.
+    argument: String,
+    /// Why an array or a table is no TOML, and was taken as text.
+    mistake: Option<String>,
 }
 
 impl Document {
@@ -44,7 +56,7 @@ impl Document {
             return Self::read(Path::new(scenario));
         }
         match presets::find(scenario) {
-            Some(preset) => Self::parse(&format!("presets/{scenario}.toml"), preset.text),
+            Some(preset) => Self::parse(&format!("{PRESETS}{scenario}.toml"), preset.text),
             None => Err(no_preset(scenario)),
         }
     }
@@ -171,15 +183,22 @@ impl Document {
                 "must be KEY=VALUE, such as motion.time_step_s=0.05",
             )));
         };
-        let value = value
-            .trim()
-            .parse()
-            .unwrap_or_else(|_| Value::String(value.to_owned()));
+        let (value, mistake) = match value.trim().parse() {
+            Ok(value) => (value, None),
+            Err(error) => (
+                Value::String(value.to_owned()),
+                mistake(value.trim(), &error),
+            ),
+        };
         start::make_room(&mut self.table, key.trim());
         if let Err(problem) = set_key(&mut self.table, key.trim(), value) {
             return Err(fail(problem));
         }
-        self.set.push((key.trim().to_owned(), argument.to_owned()));
+        self.set.push(Setting {
+            key: key.trim().to_owned(),
+            argument: argument.to_owned(),
+            mistake,
+        });
         Ok(())
     }
 
@@ -208,8 +227,14 @@ impl Document {
     /// # Errors
     /// What is wrong with the scenario, or cannot be held.
     pub fn set_time_step(&mut self, time_step_s: f64) -> Result<(), Problems> {
-        let file = rescale::at_time_step(&self.scenario()?.file, time_step_s)
-            .map_err(|problem| self.placed(vec![problem]))?;
+        let file = rescale::at_time_step(&self.scenario()?.file, time_step_s);
+        let file = file.map_err(|mut problem| match problem.key == "motion.time_step_s" {
+            true => {
+                problem.place = Some(format!("--time-step {}", shortest(time_step_s)));
+                Problems::one(self.origin.as_str(), problem)
+            }
+            false => self.placed(vec![problem]),
+        })?;
         *self = Self::from_file(&self.origin, &file)?;
         Ok(())
     }
@@ -239,16 +264,34 @@ impl Document {
 
     /// The last `--set` that wrote what a problem at `key` is about: the value, something in it or around it, or the
     /// table that lacks it where the file has none such.
-    fn setting_behind(&self, key: &str, written: Option<&toml::Table>) -> Option<&str> {
-        let last = |wanted: &dyn Fn(&str) -> bool| {
-            let setting = self.set.iter().rev().find(|(set, _)| wanted(set))?;
-            Some(setting.1.as_str())
-        };
+    fn setting_behind(&self, key: &str, written: Option<&toml::Table>) -> Option<&Setting> {
+        let last =
+            |wanted: &dyn Fn(&str) -> bool| self.set.iter().rev().find(|set| wanted(&set.key));
         last(&|set| is_in(key, set) || is_in(set, key)).or_else(|| {
             let table = key.rsplit_once('.')?.0;
             let is_new = find(written?, table).is_none();
             last(&|set| is_new && is_in(set, table))
         })
+    }
+
+    /// Where `problem` is that a push, a point or another entry lacks a key that `--set` alone began: which entries the
+    /// file has.
+    fn that_are_there(&self, problem: &Problem, written: Option<&toml::Table>) -> String {
+        let told = || {
+            let (entry, _) = problem.key.rsplit_once('.')?;
+            let (list, number) = entry.rsplit_once('.')?;
+            number.parse::<usize>().ok()?;
+            let there = find(written?, list).and_then(Value::as_array);
+            let count = there.map_or(0, Vec::len);
+            let there = match count {
+                0 => format!("there is no {list}"),
+                1 => format!("there is only {list}.0"),
+                _ => format!("there are {list}.0 to {list}.{}", count - 1),
+            };
+            let is_new = find(written?, entry).is_none() && problem.rule.starts_with("is missing");
+            is_new.then(|| format!(": {entry} would be a new one, {there}"))
+        };
+        told().unwrap_or_default()
     }
 
     /// Problems with the places at which the user wrote their keys, in the order of the file.
@@ -259,8 +302,14 @@ impl Document {
         let line_ends: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
         let mut lines: Vec<(usize, Problem)> = Vec::with_capacity(list.len());
         for mut problem in list {
-            if let Some(argument) = self.setting_behind(&problem.key, written.as_ref()) {
-                problem.place = Some(set_place(argument));
+            if let Some(setting) = self.setting_behind(&problem.key, written.as_ref()) {
+                problem.place = Some(set_place(&setting.argument));
+                match &setting.mistake {
+                    Some(mistake) if problem.key == setting.key => {
+                        (problem.value, problem.rule) = (String::new(), mistake.clone());
+                    }
+                    _ => problem.rule += &self.that_are_there(&problem, written.as_ref()),
+                }
                 lines.push((usize::MAX, problem));
                 continue;
             }
@@ -364,59 +413,4 @@ fn utf8(bytes: Vec<u8>) -> Result<String, Problem> {
         problem.place = Some(format!("line {line}"));
         problem
     })
-}
-
-fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
-    const WIDEST: usize = 160;
-    let picture = error.to_string();
-    let mut lines = picture.trim_end().lines();
-    let rule = if lines.clone().all(|line| line.len() <= WIDEST) {
-        printable_lines(picture.trim_end()).into_owned()
-    } else {
-        // A picture of a line that fills the screen shows nothing.
-        let place = brief(lines.next().unwrap_or_default(), WIDEST);
-        format!("{place}: {}", brief(error.message(), WIDEST))
-    };
-    let rule = match error.span() {
-        Some(_) => rule,
-        None => format!("cannot be read as TOML: {rule}"),
-    };
-    let mut problem = Problem::at("", rule);
-    problem.place = error
-        .span()
-        .map(|span| format!("line {}", line_at(text, span.start)));
-    problem
-}
-
-fn line_at(text: &str, offset: usize) -> usize {
-    text.as_bytes()[..offset.min(text.len())]
-        .iter()
-        .filter(|&&byte| byte == b'\n')
-        .count()
-        + 1
-}
-
-/// Where the dotted `key`, or as much of it as there is, stands in the text: a value's key, a table's head.
-fn offset_of(table: &DeTable<'_>, key: &str) -> Option<usize> {
-    let entry = |name: &str| table.get_key_value(name);
-    let quoted = key.strip_prefix('"').and_then(|key| key.strip_suffix('"'));
-    let (name, rest) = match quoted {
-        Some(name) => (name, ""),
-        None => key.split_once('.').unwrap_or((key, "")),
-    };
-    // What an edit sets has the whole path for its name.
-    let (found, value) = entry(name).or_else(|| entry(key))?;
-    Some(offset_inside(value.get_ref(), rest).unwrap_or(found.span().start))
-}
-
-fn offset_inside(value: &DeValue<'_>, key: &str) -> Option<usize> {
-    match value {
-        DeValue::Table(table) => offset_of(table, key),
-        DeValue::Array(array) => {
-            let (place, rest) = key.split_once('.').unwrap_or((key, ""));
-            let item = array.get(place.parse::<usize>().ok()?)?;
-            Some(offset_inside(item.get_ref(), rest).unwrap_or(item.span().start))
-        }
-        _ => None,
-    }
 }

@@ -22,6 +22,7 @@ mod pushes;
 pub mod rescale;
 pub mod screen;
 pub mod start;
+mod syntax;
 mod tables;
 
 pub use document::Document;

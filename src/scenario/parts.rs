@@ -7,7 +7,7 @@ use super::model::{Body, Motion};
 use super::problem::{Found, Problem};
 use super::pushes::Pushes;
 use super::pushes::{Push, Window};
-use crate::physics::{self, PointMass, SchemeInfo};
+use crate::physics::{self, BodyError, PointMass, SchemeInfo};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -39,8 +39,15 @@ pub(super) fn body(file: &BodyFile) -> Result<Body, Found> {
     if !problems.list.is_empty() {
         return Err(problems);
     }
-    let mechanics =
-        physics::Body::new(points).map_err(|error| vec![Problem::at("body", error.to_string())])?;
+    let mechanics = physics::Body::new(points).map_err(|error| {
+        let few = match (&error, &file.rim) {
+            (BodyError::Singular { .. }, Some(rim)) if rim.points == 1 => {
+                "; the rim has 1 point, which leaves all mass on a line: 2 points or more"
+            }
+            _ => "",
+        };
+        vec![Problem::at("body", format!("{error}{few}"))]
+    })?;
     Ok(Body { mechanics, names })
 }
 

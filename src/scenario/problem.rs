@@ -106,6 +106,11 @@ impl Problems {
         }
     }
 
+    fn is_about_option(&self, problem: &Problem) -> bool {
+        let place = problem.place.as_deref().unwrap_or_default();
+        place.starts_with("--") && self.origin.starts_with(PRESETS)
+    }
+
     /// The first of them in one line, without file, line or `--set`: `motion.time_step_s (-0.1) must be greater than zero`.
     pub fn in_one_line(&self) -> String {
         let bare = |problem: &Problem| {
@@ -122,6 +127,9 @@ impl Problems {
             .replace('\n', " ")
     }
 }
+
+/// The folder that the presets have in the source, and so the beginning of their origin.
+pub(super) const PRESETS: &str = "presets/";
 
 /// How many problems are printed before the rest is only counted.
 const SHOWN: usize = 12;
@@ -143,6 +151,8 @@ impl fmt::Display for Problems {
                     };
                     write!(f, "{newline}{}:{line}: {bare}", printable(&self.origin))?;
                 }
+                // What is wrong with an option is none of a preset's file, which the user has not named.
+                None if self.is_about_option(problem) => write!(f, "{newline}{problem}")?,
                 None => write!(f, "{newline}{}: {problem}", printable(&self.origin))?,
             }
         }

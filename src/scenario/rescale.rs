@@ -3,6 +3,7 @@
 use super::file::{PushFile, ScenarioFile};
 use super::problem::Problem;
 use super::{Edit, Scenario};
+use crate::text::number::decimal;
 
 /// `file` at the time step `time_step_s` (s): as long in seconds, and its pushes at the same times.
 ///
@@ -14,6 +15,15 @@ pub fn at_time_step(file: &ScenarioFile, time_step_s: f64) -> Result<ScenarioFil
         let rule =
             "has edits at steps, which another time step would move: change the steps by hand";
         return Err(Problem::at("edit", rule));
+    }
+    let duration_s = file.motion.steps as f64 * written_for_s;
+    if time_step_s > duration_s * (1.0 + 1e-9) {
+        let value = toml::Value::Float(time_step_s);
+        let rule = format!(
+            "must not be longer than the whole run, {} s",
+            decimal(duration_s)
+        );
+        return Err(Problem::with_value("motion.time_step_s", &value, rule));
     }
     let mut other = file.clone();
     let steps = (file.motion.steps as f64 * written_for_s / time_step_s).round();

@@ -33,9 +33,14 @@ pub fn marker(variable: impl Fn(&str) -> Option<String>) -> Marker {
     }
 }
 
+/// Whether these environment variables refuse colours (<https://no-color.org>).
+pub fn refuses_colour(variable: impl Fn(&str) -> Option<String>) -> bool {
+    variable("NO_COLOR").is_some_and(|value| !value.is_empty())
+}
+
 /// The theme for `choice` and these environment variables (<https://no-color.org>; COLORFGBG as rxvt sets it).
 pub fn theme(choice: ColourChoice, variable: impl Fn(&str) -> Option<String>) -> Theme {
-    let refused = variable("NO_COLOR").is_some_and(|value| !value.is_empty());
+    let refused = refuses_colour(&variable);
     let has_none = variable("TERM").is_none_or(|term| term == "dumb" || term.starts_with("vt"));
     let colour = match choice {
         ColourChoice::Auto => !refused && !has_none,

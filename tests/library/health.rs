@@ -635,8 +635,9 @@ fn the_sentence_names_the_right_cause() {
     let fine = ["motion.time_step_s=0.001", "motion.steps=20000", report];
     let (sentence, _) = told("fast-top", &fine);
     assert!(
-        sentence.starts_with("The numbers hold: the traced point has kept within")
-            && sentence.contains("but its nutation does not hold, a swing of 0.0744 degrees")
+        sentence.starts_with(
+            "The traced point holds, and the nutation does not: the point has kept within",
+        ) && sentence.contains("but the nutation, a swing of 0.0744 degrees")
             && sentence.ends_with("so that it is gone."),
         "{sentence}"
     );

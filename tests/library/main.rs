@@ -19,6 +19,7 @@ mod lessons;
 mod lessons_taken;
 mod limits;
 mod mangled;
+mod messages;
 mod mouse;
 mod parameters;
 mod pictures;

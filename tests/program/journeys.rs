@@ -166,11 +166,11 @@ fn another_tilt_begins_a_run_and_undo_goes_back_to_the_old_one() {
     lab.wait_for_step(100); // played to the time at which the one before stood
     lab.press("3.");
     lab.wait_for_step(103);
-    lab.ask("u", "undone: another run");
+    lab.ask("u", "undone: this is the run before");
     lab.wait_for_step(100);
     lab.wait_for("►tilt 45 deg");
     assert_eq!(saved(&mut lab, "back.toml"), before);
-    lab.ask("U", "done again: another run");
+    lab.ask("U", "done again: this is the run after");
     lab.wait_for_step(103);
     lab.wait_for("►tilt 30 deg");
     let run = saved(&mut lab, "run.toml");
@@ -558,7 +558,7 @@ fn the_runs_before_are_kept_too() {
     lab.quit();
     let mut lab = resumed(&ground);
     lab.wait_for_step(70);
-    lab.ask("u", "undone: another run");
+    lab.ask("u", "undone: this is the run before");
     lab.wait_for_step(70);
     assert_eq!(saved(&mut lab, "after.toml"), before);
     lab.quit();

@@ -13,6 +13,7 @@ mod compare;
 mod escapes;
 mod journeys;
 mod lessons;
+mod messages;
 mod mouse;
 mod readme;
 mod sessions;

@@ -2,8 +2,8 @@
 
 use super::{shortened, wrapped_to, write};
 use crate::analysis::remarks::{Remark, remarks};
-use crate::lab::Lab;
 use crate::lab::action::{Action, LessonKey};
+use crate::lab::{Lab, MOST_COUNTED};
 use crate::observe::reading::Reading;
 use crate::text::number::{fixed, shortest};
 use crate::tui::keymap::{BINDINGS, Binding, Key, Mode};
@@ -181,6 +181,10 @@ fn said(lab: &Lab) -> (String, Role) {
 
 fn said_of_run(lab: &Lab) -> (String, Role) {
     match (lab.on_top().count(), lab.notice()) {
+        (Some(MOST_COUNTED), _) => (
+            format!("{MOST_COUNTED} is the most that is counted: now the key; Esc forgets it"),
+            Role::Focus,
+        ),
         (Some(count), _) => (
             format!("{count}: now the key, such as . for that many steps; Esc forgets it"),
             Role::Focus,

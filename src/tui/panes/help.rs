@@ -151,8 +151,8 @@ fn lines(entries: &[Entry], grouped: bool, width: usize) -> Vec<Line> {
             lines.extend(heading(entry, width));
         }
         let of_entry = match column {
-            Some(column) => beside(entry, column, width),
-            None => after(entry, width),
+            Some(column) => beside(entry, &told(entry, grouped), column, width),
+            None => after(entry, &told(entry, grouped), width),
         };
         lines.extend(of_entry.into_iter().enumerate().map(|(at, pieces)| Line {
             entry: Some(index),
@@ -179,9 +179,17 @@ fn heading(entry: &Entry, width: usize) -> Vec<Line> {
 
 type Pieces = Vec<(usize, String, Role)>;
 
-/// The name of `entry`, and its text in lines that begin in `column`.
-fn beside(entry: &Entry, column: usize, width: usize) -> Vec<Pieces> {
-    let text = wrapped(entry.text(), width.saturating_sub(column));
+/// The text of `entry`: of a pane's key with the pane, where no heading says it.
+fn told(entry: &Entry, grouped: bool) -> String {
+    match entry.pane {
+        Some(_) if !grouped => format!("{} ({})", entry.text(), entry.group),
+        _ => entry.text().to_owned(),
+    }
+}
+
+/// The name of `entry`, and its `text` in lines that begin in `column`.
+fn beside(entry: &Entry, text: &str, column: usize, width: usize) -> Vec<Pieces> {
+    let text = wrapped(text, width.saturating_sub(column));
     let text = text
         .into_iter()
         .map(|text| vec![(column, text, Role::Text)]);
@@ -192,22 +200,22 @@ fn beside(entry: &Entry, column: usize, width: usize) -> Vec<Pieces> {
     lines
 }
 
-/// The name of `entry` and its text right after it, where there is room for a few words; else below it.
-fn after(entry: &Entry, width: usize) -> Vec<Pieces> {
+/// The name of `entry` and its `text` right after it, where there is room for a few words; else below it.
+fn after(entry: &Entry, text: &str, width: usize) -> Vec<Pieces> {
     const INDENT: usize = NAMES + GAP - 1;
     const FEW_WORDS: usize = 12;
     let name = entry.name();
     let taken = columns(&name);
     let room = width.saturating_sub(INDENT);
     if taken + GAP + FEW_WORDS > room {
-        let text = wrapped(entry.text(), room).into_iter();
+        let text = wrapped(text, room).into_iter();
         let text = text.map(|text| vec![(INDENT, text, Role::Text)]);
         let name = vec![(NAMES, name, Role::Focus)];
         return std::iter::once(name).chain(text).collect();
     }
     // A word as long as the name keeps the name's columns free on the first line.
     let held = "x".repeat(taken);
-    let text = wrapped(&format!("{held} {}", entry.text()), room);
+    let text = wrapped(&format!("{held} {text}"), room);
     let first = text.first().and_then(|first| first.strip_prefix(&held));
     let first = first.unwrap_or_default().trim_start().to_owned();
     let mut lines = vec![vec![

@@ -125,6 +125,8 @@ fn sign(text: &[char]) -> Result<(Token, usize), String> {
     let operator = OPERATORS.iter().find(|(name, _)| begins(name));
     match (operator, text[0]) {
         (Some((name, operator)), _) => Ok((Token::Operator(*operator), name.len())),
+        (None, '=') if text.get(1) == Some(&'>') => Err("write >= for =>".to_owned()),
+        (None, '=') if text.get(1) == Some(&'<') => Err("write <= for =<".to_owned()),
         (None, '=') => Err("a comparison is written ==".to_owned()),
         (None, '&') => Err("write and".to_owned()),
         (None, '|') => Err("write or, or abs(...)".to_owned()),

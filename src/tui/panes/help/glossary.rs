@@ -72,11 +72,7 @@ pub(super) const GLOSSARY: &[Word] = &[
     ),
     (
         "strobed",
-        "the time step is too long to see a motion: as under a strobe light, a slower one or none at all appears",
-    ),
-    (
-        "aliased",
-        "as strobed: the wheel turns so far in a step that the swing on the screen is the time step's, not the gyroscope's",
+        "the time step is too long to see a motion: as under a strobe light another appears, and a swing that is not the gyroscope's",
     ),
     (
         "predicted",
@@ -92,7 +88,15 @@ pub(super) const GLOSSARY: &[Word] = &[
     ),
     (
         "mgl",
-        "mass times gravity times the distance of the centre of mass from the pivot: the unit of the drift, J",
+        "M g |c| of the summary: mass, gravity and the distance of the centre of mass from the pivot; unit of the drift",
+    ),
+    (
+        "kappa",
+        "I3/I1, the inertia about the axle by that across it: below 1 a long body, above 1 a flat one",
+    ),
+    (
+        "steady",
+        "the angle between axle and L in steady precession, which does not nod; the exact motion's",
     ),
     (
         "Ekin",
@@ -137,6 +141,42 @@ pub(super) const GLOSSARY: &[Word] = &[
     (
         "ghost",
         "the run before the last edit, dotted: what did the edit change?",
+    ),
+    (
+        "other run",
+        "the ghost, or where a run is pinned the pinned one: it lies behind the present run",
+    ),
+    (
+        "pinned",
+        "the run that i keeps as the reference: in long and short dashes, through edits and other presets",
+    ),
+    (
+        "dotted",
+        "the run before the last edit; in a band the mean; from above the path before the last swings",
+    ),
+    (
+        "dashes",
+        "the exact motion beside the run; a - in the place of a number: nothing is known or measured yet",
+    ),
+    (
+        "precession none",
+        "an axle that swings through the vertical goes round L and not round z: it has no precession to tell",
+    ),
+    (
+        "both *",
+        "from above: the run's place o and that of the exact motion e are the same point of the screen",
+    ),
+    (
+        "zoom",
+        "the upper strip of the traces: the tilt over about ten swings, enlarged; the others show a longer time",
+    ),
+    (
+        "· ═ : │ █",
+        "the line below the panes: what lies ahead, a push, an edit, the scenario's end, where the run stands",
+    ),
+    (
+        "×20",
+        "the playback speed, simulated seconds in one second: + and - change it, and never the time step",
     ),
     (
         "session",

@@ -2,6 +2,7 @@
 
 use super::edited::fewer_digits;
 use crate::analysis::remarks::{short_no_drift, short_unit};
+use crate::analysis::theory::{Axis, Path};
 use crate::observe::reading::Reading;
 use crate::physics::Body;
 use crate::scenario::{Motion, Scenario, Window};
@@ -150,9 +151,11 @@ pub(super) fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
 
 pub(super) fn now_rows(reading: &Reading) -> Vec<Row> {
     let sample = &reading.readouts.sample;
+    // What a scheme that has broken down leaves is no place and no energy of a body.
+    let of_body = |number: f64| reading.readouts.health.is_a_rotation.then_some(number);
     let axis = |label, role, metres: f64| Row {
         label_role: role,
-        ..number(0, label, metres, 4, "m")
+        ..measured(0, label, of_body(metres), 4, "m")
     };
     let mut rows = vec![
         heading("now"),
@@ -167,7 +170,7 @@ pub(super) fn now_rows(reading: &Reading) -> Vec<Row> {
     rows.extend([
         number(3, "|L|", sample.momentum.norm(), 3, "J s"),
         number(4, "Lz", sample.momentum.z, 3, "J s"),
-        number(4, "energy", sample.energy, 2, "J"),
+        measured(4, "energy", of_body(sample.energy), 2, "J"),
     ]);
     rows
 }
@@ -178,6 +181,11 @@ pub(super) fn further_rows(reading: &Reading) -> Vec<Row> {
     let told = |rank, label, name, digits, unit| {
         measured(rank, label, readouts.number(name), digits, unit)
     };
+    let of_body = |rank, label, name, digits, unit| {
+        let number = readouts.number(name);
+        let number = number.filter(|_| readouts.health.is_a_rotation);
+        measured(rank, label, number, digits, unit)
+    };
     vec![
         heading("so far"),
         told(7, "tilt from", "measured_lowest_tilt_deg", 3, "deg"),
@@ -187,12 +195,12 @@ pub(super) fn further_rows(reading: &Reading) -> Vec<Row> {
         told(7, "z from", "measured_lowest_z_m", 4, "m"),
         told(7, "z to", "measured_highest_z_m", 4, "m"),
         heading("wheel"),
-        told(9, "L on axle", "L_axle_Js", 3, "J s"),
-        told(9, "turns", "turns_per_step", 4, "/step"),
-        told(9, "axle to L", "lag_deg", 3, "deg"),
+        of_body(9, "L on axle", "L_axle_Js", 3, "J s"),
+        of_body(9, "turns", "turns_per_step", 4, "/step"),
+        of_body(9, "axle to L", "lag_deg", 3, "deg"),
         told(9, "steady", "true_steady_lag_deg", 3, "deg"),
-        told(10, "azimuth", "azimuth_deg", 2, "deg"),
-        told(10, "off exact", "distance_m", 4, "m"),
+        of_body(10, "azimuth", "azimuth_deg", 2, "deg"),
+        of_body(10, "off exact", "distance_m", 4, "m"),
     ]
 }
 
@@ -202,19 +210,31 @@ pub(super) fn watched_rows(reading: &Reading) -> [Row; 5] {
     let precession = reading.precession_deg_per_s();
     let predicted = readouts.number("predicted_precession_rad_per_s");
     let nutation = match readouts.nutation_is_resolved() {
-        Some(false) => "nutation?", // a strobe's picture: the line below the panes says whose swing it is
+        Some(false) => "nutation?", // strobed: the line below the panes says whose swing it is
         _ => "nutation",
     };
+    let health = &readouts.health;
+    let tilt = health.is_a_rotation.then_some(readouts.sample.tilt_deg);
     let drift = readouts.health.energy_drift;
     let energy_unit = readouts.health.energy_unit;
+    // An axle that goes through the vertical has no precession; else there is only none yet.
+    let has_none = readouts
+        .theory
+        .as_ref()
+        .is_some_and(|theory| theory.axis == Axis::Z && theory.path == Path::ThroughVertical);
+    let rate = |rank, label, rate: Option<f64>| match rate {
+        None if has_none => value(rank, label, "none".to_owned(), ""),
+        rate => measured(rank, label, rate, 3, "deg/s"),
+    };
     let (drift, unit) = match drift {
+        Some(_) if !readouts.health.is_a_rotation => ("-".to_owned(), short_unit(energy_unit)),
         Some(drift) => (signed("E drift", drift, 4), short_unit(energy_unit)),
         None => (short_no_drift(energy_unit).to_owned(), ""),
     };
     [
-        number(0, "tilt", readouts.sample.tilt_deg, 3, "deg"),
-        measured(0, "precession", precession, 3, "deg/s"),
-        measured(1, PREDICTED, predicted.map(f64::to_degrees), 3, "deg/s"),
+        measured(0, "tilt", tilt, 3, "deg"),
+        rate(0, "precession", precession),
+        rate(1, PREDICTED, predicted.map(f64::to_degrees)),
         measured(
             1,
             nutation,

@@ -1,0 +1,250 @@
+//! What the lab and the summary say: sentences that a newcomer took for wrong or could not make sense of.
+
+use crate::support::desk::Desk;
+use crate::support::scenarios::{preset, view};
+use crate::support::stage::{LARGE, SMALL, Stage};
+use gyrolab::analysis::Monitor;
+use gyrolab::analysis::health::Health;
+use gyrolab::analysis::remarks::{Remark, remarks};
+use gyrolab::lab::view::markers::Marker;
+use gyrolab::lab::{Lab, command};
+use gyrolab::run::Simulation;
+use gyrolab::scenario::{Document, Scenario};
+use gyrolab::tui::keymap::Key;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// The health of the run of `scenario` with `set` at its end.
+fn health(scenario: &str, set: &[&str]) -> Health {
+    let mut simulation = Simulation::new(Arc::new(preset(scenario, set)));
+    let mut monitor = Monitor::new(simulation.now());
+    let end = simulation.scenario().steps;
+    while simulation.step_number() < end && simulation.step().is_ok() {
+        monitor.follow(simulation.now());
+    }
+    monitor.health(simulation.now())
+}
+
+fn said(remarks: &[Remark]) -> String {
+    let long: Vec<_> = remarks.iter().map(|remark| remark.long.as_str()).collect();
+    long.join(" · ")
+}
+
+#[test]
+fn a_damping_that_spoils_a_run_is_seen_in_the_line_about_the_numbers() {
+    let health = health("cusps", &["motion.scheme=report"]);
+    let remarks = remarks(&health, None);
+    let line = said(&remarks);
+    assert!(
+        line.contains("nutation damped by 0.00441 % a step"),
+        "{line}"
+    );
+    assert!(!line.contains("as it should"), "{line}");
+    let damped = remarks.iter().find(|one| one.long.contains("damped"));
+    assert!(damped.is_some_and(|remark| remark.warns), "{line}");
+}
+
+#[test]
+fn what_is_right_about_a_good_run_is_said() {
+    let line = said(&remarks(
+        &health(
+            "cusps",
+            &["motion.scheme=report", "motion.time_step_s=0.00005"],
+        ),
+        None,
+    ));
+    assert!(
+        line.contains("as far as it should") && line.contains("nutation ×1.0000 a step"),
+        "{line}"
+    );
+}
+
+#[test]
+fn a_nutation_that_is_lost_does_not_contradict_the_first_words() {
+    let health = health("fast-top", &["motion.scheme=report"]);
+    let sentence = health.sentence(None);
+    assert!(
+        sentence.starts_with("The traced point holds, and the nutation does not"),
+        "{sentence}"
+    );
+}
+
+#[test]
+fn one_word_stands_for_what_a_long_time_step_shows() {
+    for (scenario, set) in [
+        ("method-2", &[][..]),
+        ("method-2", &["motion.scheme=strang"]),
+        ("fast-top", &["motion.time_step_s=0.01"]),
+    ] {
+        let health = health(scenario, set);
+        let remarks = remarks(&health, None);
+        assert!(remarks[0].long.contains("strobed"), "{:?}", remarks[0]);
+        assert!(remarks[0].short.ends_with(": strobed"), "{:?}", remarks[0]);
+    }
+}
+
+#[test]
+fn numbers_that_are_no_longer_finite_are_told_with_what_helps() {
+    let begin = "the numbers are no longer finite at step 3: ";
+    let end = |edit: &str, is_advised: bool| {
+        let mut stage = Stage::open("wobble-push", &["motion.scheme=rk4"], LARGE);
+        if is_advised {
+            stage.lab.take_advice();
+        }
+        stage.commands("pause = true");
+        if !edit.is_empty() {
+            stage.commands(edit);
+        }
+        stage.commands("go_to = 1").wait(0.1);
+        while is_advised && stage.lab.player().advice().is_none() {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+            stage.wait(0.0);
+        }
+        stage.commands("go_to = 20").wait(1.0);
+        stage.lab.notice().unwrap_or_default()
+    };
+    let mends = "a: dt 0.005 s mends it";
+    let back = ", u takes the last edit back";
+    let edit = "set = { 'motion.gravity_m_per_s2' = 9 }";
+    assert_eq!(end("", true), format!("{begin}{mends}"));
+    assert_eq!(end(edit, true), format!("{begin}{mends}{back}"));
+    let may = "a shorter time step or another scheme may mend it (e)";
+    assert_eq!(end("", false), format!("{begin}{may}"));
+    assert_eq!(end(edit, false), format!("{begin}{may}{back}"));
+}
+
+#[test]
+fn what_a_broken_scheme_leaves_is_not_shown_as_a_place() {
+    let mut stage = Stage::open("wobble-push", &["motion.scheme=rk4"], LARGE);
+    stage.commands("go_to = 20").wait(1.0);
+    stage
+        .shows(
+            "the scheme rk4 breaks down at this time step, its orientation is no rotation any more",
+        )
+        .shows(" tilt            - deg")
+        .shows(" x               - m")
+        .shows(" energy          - J")
+        .shows_no("0.0000 /step")
+        .shows_no("0.0000 times a step");
+    stage.size = SMALL;
+    stage.shows("rk4 breaks down: no rotation");
+    let health = health("wobble-push", &["motion.scheme=rk4"]);
+    let sentence = health.sentence(None);
+    assert!(
+        sentence.contains("the scheme rk4 breaks down"),
+        "{sentence}"
+    );
+}
+
+#[test]
+fn space_pauses_commands_and_lets_them_go_on() {
+    let read = |text: &str| command::read(&Document::parse("demo.toml", text).unwrap()).unwrap();
+    let mut desk = Desk::open("method-2");
+    let commands = "[[do]]\nrun_until = \"t_s >= 50\"\n[[do]]\nstep = 7";
+    desk.lab.take_commands(read(commands));
+    desk.pass(Duration::from_millis(100));
+    desk.press(&[Key::Char(' ')]);
+    let paused = desk.step();
+    assert!(paused < 500);
+    assert_eq!(
+        desk.lab.notice().unwrap(),
+        "paused: 2 commands of demo.toml are left: space goes on with them, Esc leaves them out"
+    );
+    desk.pass(Duration::from_secs(1));
+    assert_eq!((desk.step(), desk.lab.script().count()), (paused, 2));
+    // A session that is kept meanwhile has all of them.
+    let content = desk.lab.content();
+    let view = |scenario: &Scenario| view(scenario, Marker::Braille, true);
+    let back = Lab::resumed(&content, view).unwrap();
+    assert_eq!(back.script().count(), 2);
+    desk.press(&[Key::Char(' ')]);
+    (0..40).for_each(|_| desk.pass(Duration::from_secs(1)));
+    assert_eq!((desk.step(), desk.lab.script().is_done()), (507, true));
+    // Esc leaves out what space has paused.
+    desk.lab.take_commands(read(commands));
+    desk.press(&[Key::Char('r'), Key::Char(' '), Key::Esc]);
+    assert!(desk.lab.script().is_done());
+}
+
+#[test]
+fn a_pause_keeps_what_is_left_of_a_wait_and_a_run_that_plays() {
+    let read = |text: &str| command::read(&Document::parse("demo.toml", text).unwrap()).unwrap();
+    let mut desk = Desk::open("method-2");
+    let commands = "[[do]]\nrun = true\n[[do]]\nwait_s = 3\n[[do]]\nstep = 7";
+    desk.lab.take_commands(read(commands));
+    desk.pass(Duration::from_secs(1));
+    desk.press(&[Key::Char(' ')]);
+    let paused = desk.step();
+    desk.pass(Duration::from_secs(10));
+    assert_eq!((desk.step(), desk.lab.script().count()), (paused, 2));
+    desk.press(&[Key::Char(' ')]);
+    desk.pass(Duration::from_secs(1));
+    assert!(desk.step() > paused, "it plays again");
+    assert!(!desk.lab.script().is_done(), "a second is left of the wait");
+    desk.pass(Duration::from_secs(2));
+    assert!(desk.lab.script().is_done());
+}
+
+#[test]
+fn words_on_the_screen_are_in_the_glossary() {
+    for (word, meaning) in [
+        ("zoom", "the upper strip of the traces"),
+        ("other run", "the ghost, or where a run is pinned"),
+        ("pinned", "the run that i keeps"),
+        ("steady", "in steady precession"),
+        ("═", "a push, an edit"),
+        ("×20", "the playback speed"),
+        ("kappa", "I3/I1"),
+        ("both", "the same point of the screen"),
+        ("dashes", "the exact motion beside the run"),
+        ("dotted", "from above the path"),
+    ] {
+        let mut stage = Stage::open("method-2", &[], LARGE);
+        stage.press("?").press(word).shows(meaning);
+    }
+    Stage::open("method-2", &[], LARGE)
+        .press("?show it larger")
+        .shows("(from above)")
+        .shows("(3-D)");
+}
+
+#[test]
+fn undo_names_the_run_to_which_it_returns() {
+    let mut stage = Stage::open("method-2", &[], LARGE);
+    stage.commands("pause = true\ngo_to = 10\nset = { 'start.tilt_deg' = 30 }");
+    stage.press("u");
+    assert_eq!(
+        stage.lab.notice().as_deref(),
+        Some("undone: this is the run before; U brings it again")
+    );
+}
+
+#[test]
+fn a_wrong_number_in_the_export_is_told_once() {
+    let mut stage = Stage::open("method-2", &[], LARGE);
+    stage.commands("pause = true\ngo_to = 10");
+    stage
+        .press("xabc")
+        .shows("without .csv: gyrolab run takes it as ./NAME only");
+    stage.press("\t0\n");
+    let picture = stage.picture();
+    assert_eq!(picture.matches("every must be").count(), 1, "{picture}");
+    stage.press("\u{1b}xabc.csv").shows_no("without .csv");
+}
+
+#[test]
+fn a_count_that_is_too_large_is_told() {
+    Stage::open("method-2", &[], LARGE)
+        .press("99999999999")
+        .shows("999999999 is the most that is counted");
+}
+
+#[test]
+fn a_precession_that_there_is_not_is_no_dash() {
+    Stage::open("method-1", &[], LARGE)
+        .commands("pause = true\ngo_to = 1000")
+        .wait(1.0)
+        .shows(" precession   none")
+        .press("?precession none")
+        .shows("goes round L and not round z");
+}
