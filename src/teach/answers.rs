@@ -6,9 +6,6 @@ use super::play::{GoOn, Walk};
 use crate::lab::Lab;
 use crate::scenario::Problem;
 
-/// Stands for a prediction that was not made.
-const NOTHING: &str = "nothing";
-
 /// The predictions of `place` beside what came out of `lesson`, which is played in a new `lab`; as Markdown.
 ///
 /// # Errors
@@ -37,8 +34,8 @@ pub fn answers(
 /// The heading of a page, with what was asked and what came out; nothing where the page has neither.
 fn of_page(lesson: &Lesson, page: &Page, place: &Place, walk: &Walk<'_>) -> Vec<String> {
     let told = page.blocks.iter().filter_map(|block| match block {
-        Block::Predict(predict) => Some(predicted(predict, place, walk)),
-        Block::Compare(compare) => Some(came_out(lesson, compare, place, walk)),
+        Block::Predict(predict) => predicted(predict, place, walk),
+        Block::Compare(compare) => came_out(lesson, compare, place, walk),
         _ => None,
     });
     let mut parts: Vec<_> = told.collect();
@@ -48,14 +45,17 @@ fn of_page(lesson: &Lesson, page: &Page, place: &Place, walk: &Walk<'_>) -> Vec<
     parts
 }
 
-fn predicted(predict: &Predict, place: &Place, walk: &Walk<'_>) -> String {
+/// The question with what was predicted; nothing where nothing was.
+fn predicted(predict: &Predict, place: &Place, walk: &Walk<'_>) -> Option<String> {
     let ask = predict.ask.with_numbers(walk.lab(), walk.kept());
-    let answer = place.predictions.answer(&predict.name);
-    let answer = answer.map_or(NOTHING.to_owned(), |answer| answer.in_words(predict));
-    format!("**Question.** {ask}\n\n**Predicted.** {answer}")
+    let answer = place.predictions.answer(&predict.name)?;
+    let answer = answer.in_words(predict);
+    Some(format!("**Question.** {ask}\n\n**Predicted.** {answer}"))
 }
 
-fn came_out(lesson: &Lesson, compare: &Compare, place: &Place, walk: &Walk<'_>) -> String {
+/// What came out; nothing where nothing was predicted: it would give the answer away.
+fn came_out(lesson: &Lesson, compare: &Compare, place: &Place, walk: &Walk<'_>) -> Option<String> {
+    place.predictions.answer(&compare.prediction)?;
     let text = compare.filled(lesson, &place.predictions, walk.lab(), walk.kept());
-    format!("**Came out.** {text}")
+    Some(format!("**Came out.** {text}"))
 }

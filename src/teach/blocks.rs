@@ -404,14 +404,20 @@ pub(super) fn check(
     reader: &Reader<'_>,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> Found<Check> {
-    let mut content = reader.content(&["that", "hint"])?;
+    let mut content = reader.content(&["that", "goal", "hint"])?;
     let hint = content.line("hint", true);
+    let goal = content.line("goal", false);
     if content.get("that").is_none() {
         content.refuse_whole("lacks that: the condition, such as \"t_s >= 60\"");
     }
     let that = content.expression("that", true, find);
     let line = content.line;
-    let made = that.map(|that| Check { line, that, hint });
+    let made = that.map(|that| Check {
+        line,
+        that,
+        goal,
+        hint,
+    });
     match made {
         Some(check) => content.finish(check),
         None => Err(content.problems),

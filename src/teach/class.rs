@@ -46,6 +46,9 @@ pub struct Place {
     /// The numbers that were kept.
     #[serde(default)]
     pub kept: Kept,
+    /// Whether its last page was opened.
+    #[serde(default)]
+    pub has_ended: bool,
     /// When it was opened first: seconds since 1970 (UTC).
     #[serde(default)]
     pub began_unix_s: u64,

@@ -135,6 +135,8 @@ pub struct Check {
     pub line: usize,
     /// The condition.
     pub that: Expression,
+    /// What is to be reached, in words; empty where the file does not say it.
+    pub goal: String,
     /// Help for one who has not got there; empty where the file has none.
     pub hint: String,
 }

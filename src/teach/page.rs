@@ -30,7 +30,7 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
         });
         let kind = Kind::Choice {
             is_selected: index == selected,
-            is_given: left.get(name).is_some_and(|place| place.page == pages),
+            is_given: left.get(name).is_some_and(|place| place.has_ended),
         };
         if index == selected {
             sheet.seen = Some(sheet.paragraphs.len());
@@ -70,12 +70,12 @@ pub(super) fn sheet(taken: &Taken, now: Duration, lab: &Lab) -> Sheet {
             ..Sheet::default()
         },
     };
+    writer.notes(now);
     writer.page();
     // The page begins at its top, until the student has come to the question at its end.
     if taken.has_come_to_question() {
         writer.sheet.seen = writer.sheet.paragraphs.len().checked_sub(1);
     }
-    writer.notes(now);
     writer.sheet
 }
 
@@ -106,9 +106,10 @@ impl Writer<'_> {
         for block in blocks {
             match block {
                 Block::Text(text) => {
-                    let source = match self.taken.is_under_way() {
-                        true => text.filled(|_, _| SOON.to_owned()),
-                        false => text.with_numbers(self.lab, &self.taken.place().kept),
+                    let source = match self.taken.stated(text.line) {
+                        Some(source) => source.to_owned(),
+                        None if self.taken.is_under_way() => text.filled(|_, _| SOON.to_owned()),
+                        None => text.with_numbers(self.lab, &self.taken.place().kept),
                     };
                     self.extend(paragraphs(&source, &Kind::Text));
                 }
@@ -121,12 +122,13 @@ impl Writer<'_> {
                 Block::Compare(compare) => self.comparison(compare),
                 Block::Check(check) => {
                     let is_reached = self.taken.has_reached(check.line);
-                    let text = match is_reached {
-                        true => "done".to_owned(),
-                        false => format!("not yet: {}", check.that.text()),
+                    let state = if is_reached { "done" } else { "not yet" };
+                    let text = match check.goal.is_empty() {
+                        true => state.to_owned(),
+                        false => format!("{state}: {}", check.goal),
                     };
                     self.add(Paragraph::new(Kind::Goal { is_reached }, text));
-                    if !is_reached && !check.hint.is_empty() {
+                    if !is_reached && self.taken.shows_hints() && !check.hint.is_empty() {
                         self.add(Paragraph::new(Kind::Hint, format!("Hint: {}", check.hint)));
                     }
                 }
@@ -145,7 +147,10 @@ impl Writer<'_> {
             self.add(Paragraph::new(Kind::Result, SOON));
             return;
         }
-        let source = compare.filled(lesson, &place.predictions, self.lab, &place.kept);
+        let source = match self.taken.stated(compare.line) {
+            Some(source) => source.to_owned(),
+            None => compare.filled(lesson, &place.predictions, self.lab, &place.kept),
+        };
         self.extend(paragraphs(&source, &Kind::Result));
         if place.predictions.answer(&compare.prediction).is_none() {
             let pages = &mut lesson.pages.iter();
@@ -199,8 +204,11 @@ impl Writer<'_> {
         let is_last = page == self.taken.lesson().pages.len();
         let text = match (self.taken.is_under_way(), has_task, is_last) {
             (true, ..) => "The run is on its way; space pauses it.",
-            (false, true, false) => "n: next page; D shows how it is done; R begins again.",
-            (false, true, true) => "D shows how it is done; R begins again; L: other lessons.",
+            (false, true, _) if !self.taken.shows_hints() => {
+                "D: a hint; R: the page again; n: next page."
+            }
+            (false, true, false) => "D shows how it is done; R: the page again; n: next page.",
+            (false, true, true) => "D shows how it is done; R: the page again; L: other lessons.",
             (false, false, false) => "n: next page.",
             (false, false, true) => "This is the end of the lesson. L: other lessons.",
         };

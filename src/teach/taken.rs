@@ -11,7 +11,7 @@ use super::{reading, shipped};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
 use crate::lab::command::Command;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
@@ -30,6 +30,11 @@ pub struct Taken {
     has_come_to_question: bool,
     /// The lines of the checks of this page that have held.
     reached: BTreeSet<usize>,
+    /// The texts of this page that the student's own run does not change, with their numbers, by their lines in the file;
+    /// `None` until the run has arrived where the page wants it.
+    stated: Option<BTreeMap<usize, String>>,
+    /// Whether the hints of the page's checks are shown.
+    shows_hints: bool,
     /// The block that the lab is carrying out.
     under_way: Option<Block>,
     /// Whether turning the page was refused once, because a prediction is open.
@@ -71,6 +76,8 @@ impl Taken {
             selected: 0,
             has_come_to_question: false,
             reached: BTreeSet::new(),
+            stated: None,
+            shows_hints: false,
             under_way: None,
             was_asked: false,
             clock: None,
@@ -120,7 +127,17 @@ impl Taken {
 
     /// Whether the lab is still on its way to where the page wants it.
     pub fn is_under_way(&self) -> bool {
-        self.under_way.is_some()
+        self.stated.is_none()
+    }
+
+    /// The text at this line of the file with its numbers, where it is one that the student's own run does not change.
+    pub fn stated(&self, line: usize) -> Option<&str> {
+        self.stated.as_ref()?.get(&line).map(String::as_str)
+    }
+
+    /// Whether the hints of the page's checks are shown.
+    pub fn shows_hints(&self) -> bool {
+        self.shows_hints
     }
 
     /// The clock, where the teacher's notes are shown.
@@ -173,6 +190,7 @@ impl Taken {
         let commands = stage.commands(lab);
         self.under_way = Some(block);
         lab.take_commands(commands);
+        lab.forget_message_of_script();
         self.keep_if_done(lab);
         lab.turn_to_sheet();
     }
@@ -201,7 +219,9 @@ impl Taken {
     fn turn_to(&mut self, page: usize) {
         self.place.page = page;
         (self.selected, self.was_asked, self.under_way) = (0, false, None);
-        self.has_come_to_question = false;
+        (self.has_come_to_question, self.shows_hints) = (false, false);
+        self.stated = None;
+        self.place.has_ended |= page == self.lesson.pages.len();
         self.reached.clear();
     }
 
@@ -278,8 +298,15 @@ impl Taken {
         lab.turn_to_sheet();
     }
 
-    /// Does the task of the page.
+    /// Shows the hints of the page, or does its task where they are shown already.
     fn show_task(&mut self, lab: &mut Lab) {
+        let has_hint = self.page().is_some_and(|page| {
+            let mut checks = page.checks();
+            checks.any(|check| !check.hint.is_empty())
+        });
+        if has_hint && !std::mem::replace(&mut self.shows_hints, true) {
+            return;
+        }
         let lesson = Arc::clone(&self.lesson);
         let page = self.place.page;
         match lesson.task_of(page, &self.place.predictions) {
@@ -315,12 +342,9 @@ impl Taken {
                 }
             }
             Asked::Number { unit } => {
-                let label = match unit.is_empty() {
-                    true => predict.name.clone(),
-                    false => format!("{}, {unit}", predict.name),
-                };
+                let label = if unit.is_empty() { "number" } else { unit };
                 let about = "Enter locks it: a prediction is not changed";
-                lab.ask_number("your prediction", &label, about);
+                lab.ask_number("your prediction", label, about);
             }
         }
     }
@@ -354,6 +378,7 @@ impl Taken {
     /// Takes note of what the lab has done, and of a file that has changed. Returns whether the page is another now.
     pub(super) fn advance(&mut self, now: Duration, lab: &mut Lab) -> bool {
         let mut is_new = self.keep_if_done(lab);
+        is_new |= self.state(lab);
         if !self.is_under_way() && lab.has_changed() {
             is_new |= self.note_reached(lab);
         }
@@ -373,12 +398,48 @@ impl Taken {
         is_new
     }
 
+    /// Fixes the numbers in the page's text once the run has arrived. What stands behind a task or a check follows the run.
+    fn state(&mut self, lab: &Lab) -> bool {
+        let has_arrived = self.under_way.is_none()
+            && lab.script().is_done()
+            && lab.player().playback().steps_to_go().is_none();
+        if self.stated.is_some() || !has_arrived {
+            return false;
+        }
+        let lesson = Arc::clone(&self.lesson);
+        let kept = &self.place.kept;
+        let is_before = |block: &&super::Block| {
+            !matches!(block, super::Block::Task(_) | super::Block::Check(_))
+        };
+        let page = lesson.page(self.place.page);
+        let blocks = page.into_iter().flat_map(|page| &page.blocks);
+        let blocks = lesson
+            .introduction
+            .iter()
+            .chain(blocks.take_while(is_before));
+        let stated = blocks.filter_map(|block| match block {
+            super::Block::Text(text) => Some((text.line, text.with_numbers(lab, kept))),
+            super::Block::Compare(compare) => {
+                let predictions = &self.place.predictions;
+                predictions.answer(&compare.prediction)?;
+                Some((
+                    compare.line,
+                    compare.filled(&lesson, predictions, lab, kept),
+                ))
+            }
+            _ => None,
+        });
+        self.stated = Some(stated.collect());
+        true
+    }
+
     /// Goes on with `lesson`, the file as it is now, on the same page; the run stays where it is.
     fn take_file(&mut self, lesson: Lesson, lab: &mut Lab) {
         let name = self.lesson.name.clone();
         self.place.page = self.place.page.min(lesson.pages.len().max(1));
         self.lesson = Arc::new(Lesson { name, ..lesson });
         self.reached.clear();
+        self.stated = None;
         lab.tell("the lesson was read again: R begins the page again");
     }
 

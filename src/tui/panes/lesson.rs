@@ -61,10 +61,12 @@ fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
     let quiet = view.theme.style(Role::Quiet);
     let below = page.lines.len() > page.first + inside.height as usize;
-    let more = match (page.first > 0, below) {
-        (_, true) => " PgDn: more ",
-        (true, false) => " PgUp: back ",
-        (false, false) => return,
+    let has_focus = view.focus == ROW.id;
+    let more = match (page.first > 0, below, has_focus) {
+        (_, true, true) => " PgDn: more ",
+        (true, false, true) => " PgUp: back ",
+        (_, true, false) => " Tab, PgDn: more ",
+        (_, false, _) => return,
     };
     let border = Rect {
         y: area.bottom() - 1,
@@ -168,7 +170,7 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<Line> {
     let room = width.saturating_sub(hanging).max(1) as usize;
     let text = paragraph.text();
     let texts: Vec<String> = match paragraph.kind {
-        Kind::Code => text.lines().map(str::to_owned).collect(),
+        Kind::Code => text.lines().flat_map(|line| in_room(line, room)).collect(),
         _ => wrapped(&text, room),
     };
     let mut looks = looks(paragraph).peekable();
@@ -206,6 +208,14 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<Line> {
         });
     }
     lines
+}
+
+/// `line` of code as it is, or in several lines where it is longer than there is room.
+fn in_room(line: &str, room: usize) -> Vec<String> {
+    match columns(line) <= room {
+        true => vec![line.to_owned()],
+        false => wrapped(line, room),
+    }
 }
 
 /// The letters of a paragraph with their looks.
