@@ -9,8 +9,9 @@ use crate::lab::Lab;
 use crate::storage::session::{self, Listed};
 use crate::teach::class::{KeptLessons, Place};
 use crate::teach::clock::{self, Clock};
-use crate::teach::{Lesson, answers, reading};
+use crate::teach::{Asked, Lesson, answers, reading};
 use crate::text::printable::{printable, printable_lines};
+use crate::text::wrap::wrapped;
 use anyhow::bail;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{self, IsTerminal};
@@ -19,6 +20,8 @@ use std::process::ExitCode;
 use std::thread;
 use std::time::{Duration, SystemTime};
 
+/// Columns of the notes.
+const WIDTH: usize = 78;
 /// How often the session is looked at.
 const EVERY: Duration = Duration::from_millis(500);
 
@@ -77,10 +80,13 @@ fn folder() -> anyhow::Result<PathBuf> {
 /// The name of the session that is meant: of those with an open lesson, the one in use that was written last.
 fn find(folder: &Path, name: &str) -> anyhow::Result<Option<String>> {
     let open = session::list(folder)?.into_iter().filter(|session| {
-        let is_meant = name.is_empty() || session.name == name;
+        let is_meant = match name.is_empty() {
+            true => session.is_in_use,
+            false => session.name == name,
+        };
         is_meant && open_in(session).is_some()
     });
-    let newest = open.max_by_key(|session| (session.is_in_use, session.written));
+    let newest = open.max_by_key(|session| session.written);
     Ok(newest.map(|session| session.name))
 }
 
@@ -128,6 +134,9 @@ fn follow(folder: &Path, name: &str, line: &ProgressBar, interruption: &Interrup
             open = now;
         }
         line.set_message(match &open {
+            Some(_) if !session::is_in_use(folder, name) => {
+                "the lab was left; Ctrl-C ends this".to_owned()
+            }
             Some((lesson, place)) => times(lesson, place),
             None => "no lesson is open there; Ctrl-C ends this".to_owned(),
         });
@@ -135,9 +144,11 @@ fn follow(folder: &Path, name: &str, line: &ProgressBar, interruption: &Interrup
     }
 }
 
-/// Prints `text` above the live line.
+/// Prints `text` above the live line, in lines that end between words.
 fn tell(line: &ProgressBar, text: &str) {
-    let text = printable_lines(text);
+    let lines = text.lines().flat_map(|line| wrapped(line, WIDTH));
+    let text = lines.collect::<Vec<_>>().join("\n");
+    let text = printable_lines(&text);
     match line.is_hidden() {
         true => println!("{text}"),
         false => line.println(text),
@@ -153,6 +164,11 @@ fn told(lesson: &Lesson, number: usize) -> String {
         for predict in page.predicts() {
             let ask = predict.ask.filled(|_, _| "…".to_owned());
             text += &format!("\nasked: {ask}\n");
+            if let Asked::Choice(choices) = &predict.asked {
+                for choice in choices {
+                    text += &format!("  - {choice}\n");
+                }
+            }
         }
         for notes in page.notes() {
             text += &format!("\n{}\n", notes.filled(|_, _| "…".to_owned()).trim());

@@ -390,7 +390,10 @@ impl Lab {
         if let Some(next) = self.next().filter(|_| is_over) {
             return next;
         }
-        let note = told.or(self.work.changed_from_file()).or_else(file);
+        // What a lesson does to its run is no news.
+        let changed = self.work.changed_from_file();
+        let changed = changed.filter(|_| self.view.sheet.is_none());
+        let note = told.or(changed).or_else(file);
         note.unwrap_or("? lists the keys; the scenario's own line, view.look_at, would stand here")
     }
 

@@ -234,6 +234,7 @@ impl Lab {
             self.carry_out_all(&[Command::Cursor(CursorTo::Nowhere)]);
         } else if self.view.filled {
             self.carry_out_all(&[Command::Fill(None)]);
+            self.turn_to_sheet();
         } else if has_cleared {
             // The key has done something already.
         } else if self.files.is_exporting() {

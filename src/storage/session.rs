@@ -200,6 +200,11 @@ pub fn look_at(folder: &Path, name: &str) -> Option<Listed> {
     Some(listed(folder, id))
 }
 
+/// Whether a running process holds the session called `name` in `folder`.
+pub fn is_in_use(folder: &Path, name: &str) -> bool {
+    slot::is_in_use(folder, name)
+}
+
 /// When the session called `name` in `folder` was saved last; long ago if there is none.
 pub fn saved_at(folder: &Path, name: &str) -> SystemTime {
     slot::written_at(folder, name)

@@ -29,8 +29,13 @@ pub struct Class {
 enum Shown {
     #[default]
     Nothing,
-    /// The list of lessons, of which the one with this number is selected.
-    List(usize),
+    /// The list of lessons, of which one is selected.
+    List {
+        /// Its number, from 0.
+        selected: usize,
+        /// The lesson that was open before.
+        from: Option<String>,
+    },
     Lesson(Box<Taken>),
 }
 
@@ -143,23 +148,32 @@ impl Class {
     pub fn act(&mut self, key: LessonKey, lab: &mut Lab) -> Option<Direction> {
         let mut scrolls = None;
         match (&mut self.shown, key) {
-            (Shown::List(_), LessonKey::List) => self.shown = Shown::Nothing,
+            (Shown::List { from, .. }, LessonKey::List) => {
+                // Back to the page; the run was left as it was.
+                let from = from.take();
+                self.shown = Shown::Nothing;
+                if let Some(Err(reason)) = from.map(|name| self.take(&name, lab)) {
+                    lab.refuse(reason.lines().next().unwrap_or_default());
+                }
+            }
             (_, LessonKey::List) => self.open_list(),
-            (Shown::List(selected), LessonKey::Move(direction)) => {
+            (Shown::List { selected, .. }, LessonKey::Move(direction)) => {
                 let last = self.left.len().max(1) + shipped::LESSONS.len();
                 *selected = selected.saturating_add_signed(rows(direction)).min(last);
             }
-            (Shown::List(selected), LessonKey::Take) => {
+            (Shown::List { selected, .. }, LessonKey::Take) => {
                 let selected = *selected;
                 self.open_selected(selected, lab);
             }
-            (Shown::List(_), _) => lab.refuse("Enter opens the selected lesson, L closes the list"),
+            (Shown::List { .. }, _) => {
+                lab.refuse("Enter opens the selected lesson, L closes the list");
+            }
             (Shown::Nothing, _) => lab.refuse("no lesson is open: L lists them"),
             (Shown::Lesson(taken), key) => scrolls = taken.act(key, lab),
         }
-        if let Shown::List(selected) = &self.shown {
-            let last = self.names().len().saturating_sub(1);
-            self.shown = Shown::List((*selected).min(last));
+        let last = self.names().len().saturating_sub(1);
+        if let Shown::List { selected, .. } = &mut self.shown {
+            *selected = (*selected).min(last);
         }
         self.show(lab);
         if key == LessonKey::List {
@@ -173,8 +187,13 @@ impl Class {
         let here = self.taken().map(|taken| taken.lesson().name.clone());
         self.leave();
         let names = self.names();
-        let selected = here.and_then(|here| names.iter().position(|name| *name == here));
-        self.shown = Shown::List(selected.unwrap_or(0));
+        let selected = here
+            .as_ref()
+            .and_then(|here| names.iter().position(|name| name == here));
+        self.shown = Shown::List {
+            selected: selected.unwrap_or(0),
+            from: here,
+        };
     }
 
     fn open_selected(&mut self, selected: usize, lab: &mut Lab) {
@@ -236,7 +255,7 @@ impl Class {
         let names = self.names();
         match &mut self.shown {
             Shown::Nothing => None,
-            Shown::List(selected) => Some(page::list(&names, *selected, &self.left)),
+            Shown::List { selected, .. } => Some(page::list(&names, *selected, &self.left)),
             Shown::Lesson(taken) => Some(page::sheet(taken, self.now, lab)),
         }
     }

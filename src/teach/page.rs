@@ -52,7 +52,7 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
     }
     let keys = match shipped::LESSONS.is_empty() && names.is_empty() {
         true => "There is no lesson. gyrolab lesson FILE.md opens one of your own.",
-        false => "Up, Down choose; Enter opens; L closes.",
+        false => "Up, Down choose; Enter opens; L goes back.",
     };
     sheet.paragraphs.push(Paragraph::new(Kind::Hint, keys));
     sheet

@@ -174,7 +174,7 @@ pub fn do_in_class(
 
 /// Carries out the action of `key`, or shows a message that it has none.
 pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
-    match keymap::action_with(panes::keys(lab.view().focus), lab.on_top().mode(), key) {
+    match keymap::action_with(panes::keys_of(lab), lab.on_top().mode(), key) {
         Some(Action::DoEntry) => help::do_entry(lab),
         Some(action) => {
             let request = lab.update(action);

@@ -97,7 +97,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('s')], Action::SaveRun, "", "save the run file: scenario and all that was done"),
     row(&[Lab], &[Char('S')], Action::SavePresent, "", "save the present state as a scenario"),
     row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file"),
-    row(&[Lab], &[Char('L')], Action::Lesson(LessonKey::List), "lessons", "the lessons: choose one; in a lesson: back to the list"),
+    row(&[Lab], &[Char('L')], Action::Lesson(LessonKey::List), "lessons", "the list of lessons; again: back to where one was"),
     row(&[Lab], &[Char('n')], Action::Lesson(LessonKey::Next), "", "the next page of the lesson"),
     row(&[Lab], &[Char('N')], Action::Lesson(LessonKey::Before), "", "the page before"),
     row(&[Lab], &[Char('R')], Action::Lesson(LessonKey::Again), "", "back to where the lesson stands: the page's run from its beginning"),
@@ -160,9 +160,13 @@ pub fn action(mode: Mode, key: Key) -> Option<Action> {
 }
 
 /// What `key` means in `mode` where the pane in focus adds these `keys`, which come before the others.
-pub fn action_with(keys: &'static [Binding], mode: Mode, key: Key) -> Option<Action> {
+pub fn action_with(
+    keys: impl IntoIterator<Item = &'static Binding>,
+    mode: Mode,
+    key: Key,
+) -> Option<Action> {
     let bound = keys
-        .iter()
+        .into_iter()
         .chain(BINDINGS)
         .find(|row| row.modes.contains(&mode) && row.keys.contains(&key));
     match (bound, mode, key) {

@@ -165,10 +165,9 @@ fn without_page(view: &View) -> View {
     let mut view = view.clone();
     view.sheet = None;
     if view.focus == Pane::LESSON {
-        let before = view.side_by_side.iter().copied();
-        let mut before = before.filter(|pane| view.may_show(*pane));
+        let beside = view.beside.filter(|pane| view.may_show(*pane));
         let first = view.to_show().first().copied();
-        view.focus = before.next().or(first).unwrap_or(Pane::TRACES);
+        view.focus = beside.or(first).unwrap_or(Pane::TRACES);
     }
     view
 }

@@ -73,6 +73,7 @@ keep = { mine = "t_s" }
 
 ```check
 that = "t_s > 3.9"
+goal = "be at 4 s"
 hint = "g goes to a time."
 ```
 
@@ -151,14 +152,18 @@ fn play_is_free_and_one_key_leads_back() {
 #[test]
 fn a_task_is_done_by_hand_or_shown() {
     let (mut stage, _folder, _) = taken(3);
-    stage.shows("[ ] not yet").shows("Hint: g goes to a time.");
+    stage.shows("[ ] not yet: be at 4 s").shows_no("Hint");
+    stage
+        .press("D")
+        .shows("Hint: g goes to a time.")
+        .shows("[ ] not yet");
     stage.press("g3.95 s\n").arrive();
     stage.shows("[x] done").shows_no("Hint");
     stage.press("n").shows("You were at 4.0 s");
     let kept = &stage.class.taken().unwrap().place().kept;
     assert!((kept["mine"] - 3.95).abs() < 0.01, "{kept:?}");
     let (mut stage, _folder, _) = taken(3);
-    stage.press("D").arrive().shows("[x] done");
+    stage.press("DD").arrive().shows("[x] done");
     stage.press("nn").shows("this is the last page");
     stage.press("NNNN").arrive().shows("this is the first page");
 }
@@ -223,6 +228,10 @@ fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
     stage.press("nn").arrive().shows("2 of ");
     stage.press("L").shows("(page 2 of ");
     stage.press("\n").arrive().shows("2 of ");
+    let step = stage.step();
+    stage.press("LL").shows("2 of ");
+    assert_eq!(stage.step(), step, "the run stays");
+    let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("LL").shows_no("lessons ──");
     assert!(stage.lab.view().sheet.is_none());
     assert_ne!(stage.focus(), "lesson");
@@ -260,6 +269,66 @@ fn a_long_page_begins_at_its_top_and_scrolls() {
     }
     stage.wait(0.0).shows("n: next page.").shows("PgUp: back");
     stage.press("↑").shows("PgDn: more");
+}
+
+#[test]
+fn what_a_page_has_stated_stays_while_the_run_goes_on() {
+    let (mut stage, _folder, _) = taken(1);
+    stage.press("10.").arrive().shows("The time is 2.0 s");
+    stage.press("g5 s\n").arrive().shows("The time is 2.0 s");
+    stage.press("R").arrive().shows("The time is 2.0 s");
+    assert_eq!(stage.lab.player().reading().readouts.sample.time_s, 2.0);
+}
+
+#[test]
+fn the_step_pane_beside_a_page_has_its_keys() {
+    let text = r#"# Step
+
+## One
+
+```lab
+open = "method-2"
+show = ["step", "3d"]
+go_to = 1
+```
+
+x
+
+## Two
+
+```lab
+open = "method-2"
+show = ["3d"]
+```
+
+x
+
+## Three
+
+x
+"#;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("step.md");
+    fs::write(&path, text).unwrap();
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.lesson(&path.display().to_string(), 1).arrive();
+    stage.shows("1 of 7").shows(". next phase");
+    assert_eq!(stage.focus(), "lesson");
+    stage.press("..").shows("3 of 7");
+    assert_eq!(stage.step(), 1, "no further step was taken");
+    stage.press("n").arrive().shows("2 of 3").shows("3-D");
+    stage.press(".").arrive();
+    assert_eq!(stage.step(), 1);
+}
+
+#[test]
+fn keys_that_fill_the_screen_lead_back_to_the_page() {
+    let (mut stage, _folder, _) = taken(1);
+    stage.press("d").shows("Esc to the page").shows_no("1 of 4");
+    stage.press("d").shows("1 of 4");
+    assert_eq!(stage.focus(), "lesson");
+    stage.press("d\u{1b}").shows("1 of 4");
+    assert_eq!(stage.focus(), "lesson");
 }
 
 #[test]

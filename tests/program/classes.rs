@@ -29,6 +29,9 @@ fn a_prediction_survives_a_kill_and_is_handed_in() {
     lab.press("n");
     lab.wait_for("= The tilt now stays within 0.057");
     lab.quit();
+    let output = ground.run(&["lesson", LESSON, "--answers"]);
+    let text = stdout(&output);
+    assert!(!text.contains("x² + y²"), "that was not predicted:\n{text}");
     let answers = done(ground.run(&["lesson", LESSON, "--answers", "-o", "mine.md"]));
     assert!(stdout(&answers).is_empty());
     let text = ground.read("mine.md");

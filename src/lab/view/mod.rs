@@ -141,6 +141,8 @@ pub struct View {
     pub bare: bool,
     /// The pane that is pointed at.
     pub pointed_at: Option<Pane>,
+    /// The pane beside the text where there is room for one: the last that had the focus, or the first that was chosen.
+    pub beside: Option<Pane>,
     /// The text beside the panes.
     pub sheet: Option<Arc<Sheet>>,
     /// The first row of it that is shown; `None`: as its paragraph that is to be seen wants it.
@@ -177,6 +179,7 @@ impl View {
             next: None,
             bare: false,
             pointed_at: None,
+            beside: None,
             sheet: None,
             sheet_scrolled: None,
             mouse: true,
@@ -337,6 +340,9 @@ impl View {
     /// Moves the focus to the first pane that can have it, if the one in focus no longer can.
     pub fn keep_focus(&mut self) {
         self.keep_focus_among(&self.focusable());
+        if self.focus != Pane::LESSON && !self.filled {
+            self.beside = Some(self.focus);
+        }
     }
 
     fn keep_focus_among(&mut self, panes: &[Pane]) {
@@ -347,8 +353,12 @@ impl View {
 
     /// Fills the screen with the 3-D view, or shows all panes again if it fills the screen already.
     pub fn toggle_three_d(&mut self) {
+        let first = match self.may_show(Pane::LESSON) {
+            true => Pane::LESSON,
+            false => Pane::TRACES,
+        };
         (self.focus, self.filled) = match self.is_filled_by(Pane::THREE_D) {
-            true => (Pane::TRACES, false),
+            true => (first, false),
             false => (Pane::THREE_D, true),
         };
     }

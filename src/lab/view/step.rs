@@ -91,6 +91,7 @@ impl View {
         let comes = panes.contains(&Pane::STEP) && !self.shown.contains(&Pane::STEP);
         if self.shown != panes {
             self.shown = panes.to_vec();
+            self.beside = panes.first().copied();
             self.side_by_side = self.to_show(); // until the lab is fitted to its screen again
         }
         if comes && !self.filled {

@@ -235,11 +235,10 @@ fn length(key: Key, word: &str) -> u16 {
 
 fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
     let (mode, is_running) = (lab.on_top().mode(), lab.player().playback().is_running());
-    let of_pane = super::keys(lab.view().focus);
-    let of_mode = || of_pane.iter().filter(|row| row.modes.contains(&mode));
-    let is_new = |row: &&Binding| of_mode().all(|other| other.keys[0] != row.keys[0]);
+    let of_pane = super::keys_of(lab);
+    let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
+    let is_new = |row: &&Binding| of_mode.clone().all(|other| other.keys[0] != row.keys[0]);
     let rows = of_pane
-        .iter()
         .chain(BINDINGS.iter().filter(is_new))
         .filter(|row| row.modes.contains(&mode) && !row.footer.is_empty());
     let mut words: Vec<_> = rows
@@ -254,6 +253,8 @@ fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
         .collect();
     if mode != Mode::Lab {
         words.insert(0, (Key::Esc, "close", true));
+    } else if lab.view().filled && lab.view().sheet.is_some() {
+        words.insert(0, (Key::Esc, "to the page", true));
     }
     let whole = |words: &[(Key, &str, bool)]| {
         let lengths = words.iter().map(|(key, word, _)| length(*key, word) + 2);

@@ -109,6 +109,19 @@ pub fn keys(pane: Pane) -> &'static [Binding] {
     row(pane).map_or(&[], |row| row.keys)
 }
 
+/// The keys of the pane in focus; where that is a lesson's page, those of a step pane beside it too.
+pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
+    let view = lab.view();
+    let is_beside = view.focus == Pane::LESSON && view.side_by_side.contains(&Pane::STEP);
+    let own = keys(view.focus);
+    let beside = if is_beside { keys(Pane::STEP) } else { &[] };
+    let is_free = |row: &&Binding| {
+        let mut keys = own.iter().flat_map(|own| own.keys);
+        keys.all(|key| !row.keys.contains(key))
+    };
+    own.iter().chain(beside.iter().filter(is_free))
+}
+
 /// A frame with a title, the accent on it where it has the focus; gives the area inside.
 pub(super) fn frame(title: &str, area: Rect, focus: bool, theme: &Theme, buf: &mut Buffer) -> Rect {
     let (border, text) = match focus {
