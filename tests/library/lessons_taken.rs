@@ -111,7 +111,7 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
     stage.press("↓↓↑\n").shows("[x] grows");
     stage.shows("It goes on here").shows("How large is it?");
     assert!(stage.lab.view().hides(Part::Health), "one is still open");
-    stage.press("\n").shows("your prediction").shows("lag, deg");
+    stage.press("\n").shows("your prediction").shows("deg");
     stage.press("much\n").shows("must be a number");
     stage.press("\u{1b}\n3,5\n").shows("you said: 3.5 deg");
     assert!(!stage.lab.view().hides(Part::Health));

@@ -297,8 +297,12 @@ impl View {
         let among = |panes: &[Pane]| panes.iter().copied().filter(may_have_it).collect();
         if !self.filled && self.side_by_side.len() > 2 {
             // A pane that was hidden since the screen was last fitted is still in this list.
-            let panes: Vec<_> = among(&self.side_by_side);
+            let mut panes: Vec<_> = among(&self.side_by_side);
             if !panes.is_empty() {
+                // A page that has just been opened is not in the list yet.
+                if self.may_show(Pane::LESSON) && !panes.contains(&Pane::LESSON) {
+                    panes.insert(0, Pane::LESSON);
+                }
                 return panes;
             }
         }
