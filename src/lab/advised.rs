@@ -5,6 +5,7 @@ use super::carry_out::{Answer, Done};
 use super::player::Player;
 use crate::analysis::health::{Advice, BETTER_SCHEME, advise};
 use crate::observe::advisor::Advisor;
+use crate::run::Simulation;
 use crate::scenario::Scenario;
 use crate::text::number::shortest;
 use crate::work::mended::mended;
@@ -19,6 +20,21 @@ pub(super) struct Offer {
 }
 
 impl Player {
+    /// The run that advice is looked for, as far as it is meant to go or has gone: an edit of the time step at step 0
+    /// leaves the scenario as many steps, and the lab as many seconds.
+    pub(super) fn to_be_mended(&self) -> Arc<Scenario> {
+        let scenario = self.run().scenario();
+        let end_s = self.playback.end_s().max(self.run().now().time_s);
+        let steps = Simulation::step_at(scenario, end_s).max(1);
+        if steps == scenario.steps {
+            return Arc::clone(scenario);
+        }
+        Arc::new(Scenario {
+            steps,
+            ..(**scenario).clone()
+        })
+    }
+
     /// What `advice` offers; `None` where there is nothing to do, or where it cannot be done to this run.
     fn offered(&self, advice: &Advice) -> Option<Offer> {
         let (time_step_s, scheme) = match *advice {
@@ -68,7 +84,7 @@ impl Lab {
             return Err("there is nothing to mend: the run keeps to the exact motion".into());
         }
         if self.player.offer.is_none() && self.player.advice().is_none() {
-            let advice = advise(self.player.run().scenario());
+            let advice = advise(&self.player.to_be_mended());
             self.player.offer = self.player.offered(&advice);
         }
         let Some(Offer { what, scenario }) = self.player.offer.take() else {

@@ -142,7 +142,7 @@ impl Player {
             && self.advisor.is_none()
             && self.reading.readouts.health.is_believed() == Some(false)
         {
-            self.advisor = Some(Advisor::ask(Arc::clone(self.run().scenario())));
+            self.advisor = Some(Advisor::ask(self.to_be_mended()));
         }
     }
 

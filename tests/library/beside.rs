@@ -302,3 +302,17 @@ fn the_line_about_the_numbers_is_right_as_soon_as_an_edit_is_made() {
         assert!(!line.contains("a takes it"), "{edit}: {line}");
     }
 }
+
+#[test]
+fn advice_on_an_edited_time_step_is_for_the_whole_run() {
+    let mut desk = Desk::open("method-1");
+    desk.commands("set = { 'body.rim.height_m' = 1.0 }\ngo_to = '0.2 s'");
+    // From step 0 on: the scenario's number of steps then makes a hundredth of its seconds.
+    desk.commands("go_to = 0\nset = { 'motion.time_step_s' = 1e-5 }\ngo_to = '0.2 s'");
+    let health = &desk.lab.player().reading().readouts.health;
+    assert_eq!(health.is_believed(), Some(false));
+    desk.commands("take_advice = true");
+    assert_eq!(time_s(&desk), 0.2);
+    let health = &desk.lab.player().reading().readouts.health;
+    assert_ne!(health.is_believed(), Some(false));
+}
