@@ -298,6 +298,12 @@ fn what_is_broken_is_told_with_its_line_and_the_nearest_right_name() {
         ),
         // pages and title
         (
+            "## Run it\n",
+            "##Run it\n",
+            at("## Run it"),
+            "##Run it: is no heading yet: a blank must stand behind",
+        ),
+        (
             "## Watch\n",
             "##\n",
             at("## Watch"),
