@@ -142,6 +142,15 @@ impl Lab {
         Command::Magnify(times.clamp(1.0, MOST_MAGNIFIED))
     }
 
+    /// Whether the traces show the run as at first: no cursor, the usual time, all values.
+    pub fn shows_whole_view(&self) -> bool {
+        let view = &self.view;
+        let usual_s = view.usual_window_s(self.player.run().scenario());
+        (view.cursor, view.since_s) == (None, None)
+            && view.magnified <= 1.0
+            && view.window_s == usual_s
+    }
+
     /// The commands that show the run again, after the time or the values were chosen by hand.
     pub(super) fn whole_view(&self) -> Vec<Command> {
         vec![

@@ -248,21 +248,25 @@ fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
             } else {
                 row.footer
             };
-            (row.keys[0], word, is_kept(row.action))
+            (row.keys[0], word, worth(row.action, lab))
         })
         .collect();
     if mode != Mode::Lab {
-        words.insert(0, (Key::Esc, "close", true));
+        words.insert(0, (Key::Esc, "close", Worth::Kept));
     } else if lab.view().filled && lab.view().sheet.is_some() {
-        words.insert(0, (Key::Esc, "to the page", true));
+        words.insert(0, (Key::Esc, "to the page", Worth::Kept));
     }
-    let whole = |words: &[(Key, &str, bool)]| {
+    let whole = |words: &[(Key, &str, Worth)]| {
         let lengths = words.iter().map(|(key, word, _)| length(*key, word) + 2);
         lengths.sum::<u16>() as usize
     };
     while words.len() > 2 && whole(&words) > width {
-        let least = words.iter().rposition(|(_, _, kept)| !kept);
-        words.remove(least.unwrap_or(words.len() - 3)); // the last two are help and quit
+        let others = &words[..words.len() - 2]; // the last two are help and quit
+        let least = others.iter().map(|(_, _, worth)| *worth).min();
+        let last = others
+            .iter()
+            .rposition(|(_, _, worth)| Some(*worth) == least);
+        words.remove(last.unwrap_or_default());
     }
     words
         .into_iter()
@@ -270,29 +274,41 @@ fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
         .collect()
 }
 
-/// Whether the footer names `action` as long as it can.
-fn is_kept(action: Action) -> bool {
+/// How long the footer names a key where there is not room for all: the least go first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Worth {
+    Spare,
+    Useful,
+    Open,
+    Look,
+    Kept,
+}
+
+/// How long the footer names the key of `action` in `lab`.
+fn worth(action: Action, lab: &Lab) -> Worth {
     use Action::{
-        Accept, Browse, Choose, Export, Help, Lesson, NextPhase, Parameters, PhaseBack, Push, Quit,
-        Step, ToggleExact, TogglePause, Why, ZoomIn,
+        Accept, Browse, Choose, Export, Help, Lesson, NarrowerWindow, NextPhase, Pan, Parameters,
+        PhaseBack, Push, Quit, Step, ToggleExact, TogglePause, WholeView, Why, ZoomIn,
     };
-    matches!(
-        action,
+    match action {
+        ToggleExact | Export => Worth::Useful,
+        Browse => Worth::Open,
+        NarrowerWindow | Pan(_) => Worth::Look,
         Lesson(LessonKey::Take | LessonKey::Next)
-            | TogglePause
-            | Step
-            | NextPhase
-            | PhaseBack
-            | Why
-            | Parameters
-            | Push
-            | ToggleExact
-            | Export
-            | Browse
-            | Choose
-            | Accept
-            | ZoomIn
-            | Help
-            | Quit
-    )
+        | TogglePause
+        | Step
+        | NextPhase
+        | PhaseBack
+        | Why
+        | Parameters
+        | Push
+        | Choose
+        | Accept
+        | ZoomIn
+        | Help
+        | Quit => Worth::Kept,
+        // What takes zoom and pan back, as long as there is something to take back.
+        WholeView if !lab.shows_whole_view() => Worth::Look,
+        _ => Worth::Spare,
+    }
 }
