@@ -78,7 +78,30 @@ impl Scale {
 
     /// Both ends.
     pub fn in_words(&self) -> String {
+        self.with_digits(self.decimals())
+    }
+
+    /// Both ends in at most `width` columns: with fewer digits where those of [`in_words`](Self::in_words) have no room, as
+    /// long as the ends are told apart; else as the middle and the distance of the ends from it. `None` where that has no
+    /// room either.
+    pub fn in_words_within(&self, width: usize) -> Option<String> {
+        let fits = |words: &String| words.chars().count() <= width;
         let digits = self.decimals();
+        let least = decimals(self.high - self.low).min(digits);
+        let mut both = (least..=digits)
+            .rev()
+            .map(|digits| self.with_digits(digits));
+        if let Some(words) = both.find(fits) {
+            return Some(words);
+        }
+        let (middle, half) = (0.5 * (self.low + self.high), 0.5 * (self.high - self.low));
+        let about = |digits| format!("{} ± {}", fixed(middle, digits), fixed(half, digits));
+        let least = decimals(half).min(digits);
+        let mut about = (least..=digits).rev().map(about);
+        about.find(fits)
+    }
+
+    fn with_digits(&self, digits: usize) -> String {
         format!(
             "{} .. {}",
             fixed(self.low, digits),
@@ -138,6 +161,24 @@ mod tests {
         assert_eq!(constant.in_words(), "29.99 .. 30.01");
         let wide = Extent::of(31.4).and(Extent::of(57.2));
         assert_eq!(Scale::around(wide, 0.02).in_words(), "30 .. 60");
+    }
+
+    #[test]
+    fn ends_have_fewer_digits_where_there_is_little_room() {
+        let scale = Scale {
+            low: 29.998_75,
+            high: 30.001_25,
+        };
+        let within = |width| scale.in_words_within(width).unwrap_or_default();
+        assert_eq!(within(30), "29.99875 .. 30.00125");
+        assert_eq!(within(20), "29.99875 .. 30.00125");
+        assert_eq!(within(19), "29.9988 .. 30.0012");
+        assert_eq!(within(17), "29.999 .. 30.001");
+        assert_eq!(within(15), "30.000 ± 0.001");
+        assert_eq!(within(13), "");
+        for width in 0..40 {
+            assert!(within(width).chars().count() <= width);
+        }
     }
 
     #[test]

@@ -143,7 +143,12 @@ impl Traces<'_> {
         if inside.width < BESIDE_FROM {
             return 0;
         }
-        let labels = Curve::ALL.map(|curve| axis::values(&self.scale(curve, None), 2));
+        let labels = Curve::ALL.map(|curve| {
+            let scale = self.magnified(curve, self.scale(curve, None));
+            let mut labels = axis::values(&scale, 2);
+            labels.extend(axis::values(&scale, inside.height as usize));
+            labels
+        });
         let widest = labels.iter().flatten().map(|(_, label)| label.len()).max();
         NAME + widest.unwrap_or(0) as u16 + 1
     }
@@ -262,18 +267,33 @@ impl Traces<'_> {
             }
         } else {
             let after = write(area, (0, 0), curve.name(), name, buf);
+            let room = area.width.saturating_sub(after) as usize;
             let value = self.at_cursor(curve, &group.strip);
             let (text, style) = match value {
-                Some((_, value)) => (format!(" {value}"), theme.style(Role::Focus)),
+                Some((_, value)) => {
+                    let value = format!(" {value}");
+                    let rest = room.saturating_sub(value.len() + " in ".len());
+                    if let Some(range) = scale.in_words_within(rest) {
+                        let x = after + value.len() as u16;
+                        write(area, (x, 0), &format!(" in {range}"), quiet, buf);
+                    }
+                    (value, theme.style(Role::Focus))
+                }
                 None => {
-                    let range = format!(" {} {}", scale.in_words(), curve.unit());
+                    let unit = curve.unit();
+                    let rest = room.saturating_sub(unit.len() + 2);
+                    let range = scale.in_words_within(rest).unwrap_or_default();
+                    let range = format!(" {range} {unit}");
                     let zoom = if self.is_detail(&group.strip) {
                         ZOOM
                     } else {
                         ""
                     };
-                    let room = (area.width as usize).saturating_sub(range.len() + NAME as usize);
-                    let zoom = if zoom.len() < room { zoom } else { "" };
+                    let zoom = if range.chars().count() + zoom.len() < room {
+                        zoom
+                    } else {
+                        ""
+                    };
                     (format!("{range} {zoom}"), quiet)
                 }
             };

@@ -85,21 +85,26 @@ fn ends(strip: &Strip, width: usize) -> (String, String) {
     (exponent(strip.begin_s, 3) + UNIT, later)
 }
 
-/// The labels of `scale` on `rows`, each with its row: both ends, and round values between them where there is room.
+/// The labels of `scale` on `rows`, each with its row: round values, each in the row of its place, the highest first. Where
+/// there is room for less than two round values, both ends stand there.
 pub fn values(scale: &Scale, rows: usize) -> Vec<Placed> {
-    /// Rows for each value between the ends.
+    /// Rows for each value.
     const ROWS: usize = 3;
+    let last = rows.saturating_sub(1);
+    let ticks = match rows > 2 * ROWS {
+        true => scale.ticks(rows / ROWS),
+        false => Vec::new(),
+    };
+    if let [first, second, ..] = ticks[..] {
+        let digits = scale::decimals(second - first);
+        let row = |value: f64| ((scale.from_top(value) * rows as f64) as usize).min(last);
+        let label = |value: f64| (row(value), fixed(value + 0.0, digits));
+        return ticks.into_iter().rev().map(label).collect();
+    }
     let digits = scale.decimals();
     let mut placed = vec![(0, fixed(scale.high + 0.0, digits))];
-    if rows > 2 * ROWS {
-        let between = scale.ticks(rows / ROWS);
-        let row = |value: f64| (scale.from_top(value) * rows as f64) as usize;
-        let clear = between.into_iter().rev().map(|value| (row(value), value));
-        let clear = clear.filter(|&(row, _)| row >= ROWS - 1 && row + ROWS <= rows);
-        placed.extend(clear.map(|(row, value)| (row, fixed(value + 0.0, digits))));
-    }
     if rows > 1 {
-        placed.push((rows - 1, fixed(scale.low + 0.0, digits)));
+        placed.push((last, fixed(scale.low + 0.0, digits)));
     }
     placed
 }
@@ -137,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_both_ends_and_round_ones_between() {
+    fn values_are_round_or_both_ends_where_there_is_little_room() {
         let scale = Scale {
             low: -0.8,
             high: 0.8,
@@ -146,6 +151,52 @@ mod tests {
         let text = |row: usize, text: &str| (row, text.to_owned());
         assert_eq!(of(3), [text(0, "0.8"), text(2, "-0.8")]);
         assert_eq!(of(1), [text(0, "0.8")]);
-        assert_eq!(of(9), [text(0, "0.8"), text(4, "0.0"), text(8, "-0.8")]);
+        assert_eq!(of(9), [text(1, "0.5"), text(4, "0.0"), text(7, "-0.5")]);
+    }
+
+    #[test]
+    fn values_are_on_a_ladder_without_a_gap() {
+        for (low, high) in [
+            (29.0, 37.0),
+            (35.0, 60.0),
+            (0.6, 0.95),
+            (29.998_75, 30.001_25),
+        ] {
+            let scale = Scale { low, high };
+            for rows in 7..40 {
+                let placed = values(&scale, rows);
+                let numbers: Vec<f64> = placed
+                    .iter()
+                    .map(|(_, text)| text.parse().unwrap())
+                    .collect();
+                if let [first, second, ..] = numbers[..]
+                    && numbers.len() > 2
+                {
+                    for pair in numbers.windows(2) {
+                        let apart = pair[0] - pair[1];
+                        assert!(
+                            (apart - (first - second)).abs() < 1e-9,
+                            "{rows} rows: {numbers:?}"
+                        );
+                    }
+                    assert!(
+                        first + (first - second) > high - 1e-9,
+                        "{rows} rows: {numbers:?}"
+                    );
+                }
+                for pair in placed.windows(2) {
+                    assert!(pair[1].0 > pair[0].0 + 1, "{rows} rows: {placed:?}");
+                }
+            }
+        }
+        let labels: Vec<_> = values(
+            &Scale {
+                low: 29.0,
+                high: 37.0,
+            },
+            12,
+        );
+        let labels: Vec<_> = labels.iter().map(|(_, label)| label.as_str()).collect();
+        assert_eq!(labels, ["36", "34", "32", "30"]);
     }
 }
