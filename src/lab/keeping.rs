@@ -1,6 +1,7 @@
 //! The content of a session: the history of runs, and the place of the lab in it, each as TOML.
 
 use super::command::{self, Command, Commands, Place};
+use super::rerun::Reference;
 use super::script::{GO_ON_WITH_IT, GO_ON_WITH_THEM};
 use super::view::step::Page;
 use super::view::{Part, View};
@@ -8,12 +9,13 @@ use super::work::Work;
 use super::{Lab, Script, UnderWay};
 use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
-use crate::scenario::file::{Choice, ZoomFile};
+use crate::scenario::file::{Choice, ScenarioFile, ZoomFile};
 use crate::scenario::{Document, Problems, Scenario};
 use crate::storage::confined::Confined;
 use crate::storage::session::{Content, Text};
 use crate::text::printable::Shown;
 use crate::work::history::History;
+use crate::work::journal::Journal;
 use crate::work::next_push::NextPush;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -30,6 +32,42 @@ const FORMS: std::ops::RangeInclusive<u32> = 1..=FORM;
 struct KeptWork {
     form: u32,
     history: History,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pinned: Option<KeptPinned>,
+}
+
+/// The pinned run: its pictures are made again from its scenario.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct KeptPinned {
+    /// The step up to which it was played; of no meaning for the present run.
+    step: u64,
+    /// The run file with all that was done to the run; `None` where the present run is pinned.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    run: Option<ScenarioFile>,
+}
+
+impl KeptPinned {
+    fn of(reference: &Reference) -> Self {
+        match reference {
+            Reference::Present => Self { step: 0, run: None },
+            Reference::Run(scenario, step) => Self {
+                step: *step,
+                run: Some(scenario.file.clone()),
+            },
+        }
+    }
+
+    /// What is to be pinned again.
+    ///
+    /// # Errors
+    /// What is wrong with the run file.
+    fn reference(self) -> Result<Reference, Problems> {
+        match self.run {
+            None => Ok(Reference::Present),
+            Some(file) => Ok(Reference::Run(Journal::of(file).scenario()?, self.step)),
+        }
+    }
 }
 
 /// The text of the place: the step, how the run is shown, and the push to come.
@@ -123,7 +161,7 @@ impl Lab {
     /// The content of the session.
     pub fn content(&mut self) -> Content {
         Content {
-            work: self.work.kept(),
+            work: self.work.kept(self.player.reference()),
             place: toml::to_string(&self.place()).unwrap_or_default(),
         }
     }
@@ -301,6 +339,7 @@ impl Lab {
             lab.files.confine(folder.clone());
         }
         let file = lab.file_as_opened();
+        let pinned = work.pinned.take().map(KeptPinned::reference);
         lab.work = Work::resumed(work.history, file);
         lab.values.set_next_push(place.next_push);
         lab.values.suit(lab.player.run().scenario());
@@ -332,6 +371,13 @@ impl Lab {
                     "; the rest of its script is lost: {}",
                     problems.in_one_line()
                 );
+            }
+        }
+        match pinned {
+            None => {}
+            Some(Ok(reference)) => lab.player.pin_again(reference),
+            Some(Err(problems)) => {
+                told += &format!("; the pinned run is lost: {}", problems.in_one_line());
             }
         }
         lab.lessons = place.lessons;
@@ -370,13 +416,17 @@ impl KeptScript {
     }
 }
 
-/// `history` as a session keeps it. The text is written by the thread that first reads it.
-pub(super) fn written(history: &History) -> Text {
-    let work = KeptWork {
-        form: FORM,
-        history: history.clone(),
-    };
-    Text::later(move || toml::to_string(&work).unwrap_or_default())
+/// `history` as a session keeps it, with the pinned run. The text is written by the thread that first reads it.
+pub(super) fn written(history: &History, reference: Option<&Reference>) -> Text {
+    let (history, reference) = (history.clone(), reference.cloned());
+    Text::later(move || {
+        let work = KeptWork {
+            form: FORM,
+            history,
+            pinned: reference.as_ref().map(KeptPinned::of),
+        };
+        toml::to_string(&work).unwrap_or_default()
+    })
 }
 
 /// Checks that `text` can be read as a `T` and would be written in the same way again.

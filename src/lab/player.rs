@@ -115,7 +115,7 @@ impl Player {
             self.playback.follow_exact(clock);
             is_new = true;
         }
-        is_new |= self.take_advice_news();
+        is_new |= self.take_advice_news() | self.take_pinned_news();
         (halt, is_new)
     }
 

@@ -3,7 +3,7 @@
 
 use super::carry_out::Done;
 use super::player::Player;
-use crate::observe::ghost::Ghost;
+use crate::observe::ghost::{Ghost, GhostToBe};
 use crate::observe::playback::Halt;
 use crate::run::{Clock, Simulation};
 use crate::scenario::Scenario;
@@ -39,6 +39,27 @@ pub(super) enum Pinned {
     Present,
     /// An earlier run, or the present one before an edit.
     Before(Box<Ghost>),
+    /// An earlier run that a session has kept: its pictures are being made again.
+    Returning(GhostToBe),
+}
+
+/// What is needed to pin a run again.
+#[derive(Clone)]
+pub(super) enum Reference {
+    /// It is the present run.
+    Present,
+    /// The run of a scenario, up to a step.
+    Run(Arc<Scenario>, u64),
+}
+
+impl PartialEq for Reference {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Present, Self::Present) => true,
+            (Self::Run(a, step_a), Self::Run(b, step_b)) => Arc::ptr_eq(a, b) && step_a == step_b,
+            _ => false,
+        }
+    }
 }
 
 impl Player {
@@ -241,7 +262,46 @@ impl Player {
     pub fn pinned(&self) -> Option<&Ghost> {
         match &self.pinned {
             Some(Pinned::Before(run)) => Some(run),
-            Some(Pinned::Present) | None => None,
+            Some(Pinned::Present | Pinned::Returning(_)) | None => None,
         }
+    }
+
+    /// The time that the pinned run had reached, s; `None` where none is pinned, or its pictures are not made yet.
+    pub fn pinned_end_s(&self) -> Option<f64> {
+        match &self.pinned {
+            Some(Pinned::Present) => Some(self.furthest_s()),
+            Some(Pinned::Before(run)) => Some(run.end_s()),
+            Some(Pinned::Returning(_)) | None => None,
+        }
+    }
+
+    /// What a session keeps of the pinned run.
+    pub(super) fn reference(&self) -> Option<Reference> {
+        self.pinned.as_ref().map(|pinned| match pinned {
+            Pinned::Present => Reference::Present,
+            Pinned::Before(run) => Reference::Run(Arc::clone(run.scenario()), run.furthest()),
+            Pinned::Returning(run) => Reference::Run(Arc::clone(run.scenario()), run.furthest()),
+        })
+    }
+
+    /// Pins `reference` again: its pictures come a little later.
+    pub(super) fn pin_again(&mut self, reference: Reference) {
+        self.pinned = Some(match reference {
+            Reference::Present => Pinned::Present,
+            Reference::Run(scenario, step) => Pinned::Returning(GhostToBe::begin(scenario, step)),
+        });
+    }
+
+    /// Takes the pictures of the pinned run once they are made again. Returns whether they have come just now.
+    pub(super) fn take_pinned_news(&mut self) -> bool {
+        let made = match &self.pinned {
+            Some(Pinned::Returning(run)) => run.take(),
+            _ => None,
+        };
+        let has_come = made.is_some();
+        if let Some(ghost) = made {
+            self.pinned = Some(Pinned::Before(Box::new(ghost)));
+        }
+        has_come
     }
 }

@@ -2,6 +2,7 @@
 //! difference between the two.
 
 use super::keeping;
+use super::rerun::Reference;
 use crate::run::Clock;
 use crate::scenario::{Problems, Scenario};
 use crate::storage::session::Text;
@@ -22,6 +23,8 @@ pub struct Work {
     changed_from_file: Option<String>,
     /// The history as the session keeps it; `None` where the history has changed since it was written.
     kept: Option<Text>,
+    /// The pinned run that is kept with it.
+    kept_reference: Option<Reference>,
 }
 
 /// The direction in the history: back with undo, on with redo.
@@ -66,6 +69,7 @@ impl Work {
             file,
             changed_from_file: None,
             kept: None,
+            kept_reference: None,
         }
     }
 
@@ -99,11 +103,15 @@ impl Work {
         self.changed_from_file = changed::changed(&self.file, scenario);
     }
 
-    /// The history as the session keeps it.
-    pub(super) fn kept(&mut self) -> Text {
-        let history = &self.history;
-        let kept = self.kept.get_or_insert_with(|| keeping::written(history));
-        kept.clone()
+    /// The history as the session keeps it, with the pinned run.
+    pub(super) fn kept(&mut self, reference: Option<Reference>) -> Text {
+        if self.kept_reference != reference {
+            self.kept = None;
+            self.kept_reference = reference;
+        }
+        let (history, reference) = (&self.history, self.kept_reference.as_ref());
+        let written = || keeping::written(history, reference);
+        self.kept.get_or_insert_with(written).clone()
     }
 
     /// The history, to be changed.

@@ -1,9 +1,13 @@
-//! The pictures of the previous run, kept when an edit restarts the run, so that both can be compared.
+//! The pictures of the previous run, kept when an edit restarts the run, so that both can be compared, and the making of
+//! such pictures anew, in the background.
 
 use super::live::LiveRun;
 use super::marks::Marks;
 use super::path::Path;
 use super::recording::Recording;
+use crate::scenario::Scenario;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
 
 /// The pictures of the previous run.
 #[derive(Clone, Debug)]
@@ -11,6 +15,8 @@ pub struct Ghost {
     recording: Recording,
     path: Path,
     marks: Marks,
+    scenario: Arc<Scenario>,
+    furthest: u64,
 }
 
 impl Ghost {
@@ -21,7 +27,19 @@ impl Ghost {
             recording: recording.clone(),
             path: path.clone(),
             marks: Marks::of(run.scenario()),
+            scenario: Arc::clone(run.scenario()),
+            furthest: run.furthest(),
         }
+    }
+
+    /// The scenario of its run, with all that was done to it.
+    pub fn scenario(&self) -> &Arc<Scenario> {
+        &self.scenario
+    }
+
+    /// The step up to which it has pictures.
+    pub fn furthest(&self) -> u64 {
+        self.furthest
     }
 
     /// The time that the run had reached, s.
@@ -42,5 +60,59 @@ impl Ghost {
     /// Its pushes and edits.
     pub fn marks(&self) -> &Marks {
         &self.marks
+    }
+}
+
+/// The pictures of a run that is played again in the background. Dropping it ends that.
+pub struct GhostToBe {
+    scenario: Arc<Scenario>,
+    furthest: u64,
+    made: Arc<Mutex<Option<Ghost>>>,
+}
+
+impl GhostToBe {
+    /// Begins to play `scenario` up to the step `furthest`, or up to where its numbers stop being finite.
+    pub fn begin(scenario: Arc<Scenario>, furthest: u64) -> Self {
+        let made = Arc::new(Mutex::new(None));
+        let wanted = Arc::downgrade(&made);
+        let played = Arc::clone(&scenario);
+        let play = move || {
+            let mut run = LiveRun::new(played);
+            run.play(
+                f64::INFINITY,
+                furthest,
+                || wanted.strong_count() == 0,
+                |_| false,
+            );
+            if let Some(made) = wanted.upgrade() {
+                let ghost = Ghost::of(&run);
+                *made.lock().unwrap_or_else(PoisonError::into_inner) = Some(ghost);
+            }
+        };
+        // If the system gives no thread, there are no pictures.
+        let _ = thread::Builder::new().name("pinned".to_owned()).spawn(play);
+        Self {
+            scenario,
+            furthest,
+            made,
+        }
+    }
+
+    /// The scenario of the run.
+    pub fn scenario(&self) -> &Arc<Scenario> {
+        &self.scenario
+    }
+
+    /// The step up to which it is played.
+    pub fn furthest(&self) -> u64 {
+        self.furthest
+    }
+
+    /// Takes the pictures once they are made.
+    pub fn take(&self) -> Option<Ghost> {
+        self.made
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take()
     }
 }

@@ -179,6 +179,7 @@ fn the_pinned_run_stays_until_it_is_unpinned() {
     }
     assert_eq!(pinned_s(&stage), Some(40.0));
     stage.wait(6.0).shows("long and short: pinned");
+    stage.shows("┤ pinned  230 s");
     for command in ["undo = 50", "redo = 7", "open = 'cusps'", "go_to = '1 s'"] {
         stage.commands(command);
         assert_eq!(pinned_s(&stage), Some(40.0), "{command}");

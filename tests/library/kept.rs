@@ -259,3 +259,53 @@ fn esc_drops_what_is_left_of_a_script() {
     let told = back.notice().unwrap();
     assert!(told.contains("did you mean step?"), "{told}");
 }
+
+/// Waits until the pictures of the pinned run are there.
+#[track_caller]
+fn await_pinned(desk: &mut Desk) {
+    for _ in 0..4000 {
+        if desk.lab.player().pinned().is_some() {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+        desk.wait(1);
+    }
+    panic!("the pinned run has not come back");
+}
+
+#[test]
+fn the_pinned_run_comes_back_with_what_was_done_to_it() {
+    let mut desk = Desk::open("method-2");
+    desk.commands("go_to = '20 s'\npush = true\ngo_to = '40 s'\npin = true");
+    desk.commands("set = { 'start.tilt_deg' = 30 }\ngo_to = '10 s'");
+    let before = desk.lab.player().pinned().unwrap().clone();
+    let content = desk.lab.content();
+    let mut back = resumed(&content);
+    assert!(back.lab.player().is_pinned());
+    assert!(
+        back.lab.content() == content,
+        "it is kept while it is made again"
+    );
+    await_pinned(&mut back);
+    assert!(back.lab.content() == content);
+    let again = back.lab.player().pinned().unwrap();
+    assert_eq!(again.furthest(), before.furthest());
+    assert_eq!(again.end_s(), before.end_s());
+    assert_eq!(again.marks(), before.marks());
+    assert_eq!(again.scenario().file.push.len(), 1);
+    let dots = |ghost: &gyrolab::observe::ghost::Ghost| ghost.path().dots().collect::<Vec<_>>();
+    assert_eq!(dots(again), dots(&before), "the same numbers");
+    back.press(&[Key::Char('i')]);
+    let none = resumed(&back.lab.content());
+    assert!(!none.lab.player().is_pinned());
+}
+
+#[test]
+fn the_present_run_comes_back_pinned() {
+    let mut desk = Desk::open("method-2");
+    desk.commands("go_to = '40 s'\npin = true");
+    let mut back = resumed(&desk.lab.content());
+    assert!(back.lab.player().is_pinned() && back.lab.player().pinned().is_none());
+    back.commands("set = { 'start.tilt_deg' = 30 }");
+    assert_eq!(back.lab.player().pinned().unwrap().end_s(), 40.0);
+}

@@ -22,8 +22,13 @@ const PUSH: &str = "═";
 const EDIT: &str = ":";
 /// The scenario's end, where the run has gone on beyond it.
 const END: &str = "│";
+/// How far the pinned run has been.
+const PINNED: &str = "┤";
 /// Where the run stands.
 const NOW: &str = "█";
+/// What names the sign of the pinned run, on a line of so many columns or more.
+const LEGEND: &str = "┤ pinned  ";
+const LEGEND_FROM: u16 = 60;
 /// Fewest columns of a line that is worth drawing.
 const LEAST: u16 = 16;
 
@@ -36,6 +41,8 @@ pub struct Timeline {
     pub now_s: f64,
     /// How far it has been, s.
     pub furthest_s: f64,
+    /// How far the pinned run has been, s; `None` where none is pinned.
+    pub pinned_s: Option<f64>,
     /// Its pushes and edits.
     pub marks: Marks,
 }
@@ -50,6 +57,7 @@ impl Timeline {
             end_s: lab.player().playback().end_s(),
             now_s,
             furthest_s: Clock::at(scenario, furthest).time_s(furthest).max(now_s),
+            pinned_s: lab.player().pinned_end_s(),
             marks: Marks::of(scenario),
         }
     }
@@ -63,7 +71,7 @@ impl Timeline {
 
     /// The columns of the line on `area`, between its labels; `None` where there is no room.
     fn line(&self, area: Rect) -> Option<Rect> {
-        let label = self.label().len() as u16;
+        let label = self.label(area.width).chars().count() as u16;
         let width = area.width.checked_sub(label + 3)?;
         let line = Rect {
             x: area.x + 1,
@@ -73,8 +81,12 @@ impl Timeline {
         (width >= LEAST && area.height > 0).then_some(line)
     }
 
-    fn label(&self) -> String {
-        format!("{} s", decimal(self.whole_s()))
+    fn label(&self, width: u16) -> String {
+        let legend = match self.pinned_s {
+            Some(_) if width >= LEGEND_FROM => LEGEND,
+            _ => "",
+        };
+        format!("{legend}{} s", decimal(self.whole_s()))
     }
 
     /// The column of `time_s` on a line of `width` columns; a time outside is at the nearer end.
@@ -116,6 +128,9 @@ impl Timeline {
         for &edit_s in self.marks.edits.iter().filter(|edit_s| **edit_s <= whole_s) {
             put(self.column(edit_s, width), EDIT, Role::Heading);
         }
+        if let Some(pinned_s) = self.pinned_s {
+            put(self.column(pinned_s, width), PINNED, Role::Pinned);
+        }
         put(self.column(self.now_s, width), NOW, Role::Focus);
         signs
     }
@@ -131,7 +146,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     for ((sign, role), x) in timeline.signs(line.width).into_iter().zip(0..) {
         write(line, (x, 0), sign, theme.style(role), buf);
     }
-    let label = timeline.label();
+    let label = timeline.label(area.width);
     let x = line.right() - area.x + 1;
     write(area, (x, 0), &label, theme.style(Role::Quiet), buf);
 }
@@ -145,6 +160,7 @@ mod tests {
             end_s: 100.0,
             now_s,
             furthest_s,
+            pinned_s: None,
             marks: Marks {
                 pushes: vec![(10.0, 30.0)],
                 edits: vec![60.0],
@@ -161,6 +177,17 @@ mod tests {
         assert_eq!(drawn(&timeline(40.0, 80.0)), "──═════─█───:────····");
         assert_eq!(drawn(&timeline(0.0, 0.0)), "█·═════·····:········");
         assert_eq!(drawn(&timeline(100.0, 100.0)), "──═════─────:───────█");
+    }
+
+    #[test]
+    fn the_pinned_run_is_marked_where_it_ended() {
+        let mut pinned = timeline(40.0, 80.0);
+        pinned.pinned_s = Some(50.0);
+        assert_eq!(drawn(&pinned), "──═════─█─┤─:────····");
+        pinned.pinned_s = Some(500.0);
+        assert_eq!(drawn(&pinned), "──═════─█───:────···┤");
+        assert_eq!(pinned.label(80), "┤ pinned  100 s");
+        assert_eq!(pinned.label(59), "100 s");
     }
 
     #[test]
