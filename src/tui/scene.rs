@@ -8,10 +8,18 @@ use ratatui::layout::Rect;
 
 /// A line hides what is farther than it by more than this part of the scene's reach: lines that meet do not hide each other.
 const BEHIND: f64 = 0.05;
-/// Half the angle between the strokes of an arrow's head, radians.
+/// Half the angle of an arrow's head, radians.
 const HEAD_ANGLE: f64 = 0.45;
-/// Length of these strokes, of the scene's reach.
+/// Length of an arrow's head, of the scene's reach; at least so many dots, and at most this part of the arrow.
 const HEAD: f64 = 0.1;
+const LEAST_HEAD: f64 = 6.0;
+const MOST_OF_ARROW: f64 = 0.6;
+/// Strokes of a head to each side of its middle.
+const HEAD_STROKES: i32 = 3;
+/// An arrow that is seen as short as this, dots, has no head.
+const SHORTEST: f64 = 4.0;
+/// A rod is nearer than what lies along it by this part of the scene's reach.
+const IN_FRONT: f64 = 0.03;
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,24 +177,42 @@ impl Scene {
         self.camera.depth(point)
     }
 
-    /// A line with a head of two strokes at its tip.
+    /// A line with a filled head at its tip, which is seen on a small sheet too.
     pub fn arrow(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink) {
         self.line(from, tip, Stroke::Thin, ink);
-        let (begin, end) = (self.camera.project(from), self.camera.project(tip));
-        let (right, up) = (begin.0 - end.0, begin.1 - end.1);
-        let length = right.hypot(up);
-        let head = HEAD * self.reach;
-        if length < head {
+        let (begin, end) = (self.dot(from), self.dot(tip));
+        let (x, y) = (begin.0 - end.0, begin.1 - end.1);
+        let length = x.hypot(y);
+        if length < SHORTEST {
             return; // seen along itself, it has no head
         }
+        let head = (HEAD * self.reach * self.scale.1).max(LEAST_HEAD);
+        let share = head.min(MOST_OF_ARROW * length) / length;
         let depth = self.camera.depth(tip);
-        for (sin, cos) in [HEAD_ANGLE, -HEAD_ANGLE].map(f64::sin_cos) {
-            let share = head / length;
-            let stroke = (right * cos - up * sin, right * sin + up * cos);
-            let stroke_end = self.dot_at((end.0 + share * stroke.0, end.1 + share * stroke.1));
-            let tip = self.dot_at(end);
-            self.line_of_dots((tip, depth), (stroke_end, depth), Stroke::Thin, ink);
+        for part in -HEAD_STROKES..=HEAD_STROKES {
+            let angle = HEAD_ANGLE * f64::from(part) / f64::from(HEAD_STROKES);
+            let (sin, cos) = angle.sin_cos();
+            let stroke = (x * cos - y * sin, x * sin + y * cos);
+            let stroke_end = (end.0 + share * stroke.0, end.1 + share * stroke.1);
+            self.line_of_dots((end, depth), (stroke_end, depth), Stroke::Thin, ink);
         }
+    }
+
+    /// A place beyond the tip of an arrow, for its letter: far enough not to cover the head.
+    pub fn beyond(&self, from: &Vector3<f64>, tip: &Vector3<f64>) -> Vector3<f64> {
+        let (begin, end) = (self.dot(from), self.dot(tip));
+        let length = (end.0 - begin.0).hypot(end.1 - begin.1);
+        match length < SHORTEST {
+            true => *tip,
+            false => tip + (tip - from) * (self.in_cell.1 as f64 / length),
+        }
+    }
+
+    /// A thick line that is in front of what lies along it: arrows along the axle do not cover it.
+    pub fn rod(&mut self, from: &Vector3<f64>, to: &Vector3<f64>, ink: Ink) {
+        let nearer = |point| self.camera.depth(point) - IN_FRONT * self.reach;
+        let ends = ((self.dot(from), nearer(from)), (self.dot(to), nearer(to)));
+        self.line_of_dots(ends.0, ends.1, Stroke::Thick, ink);
     }
 
     fn place(&self, (x, y): (f64, f64)) -> Option<(usize, usize)> {

@@ -421,7 +421,10 @@ fn the_nearer_mass_is_drawn_over_the_farther_one() {
             reading: None,
             explained: None,
         };
-        drawn(pane, (60, 24))
+        let picture = drawn(pane, (60, 24));
+        // The legend has these signs too.
+        let above_legend = picture.split("L angular momentum").next();
+        above_legend.unwrap_or_default().to_owned()
     };
     // From the side five masses are in front of others; from a little above all ten are to be seen.
     let side = scene(&view);

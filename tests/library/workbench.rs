@@ -38,6 +38,115 @@ fn pictures_of_what_lies_on_top() {
 }
 
 #[test]
+fn the_keys_of_zoom_pan_and_whole_are_named_where_they_act() {
+    for size in [SMALL, Rect::new(0, 0, 120, 40), LARGE] {
+        let mut stage = Stage::open("wobble-push", &[], size);
+        let keys = |stage: &Stage| {
+            stage
+                .picture()
+                .trim_end()
+                .lines()
+                .last()
+                .unwrap()
+                .to_owned()
+        };
+        let first = keys(&stage);
+        for word in ["W zoom", "[ pan", "p push", "o open", "? help", "q quit"] {
+            assert!(first.contains(word), "{word} at {size}: {first}");
+        }
+        for pressed in ["W", "[", "z"] {
+            stage.wait(1.0).press(pressed);
+            let zoomed = keys(&stage);
+            for word in ["W zoom", "[ pan", "Home whole", "? help", "q quit"] {
+                assert!(
+                    zoomed.contains(word),
+                    "{pressed}: {word} at {size}: {zoomed}"
+                );
+            }
+            stage.key(Key::Home);
+        }
+        assert!(stage.lab.shows_whole_view());
+        assert_eq!(keys(&stage), first);
+    }
+}
+
+#[test]
+fn magnified_values_keep_their_unit_on_narrow_strips() {
+    for preset in PRESETS {
+        let mut stage = Stage::open(preset.name, &[], SMALL);
+        stage.wait(1.0);
+        for times in 0..12 {
+            let picture = stage.picture();
+            let strip = |name: &str, unit: &str| {
+                let mut heads = picture.lines().filter_map(|line| line.split('│').nth(1));
+                let head = heads
+                    .find(|head| head.starts_with(name))
+                    .unwrap_or_default();
+                assert!(head.contains(unit), "{}, z {times}: {head}", preset.name);
+            };
+            strip("tilt ", " deg");
+            strip("x ", " m");
+            stage.press("z");
+        }
+    }
+}
+
+#[test]
+fn a_strip_with_a_cursor_still_says_its_range() {
+    let mut stage = Stage::open("wobble-push", &[], SMALL);
+    stage.wait(2.0);
+    stage.key(Key::Left);
+    stage.wait(1.0);
+    let picture = stage.picture();
+    let mut heads = picture.lines().filter_map(|line| line.split('│').nth(1));
+    let head = heads.find(|head| head.starts_with("x ")).unwrap();
+    assert!(head.contains(" m in ") || head.contains(" .. "), "{head}");
+}
+
+#[test]
+fn a_legend_names_every_mark_of_the_exact_motion() {
+    for size in [SMALL, Rect::new(0, 0, 120, 40), LARGE] {
+        for preset in ["method-2", "wobble-push"] {
+            let mut stage = Stage::open(preset, &[], size);
+            stage.press("t").wait(1.0);
+            stage.shows("o now").shows("e exact").shows("* both");
+            stage.press("i").commands("set = { 'start.tilt_deg' = 40 }");
+            stage
+                .wait(6.0)
+                .shows("o now")
+                .shows("pinned")
+                .shows("* both");
+        }
+    }
+    let mut stage = Stage::open("wobble-push", &[], SMALL);
+    stage.commands("pause = true\ngo_to = '10 s'");
+    stage.press("t").wait(1.0).press("d").wait(0.3);
+    for word in [
+        "L angular momentum",
+        "dL where",
+        "F push",
+        "+ pivot",
+        "* axle top",
+        "dots: exact",
+    ] {
+        stage.shows(word);
+    }
+    let mut stage = Stage::open("wobble-push", &[], LARGE);
+    stage.commands("pause = true\ngo_to = '10 s'");
+    stage.wait(0.3);
+    for word in [
+        "L angular momentum",
+        "Ω angular velocity",
+        "g weight",
+        "τ torque",
+        "dL where",
+        "F push",
+    ] {
+        stage.shows(word);
+    }
+}
+
+#[test]
 fn pictures_of_one_pane() {
     insta::assert_snapshot!("traces_fill", picture("loops", SMALL, 4.0, "f"));
     insta::assert_snapshot!("from_above_fill", picture("loops", SMALL, 4.0, "\tf"));

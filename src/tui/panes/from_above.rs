@@ -3,6 +3,8 @@
 //! What there is to see: where the point is, and the shape of its last swings behind it, as a line; the turn before them
 //! and all that came before, dotted more and more sparsely, denser where the point dwelt.
 
+mod legend;
+
 use super::{PaneRow, Width, frame, write};
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, View};
@@ -15,7 +17,6 @@ use crate::observe::path::Path;
 use crate::observe::reading::Reading;
 use crate::observe::recording::Moment;
 use crate::run::Clock;
-use crate::text::ladder::at_or_below;
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::keymap::ZOOM_KEYS;
 use crate::tui::theme::Role;
@@ -56,6 +57,10 @@ const ON_AXLE: f64 = 1e-6;
 
 /// Swings larger than this, dots, cover each other if they are close.
 const LARGE_SWING: f64 = 4.0;
+
+/// Rows of the pane for each line of its legend, and the most lines.
+const ROWS_A_LINE: u16 = 5;
+const MOST_LINES: u16 = 3;
 
 /// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
@@ -103,20 +108,23 @@ impl Widget for FromAbove<'_> {
         if inside.height < 2 || inside.width == 0 {
             return;
         }
-        let picture = Rect {
-            height: inside.height - 1,
+        let above = |rows: usize| Rect {
+            height: inside.height.saturating_sub(rows as u16),
             ..inside
         };
+        let most = (inside.height / ROWS_A_LINE).clamp(1, MOST_LINES) as usize;
+        let lines = self.legend(&self.plan(above(1)), inside.width, most).len();
+        let picture = above(lines);
         let plan = self.plan(picture);
         self.path(&plan, picture, buf);
         self.pushes(&plan, picture, buf);
         self.marks(&plan, picture, buf);
-        let scale = Rect {
+        let legend = Rect {
             y: picture.bottom(),
-            height: 1,
+            height: lines as u16,
             ..inside
         };
-        self.scale_bar(&plan, scale, buf);
+        self.write_legend(&plan, legend, buf);
     }
 }
 
@@ -283,45 +291,6 @@ impl FromAbove<'_> {
             mark = if exact == here { "*" } else { mark };
         }
         write(picture, here, mark, theme.style(Role::Focus), buf);
-    }
-
-    /// What a metre is, and what the marks mean, where there is room for it.
-    fn scale_bar(&self, plan: &Plan, area: Rect, buf: &mut Buffer) {
-        let theme = &self.view.theme;
-        // The longer legend beside it leaves less room for the bar.
-        let share = if self.run.overlay().is_some() {
-            0.25
-        } else {
-            0.4
-        };
-        let length_m = at_or_below(share * area.width as f64 * plan.cell_width_m);
-        // From the middle of its first cell to that of its last.
-        let cells = (length_m / plan.cell_width_m).round() as usize + 1;
-        let bar = format!("├{}┤ {length_m} m", "─".repeat(cells.saturating_sub(2)));
-        let end = write(area, (0, 0), &bar, theme.style(Role::Quiet), buf);
-        let legends: &[&str] = match self.run.overlay() {
-            _ if self.pinned.is_some() => &[
-                "o now, long dashes: pinned",
-                "long dashes: pinned",
-                "-- pinned",
-            ],
-            Some(_) => &["o now e exact * both", "o now e exact", "e exact"],
-            None if self.ghost.is_some() => {
-                &["o now, dotted: the other run", "o now, dotted: other"]
-            }
-            None => &["o now, dotted: before", "o now"],
-        };
-        let place = |legend: &&str| {
-            area.width
-                .checked_sub(legend.len() as u16)
-                .filter(|&x| x > end)
-        };
-        if let Some((legend, x)) = legends
-            .iter()
-            .find_map(|legend| Some((legend, place(legend)?)))
-        {
-            write(area, (x, 0), legend, theme.style(Role::Quiet), buf);
-        }
     }
 }
 

@@ -37,6 +37,8 @@ const CHANGE: f64 = 0.35;
 const GROUND: f64 = 0.6;
 /// A torque below this part of the largest that the weight can have is none.
 const NO_TORQUE: f64 = 1e-9;
+/// Rows of the pane for each line of its legend.
+const ROWS_A_LINE: u16 = 5;
 /// Parts of a circle.
 const PARTS: usize = 72;
 
@@ -87,12 +89,14 @@ impl Widget for ThreeD<'_> {
         if inside.height < 2 || inside.width == 0 {
             return;
         }
+        let subject = Subject::of(&self);
+        let most = (inside.height / ROWS_A_LINE).max(1) as usize;
+        let lines = subject.legend_lines(inside.width as usize, most) as u16;
         let picture = Rect {
-            height: inside.height - 1,
+            height: inside.height - lines,
             ..inside
         };
         let mut dots = Dots::new(picture, self.view.marker);
-        let subject = Subject::of(&self);
         let mut scene = Scene::new(&dots, self.view.camera, &subject.shown());
         let mut labels = subject.ground(&mut scene);
         subject.path(&scene, &mut dots);
@@ -108,8 +112,13 @@ impl Widget for ThreeD<'_> {
             .collect();
         let here = subject.position;
         let here = scene.shows(&here).then(|| scene.cell(&here));
+        let pivot = Vector3::zeros();
+        let pivot = scene.shows(&pivot).then(|| scene.cell(&pivot));
         scene.draw(&mut dots);
         dots.render(theme, buf);
+        if let Some(pivot) = pivot {
+            write(picture, pivot, "+", theme.style(Role::Heading), buf);
+        }
         for (sign, role, cell) in masses {
             write(picture, cell, sign, theme.style(role), buf);
         }
@@ -124,7 +133,7 @@ impl Widget for ThreeD<'_> {
         }
         let legend = Rect {
             y: picture.bottom(),
-            height: 1,
+            height: lines,
             ..inside
         };
         subject.legend(legend, buf);

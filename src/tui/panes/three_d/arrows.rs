@@ -31,8 +31,9 @@ impl Subject<'_> {
             if !self.draws(name) {
                 return;
             }
-            scene.arrow(&from, &(from + to), Ink::Strong(role));
-            labels.push((name, role, from + to * 1.04));
+            let tip = from + to;
+            scene.arrow(&from, &tip, Ink::Strong(role));
+            labels.push((name, role, scene.beyond(&from, &tip)));
         };
         let pivot = Vector3::zeros();
         let weight = Vector3::z() * -simulation.loads().gravity;
@@ -73,15 +74,59 @@ impl Subject<'_> {
             if let Some(direction) = push.force.try_normalize(f64::MIN_POSITIVE) {
                 let tip = from + direction * length;
                 scene.arrow(&from, &tip, Ink::Strong(Role::Push));
-                labels.push(("F", Role::Push, tip));
+                labels.push(("F", Role::Push, scene.beyond(&from, &tip)));
             }
         }
         labels
     }
 
-    /// What the letters mean, in as many words as there is room for.
+    /// Lines that the legend takes of `width` columns: at most `most`, and as many while a push acts as between pushes.
+    pub(super) fn legend_lines(&self, width: usize, most: usize) -> usize {
+        let has_pushes = !self.run.scenario().pushes.is_empty();
+        self.legend_in(width, most, has_pushes).len().max(1)
+    }
+
+    /// What the letters and signs mean, in as many words as there is room for.
     pub(super) fn legend(&self, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
+        let is_pushed = !self.run.simulation().loads().pushes.is_empty();
+        let lines = self.legend_in(area.width as usize, area.height as usize, is_pushed);
+        for (line, y) in lines.iter().zip(0..area.height) {
+            let mut x = 0;
+            for (word, role) in line {
+                x = write(area, (x, y), word, theme.style(*role), buf) + APART as u16;
+            }
+        }
+    }
+
+    /// The lines of the legend: everything named at length, or what there is room for.
+    fn legend_in(&self, width: usize, most: usize, is_pushed: bool) -> Vec<Line> {
+        let (arrows, signs) = match self.phase_legend() {
+            Some(words) => (words, Vec::new()),
+            None => (self.arrows_in_words(is_pushed), self.signs_in_words()),
+        };
+        let lines = |(arrows_at, signs_at): (usize, Option<usize>)| {
+            let named = arrows.iter().map(|(words, role)| (words[arrows_at], *role));
+            let signs = signs_at
+                .into_iter()
+                .flat_map(|at| signs.iter().map(move |sign| (sign, at)));
+            let signs = signs.map(|((words, role), at)| (words[at], *role));
+            in_lines(named.chain(signs), width)
+        };
+        let forms = [
+            (0, Some(0)),
+            (0, Some(1)),
+            (0, None),
+            (1, Some(1)),
+            (1, None),
+            (2, Some(2)),
+        ];
+        let fits = |lines: &Vec<Line>| lines.len() <= most;
+        let fitting = forms.into_iter().map(lines).find(fits);
+        fitting.unwrap_or_else(|| lines((2, None)).into_iter().take(most).collect())
+    }
+
+    fn arrows_in_words(&self, is_pushed: bool) -> Vec<Words> {
         let (torque, change) = match self.torque {
             Some(_) => (
                 ["τ torque", "τ torque", "τ"],
@@ -93,29 +138,59 @@ impl Subject<'_> {
             true => ["no weight", "", ""],
             false => ["g weight", "g weight", "g"],
         };
-        let momentum = ["L angular momentum", "L", "L"];
-        let omega = ["Ω angular velocity", "Ω", "Ω"];
-        let words = [
-            (momentum, Role::Z),
-            (omega, Role::Y),
+        let mut words = vec![
+            (["L angular momentum", "L", "L"], Role::Z),
+            (["Ω angular velocity", "Ω", "Ω"], Role::Y),
             (weight, Role::Push),
             (torque, Role::X),
             (change, Role::X),
         ];
-        let words = self.phase_legend().unwrap_or_else(|| words.to_vec());
-        let length = |at: usize| -> usize {
-            let lengths = words
-                .iter()
-                .map(|(words, _)| words[at])
-                .filter(|word| !word.is_empty());
-            lengths.map(|word| columns(word) + 2).sum()
-        };
-        let at = (0..3)
-            .find(|&at| length(at) <= area.width as usize + 2)
-            .unwrap_or(2);
-        let mut x = 0;
-        for (words, role) in words.iter().filter(|(words, _)| !words[at].is_empty()) {
-            x = write(area, (x, 0), words[at], theme.style(*role), buf) + 2;
+        if is_pushed {
+            words.push((["F push", "F push", "F"], Role::Push));
         }
+        words
     }
+
+    /// What is drawn besides the arrows.
+    fn signs_in_words(&self) -> Vec<Words> {
+        let mut words = vec![(["+ pivot", "+ pivot", "+"], Role::Heading)];
+        if self.run.scenario().file.trace.is_none() {
+            words.push((["* axle top", "* top", "*"], Role::Focus));
+        } else {
+            words.push((["* traced point", "* traced", "*"], Role::Focus));
+        }
+        words.push((
+            ["O o · masses, near to far", "O o · masses", ""],
+            Role::Text,
+        ));
+        if self.run.overlay().is_some() {
+            words.push((["dots: exact motion", "dots: exact", ""], Role::Exact));
+        }
+        words
+    }
+}
+
+/// What a letter means, at length, in short and as the letter alone.
+type Words = ([&'static str; 3], Role);
+/// The words of a line of the legend.
+type Line = Vec<(&'static str, Role)>;
+/// Columns between two words of the legend.
+const APART: usize = 2;
+
+/// `words` in lines of at most `width` columns; a word that is wider has a line of its own.
+fn in_lines(words: impl Iterator<Item = (&'static str, Role)>, width: usize) -> Vec<Line> {
+    let mut lines: Vec<Line> = Vec::new();
+    let mut free = 0;
+    for (word, role) in words.filter(|(word, _)| !word.is_empty()) {
+        let length = columns(word) + APART;
+        match lines.last_mut() {
+            Some(line) if length <= free + APART => line.push((word, role)),
+            _ => {
+                lines.push(vec![(word, role)]);
+                free = width;
+            }
+        }
+        free = free.saturating_sub(length);
+    }
+    lines
 }

@@ -25,12 +25,8 @@ impl Subject<'_> {
     pub(super) fn body(&self, scene: &mut Scene) {
         let state = self.state;
         let axle = state.axle();
-        scene.line(
-            &(axle * self.shape.axle.0),
-            &(axle * self.shape.axle.1),
-            Stroke::Thick,
-            Ink::Strong(Role::Text),
-        );
+        let (foot, top) = self.shape.axle;
+        scene.rod(&(axle * foot), &(axle * top), Ink::Strong(Role::Text));
         for at in &self.shape.free {
             let foot = axle * at.z;
             scene.line(

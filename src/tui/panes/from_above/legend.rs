@@ -1,0 +1,101 @@
+//! What a metre is on the picture from above, and what its marks and lines are.
+
+use super::{FromAbove, Plan, write};
+use crate::text::ladder::at_or_below;
+use crate::text::wrap::columns;
+use crate::tui::theme::Role;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+/// What stands between two words of a legend at length, and in short.
+const BETWEEN: [&str; 2] = [", ", " "];
+
+impl FromAbove<'_> {
+    /// The lines of the legend on `width` columns; the last has room for the scale of `plan` beside it. Where `most` lines
+    /// are too few for every mark and line of the picture, those named last are left out.
+    pub(super) fn legend(&self, plan: &Plan, width: u16, most: usize) -> Vec<String> {
+        let width = width as usize;
+        let room = width.saturating_sub(columns(&self.bar(plan, width)) + 1);
+        let words = self.words();
+        for lines in 1..=most {
+            for form in [0, 1] {
+                let legend = in_lines(&words, form, width, room);
+                if legend.len() <= lines {
+                    return legend;
+                }
+            }
+        }
+        let fewer = (1..words.len()).rev();
+        let mut fewer = fewer.map(|count| in_lines(&words[..count], 1, width, room));
+        let fits = |legend: &Vec<String>| legend.len() <= most;
+        fewer.find(fits).unwrap_or_else(|| vec![String::new()])
+    }
+
+    /// The legend and the scale on `area`, which has as many rows as the legend has lines.
+    pub(super) fn write_legend(&self, plan: &Plan, area: Rect, buf: &mut Buffer) {
+        let style = self.view.theme.style(Role::Quiet);
+        let last = area.height.saturating_sub(1);
+        let bar = self.bar(plan, area.width as usize);
+        write(area, (0, last), &bar, style, buf);
+        let lines = self.legend(plan, area.width, area.height as usize);
+        for (line, y) in lines.iter().zip(0..) {
+            let x = match y == last {
+                true => area.width.saturating_sub(columns(line) as u16),
+                false => 0,
+            };
+            write(area, (x, y), line, style, buf);
+        }
+    }
+
+    /// The scale: a line of a round length.
+    fn bar(&self, plan: &Plan, width: usize) -> String {
+        // The longer legend beside it leaves less room for the bar.
+        let share = if self.run.overlay().is_some() {
+            0.25
+        } else {
+            0.4
+        };
+        let length_m = at_or_below(share * width as f64 * plan.cell_width_m);
+        // From the middle of its first cell to that of its last.
+        let cells = (length_m / plan.cell_width_m).round() as usize + 1;
+        format!("├{}┤ {length_m} m", "─".repeat(cells.saturating_sub(2)))
+    }
+
+    /// What is drawn, the most important first, at length and in short.
+    fn words(&self) -> Vec<[&'static str; 2]> {
+        let mut words = vec![["o now"; 2]];
+        if self.run.overlay().is_some() {
+            words.extend([["e exact"; 2], ["* both"; 2]]);
+        }
+        if self.pinned.is_some() {
+            words.push(["long dashes: pinned", "-- pinned"]);
+        }
+        if self.ghost.is_some() {
+            words.push(["dotted: other run", "dotted: other"]);
+        }
+        if words.len() == 1 {
+            words.push(["dotted: before"; 2]);
+        }
+        words
+    }
+}
+
+/// `words` in lines of at most `width` columns, the last of at most `room`.
+fn in_lines(words: &[[&str; 2]], form: usize, width: usize, room: usize) -> Vec<String> {
+    let between = BETWEEN[form];
+    let mut lines = vec![String::new()];
+    for word in words.iter().map(|word| word[form]) {
+        if let Some(line) = lines.last_mut() {
+            let length = columns(line) + columns(between) + columns(word);
+            match line.is_empty() {
+                true => *line = word.to_owned(),
+                false if length <= width => *line += &format!("{between}{word}"),
+                false => lines.push(word.to_owned()),
+            }
+        }
+    }
+    if lines.last().is_some_and(|line| columns(line) > room) {
+        lines.push(String::new());
+    }
+    lines
+}
