@@ -20,7 +20,9 @@ impl Lab {
             return Err(format!("the traces show two time steps at least: {least_s} s").into());
         }
         self.view.window_s = window_s;
-        Ok(Done::saying(format!("the traces show {window_s} s")))
+        Ok(Done::saying(format!(
+            "the traces show {window_s} s; Home shows the usual time"
+        )))
     }
 
     /// The command that shows the next longer or shorter time; none at the end of the ladder.
@@ -142,13 +144,11 @@ impl Lab {
         Command::Magnify(times.clamp(1.0, MOST_MAGNIFIED))
     }
 
-    /// Whether the traces show the run as at first: no cursor, the usual time, all values.
+    /// Whether the traces follow the run with all its values and without a cursor. The length of the time does not count:
+    /// a scenario may ask for any.
     pub fn shows_whole_view(&self) -> bool {
         let view = &self.view;
-        let usual_s = view.usual_window_s(self.player.run().scenario());
-        (view.cursor, view.since_s) == (None, None)
-            && view.magnified <= 1.0
-            && view.window_s == usual_s
+        (view.cursor, view.since_s) == (None, None) && view.magnified <= 1.0
     }
 
     /// The commands that show the run again, after the time or the values were chosen by hand.

@@ -54,7 +54,12 @@ fn the_keys_of_zoom_pan_and_whole_are_named_where_they_act() {
         for word in ["W zoom", "[ pan", "p push", "o open", "? help", "q quit"] {
             assert!(first.contains(word), "{word} at {size}: {first}");
         }
-        for pressed in ["W", "[", "z"] {
+        stage
+            .wait(1.0)
+            .press("W")
+            .shows("Home shows the usual time");
+        stage.key(Key::Home);
+        for pressed in ["[", "z"] {
             stage.wait(1.0).press(pressed);
             let zoomed = keys(&stage);
             for word in ["W zoom", "[ pan", "Home whole", "? help", "q quit"] {
