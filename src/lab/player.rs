@@ -50,6 +50,8 @@ pub struct Player {
     read_at: Duration,
     detail: Detail,
     detail_at: Duration,
+    /// Whether `detail` is of the run that was opened last.
+    has_detail: bool,
     /// The numbers at the cursor, and the scenario of their run.
     at_cursor: Option<(Arc<Scenario>, Sample)>,
     /// The step to which the run is on its way by itself; out of date where other steps were asked for since.
@@ -69,6 +71,7 @@ impl Player {
         Self {
             detail: Detail::new(playback.run(), &reading.readouts, &following, None),
             detail_at: Duration::ZERO,
+            has_detail: true,
             at_cursor: None,
             reading,
             playback,
@@ -91,6 +94,7 @@ impl Player {
         let exact = begins_with_exact(&scenario).unwrap_or(shows_exact);
         self.keep_pinned();
         (self.ghost, self.heading, self.replay) = (None, None, None);
+        self.has_detail = false;
         self.playback = Playback::new(scenario, false);
         self.playback.set_exact(exact);
     }
@@ -174,7 +178,7 @@ impl Player {
         };
         let is_held = is_fast && self.cursor().is_none();
         let is_of_this_run = self.detail.begin_s + self.detail.window_s <= self.run().now().time_s;
-        if is_held && is_of_this_run && now < self.detail_at + HOLD {
+        if is_held && self.has_detail && is_of_this_run && now < self.detail_at + HOLD {
             return;
         }
         let wanted = Wanted {
@@ -188,8 +192,10 @@ impl Player {
             },
         };
         let (run, readouts) = (self.playback.run(), &self.reading.readouts);
-        self.detail = Detail::new(run, readouts, &wanted, Some(&self.detail));
-        self.detail_at = now;
+        // The length that another run had is none for this one.
+        let before = self.has_detail.then_some(&self.detail);
+        self.detail = Detail::new(run, readouts, &wanted, before);
+        (self.detail_at, self.has_detail) = (now, true);
     }
 
     /// The time that the strip of the fast motion shows.
