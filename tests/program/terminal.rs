@@ -97,8 +97,8 @@ fn a_panic_gives_the_terminal_back_and_is_told_there() {
     terminal.has_given_the_terminal_back();
     terminal.wait_until("the message", |terminal| {
         let sent = terminal.sent_text();
-        let farewell = sent.rfind(LEAVES_ALTERNATE_SCREEN).unwrap();
-        sent[farewell..].contains("a panic was asked for")
+        let farewell = sent.rfind(LEAVES_ALTERNATE_SCREEN);
+        farewell.is_some_and(|farewell| sent[farewell..].contains("a panic was asked for"))
     });
     let sent = terminal.sent_text();
     assert_eq!(sent.matches(LEAVES_ALTERNATE_SCREEN).count(), 1);
@@ -118,8 +118,8 @@ fn a_panic_in_the_background_waits_for_the_end_to_be_told() {
     assert_eq!(terminal.wait_for_end().exit_code(), 0);
     terminal.wait_until("the message", |terminal| {
         let sent = terminal.sent_text();
-        let farewell = sent.rfind(LEAVES_ALTERNATE_SCREEN).unwrap();
-        sent[farewell..].contains("a panic was asked for aside")
+        let farewell = sent.rfind(LEAVES_ALTERNATE_SCREEN);
+        farewell.is_some_and(|farewell| sent[farewell..].contains("a panic was asked for aside"))
     });
 }
 
