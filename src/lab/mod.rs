@@ -390,9 +390,11 @@ impl Lab {
         if let Some(next) = self.next().filter(|_| is_over) {
             return next;
         }
-        // What a lesson does to its run is no news.
         let changed = self.work.changed_from_file();
-        let changed = changed.filter(|_| self.view.sheet.is_none());
+        if told.is_none() && changed.is_some() && self.view.sheet.is_some() {
+            // The page says what the run is. The file's line speaks of another one.
+            return "";
+        }
         let note = told.or(changed).or_else(file);
         note.unwrap_or("? lists the keys; the scenario's own line, view.look_at, would stand here")
     }

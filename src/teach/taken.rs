@@ -363,6 +363,7 @@ impl Taken {
             return;
         }
         (self.selected, self.has_come_to_question) = (0, true);
+        self.state_again(&predict.name, lab);
         let Some(page) = self.page() else {
             return;
         };
@@ -420,17 +421,31 @@ impl Taken {
         let stated = blocks.filter_map(|block| match block {
             super::Block::Text(text) => Some((text.line, text.with_numbers(lab, kept))),
             super::Block::Compare(compare) => {
-                let predictions = &self.place.predictions;
-                predictions.answer(&compare.prediction)?;
-                Some((
-                    compare.line,
-                    compare.filled(&lesson, predictions, lab, kept),
-                ))
+                let text = compare.filled(&lesson, &self.place.predictions, lab, kept);
+                Some((compare.line, text))
             }
             _ => None,
         });
         self.stated = Some(stated.collect());
         true
+    }
+
+    /// Puts the prediction called `name`, which has just been locked, into what the page has stated about it.
+    fn state_again(&mut self, name: &str, lab: &Lab) {
+        let lesson = Arc::clone(&self.lesson);
+        let (page, place) = (lesson.page(self.place.page), &self.place);
+        let Some(stated) = &mut self.stated else {
+            return;
+        };
+        for block in page.into_iter().flat_map(|page| &page.blocks) {
+            if let super::Block::Compare(compare) = block
+                && compare.prediction == name
+                && stated.contains_key(&compare.line)
+            {
+                let text = compare.filled(&lesson, &place.predictions, lab, &place.kept);
+                stated.insert(compare.line, text);
+            }
+        }
     }
 
     /// Goes on with `lesson`, the file as it is now, on the same page; the run stays where it is.

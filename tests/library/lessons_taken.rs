@@ -277,6 +277,9 @@ fn what_a_page_has_stated_stays_while_the_run_goes_on() {
     stage.press("10.").arrive().shows("The time is 2.0 s");
     stage.press("g5 s\n").arrive().shows("The time is 2.0 s");
     stage.press("R").arrive().shows("The time is 2.0 s");
+    let (mut open, _folder, _) = taken(2);
+    open.shows("= It is 5.0.").press("g4 s\n").arrive();
+    open.shows("= It is 5.0.").shows_no("tilt 30 to 36.69");
     assert_eq!(stage.lab.player().reading().readouts.sample.time_s, 2.0);
 }
 
