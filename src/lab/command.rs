@@ -4,6 +4,7 @@
 //! A file of commands is a list of `[[do]]` tables with one command each. The [table](COMMANDS) lists every command with
 //! its name, its value and its effect; [`read`] and the manual use it.
 
+mod looking;
 mod reading;
 mod table;
 mod write;

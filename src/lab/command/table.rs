@@ -1,10 +1,13 @@
 //! The one table of commands: the name of each, its value, and what it does.
 
 use super::Command;
+use super::looking::{
+    bare, camera, cursor, detail, exact, fill, hide, look_at, magnify, next, phase, pin, point_at,
+    show, since, speed, sum_to, window, zoom,
+};
 use super::reading::{
-    Read, bare, camera, count, cursor, detail, exact, export, fill, go_to, hide, look_at, magnify,
-    next, next_push, nudge, open, phase, pin, point_at, push, run_until, save, set, show, since,
-    speed, step, sum_to, told, wait, window, zoom,
+    Read, count, export, go_to, next_push, nudge, open, push, run_until, save, set, step, told,
+    wait,
 };
 use crate::scenario::Problem;
 use toml::Value;

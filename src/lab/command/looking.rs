@@ -1,0 +1,151 @@
+//! Reads the values of the commands that choose how the run is shown.
+
+use super::reading::{
+    Read, checked, field, fields, number, number_in, of_view, place, text_in, wrong,
+};
+use super::{Command, CursorTo, MOST_MAGNIFIED, NEXT_TURN, NONE, TURN_BEFORE};
+use crate::lab::view::step::Page;
+use crate::lab::view::{Pane, Part};
+use crate::observe::camera::{Camera, Zoom};
+use crate::observe::pace::Speed;
+use crate::scenario::file::Choice;
+use crate::scenario::keys::{Kind, Range};
+use toml::Value;
+
+pub(super) fn speed(value: &Value) -> Read {
+    match value {
+        Value::String(word) if word == "top" => Ok(Command::Speed(Speed::Top)),
+        Value::String(_) => wrong(value, "must be a number greater than zero, or \"top\""),
+        _ => Ok(Command::Speed(Speed::Times(number_in(of_view(
+            "speed", value,
+        )?)))),
+    }
+}
+
+pub(super) fn look_at(value: &Value) -> Read {
+    let text = text_in(of_view("look_at", value)?);
+    Ok(Command::LookAt(text.to_owned()))
+}
+
+pub(super) fn next(value: &Value) -> Read {
+    let text = text_in(of_view("next", value)?);
+    Ok(Command::Next(text.to_owned()))
+}
+
+pub(super) fn bare(value: &Value) -> Read {
+    let bare = of_view("bare", value)?.as_bool().unwrap_or_default();
+    Ok(Command::Bare(bare))
+}
+
+pub(super) fn window(value: &Value) -> Read {
+    Ok(Command::Window(number_in(of_view("window_s", value)?)))
+}
+
+pub(super) fn detail(value: &Value) -> Read {
+    Ok(Command::Detail(number_in(of_view("detail_s", value)?)))
+}
+
+pub(super) fn since(value: &Value) -> Read {
+    if value.as_str() == Some(NONE) {
+        return Ok(Command::Since(None));
+    }
+    number(Range::NotNegative, value).map(|since_s| Command::Since(Some(since_s)))
+}
+
+pub(super) fn magnify(value: &Value) -> Read {
+    let times = number(Range::Positive, value)?;
+    match (1.0..=MOST_MAGNIFIED).contains(&times) {
+        true => Ok(Command::Magnify(times)),
+        false => wrong(value, "must be between 1 and 1000000"),
+    }
+}
+
+pub(super) fn cursor(value: &Value) -> Read {
+    let to = match value.as_str() {
+        Some(NONE) => Some(CursorTo::Nowhere),
+        Some(NEXT_TURN) => Some(CursorTo::NextTurn),
+        Some(TURN_BEFORE) => Some(CursorTo::TurnBefore),
+        _ => place(value).map(CursorTo::Place),
+    };
+    match to {
+        Some(to) => Ok(Command::Cursor(to)),
+        None => wrong(
+            value,
+            "must be a step from 0 on (421), a time (\"12.5 s\"), \"start\", \"end\", \"next turn\", \"turn before\" or \"none\"",
+        ),
+    }
+}
+
+pub(super) fn exact(value: &Value) -> Read {
+    let shown = of_view("exact", value)?.as_bool().unwrap_or_default();
+    Ok(Command::Exact(shown))
+}
+
+pub(super) fn pin(value: &Value) -> Read {
+    let pinned = checked(Kind::Flag, value)?.as_bool().unwrap_or_default();
+    Ok(Command::Pin(pinned))
+}
+
+pub(super) fn show(value: &Value) -> Read {
+    let list = of_view("show", value)?.as_array();
+    let ids = list.into_iter().flatten().map(text_in);
+    Ok(Command::Show(ids.filter_map(Pane::named).collect()))
+}
+
+pub(super) fn hide(value: &Value) -> Read {
+    let list = of_view("hide", value)?.as_array();
+    let ids = list.into_iter().flatten().map(text_in);
+    Ok(Command::Hide(ids.filter_map(Part::named).collect()))
+}
+
+pub(super) fn fill(value: &Value) -> Read {
+    let id = text_in(of_view("fill", value)?);
+    Ok(Command::Fill(Pane::named(id)))
+}
+
+pub(super) fn point_at(value: &Value) -> Read {
+    let id = text_in(of_view("fill", value)?); // the same words
+    Ok(Command::PointAt(Pane::named(id)))
+}
+
+pub(super) fn phase(value: &Value) -> Read {
+    let choice = choice_in(of_view("phase", value)?);
+    Ok(Command::Phase(Page::of(&choice).unwrap_or_default()))
+}
+
+pub(super) fn sum_to(value: &Value) -> Read {
+    let rows = match choice_in(of_view("sum_to", value)?) {
+        Choice::Number(rows) => usize::try_from(rows).ok(),
+        Choice::Word(_) => None,
+    };
+    Ok(Command::SumTo(rows))
+}
+
+/// A whole number from 0 on, or the word.
+fn choice_in(value: &Value) -> Choice {
+    let number = value.as_integer().map(u64::try_from);
+    match number {
+        Some(Ok(number)) => Choice::Number(number),
+        _ => Choice::Word(text_in(value).to_owned()),
+    }
+}
+
+pub(super) fn camera(value: &Value) -> Read {
+    let table = fields(value, &["yaw_deg", "pitch_deg"])?;
+    let angle = |name: &str| field(table, name, |value| number(Range::Any, value));
+    let usual = Camera::default();
+    Ok(Command::Camera(Camera {
+        yaw_deg: angle("yaw_deg")?.unwrap_or(usual.yaw_deg),
+        pitch_deg: angle("pitch_deg")?.unwrap_or(usual.pitch_deg),
+    }))
+}
+
+pub(super) fn zoom(value: &Value) -> Read {
+    let table = fields(value, &["above", "3d"])?;
+    let factor = |name: &str| field(table, name, |value| number(Range::Zoom, value));
+    let whole = Zoom::default();
+    Ok(Command::Zoom(Zoom {
+        above: factor("above")?.unwrap_or(whole.above),
+        three_d: factor("3d")?.unwrap_or(whole.three_d),
+    }))
+}
