@@ -4,7 +4,7 @@
 use super::args::LessonArgs;
 use super::played::{new_lab, refused, watched, write};
 use super::progress::{self, Interruption};
-use super::sessions;
+use super::{INTERRUPTED, sessions};
 use crate::lab::Lab;
 use crate::storage::session::{self, Listed};
 use crate::teach::class::{KeptLessons, Place};
@@ -14,7 +14,7 @@ use crate::text::printable::{printable, printable_lines};
 use crate::text::wrap::wrapped;
 use anyhow::bail;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::io::{self, IsTerminal};
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::thread;
@@ -68,9 +68,14 @@ pub(super) fn notes(name: &str) -> anyhow::Result<ExitCode> {
         ),
     };
     let line = live_line();
-    follow(&folder, &followed, &line, &interruption);
+    let followed = follow(&folder, &followed, &line, &interruption);
     line.finish_and_clear();
-    Ok(ExitCode::SUCCESS)
+    match followed {
+        // Nobody reads on.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(ExitCode::SUCCESS),
+        Err(error) => Err(error.into()),
+        Ok(()) => Ok(ExitCode::from(INTERRUPTED)),
+    }
 }
 
 fn folder() -> anyhow::Result<PathBuf> {
@@ -116,7 +121,12 @@ fn live_line() -> ProgressBar {
 }
 
 /// Prints the notes of each page as it is opened, until a signal comes.
-fn follow(folder: &Path, name: &str, line: &ProgressBar, interruption: &Interruption) {
+fn follow(
+    folder: &Path,
+    name: &str,
+    line: &ProgressBar,
+    interruption: &Interruption,
+) -> io::Result<()> {
     let mut seen = SystemTime::UNIX_EPOCH;
     let mut open: Option<(Lesson, Place)> = None;
     while !interruption.has_come() {
@@ -129,7 +139,7 @@ fn follow(folder: &Path, name: &str, line: &ProgressBar, interruption: &Interrup
             if let Some((lesson, place)) = &now
                 && now.as_ref().map(page) != open.as_ref().map(page)
             {
-                tell(line, &told(lesson, place.page));
+                tell(line, &told(lesson, place.page))?;
             }
             open = now;
         }
@@ -142,17 +152,21 @@ fn follow(folder: &Path, name: &str, line: &ProgressBar, interruption: &Interrup
         });
         thread::sleep(EVERY);
     }
+    Ok(())
 }
 
 /// Prints `text` above the live line, in lines that end between words.
-fn tell(line: &ProgressBar, text: &str) {
+fn tell(line: &ProgressBar, text: &str) -> io::Result<()> {
     let lines = text.lines().flat_map(|line| wrapped(line, WIDTH));
     let text = lines.collect::<Vec<_>>().join("\n");
     let text = printable_lines(&text);
-    match line.is_hidden() {
-        true => println!("{text}"),
-        false => line.println(text),
+    if !line.is_hidden() {
+        line.println(text);
+        return Ok(());
     }
+    let mut stdout = io::stdout();
+    writeln!(stdout, "{text}")?;
+    stdout.flush()
 }
 
 /// The notes of a page, and what comes next.

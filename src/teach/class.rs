@@ -125,10 +125,15 @@ impl Class {
     /// Takes the lesson that NAME names, where it was left.
     fn take(&mut self, name: &str, lab: &Lab) -> Result<(), String> {
         let name = reading::full_name(name);
-        if shipped::find(&name).is_none() {
-            lab.files().admit(Path::new(&name))?;
-        }
-        let lesson = reading::open(&name).map_err(|problems| problems.to_string())?;
+        let lesson = match shipped::find(&name) {
+            Some(_) => reading::open(&name),
+            None if !reading::is_file_name(&name) => reading::open(&name), // says which there are
+            None => {
+                lab.files().admit(Path::new(&name))?;
+                reading::read_again(Path::new(&name))
+            }
+        };
+        let lesson = lesson.map_err(|problems| problems.to_string())?;
         self.leave();
         let place = self.left.remove(&lesson.name).unwrap_or_default();
         self.shown = Shown::Lesson(Box::new(Taken::new(lesson, place, self.now)));
@@ -158,8 +163,7 @@ impl Class {
             }
             (_, LessonKey::List) => self.open_list(),
             (Shown::List { selected, .. }, LessonKey::Move(direction)) => {
-                let last = self.left.len().max(1) + shipped::LESSONS.len();
-                *selected = selected.saturating_add_signed(rows(direction)).min(last);
+                *selected = selected.saturating_add_signed(rows(direction));
             }
             (Shown::List { selected, .. }, LessonKey::Take) => {
                 let selected = *selected;

@@ -9,7 +9,7 @@
 //! - [`stage`]: what to carry out to stand on a page.
 //! - [`play`]: a lesson played to its end without a screen, and whether its checks do what they should.
 //! - [`handout`]: a lesson on paper; [`answers`]: what was predicted beside what came out.
-//! - [`class`]: the lessons of a lab; [`taken`]: the one that is open, with the one who takes it; [`page`]: what stands
+//! - [`class`]: the lessons of a lab; [`taken`]: the one that is open, with what its page has stated; [`page`]: what stands
 //!   beside the panes, of [`markdown`]; [`clock`] and [`watch`]: the time, and a file that changes.
 //! - [`shipped`]: the lessons that come with the program.
 
@@ -28,6 +28,7 @@ pub mod predictions;
 pub mod reading;
 pub mod shipped;
 pub mod stage;
+mod stated;
 mod structure;
 pub mod taken;
 pub mod text;

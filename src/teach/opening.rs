@@ -4,6 +4,7 @@ use super::lesson::{Block, Lesson};
 use super::reading::read;
 use super::shipped;
 use super::structure::on_line;
+use crate::export::Destination;
 use crate::lab::command::Command;
 use crate::scenario::problem::nearest;
 use crate::scenario::{Problem, Problems, presets};
@@ -19,7 +20,7 @@ pub const LONGEST: u64 = 1 << 20;
 /// # Errors
 /// When there is no such lesson, or everything that is wrong with it.
 pub fn open(name: &str) -> Result<Lesson, Problems> {
-    if name.contains('/') || name.ends_with(".md") {
+    if is_file_name(name) {
         return read_file(Path::new(name));
     }
     match shipped::find(name) {
@@ -41,10 +42,16 @@ pub fn open(name: &str) -> Result<Lesson, Problems> {
     }
 }
 
+/// Whether NAME names a file: it holds a `/` or ends in `.md`.
+pub fn is_file_name(name: &str) -> bool {
+    name.contains('/') || name.ends_with(".md")
+}
+
 /// The name by which a session keeps the lesson that NAME names: that of a shipped lesson, or the full path of its file.
 pub fn full_name(name: &str) -> String {
-    let is_file = name.contains('/') || name.ends_with(".md");
-    let path = is_file.then(|| std::path::absolute(name).ok()).flatten();
+    let path = is_file_name(name)
+        .then(|| std::path::absolute(name).ok())
+        .flatten();
     path.map_or_else(|| name.to_owned(), |path| path.display().to_string())
 }
 
@@ -60,6 +67,19 @@ pub fn read_file(path: &Path) -> Result<Lesson, Problems> {
         look_in(folder, &mut lesson);
     }
     Ok(lesson)
+}
+
+/// As [`read_file`], while the lab waits: a file that could keep it waiting is refused.
+///
+/// # Errors
+/// As [`read_file`], and where the file is a FIFO or a device.
+pub fn read_again(path: &Path) -> Result<Lesson, Problems> {
+    if Destination::may_wait(path) {
+        let rule = "is not a regular file, which a lesson in the lab must be: it is read again whenever it changes";
+        let origin = path.display().to_string();
+        return Err(Problems::one(origin, Problem::at("", rule)));
+    }
+    read_file(path)
 }
 
 /// Makes the files that `lesson` opens files in `folder`, where they are not named from the root.

@@ -6,16 +6,22 @@ use super::lesson::{Answer, Asked, Lesson, Page, Predict};
 use super::names::value;
 use super::predictions::Predictions;
 use super::stage::Stage;
+use super::stated::Stated;
 use super::watch::Watch;
 use super::{reading, shipped};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
 use crate::lab::command::Command;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+/// How long the pages before one may take to be carried out: no key is answered meanwhile.
+const LONGEST: Duration = Duration::from_secs(5);
+const TOO_LONG: &str =
+    "the pages before this one take too long: its lab block should open a run of its own";
 
 /// A lesson that is taken.
 #[derive(Debug)]
@@ -32,7 +38,7 @@ pub struct Taken {
     reached: BTreeSet<usize>,
     /// The texts of this page that the student's own run does not change, with their numbers, by their lines in the file;
     /// `None` until the run has arrived where the page wants it.
-    stated: Option<BTreeMap<usize, String>>,
+    stated: Option<Stated>,
     /// Whether the hints of the page's checks are shown.
     shows_hints: bool,
     /// The block that the lab is carrying out.
@@ -132,7 +138,7 @@ impl Taken {
 
     /// The text at this line of the file with its numbers, where it is one that the student's own run does not change.
     pub fn stated(&self, line: usize) -> Option<&str> {
-        self.stated.as_ref()?.get(&line).map(String::as_str)
+        self.stated.as_ref()?.text(line)
     }
 
     /// Whether the hints of the page's checks are shown.
@@ -177,8 +183,19 @@ impl Taken {
             _ => None,
         };
         let before = stages.len() - usize::from(last.is_some());
+        let begin = Instant::now();
+        let mut is_late = false;
         for stage in &stages[..before] {
-            stage.carry_out(lab, &mut self.place.kept, |_, _| ControlFlow::Continue(()))?;
+            stage.carry_out(lab, &mut self.place.kept, |_, _| {
+                is_late |= begin.elapsed() > LONGEST;
+                match is_late {
+                    true => ControlFlow::Break(()),
+                    false => ControlFlow::Continue(()),
+                }
+            })?;
+            if is_late {
+                return Err(TOO_LONG.to_owned());
+            }
         }
         if let Some(stage) = last {
             self.begin(stage, Block::Lab(page), lab);
@@ -363,7 +380,9 @@ impl Taken {
             return;
         }
         (self.selected, self.has_come_to_question) = (0, true);
-        self.state_again(&predict.name, lab);
+        if let Some(stated) = &mut self.stated {
+            stated.take_in(&predict.name, &self.lesson, &self.place, lab);
+        }
         let Some(page) = self.page() else {
             return;
         };
@@ -387,7 +406,7 @@ impl Taken {
             && watch.has_changed(now)
         {
             is_new = true;
-            match reading::read_file(watch.path()) {
+            match reading::read_again(watch.path()) {
                 Ok(lesson) => self.take_file(lesson, lab),
                 Err(problems) => {
                     let text = problems.to_string();
@@ -399,7 +418,7 @@ impl Taken {
         is_new
     }
 
-    /// Fixes the numbers in the page's text once the run has arrived. What stands behind a task or a check follows the run.
+    /// States the page's numbers once the run has arrived.
     fn state(&mut self, lab: &Lab) -> bool {
         let has_arrived = self.under_way.is_none()
             && lab.script().is_done()
@@ -407,45 +426,8 @@ impl Taken {
         if self.stated.is_some() || !has_arrived {
             return false;
         }
-        let lesson = Arc::clone(&self.lesson);
-        let kept = &self.place.kept;
-        let is_before = |block: &&super::Block| {
-            !matches!(block, super::Block::Task(_) | super::Block::Check(_))
-        };
-        let page = lesson.page(self.place.page);
-        let blocks = page.into_iter().flat_map(|page| &page.blocks);
-        let blocks = lesson
-            .introduction
-            .iter()
-            .chain(blocks.take_while(is_before));
-        let stated = blocks.filter_map(|block| match block {
-            super::Block::Text(text) => Some((text.line, text.with_numbers(lab, kept))),
-            super::Block::Compare(compare) => {
-                let text = compare.filled(&lesson, &self.place.predictions, lab, kept);
-                Some((compare.line, text))
-            }
-            _ => None,
-        });
-        self.stated = Some(stated.collect());
+        self.stated = Some(Stated::of(&self.lesson, &self.place, lab));
         true
-    }
-
-    /// Puts the prediction called `name`, which has just been locked, into what the page has stated about it.
-    fn state_again(&mut self, name: &str, lab: &Lab) {
-        let lesson = Arc::clone(&self.lesson);
-        let (page, place) = (lesson.page(self.place.page), &self.place);
-        let Some(stated) = &mut self.stated else {
-            return;
-        };
-        for block in page.into_iter().flat_map(|page| &page.blocks) {
-            if let super::Block::Compare(compare) = block
-                && compare.prediction == name
-                && stated.contains_key(&compare.line)
-            {
-                let text = compare.filled(&lesson, &place.predictions, lab, &place.kept);
-                stated.insert(compare.line, text);
-            }
-        }
     }
 
     /// Goes on with `lesson`, the file as it is now, on the same page; the run stays where it is.

@@ -214,6 +214,63 @@ fn a_file_that_changes_is_read_again_and_the_page_stays() {
 }
 
 #[test]
+fn a_file_that_could_keep_the_lab_waiting_is_refused() {
+    let (mut stage, folder, name) = taken(2);
+    let fifo = folder.path().join("fifo.md");
+    let made = std::process::Command::new("mkfifo").arg(&fifo).status();
+    assert!(made.unwrap().success());
+    let named = fifo.display().to_string();
+    let opened = stage.class.open(&named, None, &mut stage.lab);
+    let refusal = opened.unwrap_err();
+    assert!(refusal.contains("is not a regular file"), "{refusal}");
+    fs::remove_file(&name).unwrap();
+    fs::rename(&fifo, &name).unwrap();
+    stage
+        .wait(2.0)
+        .shows("the page stays as it was")
+        .shows("2 of 4");
+}
+
+#[test]
+fn pages_before_one_that_take_too_long_do_not_hold_the_keys_up() {
+    let text = r#"# Long
+
+## One
+
+```lab
+open = "wobble-push"
+run_until = "measured_precession_rad_per_s > 1e9"
+```
+
+x
+
+## Two
+
+```lab
+set = { "motion.gravity_m_per_s2" = 5 }
+```
+
+x
+
+## Three
+
+x
+"#;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.md");
+    fs::write(&path, text).unwrap();
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    let named = path.display().to_string();
+    let opened = stage.class.open(&named, Some(2), &mut stage.lab);
+    let refusal = opened.unwrap_err();
+    assert!(
+        refusal.contains("should open a run of its own"),
+        "{refusal}"
+    );
+    assert!(stage.lab.script().is_done());
+}
+
+#[test]
 fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("n").shows("no lesson is open: L lists them");

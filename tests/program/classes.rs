@@ -1,6 +1,6 @@
 //! Lessons in the program itself: what a session keeps of them, and what the teacher sees beside it.
 
-use crate::support::ground::{Ground, done, failed, stdout};
+use crate::support::ground::{Ground, code, done, failed, stderr, stdout};
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
 use std::sync::mpsc;
@@ -106,6 +106,11 @@ fn notes_follow_the_lab_from_page_to_page() {
     wait_for("== 3 of 10");
     notes.kill().unwrap();
     notes.wait().unwrap();
+    // Where nobody reads on, and at Ctrl-C, it ends, and does not panic.
+    let closed = ground.shell("exec 3>&1; { timeout 60 $G lesson --notes; echo $? >&3; } | true");
+    assert_eq!((stdout(&closed), stderr(&closed)), ("0\n", ""));
+    let ended = ground.shell("timeout --preserve-status -s INT 2 $G lesson --notes >/dev/null");
+    assert_eq!(code(&ended), 130);
     lab.quit();
 }
 
