@@ -15,6 +15,8 @@
 //! - [`analysis`]: how reliable a run's numbers are: theory, measurement, health, comparisons.
 //! - [`observe`]: a run that is being watched: its playback, its earlier steps, and the data of its pictures.
 //! - [`export`]: output of the program: columns, CSV, summaries, and the files they are written to.
+//! - [`figure`]: pictures of runs on paper: SVG, PDF and PNG.
+//! - [`study`]: what many runs say, and what a run that was exported is worth: sweeps, verification, write-ups.
 //! - [`storage`]: what the lab keeps on the disk: sessions, exports in the background, the folder it is confined to.
 //! - [`lab`]: the lab without a terminal: its state, and the commands that change it.
 //! - [`teach`]: lessons: Markdown files that say what the lab does, read, checked and played without a terminal.
@@ -30,12 +32,14 @@
 pub mod analysis;
 pub mod cli;
 pub mod export;
+pub mod figure;
 pub mod lab;
 pub mod observe;
 pub mod physics;
 pub mod run;
 pub mod scenario;
 pub mod storage;
+pub mod study;
 pub mod teach;
 pub mod text;
 pub mod tui;

@@ -1,0 +1,84 @@
+//! A page as filled and stroked paths, in order from the back to the front.
+//!
+//! Lengths are points (1/72 inch); the origin is the upper left corner, x to the right, y down. Text is a path too: the
+//! outlines of its letters, so that a page looks the same where no font is installed.
+
+/// A place on the page, pt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// From the left edge, pt.
+    pub x: f64,
+    /// From the upper edge, pt.
+    pub y: f64,
+}
+
+/// One piece of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Segment {
+    /// Begins a new line at a point.
+    Move(Point),
+    /// A straight line to a point.
+    Line(Point),
+    /// A parabola: its control point, its end.
+    Quadratic(Point, Point),
+    /// A cubic curve: its two control points, its end.
+    Cubic(Point, Point, Point),
+    /// A straight line back to where this line began.
+    Close,
+}
+
+/// Lines and curves that are filled or stroked together.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Path(pub Vec<Segment>);
+
+/// An opaque colour: red, green, blue.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Color(pub [u8; 3]);
+
+/// How a line is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pen {
+    /// Width of the line, pt.
+    pub width_pt: f64,
+    /// Its colour.
+    pub color: Color,
+    /// Lengths of strokes and gaps in turn, pt; empty for a solid line.
+    pub dash_pt: Vec<f64>,
+    /// Whether corners and ends are round; else corners are sharp and ends flat.
+    pub is_round: bool,
+}
+
+/// How a path becomes visible.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Paint {
+    /// Its inside, by the non-zero rule.
+    Fill(Color),
+    /// Its line.
+    Stroke(Pen),
+}
+
+/// One path on the page.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Item {
+    /// The path.
+    pub path: Path,
+    /// How it is drawn.
+    pub paint: Paint,
+    /// What it is cut off at: upper left and lower right corner; `None` for the page.
+    pub clip: Option<[Point; 2]>,
+    /// The words, where the path is a text.
+    pub words: Option<String>,
+}
+
+/// A page.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Width of the page, pt.
+    pub width_pt: f64,
+    /// Height of the page, pt.
+    pub height_pt: f64,
+    /// Its title, for readers of the file; it is not drawn.
+    pub title: String,
+    /// What is on it, from the back to the front.
+    pub items: Vec<Item>,
+}

@@ -1,0 +1,1 @@
+//! What many runs say, and what an exported run is worth: sweeps, verification, write-ups.
