@@ -228,6 +228,9 @@ pub struct Readout {
     get: fn(&Readouts) -> Value,
 }
 
+/// In the name of a readout that is the standard error of another.
+const ERROR: &str = "_uncertainty";
+
 /// How a readout is obtained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
@@ -268,6 +271,29 @@ impl Source {
 }
 
 impl Readout {
+    /// Whether it is the standard error of another readout.
+    pub fn is_uncertainty(&self) -> bool {
+        self.name.contains(ERROR)
+    }
+
+    /// The readout that is the standard error of this one.
+    pub fn uncertainty(&self) -> Option<&'static Self> {
+        let is_its_error = |other: &&Self| {
+            let stem = other.name.split_once(ERROR);
+            stem.is_some_and(|(stem, _)| self.name.starts_with(stem))
+        };
+        READOUTS
+            .iter()
+            .find(is_its_error)
+            .filter(|_| !self.is_uncertainty())
+    }
+
+    /// The readout in which theory says what this measured one should be.
+    pub fn predicted(&self) -> Option<&'static Self> {
+        let what = self.name.strip_prefix("measured_")?;
+        find(&format!("predicted_{what}"))
+    }
+
     /// What `readouts` has under this name.
     pub fn of(&self, readouts: &Readouts) -> Value {
         (self.get)(readouts)

@@ -39,6 +39,8 @@ pub(super) enum Command {
     Show(ShowArgs),
     /// Hold schemes and time steps against the exact motion: errors, drifts, cost, measured order
     Compare(CompareArgs),
+    /// Make a folder for a write-up of a run: CSV, figures, measured numbers beside theory, and how to make it again
+    Writeup(WriteupArgs),
     /// List the shipped presets, or print one as TOML
     Presets {
         /// The preset to print
@@ -245,6 +247,23 @@ pub(super) struct RunArgs {
     pub(super) json: bool,
 
     /// Replace an existing file
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct WriteupArgs {
+    #[command(flatten)]
+    pub(super) scenario: ScenarioArgs,
+
+    /// The folder: a new or an empty one
+    #[arg(short, long, value_name = "FOLDER")]
+    pub(super) output: PathBuf,
+
+    #[command(flatten)]
+    pub(super) length: LengthArgs,
+
+    /// Write into a folder that holds files, and replace those of the same names
     #[arg(long)]
     pub(super) force: bool,
 }

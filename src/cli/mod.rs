@@ -15,6 +15,7 @@ mod sessions;
 mod settings;
 mod show;
 mod workbench;
+mod writeup;
 
 use crate::scenario::presets;
 use crate::text::printable::{is_steering, printable, printable_lines};
@@ -60,6 +61,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Schemes => info::schemes(),
         Command::Keys => info::keys(),
         Command::Readouts => info::readouts(),
+        Command::Writeup(args) => writeup::writeup(&args),
         Command::Lesson(args) => lesson::lesson(&args),
         Command::Check { files } => info::check(&files),
         Command::Completions { shell } => info::completions(shell),

@@ -19,3 +19,4 @@ mod readme;
 mod sessions;
 mod settings;
 mod terminal;
+mod writeups;

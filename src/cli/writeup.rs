@@ -1,0 +1,45 @@
+//! `gyrolab writeup`: a run as a folder of files for a write-up.
+
+use super::args::WriteupArgs;
+use super::run::played;
+use super::scenario::scenario_of;
+use super::{INTERRUPTED, complain, progress, tell};
+use crate::export::Folder;
+use crate::export::stream::Ended;
+use crate::study::writeup::{CSV, Writeup};
+use crate::text::printable::Shown;
+use anyhow::Context;
+use std::fs::{self, File};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
+    let scenario = Arc::new(scenario_of(&args.scenario, &args.length)?);
+    let (_, interruption) = progress::open(None, false)?;
+    let folder = Folder::begin(&args.output, args.force)?;
+    let cannot_write = || format!("cannot write {}", Shown(&args.output));
+    let csv = File::create(folder.path().join(CSV)).with_context(cannot_write)?;
+    let mut played = played(&scenario, 1, Some(csv), &interruption).with_context(cannot_write)?;
+    if played.ended == Ended::Stopped {
+        return Ok(ExitCode::from(INTERRUPTED)); // the folder goes with its temporary name
+    }
+    let writeup = Writeup::new(scenario, played.readouts(), Vec::new());
+    for (name, text) in writeup.texts() {
+        fs::write(folder.path().join(name), text).with_context(cannot_write)?;
+    }
+    if interruption.may_act_at_once() {
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    folder.keep()?;
+    tell(format_args!(
+        "gyrolab: the write-up is in {}; begin with README.md",
+        Shown(&args.output)
+    ));
+    match played.ended {
+        Ended::NotFinite(error) => {
+            complain(&anyhow::Error::new(error).context(args.scenario.scenario.clone()));
+            Ok(ExitCode::FAILURE)
+        }
+        Ended::Done | Ended::Stopped => Ok(ExitCode::SUCCESS),
+    }
+}

@@ -1,0 +1,110 @@
+//! A run as a write-up: a folder with the run file, the CSV, figures, the measured numbers beside theory, and a page that
+//! says what was run, whether to believe it, and how to make it again.
+//!
+//! The same run gives the same bytes each time: what the machine's clock says is left out.
+
+mod languages;
+mod latex;
+mod page;
+mod quantities;
+
+use crate::analysis::Readouts;
+use crate::analysis::readouts::{READOUTS, Source};
+use crate::export::columns::COLUMNS;
+use crate::scenario::Scenario;
+pub use languages::Lines;
+pub use quantities::Quantity;
+use serde_json::{Map, Value};
+use std::sync::Arc;
+
+/// The run's rows.
+pub const CSV: &str = "run.csv";
+/// The scenario with its edits, from which the rows are computed.
+pub const RUN_FILE: &str = "run.toml";
+/// The first page.
+pub const PAGE: &str = "README.md";
+/// The measured numbers beside theory, for LaTeX.
+pub const LATEX: &str = "readouts.tex";
+/// Every readout.
+pub const READOUTS_FILE: &str = "readouts.json";
+
+/// A figure of the write-up, in the file `NAME.svg` and in `NAME.pdf`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Drawing {
+    /// The file's name without its ending.
+    pub name: String,
+    /// What is to be seen.
+    pub caption: String,
+}
+
+/// What a write-up is made of.
+#[derive(Clone, Debug)]
+pub struct Writeup {
+    /// The run.
+    pub scenario: Arc<Scenario>,
+    /// What was read off it.
+    pub readouts: Readouts,
+    /// The measured numbers beside theory.
+    pub quantities: Vec<Quantity>,
+    /// The figures, in the order in which the page shows them.
+    pub drawings: Vec<Drawing>,
+}
+
+impl Writeup {
+    /// The write-up of the run of `scenario`, whose `readouts` were read at its end, with `drawings`.
+    pub fn new(scenario: Arc<Scenario>, readouts: Readouts, drawings: Vec<Drawing>) -> Self {
+        Self {
+            quantities: quantities::quantities(&readouts),
+            scenario,
+            readouts,
+            drawings,
+        }
+    }
+
+    /// The text files, each with its name; the CSV and the figures are not among them.
+    pub fn texts(&self) -> [(&'static str, String); 4] {
+        let page = page::page(self).unwrap_or_default(); // a String takes what is written to it
+        [
+            (RUN_FILE, self.scenario.to_toml()),
+            (READOUTS_FILE, self.readouts_json()),
+            (LATEX, latex::table(&self.quantities, &self.readouts.title)),
+            (PAGE, page),
+        ]
+    }
+
+    /// Lines that read the CSV.
+    pub fn languages(&self) -> [Lines; 4] {
+        let header = self.scenario.to_toml().lines().count();
+        let column = |name| {
+            1 + COLUMNS
+                .iter()
+                .take_while(|column| column.name != name)
+                .count()
+        };
+        languages::lines(CSV, header, column("t_s"), column("z_m"))
+    }
+
+    /// The readouts but for those of the clock, one object.
+    fn readouts_json(&self) -> String {
+        let lasting = READOUTS
+            .iter()
+            .filter(|readout| readout.source != Source::Clock);
+        let object: Map<_, _> = lasting
+            .map(|readout| {
+                let value = serde_json::to_value(readout.of(&self.readouts));
+                (readout.name.to_owned(), value.unwrap_or(Value::Null))
+            })
+            .collect();
+        format!("{:#}\n", Value::Object(object))
+    }
+
+    /// The name of the point with that index.
+    fn name_of(&self, point: usize) -> String {
+        let body = &self.scenario.body;
+        let name = body
+            .names()
+            .into_iter()
+            .find(|name| body.point(name) == Some(point));
+        name.map_or_else(|| format!("number {point}"), str::to_owned)
+    }
+}
