@@ -23,7 +23,11 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     if played.ended == Ended::Stopped {
         return Ok(ExitCode::from(INTERRUPTED)); // the folder goes with its temporary name
     }
-    let writeup = Writeup::new(scenario, played.readouts(), Vec::new());
+    let broken = match played.ended {
+        Ended::NotFinite(error) => Some(error),
+        Ended::Done | Ended::Stopped => None,
+    };
+    let writeup = Writeup::new(scenario, played.readouts(), broken, Vec::new());
     for (name, text) in writeup.texts() {
         fs::write(folder.path().join(name), text).with_context(cannot_write)?;
     }
@@ -35,11 +39,9 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
         "gyrolab: the write-up is in {}; begin with README.md",
         Shown(&args.output)
     ));
-    match played.ended {
-        Ended::NotFinite(error) => {
-            complain(&anyhow::Error::new(error).context(args.scenario.scenario.clone()));
-            Ok(ExitCode::FAILURE)
-        }
-        Ended::Done | Ended::Stopped => Ok(ExitCode::SUCCESS),
-    }
+    let Some(error) = broken else {
+        return Ok(ExitCode::SUCCESS);
+    };
+    complain(&anyhow::Error::new(error).context(args.scenario.scenario.clone()));
+    Ok(ExitCode::FAILURE)
 }

@@ -11,6 +11,7 @@ mod quantities;
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Source};
 use crate::export::columns::COLUMNS;
+use crate::run::NotFinite;
 use crate::scenario::Scenario;
 pub use languages::Lines;
 pub use quantities::Quantity;
@@ -44,6 +45,8 @@ pub struct Writeup {
     pub scenario: Arc<Scenario>,
     /// What was read off it.
     pub readouts: Readouts,
+    /// Why it ended before its last step, where it did.
+    pub broken: Option<NotFinite>,
     /// The measured numbers beside theory.
     pub quantities: Vec<Quantity>,
     /// The figures, in the order in which the page shows them.
@@ -51,9 +54,16 @@ pub struct Writeup {
 }
 
 impl Writeup {
-    /// The write-up of the run of `scenario`, whose `readouts` were read at its end, with `drawings`.
-    pub fn new(scenario: Arc<Scenario>, readouts: Readouts, drawings: Vec<Drawing>) -> Self {
+    /// The write-up of the run of `scenario`, whose `readouts` were read at its end; `broken` is why that was not its
+    /// last step.
+    pub fn new(
+        scenario: Arc<Scenario>,
+        readouts: Readouts,
+        broken: Option<NotFinite>,
+        drawings: Vec<Drawing>,
+    ) -> Self {
         Self {
+            broken,
             quantities: quantities::quantities(&readouts),
             scenario,
             readouts,

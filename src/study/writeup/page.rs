@@ -30,6 +30,9 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     writeln!(page, "## What was run\n")?;
     write_setup(&mut page, writeup)?;
     writeln!(page, "\n## Are the numbers to be believed?\n")?;
+    if let Some(broken) = &writeup.broken {
+        writeln!(page, "{}.\n", escaped(&sentence(&broken.to_string())))?;
+    }
     writeln!(
         page,
         "{}\n",
@@ -101,7 +104,7 @@ fn write_setup(page: &mut String, writeup: &Writeup) -> fmt::Result {
     row("gravity", &format!("{gravity} m/s^2"))?;
     let SchemeInfo { name, about, .. } = scenario.motion.scheme;
     row("scheme", &format!("{name}: {about}"))?;
-    let steps = steps_in_words(scenario, scenario.steps);
+    let steps = steps_in_words(scenario, writeup.readouts.sample.step);
     row("time steps", &steps)?;
     for push in scenario.pushes.iter().take(MOST_LISTED) {
         row("push", &push_in_words(push, &writeup.name_of(push.point)))?;
@@ -126,6 +129,7 @@ fn write_setup(page: &mut String, writeup: &Writeup) -> fmt::Result {
 fn push_in_words(push: &Push, point: &str) -> String {
     let [x, y, z] = [0, 1, 2].map(|axis| shortest(push.force[axis]));
     let when = match push.window {
+        Window::Steps { first, count: 1 } => format!("on time step {first}"),
         Window::Steps { first, count } => {
             format!("on {count} time steps from step {first} on")
         }
@@ -247,6 +251,13 @@ fn write_run_file(page: &mut String, run_file: &str) -> fmt::Result {
             run_file.trim_end()
         ),
     }
+}
+
+/// `text` with a capital letter at its beginning.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|first| first.to_uppercase());
+    first.into_iter().flatten().chain(letters).collect()
 }
 
 /// `text` so that Markdown shows it as it stands, in a table too.
