@@ -22,10 +22,9 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     let mut page = String::new();
     let readouts = &writeup.readouts;
     writeln!(page, "# {}\n", escaped(&readouts.title))?;
-    for text in [&writeup.scenario.file.about, &writeup.scenario.file.source] {
-        if let Some(text) = text {
-            writeln!(page, "{}\n", escaped(text))?;
-        }
+    let file = &writeup.scenario.file;
+    for text in file.about.iter().chain(&file.source) {
+        writeln!(page, "{}\n", escaped(text))?;
     }
     writeln!(page, "## What was run\n")?;
     write_setup(&mut page, writeup)?;
@@ -256,7 +255,7 @@ fn write_run_file(page: &mut String, run_file: &str) -> fmt::Result {
 /// `text` with a capital letter at its beginning.
 fn sentence(text: &str) -> String {
     let mut letters = text.chars();
-    let first = letters.next().map(|first| first.to_uppercase());
+    let first = letters.next().map(char::to_uppercase);
     first.into_iter().flatten().chain(letters).collect()
 }
 
