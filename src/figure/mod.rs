@@ -3,5 +3,6 @@
 //! - [`scene`]: what stands on the page, as filled and stroked paths; no back end is named there.
 
 pub mod scene;
+pub mod ticks;
 
 pub use scene::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
