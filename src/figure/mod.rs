@@ -1,8 +1,21 @@
 //! Figures for write-ups: a run, or a table of runs, drawn on paper.
 //!
 //! - [`scene`]: what stands on the page, as filled and stroked paths; no back end is named there.
+//! - [`chart`]: what a figure with axes shows; [`layout`] gives its parts their places, and [`draw`] puts them on a page.
 
+pub mod axis;
+pub mod chart;
+pub mod clip;
+pub mod course;
+pub mod curve;
+pub mod draw;
+pub mod ink;
+pub mod layout;
+pub mod legend;
+pub mod letters;
+pub mod over_time;
 pub mod scene;
+pub mod slope;
 pub mod ticks;
 
 pub use scene::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
