@@ -67,9 +67,8 @@ impl Scale {
         let apart = ink::height(LABEL_PT) + ABOVE;
         let most = if axis.is_log { 9.0 } else { 7.0 };
         self.ticks(axis, |ticks| {
-            let is_apart = |pair: &[Tick]| {
-                (self.place(pair[1].at) - self.place(pair[0].at)).abs() >= apart
-            };
+            let is_apart =
+                |pair: &[Tick]| (self.place(pair[1].at) - self.place(pair[0].at)).abs() >= apart;
             ticks.len() as f64 <= most && ticks.windows(2).all(is_apart)
         })
     }

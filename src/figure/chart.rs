@@ -155,7 +155,11 @@ impl Style {
     /// A thin line of theory.
     pub fn theory(index: usize) -> Self {
         Self {
-            color: if index == 0 { grey(70) } else { Self::points(index).color },
+            color: if index == 0 {
+                grey(70)
+            } else {
+                Self::points(index).color
+            },
             width_pt: 0.7,
             dash_pt: DASHES[index % DASHES.len()],
             mark: None,
@@ -223,7 +227,9 @@ impl Axis {
         };
         if self.is_log {
             let least = 2_f64.sqrt();
-            let factor = (high / low).powf(MARGIN).max(if high > 1.3 * low { 1.02 } else { least });
+            let factor = (high / low)
+                .powf(MARGIN)
+                .max(if high > 1.3 * low { 1.02 } else { least });
             return ((low / factor).max(f64::MIN_POSITIVE), high * factor);
         }
         let largest = low.abs().max(high.abs());
@@ -231,7 +237,11 @@ impl Axis {
         if span > ROUNDING * largest {
             return (low - MARGIN * span, high + MARGIN * span);
         }
-        let half = if largest > 1e-290 { AROUND * largest } else { 1.0 };
+        let half = if largest > 1e-290 {
+            AROUND * largest
+        } else {
+            1.0
+        };
         let middle = 0.5 * low + 0.5 * high;
         (middle - half, middle + half)
     }

@@ -3,9 +3,9 @@
 use super::over_time::OverTime;
 use crate::export::columns::Column;
 use crate::export::stream::{self, Ended};
-use crate::physics::observables::{self, Azimuth};
-use crate::physics::exact::LagrangeTop;
 use crate::physics::State;
+use crate::physics::exact::LagrangeTop;
+use crate::physics::observables::{self, Azimuth};
 use crate::run::{Clock, NotFinite, Sample, Simulation, Step, Truth};
 use crate::scenario::Scenario;
 use nalgebra::Vector3;
@@ -119,7 +119,8 @@ impl Places {
         }
         let side = PLACES as usize + 1;
         self.seen.resize(side * side, 0);
-        let number = |length: f64| ((length / self.size_m + 0.5 * PLACES).max(0.0) as usize).min(side - 1);
+        let number =
+            |length: f64| ((length / self.size_m + 0.5 * PLACES).max(0.0) as usize).min(side - 1);
         let place = number(position.y) * side + number(position.x);
         // Of each place 64 layers from the lowest to the highest.
         let layer = (number(position.z) * 64 / side).min(63);
@@ -167,11 +168,21 @@ pub fn exact(
     let mut truth = Truth::new(Arc::clone(scenario));
     let mut recorder = wanted.course(scenario);
     // The azimuth is counted on from the start, and nothing else needs what came before.
-    let is_counted = wanted.columns.iter().any(|column| column.name == "azimuth_deg");
-    let begin_s = if is_counted { 0.0 } else { wanted.from_s.max(0.0) };
+    let is_counted = wanted
+        .columns
+        .iter()
+        .any(|column| column.name == "azimuth_deg");
+    let begin_s = if is_counted {
+        0.0
+    } else {
+        wanted.from_s.max(0.0)
+    };
     let end_s = recorder.end_s;
     truth.state_at(begin_s);
-    let period_s = truth.motion().closed_form().and_then(LagrangeTop::nutation_period);
+    let period_s = truth
+        .motion()
+        .closed_form()
+        .and_then(LagrangeTop::nutation_period);
     let fine_s = period_s.map_or(f64::INFINITY, |period_s| period_s / A_PERIOD);
     let apart_s = fine_s.min(scenario.motion.time_step_s);
     let count = ((end_s - begin_s) / apart_s).ceil().clamp(LEAST, MOST) as u64;

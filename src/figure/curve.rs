@@ -61,7 +61,10 @@ fn thinned(points: Vec<Point>) -> Vec<Point> {
         let highest = column.iter().min_by(by_height);
         let last = column.last();
         // In the order in which the line comes to them.
-        let mut four: Vec<&Point> = [first, lowest, highest, last].into_iter().flatten().collect();
+        let mut four: Vec<&Point> = [first, lowest, highest, last]
+            .into_iter()
+            .flatten()
+            .collect();
         four.sort_by_key(|&point| std::ptr::from_ref(point));
         four.dedup_by(|a, b| std::ptr::eq(*a, *b));
         kept.extend(four.into_iter().copied());

@@ -59,9 +59,8 @@ impl Chart {
     /// Whether some error bar is too small to be drawn.
     fn hides_errors(&self, layout: &Layout) -> bool {
         let panels = self.panels.iter().zip(&layout.panels);
-        let mut all = panels.flat_map(|(panel, placed)| {
-            panel.series.iter().map(move |series| (series, placed))
-        });
+        let mut all = panels
+            .flat_map(|(panel, placed)| panel.series.iter().map(move |series| (series, placed)));
         all.any(|(series, placed)| {
             let mut bars = placed.bars(series);
             bars.any(|bar| bar.is_hidden)
@@ -82,9 +81,8 @@ impl Placed {
     /// The error bars of `series` whose point is in the panel.
     fn bars<'a>(&'a self, series: &'a Series) -> impl Iterator<Item = Bar> + 'a {
         let points = series.points.iter().zip(&series.errors);
-        let points = points.filter(|(point, error)| {
-            error.is_finite() && self.frame.holds(self.place(point))
-        });
+        let points = points
+            .filter(|(point, error)| error.is_finite() && self.frame.holds(self.place(point)));
         points.map(|(point, error)| {
             let y = |sign: f64| self.y.place(point[1] + sign * error);
             let limit = |y: f64| match y.is_finite() {
@@ -111,7 +109,11 @@ impl Panel {
             let ring = circle(middle, to_page(radius));
             scene.stroke(ring, pen(0.4, grey(165)), Some(frame));
         }
-        for series in self.series.iter().filter(|series| series.style.width_pt > 0.0) {
+        for series in self
+            .series
+            .iter()
+            .filter(|series| series.style.width_pt > 0.0)
+        {
             for piece in placed.line(series) {
                 scene.stroke(Path::polyline(piece), series.style.pen(), Some(frame));
             }
@@ -141,16 +143,32 @@ fn draw_frame(placed: &Placed, layout: &Layout, scene: &mut Scene) {
         scene.line([at(x, top), at(x, top + length)], FRAME_PT, BLACK);
     };
     let x = |value: f64| placed.x.place(value);
-    layout.ticks.major.iter().for_each(|tick| upright(x(tick.at), TICK));
-    layout.ticks.minor.iter().for_each(|&at| upright(x(at), MINOR_TICK));
+    layout
+        .ticks
+        .major
+        .iter()
+        .for_each(|tick| upright(x(tick.at), TICK));
+    layout
+        .ticks
+        .minor
+        .iter()
+        .for_each(|&at| upright(x(at), MINOR_TICK));
     let mut level = |y: f64, length: f64| {
         let (left, right) = (frame.left, frame.right);
         scene.line([at(left, y), at(left + length, y)], FRAME_PT, BLACK);
         scene.line([at(right, y), at(right - length, y)], FRAME_PT, BLACK);
     };
     let y = |value: f64| placed.y.place(value);
-    placed.ticks.major.iter().for_each(|tick| level(y(tick.at), TICK));
-    placed.ticks.minor.iter().for_each(|&at| level(y(at), MINOR_TICK));
+    placed
+        .ticks
+        .major
+        .iter()
+        .for_each(|tick| level(y(tick.at), TICK));
+    placed
+        .ticks
+        .minor
+        .iter()
+        .for_each(|&at| level(y(at), MINOR_TICK));
 }
 
 /// The marks of a series with their error bars.

@@ -221,13 +221,7 @@ impl Scene {
         }
     }
 
-    fn put(
-        &mut self,
-        path: Path,
-        paint: Paint,
-        clip: Option<[Point; 2]>,
-        words: Option<String>,
-    ) {
+    fn put(&mut self, path: Path, paint: Paint, clip: Option<[Point; 2]>, words: Option<String>) {
         self.items.push(Item {
             path,
             paint,

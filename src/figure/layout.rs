@@ -96,7 +96,13 @@ impl Layout {
             }
         };
         let ticks = ticks_of(chart, &y_ranges, height);
-        let panels: Vec<_> = chart.panels.iter().zip(ticks).enumerate().map(place).collect();
+        let panels: Vec<_> = chart
+            .panels
+            .iter()
+            .zip(ticks)
+            .enumerate()
+            .map(place)
+            .collect();
         let bottom = panels.last().map_or(top, |panel| panel.frame.bottom);
         Self {
             title: fitted(chart.x.title(&below), chart.width_pt - 2.0 * EDGE),
@@ -172,9 +178,8 @@ fn upright(axis: &Axis, range: (f64, f64), bottom: f64, top: f64) -> Scale {
 
 fn ticks_of(chart: &Chart, ranges: &[(f64, f64)], height: f64) -> Vec<Ticks> {
     let panels = chart.panels.iter().zip(ranges);
-    let ticks = panels.map(|(panel, &range)| {
-        upright(&panel.y, range, height, 0.0).ticks_beside(&panel.y)
-    });
+    let ticks =
+        panels.map(|(panel, &range)| upright(&panel.y, range, height, 0.0).ticks_beside(&panel.y));
     ticks.collect()
 }
 

@@ -83,7 +83,11 @@ impl Legend {
     /// The height that it needs above the panels, pt.
     pub fn height_above(&self, chart: &Chart) -> f64 {
         let rows = self.rows(room(chart)).len();
-        if rows == 0 { 0.0 } else { rows as f64 * ROW + 1.0 }
+        if rows == 0 {
+            0.0
+        } else {
+            rows as f64 * ROW + 1.0
+        }
     }
 
     /// A corner of the panel, where there is one panel, in which nothing is drawn.
@@ -111,7 +115,10 @@ impl Legend {
         });
         let is_free = |corner: &Frame| {
             let around = corner.grown(FREE);
-            panel.series.iter().all(|series| !placed.has_in(&around, series))
+            panel
+                .series
+                .iter()
+                .all(|series| !placed.has_in(&around, series))
         };
         corners.into_iter().find(is_free)
     }

@@ -1,5 +1,6 @@
 //! Figures for write-ups: a run, or a table of runs, drawn on paper.
 //!
+//! - [`letters`]: text as outlines.
 //! - [`scene`]: what stands on the page, as filled and stroked paths; no back end is named there.
 //! - [`chart`]: what a figure with axes shows; [`layout`] gives its parts their places, and [`draw`] puts them on a page.
 

@@ -154,7 +154,9 @@ mod tests {
     fn a_short_curve_is_kept_as_it_is() {
         let mut curve = OverTime::new(0.1);
         let points = [[0.0, 1.0], [0.1, 3.0], [0.2, 2.0], [0.5, 2.0]];
-        points.iter().for_each(|point| curve.push(point[0], point[1]));
+        points
+            .iter()
+            .for_each(|point| curve.push(point[0], point[1]));
         assert_eq!(curve.points(), points);
         assert_eq!(curve.density().map(|part| part.turns).sum::<u64>(), 1);
     }
@@ -167,7 +169,11 @@ mod tests {
             time_s += if step < 50_000 { 1e-3 } else { 0.1 };
             curve.push(time_s, f64::from(step % 7));
         }
-        let late = curve.points().iter().filter(|point| point[0] > 50.0).count();
+        let late = curve
+            .points()
+            .iter()
+            .filter(|point| point[0] > 50.0)
+            .count();
         assert!(late > 8000, "{late} points");
     }
 

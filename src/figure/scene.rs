@@ -31,6 +31,47 @@ pub enum Segment {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Path(pub Vec<Segment>);
 
+impl Path {
+    /// Straight lines from corner to corner, and back to the first.
+    pub fn polygon(corners: impl IntoIterator<Item = Point>) -> Self {
+        let mut path = Self::polyline(corners);
+        path.0.push(Segment::Close);
+        path
+    }
+
+    /// Straight lines from point to point.
+    pub fn polyline(points: impl IntoIterator<Item = Point>) -> Self {
+        let segment = |(index, point)| match index {
+            0 => Segment::Move(point),
+            _ => Segment::Line(point),
+        };
+        Self(points.into_iter().enumerate().map(segment).collect())
+    }
+
+    /// The path with each of its points, control points too, moved to where `to` says.
+    pub fn mapped(self, to: impl Fn(Point) -> Point) -> Self {
+        let segment = |segment| match segment {
+            Segment::Move(end) => Segment::Move(to(end)),
+            Segment::Line(end) => Segment::Line(to(end)),
+            Segment::Quadratic(control, end) => Segment::Quadratic(to(control), to(end)),
+            Segment::Cubic(first, second, end) => Segment::Cubic(to(first), to(second), to(end)),
+            Segment::Close => Segment::Close,
+        };
+        Self(self.0.into_iter().map(segment).collect())
+    }
+
+    /// The points of the path, control points among them: what it covers lies inside of their hull.
+    pub fn points(&self) -> impl Iterator<Item = Point> {
+        let of = |segment: &Segment| match *segment {
+            Segment::Move(end) | Segment::Line(end) => [Some(end), None, None],
+            Segment::Quadratic(control, end) => [Some(control), Some(end), None],
+            Segment::Cubic(first, second, end) => [Some(first), Some(second), Some(end)],
+            Segment::Close => [None; 3],
+        };
+        self.0.iter().flat_map(of).flatten()
+    }
+}
+
 /// An opaque colour: red, green, blue.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Color(pub [u8; 3]);

@@ -27,7 +27,9 @@ pub fn draw(panel: &Panel, placed: &Placed, taken: Option<&Frame>, scene: &mut S
     let Some(slope) = panel.slope.filter(|slope| slope.is_finite()) else {
         return;
     };
-    let found = LENGTHS.iter().find_map(|length| find(panel, placed, taken, slope, *length));
+    let found = LENGTHS
+        .iter()
+        .find_map(|length| find(panel, placed, taken, slope, *length));
     if let Some(triangle) = found {
         triangle.draw(scene);
     }
@@ -70,7 +72,10 @@ fn find(
         inside.holds(at(around.left, around.top))
             && inside.holds(at(around.right, around.bottom))
             && taken.is_none_or(|taken| !taken.meets(&around))
-            && panel.series.iter().all(|series| !placed.has_in(&around, series))
+            && panel
+                .series
+                .iter()
+                .all(|series| !placed.has_in(&around, series))
     };
     triangles.into_iter().find(is_free)
 }
