@@ -14,7 +14,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// What is asked of a run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Wanted {
     /// The curves over time.
     pub columns: Vec<&'static Column>,
@@ -44,6 +44,13 @@ pub struct Course {
 const ALL_KEPT: usize = 1 << 21;
 /// Such a place is this part of the traced point's arm wide, in each direction.
 const PLACES: f64 = 2048.0;
+
+impl Course {
+    /// Whether no moment lay in the stretch.
+    pub fn is_empty(&self) -> bool {
+        self.path.is_empty() && self.curves.iter().all(OverTime::is_empty)
+    }
+}
 
 impl Wanted {
     /// The end of the stretch of a run of `scenario`, s.

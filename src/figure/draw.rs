@@ -26,7 +26,7 @@ impl Chart {
         let corner = legend.free_corner(self, &bare);
         let layout = match corner {
             Some(_) => bare,
-            None => Layout::new(self, legend.height_above(self)),
+            None => Layout::new(self, legend.height_above(self.width_pt)),
         };
         let mut scene = Scene::new(self.width_pt, layout.height_pt, &self.title);
         for (panel, placed) in self.panels.iter().zip(&layout.panels) {
@@ -36,7 +36,10 @@ impl Chart {
         self.write_below(&layout, &mut scene);
         match corner {
             Some(corner) => legend.draw_in(&corner, &mut scene),
-            None => legend.draw_above(self, &layout, &mut scene),
+            None => {
+                let left = layout.panels.first().map_or(EDGE, |panel| panel.frame.left);
+                legend.draw_above(self.width_pt, left, &mut scene);
+            }
         }
         scene
     }

@@ -38,19 +38,20 @@ pub fn longest_name(width_pt: f64) -> f64 {
 }
 
 impl Legend {
-    /// The legend of `chart`: every name once, and a remark where error bars are too small to be drawn.
-    pub fn of(chart: &Chart, remark: Option<&str>) -> Self {
+    /// The legend of `series`, by name and style: every name once, and a remark, if there is one.
+    pub fn new<'a>(
+        series: impl Iterator<Item = (&'a str, &'a Style)>,
+        remark: Option<&str>,
+    ) -> Self {
         let mut entries: Vec<Entry> = Vec::new();
-        let series = chart.panels.iter().flat_map(|panel| &panel.series);
-        for series in series.filter(|series| !series.name.is_empty()) {
-            if entries.iter().any(|entry| entry.name == series.name) {
+        for (name, style) in series.filter(|(name, _)| !name.is_empty()) {
+            if entries.iter().any(|entry| entry.name == name) {
                 continue;
             }
-            let name = series.name.clone();
             entries.push(Entry {
-                style: Some(series.style.clone()),
-                width_pt: KEY + AFTER_KEY + ink::width(&name, LABEL_PT),
-                name,
+                style: Some(style.clone()),
+                width_pt: KEY + AFTER_KEY + ink::width(name, LABEL_PT),
+                name: name.to_owned(),
             });
         }
         entries.extend(remark.map(|remark| Entry {
@@ -59,6 +60,15 @@ impl Legend {
             name: remark.to_owned(),
         }));
         Self { entries }
+    }
+
+    /// The legend of `chart`.
+    pub fn of(chart: &Chart, remark: Option<&str>) -> Self {
+        let series = chart.panels.iter().flat_map(|panel| &panel.series);
+        Self::new(
+            series.map(|series| (series.name.as_str(), &series.style)),
+            remark,
+        )
     }
 
     /// The rows in which it stands above the panels, within `room` pt.
@@ -80,9 +90,9 @@ impl Legend {
         rows
     }
 
-    /// The height that it needs above the panels, pt.
-    pub fn height_above(&self, chart: &Chart) -> f64 {
-        let rows = self.rows(room(chart)).len();
+    /// The height that it needs above the picture on a page of that width, pt.
+    pub fn height_above(&self, width_pt: f64) -> f64 {
+        let rows = self.rows(width_pt - 2.0 * EDGE).len();
         if rows == 0 {
             0.0
         } else {
@@ -133,14 +143,13 @@ impl Legend {
         }
     }
 
-    /// Draws it above the panels, from the left edge of the page's panels where there is room.
-    pub fn draw_above(&self, chart: &Chart, layout: &Layout, scene: &mut Scene) {
-        let left = layout.panels.first().map_or(EDGE, |panel| panel.frame.left);
+    /// Draws it above the picture on a page of that width, from `left` on where there is room, pt.
+    pub fn draw_above(&self, width_pt: f64, left: f64, scene: &mut Scene) {
         let label = ink::height(LABEL_PT);
-        for (index, row) in self.rows(room(chart)).iter().enumerate() {
+        for (index, row) in self.rows(width_pt - 2.0 * EDGE).iter().enumerate() {
             let width: f64 = row.iter().map(|entry| entry.width_pt).sum::<f64>()
                 + BETWEEN * (row.len() as f64 - 1.0);
-            let mut x = left.min(chart.width_pt - EDGE - width).max(EDGE);
+            let mut x = left.min(width_pt - EDGE - width).max(EDGE);
             let base = EDGE + index as f64 * ROW + 0.5 * (ROW + label);
             for entry in row {
                 entry.draw(at(x, base), scene);
@@ -148,10 +157,6 @@ impl Legend {
             }
         }
     }
-}
-
-fn room(chart: &Chart) -> f64 {
-    chart.width_pt - 2.0 * EDGE
 }
 
 impl Entry {

@@ -1,0 +1,117 @@
+//! `gyrolab figure`: runs, or a table of runs, drawn on paper.
+
+use super::args::{FigureArgs, ScenarioArgs};
+use super::progress::{self, Interruption, Meter};
+use super::scenario::scenario_of;
+use super::{INTERRUPTED, complain, tell};
+use crate::analysis::cost::is_affordable;
+use crate::export::Destination;
+use crate::figure::kind::Kind;
+use crate::figure::of_runs::{self, Figure, Request, Run};
+use crate::figure::{self, Format};
+use crate::text::number::shortest;
+use crate::text::printable::Shown;
+use anyhow::{Context, bail};
+use std::io::Write;
+use std::ops::ControlFlow;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+/// Points of a millimetre on paper.
+const PT_A_MM: f64 = 72.0 / 25.4;
+
+pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
+    let format = Format::of(&args.output)?;
+    let runs = runs(args)?;
+    let (output, interruption) = progress::open(Some(&args.output), args.force)?;
+    let Some(output) = output else {
+        return Ok(ExitCode::FAILURE); // a path that is given is opened, or an error
+    };
+    let Some(figure) = drawn(&runs, args, &interruption)? else {
+        return Ok(ExitCode::from(INTERRUPTED));
+    };
+    write(output, &figure, format)
+        .with_context(|| format!("cannot write {}", Shown(&args.output)))?;
+    if interruption.may_act_at_once() {
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    for warning in &figure.warnings {
+        tell(format_args!("gyrolab: {warning}"));
+    }
+    let mm = |pt: f64| (pt / PT_A_MM).round();
+    tell(format_args!(
+        "gyrolab: {} mm x {} mm in {}",
+        mm(figure.scene.width_pt),
+        mm(figure.scene.height_pt),
+        Shown(&args.output)
+    ));
+    match figure.broke {
+        Some(error) => {
+            complain(&anyhow::anyhow!(error));
+            Ok(ExitCode::FAILURE)
+        }
+        None => Ok(ExitCode::SUCCESS),
+    }
+}
+
+/// Every run that is named, by every scheme that is.
+fn runs(args: &FigureArgs) -> anyhow::Result<Vec<Run>> {
+    let mut runs = Vec::new();
+    for named in &args.runs {
+        let schemes: Vec<Option<&String>> = match args.schemes.is_empty() {
+            true => vec![None],
+            false => args.schemes.iter().map(Some).collect(),
+        };
+        for scheme in schemes {
+            let mut changes = args.changes.clone();
+            changes.scheme = scheme.cloned().or(changes.scheme);
+            let scenario = ScenarioArgs {
+                scenario: named.clone(),
+                changes,
+            };
+            let scenario = scenario_of(&scenario, &args.length)?;
+            if args.exact && !is_affordable(&scenario) {
+                bail!(
+                    "{named}: its exact motion must be integrated, which would take too long for {} s: leave --exact out, or give a shorter --duration",
+                    shortest(crate::run::Clock::end_s(&scenario))
+                );
+            }
+            runs.push(Run {
+                scenario: Arc::new(scenario),
+                named: named.clone(),
+            });
+        }
+    }
+    Ok(runs)
+}
+
+fn drawn(
+    runs: &[Run],
+    args: &FigureArgs,
+    interruption: &Interruption,
+) -> anyhow::Result<Option<Figure>> {
+    let request = Request {
+        kind: args.kind.clone().unwrap_or_else(Kind::traces),
+        from_s: args.from.unwrap_or(0.0),
+        to_s: args.to,
+        exact: args.exact,
+        width_pt: args.width * PT_A_MM,
+    };
+    let mut meter = Meter::new();
+    let figure = of_runs::figure(runs, &request, |step, of| {
+        meter.show(step, of);
+        match interruption.has_come() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    });
+    meter.clear();
+    figure.map_err(anyhow::Error::msg)
+}
+
+fn write(mut output: Destination, figure: &Figure, format: Format) -> anyhow::Result<()> {
+    let bytes = figure::write(&figure.scene, format)?;
+    output.write_all(&bytes)?;
+    output.keep()?;
+    Ok(())
+}
