@@ -1,5 +1,6 @@
 //! Figures for write-ups: a run, or a table of runs, drawn on paper.
 //!
+//! - [`format`](mod@format): a page as the bytes of a file, by [`svg`], [`pdf`] and [`png`].
 //! - [`letters`]: text as outlines.
 //! - [`scene`]: what stands on the page, as filled and stroked paths; no back end is named there.
 //! - [`chart`]: what a figure with axes shows; [`layout`] gives its parts their places, and [`draw`] puts them on a page.
@@ -10,13 +11,18 @@ pub mod clip;
 pub mod course;
 pub mod curve;
 pub mod draw;
+pub mod format;
 pub mod ink;
 pub mod layout;
 pub mod legend;
 pub mod letters;
 pub mod over_time;
+pub mod pdf;
+pub mod png;
 pub mod scene;
 pub mod slope;
+pub mod svg;
 pub mod ticks;
 
+pub use format::{Format, Unwritable, write};
 pub use scene::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
