@@ -27,6 +27,19 @@ pub enum Segment {
     Close,
 }
 
+impl Segment {
+    /// Where it ends; `None` for [`Close`](Self::Close), which ends where its line began.
+    pub fn end(&self) -> Option<Point> {
+        match *self {
+            Self::Move(end)
+            | Self::Line(end)
+            | Self::Quadratic(_, end)
+            | Self::Cubic(_, _, end) => Some(end),
+            Self::Close => None,
+        }
+    }
+}
+
 /// Lines and curves that are filled or stroked together.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Path(pub Vec<Segment>);
@@ -85,8 +98,15 @@ pub struct Pen {
     pub color: Color,
     /// Lengths of strokes and gaps in turn, pt; empty for a solid line.
     pub dash_pt: Vec<f64>,
-    /// Whether corners and ends are round; else corners are sharp and ends flat.
+    /// Whether corners and the ends of solid lines are round; else corners are sharp and ends flat.
     pub is_round: bool,
+}
+
+impl Pen {
+    /// Whether the ends of lines are round: those of dashes are flat, so that they are as long as they are said to be.
+    pub fn has_round_ends(&self) -> bool {
+        self.is_round && self.dash_pt.is_empty()
+    }
 }
 
 /// How a path becomes visible.
