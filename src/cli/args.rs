@@ -1,6 +1,5 @@
 //! The command line, as clap reads it.
 
-use crate::figure::kind::Kind;
 use crate::physics::scheme;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -103,6 +102,13 @@ pub(super) struct Changes {
     /// The numerical scheme
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(scheme::names()))]
     pub(super) scheme: Option<String>,
+}
+
+impl Changes {
+    /// Whether anything is changed.
+    pub(super) fn is_some(&self) -> bool {
+        !self.set.is_empty() || self.time_step.is_some() || self.scheme.is_some()
+    }
 }
 
 /// How the lab is opened.
@@ -227,6 +233,13 @@ pub(super) struct LengthArgs {
     pub(super) duration: Option<f64>,
 }
 
+impl LengthArgs {
+    /// Whether a length is given.
+    pub(super) fn is_some(&self) -> bool {
+        self.steps.is_some() || self.duration.is_some()
+    }
+}
+
 #[derive(Debug, Args)]
 pub(super) struct RunArgs {
     #[command(flatten)]
@@ -327,8 +340,8 @@ pub(super) struct FigureArgs {
 
     /// What to draw: traces (x, y, z over time), above, 3d, or columns of the CSV over time with commas between them
     /// [default: traces]
-    #[arg(long, value_name = "KIND", value_parser = Kind::named)]
-    pub(super) kind: Option<Kind>,
+    #[arg(long, value_name = "KIND")]
+    pub(super) kind: Option<String>,
 
     /// Begin at this time of the run, s
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = not_negative)]

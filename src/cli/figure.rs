@@ -1,6 +1,6 @@
 //! `gyrolab figure`: runs, or a table of runs, drawn on paper.
 
-use super::args::{FigureArgs, ScenarioArgs};
+use super::args::{Cli, FigureArgs, ScenarioArgs};
 use super::progress::{self, Interruption, Meter};
 use super::scenario::scenario_of;
 use super::{INTERRUPTED, complain, tell};
@@ -8,12 +8,17 @@ use crate::analysis::cost::is_affordable;
 use crate::export::Destination;
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Figure, Request, Run};
-use crate::figure::{self, Format};
+use crate::figure::table::Table;
+use crate::figure::{self, Format, of_table};
+use crate::scenario::Problems;
 use crate::text::number::shortest;
-use crate::text::printable::Shown;
+use crate::text::printable::{Shown, printable};
 use anyhow::{Context, bail};
+use clap::CommandFactory;
+use clap::error::ErrorKind;
 use std::io::Write;
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -22,12 +27,12 @@ const PT_A_MM: f64 = 72.0 / 25.4;
 
 pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     let format = Format::of(&args.output)?;
-    let runs = runs(args)?;
+    let subject = subject(args)?;
     let (output, interruption) = progress::open(Some(&args.output), args.force)?;
     let Some(output) = output else {
         return Ok(ExitCode::FAILURE); // a path that is given is opened, or an error
     };
-    let Some(figure) = drawn(&runs, args, &interruption)? else {
+    let Some(figure) = drawn(&subject, args, &interruption)? else {
         return Ok(ExitCode::from(INTERRUPTED));
     };
     write(output, &figure, format)
@@ -52,6 +57,63 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
         }
         None => Ok(ExitCode::SUCCESS),
     }
+}
+
+/// What is drawn.
+enum Subject {
+    Runs(Vec<Run>, Kind),
+    Table(Table),
+}
+
+fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
+    let mut tables = Vec::new();
+    for named in &args.runs {
+        let table = Table::read(Path::new(named));
+        let table = table.map_err(|problem| Problems::one(named.clone(), problem))?;
+        tables.extend(table);
+    }
+    match (tables.pop(), args.runs.len()) {
+        (None, _) => {
+            let kind = args.kind.as_deref().map(Kind::named).transpose();
+            let kind = kind.unwrap_or_else(|refusal| no_kind(args, &refusal));
+            Ok(Subject::Runs(
+                runs(args)?,
+                kind.unwrap_or_else(Kind::traces),
+            ))
+        }
+        (Some(_), 2..) => {
+            bail!("the table of a comparison or of a sweep is drawn alone: give one file")
+        }
+        (Some(table), _) => {
+            let is_changed = args.exact
+                || args.from.is_some()
+                || args.to.is_some()
+                || !args.schemes.is_empty()
+                || args.changes.is_some()
+                || args.length.is_some();
+            if is_changed {
+                bail!(
+                    "{}: the numbers of a table are drawn as they are: of a figure's options, --kind, --width and --force are for it",
+                    args.runs[0]
+                );
+            }
+            Ok(Subject::Table(table))
+        }
+    }
+}
+
+/// Refuses `--kind` as clap refuses a value.
+fn no_kind(args: &FigureArgs, refusal: &str) -> ! {
+    let kind = args.kind.as_deref().unwrap_or_default();
+    let kind = printable(kind);
+    let mut command = Cli::command();
+    command.build();
+    let message = format!("invalid value '{kind}' for '--kind <KIND>': {refusal}");
+    match command.find_subcommand_mut("figure") {
+        Some(figure) => figure.error(ErrorKind::ValueValidation, message),
+        None => command.error(ErrorKind::ValueValidation, message),
+    }
+    .exit()
 }
 
 /// Every run that is named, by every scheme that is.
@@ -86,12 +148,30 @@ fn runs(args: &FigureArgs) -> anyhow::Result<Vec<Run>> {
 }
 
 fn drawn(
-    runs: &[Run],
+    subject: &Subject,
     args: &FigureArgs,
     interruption: &Interruption,
 ) -> anyhow::Result<Option<Figure>> {
+    let (runs, kind) = match subject {
+        Subject::Runs(runs, kind) => (runs, kind),
+        Subject::Table(table) => {
+            let columns = args
+                .kind
+                .iter()
+                .flat_map(|kind| kind.split(','))
+                .map(str::trim);
+            let columns: Vec<_> = columns.collect();
+            let chart = of_table::chart(table, &columns, args.width * PT_A_MM);
+            let chart = chart.map_err(|refusal| anyhow::anyhow!("{}: {refusal}", args.runs[0]))?;
+            return Ok(Some(Figure {
+                scene: chart.scene(),
+                warnings: Vec::new(),
+                broke: None,
+            }));
+        }
+    };
     let request = Request {
-        kind: args.kind.clone().unwrap_or_else(Kind::traces),
+        kind: kind.clone(),
         from_s: args.from.unwrap_or(0.0),
         to_s: args.to,
         exact: args.exact,

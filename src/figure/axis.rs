@@ -6,7 +6,7 @@ use super::ticks::{Tick, Ticks};
 
 /// Least distance of two labels beside each other, and of two above each other, pt.
 const BESIDE: f64 = 6.0;
-const ABOVE: f64 = 5.5;
+const ABOVE: f64 = 7.5;
 
 /// From values to places on the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,11 +65,10 @@ impl Scale {
     /// The ticks of an axis at the left, whose labels stand above each other.
     pub fn ticks_beside(&self, axis: &Axis) -> Ticks {
         let apart = ink::height(LABEL_PT) + ABOVE;
-        let most = if axis.is_log { 9.0 } else { 7.0 };
         self.ticks(axis, |ticks| {
             let is_apart =
                 |pair: &[Tick]| (self.place(pair[1].at) - self.place(pair[0].at)).abs() >= apart;
-            ticks.len() as f64 <= most && ticks.windows(2).all(is_apart)
+            ticks.windows(2).all(is_apart)
         })
     }
 

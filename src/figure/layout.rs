@@ -9,8 +9,9 @@ use super::ticks::Ticks;
 pub const EDGE: f64 = 2.0;
 /// Between an axis and the labels of its ticks, pt.
 pub const GAP: f64 = 3.0;
-/// Between the labels of an axis and its title, pt.
-const TITLE_GAP: f64 = 4.5;
+/// Between the labels of an axis and its title, at the left and below, pt.
+const TITLE_GAP: f64 = 6.0;
+const TITLE_BELOW: f64 = 4.5;
 /// Between two panels, pt, beside the height of a label: the labels at their ends must not touch.
 const PANEL_GAP: f64 = 2.5;
 /// The smallest letters of a title that is too long for its axis, pt.
@@ -107,7 +108,7 @@ impl Layout {
         Self {
             title: fitted(chart.x.title(&below), chart.width_pt - 2.0 * EDGE),
             titles_at: EDGE + ink::height(TITLE_PT) + 1.0,
-            height_pt: bottom + GAP + 1.5 * label + TITLE_GAP + title_height() + EDGE,
+            height_pt: bottom + GAP + 1.5 * label + TITLE_BELOW + title_height() + EDGE,
             ticks: below,
             panels,
         }
@@ -121,7 +122,7 @@ impl Layout {
 
     /// The baseline of the title below, pt.
     pub fn title_at(&self) -> f64 {
-        self.labels_at() + TITLE_GAP + ink::height(TITLE_PT)
+        self.labels_at() + TITLE_BELOW + ink::height(TITLE_PT)
     }
 }
 

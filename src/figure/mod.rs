@@ -5,6 +5,7 @@
 //! - [`scene`]: what stands on the page, as filled and stroked paths; no back end is named there.
 //! - [`chart`]: what a figure with axes shows; [`layout`] gives its parts their places, and [`draw`] puts them on a page.
 //! - [`of_runs`]: figures of runs, whose numbers [`course`] takes from stepping through them; [`kind`] has their names.
+//! - [`of_table`]: figures of a comparison or of a sweep, read by [`table`].
 
 pub mod axis;
 pub mod chart;
@@ -21,6 +22,7 @@ pub mod legend;
 pub mod letters;
 mod names;
 pub mod of_runs;
+pub mod of_table;
 pub mod over_time;
 pub mod pdf;
 pub mod png;
@@ -29,6 +31,7 @@ pub mod scene;
 pub mod slope;
 mod space;
 pub mod svg;
+pub mod table;
 pub mod ticks;
 
 pub use format::{Format, Unwritable, write};

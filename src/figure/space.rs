@@ -21,8 +21,6 @@ const TALL: f64 = 0.72;
 const EYE: f64 = 5.0;
 /// The lowest and the highest eye with which both floor and walls are seen, degrees.
 const PITCHES_DEG: (f64, f64) = (8.0, 65.0);
-/// Room in the box beyond the path, of its extent.
-const MARGIN: f64 = 0.06;
 /// Degrees of depth.
 const DEPTHS: usize = 6;
 /// Width of the nearest and of the farthest line, pt, and the part of white in the farthest.
@@ -101,7 +99,7 @@ fn ranges(drawn: &[Drawn]) -> [(f64, f64); 3] {
         Axis::default().range_of(values.map(|point| point[index]))
     };
     let [x, y, z] = [0, 1, 2].map(range);
-    let half = (0.5 + MARGIN - 0.045) * (x.1 - x.0).max(y.1 - y.0);
+    let half = 0.5 * (x.1 - x.0).max(y.1 - y.0);
     let square = |(low, high): (f64, f64)| (0.5 * (low + high) - half, 0.5 * (low + high) + half);
     [square(x), square(y), z]
 }
@@ -199,7 +197,7 @@ impl Space {
 
     fn ticks(&self, axis: usize, edge: &[Vector3<f64>; 2]) -> Ticks {
         /// Between two labels, beside and above each other, pt.
-        const APART: (f64, f64) = (6.0, 4.0);
+        const APART: (f64, f64) = (6.0, 6.5);
         let (low, high) = self.ranges[axis];
         let place = |tick: &Tick| self.place(&Self::along(edge, self.share(axis, tick.at)));
         let height = ink::height(LABEL_PT);
@@ -212,7 +210,13 @@ impl Space {
                     (a.x - b.x).abs() >= wide || (a.y - b.y).abs() >= height + APART.1
                 })
         };
-        Ticks::linear(low, high, fits)
+        let mut ticks = Ticks::linear(low, high, fits);
+        // Labels at a corner would stand beside those of another axis.
+        let is_inside = |tick: &Tick| (0.03..=0.97).contains(&self.share(axis, tick.at));
+        if ticks.major.iter().filter(|tick| is_inside(tick)).count() >= 2 {
+            ticks.major.retain(is_inside);
+        }
+        ticks
     }
 
     /// The far sides: their grids, and their outlines.
@@ -277,7 +281,7 @@ impl Space {
         let middle = self.place(&Self::along(edge, 0.5));
         let (size, cap) = (TITLE_PT, ink::height(TITLE_PT));
         if axis == 2 {
-            let x = middle.x - reach - TITLE_GAP;
+            let x = middle.x - reach - TITLE_GAP - 0.4 * cap;
             scene.write_up(&title, size, at(x, middle.y));
             return;
         }
