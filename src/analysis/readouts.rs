@@ -225,6 +225,8 @@ pub struct Readout {
     pub source: Source,
     /// Whether it is a text, never a number.
     pub is_text: bool,
+    /// Its symbol in figures, as their markup; empty where it has none.
+    pub symbol: &'static str,
     get: fn(&Readouts) -> Value,
 }
 
@@ -369,9 +371,9 @@ const fn is_text<T: Given>(_: &impl Fn(&Readouts) -> T) -> bool {
     T::IS_TEXT
 }
 
-/// Makes a row of each line: name, unit, source, meaning, how it is got of the readouts `r`.
+/// Makes a row of each line: name, unit, source, meaning, how it is got of the readouts `r`, and the symbol where it has one.
 macro_rules! readouts {
-    ($($name:literal, $unit:literal, $source:ident, $meaning:literal, |$r:ident| $get:expr;)*) => {
+    ($($name:literal, $unit:literal, $source:ident, $meaning:literal, |$r:ident| $get:expr $(, $symbol:literal)?;)*) => {
         /// Every readout.
         pub const READOUTS: &[Readout] = &[
             $(Readout {
@@ -380,6 +382,7 @@ macro_rules! readouts {
                 meaning: $meaning,
                 source: Source::$source,
                 is_text: is_text(&|$r: &Readouts| $get),
+                symbol: concat!($($symbol)?),
                 get: |$r| Value::from($get),
             }),*
         ];
@@ -391,26 +394,26 @@ readouts! {
     "scheme", "", Scenario, "the numerical scheme in force", |r| r.scheme.to_owned();
     "scheme_kind", "", Scenario, "how the scheme went about it, where it has more than one way", |r| r.scheme_kind.clone();
     "steps", "", State, "time steps taken", |r| r.sample.step;
-    "time_step_s", "s", Scenario, "the time step in force", |r| r.time_step_s;
-    "t_s", "s", State, "time", |r| r.sample.time_s;
-    "x_m", "m", State, "traced point, world frame", |r| r.sample.position.x;
-    "y_m", "m", State, "traced point, world frame", |r| r.sample.position.y;
-    "z_m", "m", State, "traced point, world frame", |r| r.sample.position.z;
-    "Lx_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.x;
-    "Ly_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.y;
-    "Lz_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.z;
-    "wx_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.x;
-    "wy_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.y;
-    "wz_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.z;
-    "tilt_deg", "deg", State, "angle of the axle from +z", |r| r.sample.tilt_deg;
-    "azimuth_deg", "deg", State, "azimuth of the axle, counted on through full turns", |r| r.sample.azimuth_deg;
-    "energy_J", "J", State, "kinetic energy, and that of the weight from the pivot", |r| r.sample.energy;
+    "time_step_s", "s", Scenario, "the time step in force", |r| r.time_step_s, "Δ*t*";
+    "t_s", "s", State, "time", |r| r.sample.time_s, "*t*";
+    "x_m", "m", State, "traced point, world frame", |r| r.sample.position.x, "*x*";
+    "y_m", "m", State, "traced point, world frame", |r| r.sample.position.y, "*y*";
+    "z_m", "m", State, "traced point, world frame", |r| r.sample.position.z, "*z*";
+    "Lx_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.x, "*L*_{*x*}";
+    "Ly_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.y, "*L*_{*y*}";
+    "Lz_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.z, "*L*_{*z*}";
+    "wx_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.x, "*ω*_{*x*}";
+    "wy_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.y, "*ω*_{*y*}";
+    "wz_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.z, "*ω*_{*z*}";
+    "tilt_deg", "deg", State, "angle of the axle from +z", |r| r.sample.tilt_deg, "*θ*";
+    "azimuth_deg", "deg", State, "azimuth of the axle, counted on through full turns", |r| r.sample.azimuth_deg, "*φ*";
+    "energy_J", "J", State, "kinetic energy, and that of the weight from the pivot", |r| r.sample.energy, "*E*";
     "energy_drift", "", State, "energy that only the scheme's error can have made, in units of M g |c|, or of the kinetic energy at the start where M g |c| is below 1e-9 of it", |r| r.health.energy_drift;
     "segment", "", Scenario, "edits of time step, scheme or gravity before this step", |r| r.sample.segment;
-    "measured_lowest_tilt_deg", "deg", EveryStep, "least angle of the axle from +z", |r| r.extremes.lowest_tilt_deg;
-    "measured_highest_tilt_deg", "deg", EveryStep, "greatest angle of the axle from +z", |r| r.extremes.highest_tilt_deg;
-    "measured_lowest_z_m", "m", EveryStep, "least z of the traced point", |r| r.extremes.lowest_z_m;
-    "measured_highest_z_m", "m", EveryStep, "greatest z of the traced point", |r| r.extremes.highest_z_m;
+    "measured_lowest_tilt_deg", "deg", EveryStep, "least angle of the axle from +z", |r| r.extremes.lowest_tilt_deg, "*θ*_{min}";
+    "measured_highest_tilt_deg", "deg", EveryStep, "greatest angle of the axle from +z", |r| r.extremes.highest_tilt_deg, "*θ*_{max}";
+    "measured_lowest_z_m", "m", EveryStep, "least z of the traced point", |r| r.extremes.lowest_z_m, "*z*_{min}";
+    "measured_highest_z_m", "m", EveryStep, "greatest z of the traced point", |r| r.extremes.highest_z_m, "*z*_{max}";
     "turns_per_step", "", State, "turns of the body in one time step, |Omega| dt/2 pi", |r| r.health.turns_per_step;
     "nutation_multiplier", "", Scheme, "the report's scheme alone: its factor on a nutation's size each step; the truth is 1", |r| r.health.nutation.map(|nutation| nutation.multiplier);
     "lag_deg", "deg", State, "angle between axle and L", |r| r.health.lag_deg;
@@ -420,24 +423,24 @@ readouts! {
     "most_distance_m", "m", Exact, "the largest such distance so far", |r| r.health.most_distance_m;
     "L_axle_drift_Js", "J s", Exact, "L along the axle less the exact motion's", |r| r.health.deviation.map(|off| off.spin);
     "Lz_drift_Js", "J s", Exact, "L_z less the exact motion's", |r| r.health.deviation.map(|off| off.lz);
-    "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle", |r| r.kappa;
+    "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle", |r| r.kappa, "*κ*";
     "theory_axis", "", Theory, "the axis that theory speaks of: +z, or another (against the forces, or along L where there are none), and then what it says about that axis is null", |r| r.theory.map(|theory| theory.axis.to_string());
     "path", "", Theory, "the path of the axle about +z", |r| r.theory_about_z().map(|theory| theory.path.to_string());
-    "predicted_lowest_tilt_deg", "deg", Theory, "least tilt of the exact motion from +z", |r| r.theory_about_z().map(|theory| theory.tilt_range_deg.0);
-    "predicted_highest_tilt_deg", "deg", Theory, "greatest tilt of the exact motion from +z", |r| r.theory_about_z().map(|theory| theory.tilt_range_deg.1);
+    "predicted_lowest_tilt_deg", "deg", Theory, "least tilt of the exact motion from +z", |r| r.theory_about_z().map(|theory| theory.tilt_range_deg.0), "*θ*_{min}";
+    "predicted_highest_tilt_deg", "deg", Theory, "greatest tilt of the exact motion from +z", |r| r.theory_about_z().map(|theory| theory.tilt_range_deg.1), "*θ*_{max}";
     "cusp_tilt_deg", "deg", Theory, "tilt at which the axle stands still in azimuth", |r| r.theory_about_z().and_then(|theory| theory.cusp_tilt_deg);
-    "predicted_precession_rad_per_s", "rad/s", Theory, "mean precession of the exact motion about +z", |r| r.theory_about_z().and_then(|theory| theory.precession);
-    "measured_precession_rad_per_s", "rad/s", Measured, "mean precession about +z", |r| value(r.precession);
+    "predicted_precession_rad_per_s", "rad/s", Theory, "mean precession of the exact motion about +z", |r| r.theory_about_z().and_then(|theory| theory.precession), "*Ω*_{p}";
+    "measured_precession_rad_per_s", "rad/s", Measured, "mean precession about +z", |r| value(r.precession), "*Ω*_{p}";
     "measured_precession_uncertainty_rad_per_s", "rad/s", Measured, "one standard error of it", |r| uncertainty(r.precession);
-    "slow_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the slow one", |r| r.theory_about_z().and_then(|theory| theory.slow_precession);
-    "fast_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the fast one", |r| r.theory_about_z().and_then(|theory| theory.fast_precession);
-    "fast_top_precession_rad_per_s", "rad/s", Theory, "the fast top's precession M g h/L3", |r| r.theory_about_z().and_then(|theory| theory.fast_top_precession);
-    "predicted_nutation_period_s", "s", Theory, "nutation period of the exact motion", |r| r.theory_about_z().and_then(|theory| theory.nutation_period_s);
-    "measured_nutation_period_s", "s", Measured, "mean time between two turning points of the tilt", |r| value(r.nutation);
+    "slow_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the slow one", |r| r.theory_about_z().and_then(|theory| theory.slow_precession), "*Ω*_{slow}";
+    "fast_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the fast one", |r| r.theory_about_z().and_then(|theory| theory.fast_precession), "*Ω*_{fast}";
+    "fast_top_precession_rad_per_s", "rad/s", Theory, "the fast top's precession M g h/L3", |r| r.theory_about_z().and_then(|theory| theory.fast_top_precession), "*Ω*_{p}";
+    "predicted_nutation_period_s", "s", Theory, "nutation period of the exact motion", |r| r.theory_about_z().and_then(|theory| theory.nutation_period_s), "*T*_{n}";
+    "measured_nutation_period_s", "s", Measured, "mean time between two turning points of the tilt", |r| value(r.nutation), "*T*_{n}";
     "measured_nutation_uncertainty_s", "s", Measured, "one standard error of it", |r| uncertainty(r.nutation);
     "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what is measured is strobed", |r| r.nutation_is_resolved();
-    "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation);
-    "L_axle_Js", "J s", State, "L along the axle", |r| r.spin;
+    "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation), "*ω*_{n}";
+    "L_axle_Js", "J s", State, "L along the axle", |r| r.spin, "*L*_{3}";
     "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps", |r| r.theory_about_z().map(|theory| theory.sleeping_limit);
     "health", "", Exact, "whether the numbers hold, in one sentence", |r| r.health.sentence(r.advice.as_ref());
     "wall_s", "s", Clock, "time spent on stepping alone", |r| r.stepping.map(|wall| wall.as_secs_f64());

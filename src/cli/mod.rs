@@ -4,6 +4,7 @@
 
 mod args;
 mod compare;
+mod figure;
 mod info;
 mod lesson;
 mod notes;
@@ -56,6 +57,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Run(args) => run::run(&args),
         Command::Show(args) => show::show(&args),
         Command::Compare(args) => compare::compare(&args),
+        Command::Figure(args) => figure::figure(&args),
         Command::Presets { name } => info::presets(name.as_deref()),
         Command::Sessions { folder } => sessions::list(folder.as_deref()),
         Command::Schemes => info::schemes(),

@@ -27,9 +27,63 @@ pub enum Segment {
     Close,
 }
 
+impl Segment {
+    /// Where it ends; `None` for [`Close`](Self::Close), which ends where its line began.
+    pub fn end(&self) -> Option<Point> {
+        match *self {
+            Self::Move(end)
+            | Self::Line(end)
+            | Self::Quadratic(_, end)
+            | Self::Cubic(_, _, end) => Some(end),
+            Self::Close => None,
+        }
+    }
+}
+
 /// Lines and curves that are filled or stroked together.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Path(pub Vec<Segment>);
+
+impl Path {
+    /// Straight lines from corner to corner, and back to the first.
+    pub fn polygon(corners: impl IntoIterator<Item = Point>) -> Self {
+        let mut path = Self::polyline(corners);
+        path.0.push(Segment::Close);
+        path
+    }
+
+    /// Straight lines from point to point.
+    pub fn polyline(points: impl IntoIterator<Item = Point>) -> Self {
+        let segment = |(index, point)| match index {
+            0 => Segment::Move(point),
+            _ => Segment::Line(point),
+        };
+        Self(points.into_iter().enumerate().map(segment).collect())
+    }
+
+    /// The path with each of its points, control points too, moved to where `to` says.
+    pub fn mapped(self, to: impl Fn(Point) -> Point) -> Self {
+        let segment = |segment| match segment {
+            Segment::Move(end) => Segment::Move(to(end)),
+            Segment::Line(end) => Segment::Line(to(end)),
+            Segment::Quadratic(control, end) => Segment::Quadratic(to(control), to(end)),
+            Segment::Cubic(first, second, end) => Segment::Cubic(to(first), to(second), to(end)),
+            Segment::Close => Segment::Close,
+        };
+        Self(self.0.into_iter().map(segment).collect())
+    }
+
+    /// The points of the path, control points among them: what it covers lies inside of their hull.
+    pub fn points(&self) -> impl Iterator<Item = Point> {
+        let of = |segment: &Segment| match *segment {
+            Segment::Move(end) | Segment::Line(end) => [Some(end), None, None],
+            Segment::Quadratic(control, end) => [Some(control), Some(end), None],
+            Segment::Cubic(first, second, end) => [Some(first), Some(second), Some(end)],
+            Segment::Close => [None; 3],
+        };
+        self.0.iter().flat_map(of).flatten()
+    }
+}
 
 /// An opaque colour: red, green, blue.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -44,8 +98,15 @@ pub struct Pen {
     pub color: Color,
     /// Lengths of strokes and gaps in turn, pt; empty for a solid line.
     pub dash_pt: Vec<f64>,
-    /// Whether corners and ends are round; else corners are sharp and ends flat.
+    /// Whether corners and the ends of solid lines are round; else corners are sharp and ends flat.
     pub is_round: bool,
+}
+
+impl Pen {
+    /// Whether the ends of lines are round: those of dashes are flat, so that they are as long as they are said to be.
+    pub fn has_round_ends(&self) -> bool {
+        self.is_round && self.dash_pt.is_empty()
+    }
 }
 
 /// How a path becomes visible.

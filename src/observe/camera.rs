@@ -1,6 +1,6 @@
 //! The parallel projection of the world onto a picture, along a direction that the user turns.
 
-use crate::scenario::file::ZoomFile;
+use crate::scenario::file::{CameraFile, ZoomFile};
 use crate::scenario::keys::ZOOM;
 use crate::text::ladder;
 use nalgebra::Vector3;
@@ -65,6 +65,15 @@ impl Default for Camera {
 }
 
 impl Camera {
+    /// What a file says, and the usual direction where it says nothing.
+    pub fn of(file: CameraFile) -> Self {
+        let usual = Self::default();
+        Self {
+            yaw_deg: file.yaw_deg.unwrap_or(usual.yaw_deg),
+            pitch_deg: file.pitch_deg.unwrap_or(usual.pitch_deg),
+        }
+    }
+
     /// Turns the viewing direction by these angles, degrees; the pitch stays within −90 to 90.
     pub fn turn(&mut self, yaw_deg: f64, pitch_deg: f64) {
         self.yaw_deg = (self.yaw_deg + yaw_deg).rem_euclid(360.0);

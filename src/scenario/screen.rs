@@ -2,8 +2,15 @@
 
 use crate::physics::workings::NAMES;
 
+/// The pane of the traces over time, and the figure of the same name.
+pub const TRACES: &str = "traces";
+/// The pane of the path from above, and its figure.
+pub const ABOVE: &str = "above";
+/// The pane of the scene in space, and its figure.
+pub const THREE_D: &str = "3d";
+
 /// The panes of the lab. The table of panes in `tui` has a row for each, in this order: the compiler compares the two.
-pub const PANES: [&str; 6] = ["lesson", "traces", "above", "3d", "parameters", "step"];
+pub const PANES: [&str; 6] = ["lesson", TRACES, ABOVE, THREE_D, "parameters", "step"];
 
 /// What of the lab's screen can be hidden: the panes, the line about the numbers' health, the numbers that theory
 /// predicts, the line that says what there is to see.

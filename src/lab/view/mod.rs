@@ -11,7 +11,7 @@ use super::action::Direction;
 use super::sheet::Sheet;
 use crate::observe::camera::{Camera, Zoom};
 use crate::run::Clock;
-use crate::scenario::screen::PANES;
+use crate::scenario::screen::{self, PANES};
 use crate::scenario::{Scenario, keys};
 use markers::Marker;
 use std::sync::Arc;
@@ -48,11 +48,11 @@ pub enum Part {
 
 impl Pane {
     /// x, y, z and tilt over time.
-    pub const TRACES: Self = Self("traces");
+    pub const TRACES: Self = Self(screen::TRACES);
     /// The path from above.
-    pub const FROM_ABOVE: Self = Self("above");
+    pub const FROM_ABOVE: Self = Self(screen::ABOVE);
     /// The scene in space.
-    pub const THREE_D: Self = Self("3d");
+    pub const THREE_D: Self = Self(screen::THREE_D);
     /// The scenario's values and the readouts.
     pub const PARAMETERS: Self = Self("parameters");
     /// One time step, phase by phase. It is shown where it is asked for.
@@ -213,11 +213,7 @@ impl View {
             self.zoom = Zoom::of(zoom);
         }
         if let Some(camera) = file.camera {
-            let usual = Camera::default();
-            self.camera = Camera {
-                yaw_deg: camera.yaw_deg.unwrap_or(usual.yaw_deg),
-                pitch_deg: camera.pitch_deg.unwrap_or(usual.pitch_deg),
-            };
+            self.camera = Camera::of(camera);
         }
     }
 

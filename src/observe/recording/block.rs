@@ -21,6 +21,19 @@ impl Curve {
     /// Every curve, in the order in which blocks hold them.
     pub const ALL: [Self; 4] = [Self::X, Self::Y, Self::Z, Self::Tilt];
 
+    /// The curves of the traced point.
+    pub const OF_POINT: [Self; 3] = [Self::X, Self::Y, Self::Z];
+
+    /// The name of its numbers in a CSV and among the readouts.
+    pub fn column(self) -> &'static str {
+        match self {
+            Self::X => "x_m",
+            Self::Y => "y_m",
+            Self::Z => "z_m",
+            Self::Tilt => "tilt_deg",
+        }
+    }
+
     /// What it is called where it is drawn.
     pub fn name(self) -> &'static str {
         self.named().0

@@ -1,0 +1,197 @@
+//! `gyrolab figure`: runs, or a table of runs, drawn on paper.
+
+use super::args::{Cli, FigureArgs, ScenarioArgs};
+use super::progress::{self, Interruption, Meter};
+use super::scenario::scenario_of;
+use super::{INTERRUPTED, complain, tell};
+use crate::analysis::cost::is_affordable;
+use crate::export::Destination;
+use crate::figure::kind::Kind;
+use crate::figure::of_runs::{self, Figure, Request, Run};
+use crate::figure::table::Table;
+use crate::figure::{self, Format, of_table};
+use crate::scenario::Problems;
+use crate::text::number::shortest;
+use crate::text::printable::{Shown, printable};
+use anyhow::{Context, bail};
+use clap::CommandFactory;
+use clap::error::ErrorKind;
+use std::io::Write;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+/// Points of a millimetre on paper.
+const PT_A_MM: f64 = 72.0 / 25.4;
+
+pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
+    let format = Format::of(&args.output)?;
+    let subject = subject(args)?;
+    let (output, interruption) = progress::open(Some(&args.output), args.force)?;
+    let Some(output) = output else {
+        return Ok(ExitCode::FAILURE); // a path that is given is opened, or an error
+    };
+    let Some(figure) = drawn(&subject, args, &interruption)? else {
+        return Ok(ExitCode::from(INTERRUPTED));
+    };
+    write(output, &figure, format)
+        .with_context(|| format!("cannot write {}", Shown(&args.output)))?;
+    if interruption.may_act_at_once() {
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    for warning in &figure.warnings {
+        tell(format_args!("gyrolab: {warning}"));
+    }
+    let mm = |pt: f64| (pt / PT_A_MM).round();
+    tell(format_args!(
+        "gyrolab: {} mm x {} mm in {}",
+        mm(figure.scene.width_pt),
+        mm(figure.scene.height_pt),
+        Shown(&args.output)
+    ));
+    match figure.broke {
+        Some(error) => {
+            complain(&anyhow::anyhow!(error));
+            Ok(ExitCode::FAILURE)
+        }
+        None => Ok(ExitCode::SUCCESS),
+    }
+}
+
+/// What is drawn.
+enum Subject {
+    Runs(Vec<Run>, Kind),
+    Table(Table),
+}
+
+fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
+    let mut tables = Vec::new();
+    for named in &args.runs {
+        let table = Table::read(Path::new(named));
+        let table = table.map_err(|problem| Problems::one(named.clone(), problem))?;
+        tables.extend(table);
+    }
+    match (tables.pop(), args.runs.len()) {
+        (None, _) => {
+            let kind = args.kind.as_deref().map(Kind::named).transpose();
+            let kind = kind.unwrap_or_else(|refusal| no_kind(args, &refusal));
+            Ok(Subject::Runs(
+                runs(args)?,
+                kind.unwrap_or_else(Kind::traces),
+            ))
+        }
+        (Some(_), 2..) => {
+            bail!("the table of a comparison or of a sweep is drawn alone: give one file")
+        }
+        (Some(table), _) => {
+            let is_changed = args.exact
+                || args.from.is_some()
+                || args.to.is_some()
+                || !args.schemes.is_empty()
+                || args.changes.is_some()
+                || args.length.is_some();
+            if is_changed {
+                bail!(
+                    "{}: the numbers of a table are drawn as they are: of a figure's options, --kind, --width and --force are for it",
+                    args.runs[0]
+                );
+            }
+            Ok(Subject::Table(table))
+        }
+    }
+}
+
+/// Refuses `--kind` as clap refuses a value.
+fn no_kind(args: &FigureArgs, refusal: &str) -> ! {
+    let kind = args.kind.as_deref().unwrap_or_default();
+    let kind = printable(kind);
+    let mut command = Cli::command();
+    command.build();
+    let message = format!("invalid value '{kind}' for '--kind <KIND>': {refusal}");
+    match command.find_subcommand_mut("figure") {
+        Some(figure) => figure.error(ErrorKind::ValueValidation, message),
+        None => command.error(ErrorKind::ValueValidation, message),
+    }
+    .exit()
+}
+
+/// Every run that is named, by every scheme that is.
+fn runs(args: &FigureArgs) -> anyhow::Result<Vec<Run>> {
+    let mut runs = Vec::new();
+    for named in &args.runs {
+        let schemes: Vec<Option<&String>> = match args.schemes.is_empty() {
+            true => vec![None],
+            false => args.schemes.iter().map(Some).collect(),
+        };
+        for scheme in schemes {
+            let mut changes = args.changes.clone();
+            changes.scheme = scheme.cloned().or(changes.scheme);
+            let scenario = ScenarioArgs {
+                scenario: named.clone(),
+                changes,
+            };
+            let scenario = scenario_of(&scenario, &args.length)?;
+            if args.exact && !is_affordable(&scenario) {
+                bail!(
+                    "{named}: its exact motion must be integrated, which would take too long for {} s: leave --exact out, or give a shorter --duration",
+                    shortest(crate::run::Clock::end_s(&scenario))
+                );
+            }
+            runs.push(Run {
+                scenario: Arc::new(scenario),
+                named: named.clone(),
+            });
+        }
+    }
+    Ok(runs)
+}
+
+fn drawn(
+    subject: &Subject,
+    args: &FigureArgs,
+    interruption: &Interruption,
+) -> anyhow::Result<Option<Figure>> {
+    let (runs, kind) = match subject {
+        Subject::Runs(runs, kind) => (runs, kind),
+        Subject::Table(table) => {
+            let columns = args
+                .kind
+                .iter()
+                .flat_map(|kind| kind.split(','))
+                .map(str::trim);
+            let columns: Vec<_> = columns.collect();
+            let chart = of_table::chart(table, &columns, args.width * PT_A_MM);
+            let chart = chart.map_err(|refusal| anyhow::anyhow!("{}: {refusal}", args.runs[0]))?;
+            return Ok(Some(Figure {
+                scene: chart.scene(),
+                warnings: Vec::new(),
+                broke: None,
+            }));
+        }
+    };
+    let request = Request {
+        kind: kind.clone(),
+        from_s: args.from.unwrap_or(0.0),
+        to_s: args.to,
+        exact: args.exact,
+        width_pt: args.width * PT_A_MM,
+    };
+    let mut meter = Meter::new();
+    let figure = of_runs::figure(runs, &request, |step, of| {
+        meter.show(step, of);
+        match interruption.has_come() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    });
+    meter.clear();
+    figure.map_err(anyhow::Error::msg)
+}
+
+fn write(mut output: Destination, figure: &Figure, format: Format) -> anyhow::Result<()> {
+    let bytes = figure::write(&figure.scene, format)?;
+    output.write_all(&bytes)?;
+    output.keep()?;
+    Ok(())
+}

@@ -1,0 +1,98 @@
+//! An axis in its place: where a value stands on the page, and the ticks that have room there.
+
+use super::chart::Axis;
+use super::ink::{self, LABEL_PT};
+use super::ticks::{Tick, Ticks};
+
+/// Least distance of two labels beside each other, and of two above each other, pt.
+const BESIDE: f64 = 6.0;
+const ABOVE: f64 = 7.5;
+
+/// From values to places on the page.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// The values at the axis's begin and end.
+    pub range: (f64, f64),
+    /// Whether equal distances are equal factors.
+    pub is_log: bool,
+    /// The places of its begin and end, pt.
+    pub places: (f64, f64),
+}
+
+impl Scale {
+    /// Where `value` stands, pt; far outside, or not finite, where it cannot be shown.
+    pub fn place(&self, value: f64) -> f64 {
+        let (low, high) = self.range;
+        let share = match self.is_log {
+            true => (value.ln() - low.ln()) / (high.ln() - low.ln()),
+            false => (value - low) / (high - low),
+        };
+        self.places.0 + share * (self.places.1 - self.places.0)
+    }
+
+    /// The value at `place`, pt.
+    pub fn value(&self, place: f64) -> f64 {
+        let (low, high) = self.range;
+        let share = (place - self.places.0) / (self.places.1 - self.places.0);
+        match self.is_log {
+            true => libm::exp(low.ln() + share * (high.ln() - low.ln())),
+            false => low + share * (high - low),
+        }
+    }
+
+    fn length(&self) -> f64 {
+        (self.places.1 - self.places.0).abs()
+    }
+
+    /// Whether `value` lies on the axis, rounding forgiven.
+    fn shows(&self, value: f64) -> bool {
+        let (low, high) = self.places;
+        let place = self.place(value);
+        place >= low.min(high) - 0.01 && place <= low.max(high) + 0.01
+    }
+
+    /// The ticks of an axis below the picture, whose labels stand beside each other.
+    pub fn ticks_below(&self, axis: &Axis) -> Ticks {
+        self.ticks(axis, |ticks| {
+            ticks.windows(2).all(|pair| {
+                let apart = (self.place(pair[1].at) - self.place(pair[0].at)).abs();
+                let half = |tick: &Tick| 0.5 * ink::width(&tick.label, LABEL_PT);
+                half(&pair[0]) + half(&pair[1]) + BESIDE <= apart
+            })
+        })
+    }
+
+    /// The ticks of an axis at the left, whose labels stand above each other.
+    pub fn ticks_beside(&self, axis: &Axis) -> Ticks {
+        let apart = ink::height(LABEL_PT) + ABOVE;
+        self.ticks(axis, |ticks| {
+            let is_apart =
+                |pair: &[Tick]| (self.place(pair[1].at) - self.place(pair[0].at)).abs() >= apart;
+            ticks.windows(2).all(is_apart)
+        })
+    }
+
+    fn ticks(&self, axis: &Axis, fits: impl Fn(&[Tick]) -> bool) -> Ticks {
+        let (low, high) = self.range;
+        let mut ticks = match axis.is_log {
+            true => Ticks::log(low, high, fits),
+            false => Ticks::linear(low, high, fits),
+        };
+        ticks.major.retain(|tick| self.shows(tick.at));
+        ticks.minor.retain(|at| self.shows(*at));
+        // Minor ticks that nearly touch are no help.
+        if ticks.minor.len() as f64 * 1.6 > self.length() {
+            ticks.minor.clear();
+        }
+        ticks
+    }
+}
+
+/// The widest label of `ticks`, pt.
+pub fn widest(ticks: &Ticks) -> f64 {
+    let widths = ticks
+        .major
+        .iter()
+        .map(|tick| ink::width(&tick.label, LABEL_PT));
+    widths.fold(0.0, f64::max)
+}

@@ -1,0 +1,248 @@
+//! What a figure with axes shows, before anything of it has a place: panels one above the other over one axis.
+
+use super::ink::{BLACK, Mark, grey};
+use super::scene::{Color, Pen};
+use super::ticks::{Ticks, power_of_ten};
+
+/// A figure with axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chart {
+    /// Title for readers of the file.
+    pub title: String,
+    /// Width of the page, pt.
+    pub width_pt: f64,
+    /// The axis below the panels.
+    pub x: Axis,
+    /// The panels, from the top; one at least.
+    pub panels: Vec<Panel>,
+    /// Whether a unit is as long on both axes; then there is one panel.
+    pub is_true_to_scale: bool,
+}
+
+/// An axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Axis {
+    /// What is measured on it, as markup.
+    pub name: String,
+    /// Its unit, as markup; empty for a pure number.
+    pub unit: String,
+    /// Whether equal distances are equal factors.
+    pub is_log: bool,
+    /// From where to where it goes; `None`: as the data need it.
+    pub range: Option<(f64, f64)>,
+}
+
+/// Curves and points over one stretch of the axis below.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Panel {
+    /// The axis at its left.
+    pub y: Axis,
+    /// What is drawn in it, from the back to the front.
+    pub series: Vec<Series>,
+    /// The slope of a triangle to be drawn where no curve is: for two logarithmic axes.
+    pub slope: Option<f64>,
+    /// Lines that are drawn faintly behind the series: circles about the origin, by their radius.
+    pub circles: Vec<f64>,
+}
+
+/// A curve, or points.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Series {
+    /// Its name in the legend, as markup; empty for none.
+    pub name: String,
+    /// Its points in order; the line is interrupted where one is not finite.
+    pub points: Vec<[f64; 2]>,
+    /// One standard error of each point's second number; empty where there are none, NaN where one is not known.
+    pub errors: Vec<f64>,
+    /// How it is drawn.
+    pub style: Style,
+}
+
+/// How a series is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Style {
+    /// Its colour.
+    pub color: Color,
+    /// Width of its line, pt; 0 for points alone.
+    pub width_pt: f64,
+    /// Lengths of strokes and gaps, pt; empty for a solid line.
+    pub dash_pt: &'static [f64],
+    /// What is at its points.
+    pub mark: Option<Mark>,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self {
+            color: BLACK,
+            width_pt: 0.7,
+            dash_pt: &[],
+            mark: None,
+        }
+    }
+}
+
+/// Colours that people with any colour vision tell apart (Okabe and Ito, 2008), in the order in which their greys, too, are
+/// told apart from the ones before.
+const COLORS: [Color; 6] = [
+    BLACK,
+    Color([213, 94, 0]),
+    Color([0, 114, 178]),
+    Color([230, 159, 0]),
+    Color([0, 158, 115]),
+    Color([204, 121, 167]),
+];
+/// Strokes and gaps, pt.
+const DASHES: [&[f64]; 6] = [
+    &[],
+    &[3.2, 1.6],
+    &[1.0, 1.2],
+    &[5.0, 1.4, 1.0, 1.4],
+    &[6.5, 2.0],
+    &[2.0, 1.0, 2.0, 3.0],
+];
+const MARKS: [Mark; 6] = [
+    Mark::Dot,
+    Mark::Square,
+    Mark::Triangle,
+    Mark::Diamond,
+    Mark::Ring,
+    Mark::Tip,
+];
+
+impl Style {
+    /// The line of the curve `index` of several over time: colour, dashes and width tell them apart.
+    pub fn curve(index: usize) -> Self {
+        Self {
+            color: COLORS[index % COLORS.len()],
+            dash_pt: DASHES[index % DASHES.len()],
+            width_pt: if index == 0 { 0.7 } else { 0.85 },
+            mark: None,
+        }
+    }
+
+    /// The exact motion: dashed, on top of the run.
+    pub fn exact() -> Self {
+        Self {
+            color: COLORS[1],
+            width_pt: 0.8,
+            dash_pt: DASHES[1],
+            mark: None,
+        }
+    }
+
+    /// Points on a thin line, for the series `index` of several.
+    pub fn marked_line(index: usize) -> Self {
+        Self {
+            width_pt: 0.5,
+            ..Self::points(index)
+        }
+    }
+
+    /// Points, for the series `index` of several.
+    pub fn points(index: usize) -> Self {
+        Self {
+            color: match index {
+                0 => BLACK,
+                index => COLORS[index % COLORS.len()],
+            },
+            width_pt: 0.0,
+            dash_pt: &[],
+            mark: Some(MARKS[index % MARKS.len()]),
+        }
+    }
+
+    /// A thin line of theory.
+    pub fn theory(index: usize) -> Self {
+        Self {
+            color: if index == 0 {
+                grey(70)
+            } else {
+                Self::points(index).color
+            },
+            width_pt: 0.7,
+            dash_pt: DASHES[index % DASHES.len()],
+            mark: None,
+        }
+    }
+
+    /// The pen of its line.
+    pub fn pen(&self) -> Pen {
+        Pen {
+            width_pt: self.width_pt,
+            color: self.color,
+            dash_pt: self.dash_pt.to_vec(),
+            is_round: true,
+        }
+    }
+}
+
+impl Axis {
+    /// An axis of this name and unit, as the data need it.
+    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            unit: unit.into(),
+            ..Self::default()
+        }
+    }
+
+    /// Name, offset and unit, as it is written along the axis with these ticks.
+    pub fn title(&self, ticks: &Ticks) -> String {
+        let offset = ticks.offset.as_deref();
+        let offset = offset.map_or_else(String::new, |offset| match offset.strip_prefix('−') {
+            Some(size) => format!(" + {size}"),
+            None => format!(" − {offset}"),
+        });
+        let power = (ticks.power != 0).then(|| power_of_ten(ticks.power));
+        let unit = [power.as_deref().unwrap_or_default(), &self.unit].join(" ");
+        match unit.trim() {
+            "" => format!("{}{offset}", self.name),
+            unit => format!("{}{offset} ({unit})", self.name),
+        }
+    }
+
+    /// From where to where the axis goes for these `values`; those that it cannot show are passed over. Without a value: any
+    /// stretch.
+    pub fn range_of(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
+        /// The farthest that an axis reaches: its ends are still told apart by a finite number.
+        const FARTHEST: f64 = 1e306;
+        /// The room beyond the data, of their span, and where that is 0, of their size.
+        const MARGIN: f64 = 0.045;
+        const AROUND: f64 = 0.1;
+        /// Values that differ by less than this part of themselves differ by rounding.
+        const ROUNDING: f64 = 1e-10;
+        if let Some(range) = self.range {
+            return range;
+        }
+        let is_shown = |value: &f64| value.is_finite() && (!self.is_log || *value > 0.0);
+        let values = values.filter(is_shown);
+        let values = values.map(|value| value.clamp(-FARTHEST, FARTHEST));
+        let extent = values.fold(None, |extent: Option<(f64, f64)>, value| {
+            let (low, high) = extent.unwrap_or((value, value));
+            Some((low.min(value), high.max(value)))
+        });
+        let Some((low, high)) = extent else {
+            return if self.is_log { (0.1, 10.0) } else { (0.0, 1.0) };
+        };
+        if self.is_log {
+            let least = 2_f64.sqrt();
+            let factor = (high / low)
+                .powf(MARGIN)
+                .max(if high > 1.3 * low { 1.02 } else { least });
+            return ((low / factor).max(f64::MIN_POSITIVE), high * factor);
+        }
+        let largest = low.abs().max(high.abs());
+        let span = high - low;
+        if span > ROUNDING * largest {
+            return (low - MARGIN * span, high + MARGIN * span);
+        }
+        let half = if largest > 1e-290 {
+            AROUND * largest
+        } else {
+            1.0
+        };
+        let middle = 0.5 * low + 0.5 * high;
+        (middle - half, middle + half)
+    }
+}

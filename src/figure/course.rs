@@ -1,0 +1,224 @@
+//! The numbers of a figure, from a run that is stepped through once more.
+
+use super::over_time::OverTime;
+use crate::export::columns::Column;
+use crate::export::stream::{self, Ended};
+use crate::physics::State;
+use crate::physics::exact::LagrangeTop;
+use crate::physics::observables::{self, Azimuth};
+use crate::run::{Clock, NotFinite, Sample, Simulation, Step, Truth};
+use crate::scenario::Scenario;
+use nalgebra::Vector3;
+use std::io;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// What is asked of a run.
+#[derive(Clone, Debug)]
+pub struct Wanted {
+    /// The curves over time.
+    pub columns: Vec<&'static Column>,
+    /// Whether the path of the traced point is wanted.
+    pub path: bool,
+    /// The stretch of time, s; `None`: to the end of the run.
+    pub from_s: f64,
+    /// Its end, s.
+    pub to_s: Option<f64>,
+}
+
+/// What a run gave.
+#[derive(Clone, Debug)]
+pub struct Course {
+    /// A curve for each column.
+    pub curves: Vec<OverTime>,
+    /// The traced point, world frame, m.
+    pub path: Vec<[f64; 3]>,
+    /// The last time that it reached, s.
+    pub end_s: f64,
+    /// Where its numbers stopped being finite, if they did.
+    pub broke: Option<NotFinite>,
+}
+
+/// So many points of a path are kept, all of them. Of a longer one, those that reach places of its picture where it has not
+/// been.
+const ALL_KEPT: usize = 1 << 21;
+/// Such a place is this part of the traced point's arm wide, in each direction.
+const PLACES: f64 = 2048.0;
+
+impl Course {
+    /// Whether no moment lay in the stretch.
+    pub fn is_empty(&self) -> bool {
+        self.path.is_empty() && self.curves.iter().all(OverTime::is_empty)
+    }
+}
+
+impl Wanted {
+    /// The end of the stretch of a run of `scenario`, s.
+    pub fn end_s(&self, scenario: &Scenario) -> f64 {
+        let end_s = Clock::end_s(scenario);
+        self.to_s.map_or(end_s, |to_s| to_s.min(end_s))
+    }
+
+    fn course(&self, scenario: &Scenario) -> Recorder<'_> {
+        let edits = scenario.edits.iter().map(|edit| edit.motion.time_step_s);
+        let least_s = edits.fold(scenario.motion.time_step_s, f64::min);
+        Recorder {
+            wanted: self,
+            end_s: self.end_s(scenario),
+            places: Places::new(scenario.arm_m()),
+            course: Course {
+                curves: vec![OverTime::new(least_s); self.columns.len()],
+                path: Vec::new(),
+                end_s: 0.0,
+                broke: None,
+            },
+        }
+    }
+}
+
+/// Writes down what is asked for, step by step.
+struct Recorder<'a> {
+    wanted: &'a Wanted,
+    end_s: f64,
+    places: Places,
+    course: Course,
+}
+
+impl Recorder<'_> {
+    /// Takes the numbers of one moment; `sample` is asked for them where they are needed.
+    fn take(&mut self, time_s: f64, position: &Vector3<f64>, sample: impl FnOnce() -> Sample) {
+        let rounding = 1e-9 * self.end_s.abs();
+        if time_s < self.wanted.from_s - rounding || time_s > self.end_s + rounding {
+            return;
+        }
+        self.course.end_s = time_s;
+        if self.wanted.path && self.places.are_new(self.course.path.len(), position) {
+            self.course.path.push([position.x, position.y, position.z]);
+        }
+        if self.wanted.columns.is_empty() {
+            return;
+        }
+        let sample = sample();
+        for (column, curve) in self.wanted.columns.iter().zip(&mut self.course.curves) {
+            curve.push(time_s, column.value(&sample).number());
+        }
+    }
+}
+
+/// Where a path has been.
+struct Places {
+    size_m: f64,
+    seen: Vec<u64>,
+}
+
+impl Places {
+    fn new(arm_m: f64) -> Self {
+        Self {
+            size_m: 2.0 * arm_m / PLACES,
+            seen: Vec::new(),
+        }
+    }
+
+    /// Whether a path with so many points goes on to a place where it has not been.
+    fn are_new(&mut self, kept: usize, position: &Vector3<f64>) -> bool {
+        if kept < ALL_KEPT {
+            return true;
+        }
+        let side = PLACES as usize + 1;
+        self.seen.resize(side * side, 0);
+        let number =
+            |length: f64| ((length / self.size_m + 0.5 * PLACES).max(0.0) as usize).min(side - 1);
+        let place = number(position.y) * side + number(position.x);
+        // Of each place 64 layers from the lowest to the highest.
+        let layer = (number(position.z) * 64 / side).min(63);
+        let is_new = self.seen[place] & (1 << layer) == 0;
+        self.seen[place] |= 1 << layer;
+        is_new
+    }
+}
+
+/// Steps through the run of `scenario` and gives what is `wanted` of it. `watch` is told the step reached and the last one, and
+/// says whether to go on; `None` where it said no.
+pub fn play(
+    scenario: &Arc<Scenario>,
+    wanted: &Wanted,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Option<Course> {
+    let mut simulation = Simulation::new(Arc::clone(scenario));
+    let mut recorder = wanted.course(scenario);
+    let last = Simulation::step_at(scenario, recorder.end_s).min(scenario.steps);
+    let mut each = |step: &Step| recorder.take(step.time_s(), step.position(), || step.sample());
+    each(simulation.now());
+    let ended = stream::play::<io::Sink>(&mut simulation, last, 1, None, each, |progress| {
+        watch(progress.step, progress.steps)
+    });
+    match ended {
+        Ok((Ended::Stopped, _)) => return None,
+        Ok((Ended::NotFinite(error), _)) => recorder.course.broke = Some(error),
+        Ok((Ended::Done, _)) | Err(_) => {} // nothing is written that could fail
+    }
+    Some(recorder.course)
+}
+
+/// Moments of the exact motion within the shortest of its periods that is known, and at least over the whole stretch; and at
+/// most, whatever the periods are.
+const A_PERIOD: f64 = 32.0;
+const LEAST: f64 = 3000.0;
+const MOST: f64 = 400_000.0;
+
+/// As [`play`], of the exact motion beside the run: between the time steps too, where these are too long to show it.
+pub fn exact(
+    scenario: &Arc<Scenario>,
+    wanted: &Wanted,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Option<Course> {
+    let mut truth = Truth::new(Arc::clone(scenario));
+    let mut recorder = wanted.course(scenario);
+    // The azimuth is counted on from the start, and nothing else needs what came before.
+    let is_counted = wanted
+        .columns
+        .iter()
+        .any(|column| column.name == "azimuth_deg");
+    let begin_s = if is_counted {
+        0.0
+    } else {
+        wanted.from_s.max(0.0)
+    };
+    let end_s = recorder.end_s;
+    truth.state_at(begin_s);
+    let period_s = truth
+        .motion()
+        .closed_form()
+        .and_then(LagrangeTop::nutation_period);
+    let fine_s = period_s.map_or(f64::INFINITY, |period_s| period_s / A_PERIOD);
+    let apart_s = fine_s.min(scenario.motion.time_step_s);
+    let count = ((end_s - begin_s) / apart_s).ceil().clamp(LEAST, MOST) as u64;
+    let mut azimuth = Azimuth::start(&scenario.start.axle());
+    for number in 0..=count {
+        let time_s = begin_s + (end_s - begin_s) * (number as f64 / count as f64);
+        let state = truth.state_at(time_s);
+        azimuth.follow(&state.axle());
+        let sample = sample(scenario, &state, &azimuth, truth.loads().gravity);
+        recorder.take(time_s, &sample.position, || sample);
+        if number.is_multiple_of(1024) && watch(number, count).is_break() {
+            return None;
+        }
+    }
+    Some(recorder.course)
+}
+
+fn sample(scenario: &Scenario, state: &State, azimuth: &Azimuth, gravity: f64) -> Sample {
+    let body = &scenario.body.mechanics;
+    let weight = gravity * observables::weight_height(body, state);
+    Sample {
+        step: 0,
+        time_s: state.time_s,
+        position: observables::position(body, state, scenario.trace),
+        momentum: state.momentum,
+        angular_velocity: observables::angular_velocity(body, state),
+        tilt_deg: observables::tilt_deg(state),
+        azimuth_deg: azimuth.degrees(),
+        energy: observables::kinetic_energy(body, state) + weight,
+        segment: 0,
+    }
+}

@@ -1,0 +1,196 @@
+//! A chart drawn on its page.
+
+use super::chart::{Chart, Panel, Series};
+use super::ink::{self, BLACK, LABEL_PT, MARK_PT, at, circle, grey, pen};
+use super::layout::{EDGE, GAP, Layout, Placed};
+use super::legend::Legend;
+use super::scene::{Path, Scene};
+use super::slope;
+
+/// Width of axes, ticks and error bars, pt.
+const FRAME_PT: f64 = 0.5;
+/// Length of a tick with a label and of one without, pt.
+const TICK: f64 = 3.0;
+const MINOR_TICK: f64 = 1.7;
+/// Half the width of the ends of an error bar, pt.
+const BAR_END: f64 = 1.7;
+/// What is said where error bars would be hidden by their marks.
+const SMALL_ERRORS: &str = "error bars smaller than the marks are left out";
+
+impl Chart {
+    /// The chart on its page.
+    pub fn scene(&self) -> Scene {
+        let bare = Layout::new(self, 0.0);
+        let remark = self.hides_errors(&bare).then_some(SMALL_ERRORS);
+        let legend = Legend::of(self, remark);
+        let corner = legend.free_corner(self, &bare);
+        let layout = match corner {
+            Some(_) => bare,
+            None => Layout::new(self, legend.height_above(self.width_pt)),
+        };
+        let mut scene = Scene::new(self.width_pt, layout.height_pt, &self.title);
+        for (panel, placed) in self.panels.iter().zip(&layout.panels) {
+            panel.draw(placed, &layout, &mut scene);
+            slope::draw(panel, placed, corner.as_ref(), &mut scene);
+        }
+        self.write_below(&layout, &mut scene);
+        match corner {
+            Some(corner) => legend.draw_in(&corner, &mut scene),
+            None => {
+                let left = layout.panels.first().map_or(EDGE, |panel| panel.frame.left);
+                legend.draw_above(self.width_pt, left, &mut scene);
+            }
+        }
+        scene
+    }
+
+    fn write_below(&self, layout: &Layout, scene: &mut Scene) {
+        let Some(last) = layout.panels.last() else {
+            return;
+        };
+        for tick in &layout.ticks.major {
+            let place = at(last.x.place(tick.at), layout.labels_at());
+            scene.write(&tick.label, LABEL_PT, place, 0.5);
+        }
+        let (title, size) = &layout.title;
+        let middle = 0.5 * (last.frame.left + last.frame.right);
+        let half = 0.5 * ink::width(title, *size);
+        let middle = middle.min(self.width_pt - EDGE - half).max(EDGE + half);
+        scene.write(title, *size, at(middle, layout.title_at()), 0.5);
+    }
+
+    /// Whether some error bar is too small to be drawn.
+    fn hides_errors(&self, layout: &Layout) -> bool {
+        let panels = self.panels.iter().zip(&layout.panels);
+        let mut all = panels
+            .flat_map(|(panel, placed)| panel.series.iter().map(move |series| (series, placed)));
+        all.any(|(series, placed)| {
+            let mut bars = placed.bars(series);
+            bars.any(|bar| bar.is_hidden)
+        })
+    }
+}
+
+/// The error bar of a point.
+struct Bar {
+    x: f64,
+    top: f64,
+    bottom: f64,
+    /// Whether the mark would cover it.
+    is_hidden: bool,
+}
+
+impl Placed {
+    /// The error bars of `series` whose point is in the panel.
+    fn bars<'a>(&'a self, series: &'a Series) -> impl Iterator<Item = Bar> + 'a {
+        let points = series.points.iter().zip(&series.errors);
+        let points = points
+            .filter(|(point, error)| error.is_finite() && self.frame.holds(self.place(point)));
+        points.map(|(point, error)| {
+            let y = |sign: f64| self.y.place(point[1] + sign * error);
+            let limit = |y: f64| match y.is_finite() {
+                true => y.clamp(self.frame.top, self.frame.bottom),
+                false => self.frame.bottom, // below zero on a logarithmic axis
+            };
+            let (top, bottom) = (limit(y(1.0)), limit(y(-1.0)));
+            Bar {
+                x: self.x.place(point[0]),
+                is_hidden: bottom - top < 2.0 * MARK_PT + 0.6,
+                top,
+                bottom,
+            }
+        })
+    }
+}
+
+impl Panel {
+    fn draw(&self, placed: &Placed, layout: &Layout, scene: &mut Scene) {
+        let frame = &placed.frame;
+        let to_page = |radius: f64| placed.x.place(radius) - placed.x.place(0.0);
+        for &radius in &self.circles {
+            let middle = placed.place(&[0.0, 0.0]);
+            let ring = circle(middle, to_page(radius));
+            scene.stroke(ring, pen(0.4, grey(165)), Some(frame));
+        }
+        for series in self
+            .series
+            .iter()
+            .filter(|series| series.style.width_pt > 0.0)
+        {
+            for piece in placed.line(series) {
+                scene.stroke(Path::polyline(piece), series.style.pen(), Some(frame));
+            }
+        }
+        draw_frame(placed, layout, scene);
+        for series in &self.series {
+            draw_points(series, placed, scene);
+        }
+        let (title, size) = &placed.title;
+        let middle = at(layout.titles_at, 0.5 * (frame.top + frame.bottom));
+        scene.write_up(title, *size, middle);
+        let label = ink::height(LABEL_PT);
+        for tick in &placed.ticks.major {
+            let place = at(frame.left - GAP, placed.y.place(tick.at) + 0.5 * label);
+            scene.write(&tick.label, LABEL_PT, place, 1.0);
+        }
+    }
+}
+
+/// The frame and its ticks, on all four sides, inwards.
+fn draw_frame(placed: &Placed, layout: &Layout, scene: &mut Scene) {
+    let frame = &placed.frame;
+    scene.stroke(frame.outline(), pen(FRAME_PT, BLACK), None);
+    let mut upright = |x: f64, length: f64| {
+        let (top, bottom) = (frame.top, frame.bottom);
+        scene.line([at(x, bottom), at(x, bottom - length)], FRAME_PT, BLACK);
+        scene.line([at(x, top), at(x, top + length)], FRAME_PT, BLACK);
+    };
+    let x = |value: f64| placed.x.place(value);
+    layout
+        .ticks
+        .major
+        .iter()
+        .for_each(|tick| upright(x(tick.at), TICK));
+    layout
+        .ticks
+        .minor
+        .iter()
+        .for_each(|&at| upright(x(at), MINOR_TICK));
+    let mut level = |y: f64, length: f64| {
+        let (left, right) = (frame.left, frame.right);
+        scene.line([at(left, y), at(left + length, y)], FRAME_PT, BLACK);
+        scene.line([at(right, y), at(right - length, y)], FRAME_PT, BLACK);
+    };
+    let y = |value: f64| placed.y.place(value);
+    placed
+        .ticks
+        .major
+        .iter()
+        .for_each(|tick| level(y(tick.at), TICK));
+    placed
+        .ticks
+        .minor
+        .iter()
+        .for_each(|&at| level(y(at), MINOR_TICK));
+}
+
+/// The marks of a series with their error bars.
+fn draw_points(series: &Series, placed: &Placed, scene: &mut Scene) {
+    let Some(mark) = series.style.mark else {
+        return;
+    };
+    let color = series.style.color;
+    for bar in placed.bars(series).filter(|bar| !bar.is_hidden) {
+        let mut line = |a: (f64, f64), b: (f64, f64)| {
+            scene.line([at(a.0, a.1), at(b.0, b.1)], FRAME_PT, color);
+        };
+        let (x, top, bottom) = (bar.x, bar.top, bar.bottom);
+        line((x, top), (x, bottom));
+        line((x - BAR_END, top), (x + BAR_END, top));
+        line((x - BAR_END, bottom), (x + BAR_END, bottom));
+    }
+    let places = series.points.iter().map(|point| placed.place(point));
+    for place in places.filter(|place| placed.frame.holds(*place)) {
+        scene.mark(mark, place, color);
+    }
+}

@@ -1,0 +1,259 @@
+//! The forms in which a page is written to a file.
+
+use std::path::Path as FilePath;
+
+use thiserror::Error;
+
+use super::{Item, Paint, Pen, Point, Scene};
+use super::{pdf, png, svg};
+use crate::text::printable::Shown;
+
+/// Dots per inch of a PNG: what journals ask of drawings with lines and letters.
+pub const DOTS_PER_INCH: f64 = 600.0;
+/// The largest number that a page can hold, pt: far beyond every sheet, and exact in a file to a hundredth.
+const LARGEST_PT: f64 = 20_000.0;
+
+/// A form of file.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Format {
+    /// Scalable Vector Graphics 1.1.
+    Svg,
+    /// Portable Document Format 1.4.
+    Pdf,
+    /// Portable Network Graphics, at [`DOTS_PER_INCH`].
+    Png,
+}
+
+/// Why a page cannot be written.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum Unwritable {
+    /// The file's name does not say which form it shall have.
+    #[error(
+        "{0}: a figure is written as .svg, .pdf or .png, and the file's name must end with one of them"
+    )]
+    Ending(String),
+    /// The page is empty, or larger than a file can say.
+    #[error(
+        "a page of {width_pt} pt x {height_pt} pt cannot be written: each side must be above 0 and at most {LARGEST_PT} pt"
+    )]
+    Size {
+        /// Width of the page, pt.
+        width_pt: f64,
+        /// Height of the page, pt.
+        height_pt: f64,
+    },
+    /// Something on the page lies at no place, or at one that a file cannot say.
+    #[error(
+        "item {0} of the page lies farther than {LARGEST_PT} pt from its corner, or its place or its line is not a number"
+    )]
+    Place(usize),
+    /// The picture would not fit into memory, or its form cannot hold it.
+    #[error(
+        "a picture of {width} x {height} dots cannot be written: {reason}; make the figure smaller, or write SVG or PDF"
+    )]
+    Picture {
+        /// Dots from left to right.
+        width: u32,
+        /// Dots from top to bottom.
+        height: u32,
+        /// What did not work.
+        reason: String,
+    },
+}
+
+impl Format {
+    /// The form that the end of a file's name asks for; large and small letters are the same.
+    pub fn of(file: &FilePath) -> Result<Self, Unwritable> {
+        let ending = file.extension().map(|e| e.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
+            Some("svg") => Ok(Self::Svg),
+            Some("pdf") => Ok(Self::Pdf),
+            Some("png") => Ok(Self::Png),
+            _ => Err(Unwritable::Ending(Shown(file).to_string())),
+        }
+    }
+}
+
+/// The bytes of a file that shows a page.
+///
+/// The bytes of SVG and PDF, and the pixels of PNG, are the same on every machine. Places and widths are rounded to
+/// hundredths of a point first, the same for all forms.
+pub fn write(scene: &Scene, format: Format) -> Result<Vec<u8>, Unwritable> {
+    let scene = rounded(scene)?;
+    match format {
+        Format::Svg => Ok(svg::written(&scene).into_bytes()),
+        Format::Pdf => Ok(pdf::written(&scene)),
+        Format::Png => png::written(&scene, DOTS_PER_INCH),
+    }
+}
+
+/// The page in whole hundredths of a point, all of them numbers that a file can hold.
+pub fn rounded(scene: &Scene) -> Result<Scene, Unwritable> {
+    let (width_pt, height_pt) = (scene.width_pt, scene.height_pt);
+    let is_side = |pt: f64| hundredths(pt) > 0.0 && pt <= LARGEST_PT;
+    if !(is_side(width_pt) && is_side(height_pt)) {
+        return Err(Unwritable::Size {
+            width_pt,
+            height_pt,
+        });
+    }
+    let numbered = scene.items.iter().enumerate();
+    let item = |(index, item)| rounded_item(item).ok_or(Unwritable::Place(index));
+    Ok(Scene {
+        width_pt: hundredths(width_pt),
+        height_pt: hundredths(height_pt),
+        title: scene.title.clone(),
+        items: numbered.map(item).collect::<Result<_, _>>()?,
+    })
+}
+
+fn rounded_item(item: &Item) -> Option<Item> {
+    let path = item.path.clone().mapped(hundredths_of);
+    let clip = item.clip.map(|corners| corners.map(hundredths_of));
+    let paint = match &item.paint {
+        Paint::Stroke(pen) => Paint::Stroke(rounded_pen(pen)?),
+        fill => fill.clone(),
+    };
+    let is_place = |p: Point| p.x.abs() <= LARGEST_PT && p.y.abs() <= LARGEST_PT;
+    let is_sound = path
+        .points()
+        .chain(clip.into_iter().flatten())
+        .all(is_place);
+    is_sound.then(|| Item {
+        path,
+        paint,
+        clip,
+        words: item.words.clone(),
+    })
+}
+
+/// A dash of no length at all would never end: dashes that are too short to be seen make a solid line.
+fn rounded_pen(pen: &Pen) -> Option<Pen> {
+    let dash_pt: Vec<f64> = pen.dash_pt.iter().copied().map(hundredths).collect();
+    let is_length = |length: &f64| (0.0..=LARGEST_PT).contains(length);
+    let is_sound = is_length(&pen.width_pt) && dash_pt.iter().all(is_length);
+    let is_dashed = dash_pt.iter().sum::<f64>() > 0.0;
+    is_sound.then(|| Pen {
+        width_pt: hundredths(pen.width_pt),
+        dash_pt: if is_dashed { dash_pt } else { vec![] },
+        ..*pen
+    })
+}
+
+fn hundredths_of(point: Point) -> Point {
+    Point {
+        x: hundredths(point.x),
+        y: hundredths(point.y),
+    }
+}
+
+/// Rounded to hundredths; 0 has no sign.
+fn hundredths(pt: f64) -> f64 {
+    libm::round(pt * 100.0) / 100.0 + 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Color, Path};
+
+    fn page(items: Vec<Item>) -> Scene {
+        Scene {
+            width_pt: 100.0,
+            height_pt: 50.0,
+            title: String::new(),
+            items,
+        }
+    }
+
+    fn line(to: Point, pen: Pen) -> Item {
+        let path = Path::polyline([Point { x: 0.0, y: 0.0 }, to]);
+        Item {
+            path,
+            paint: Paint::Stroke(pen),
+            clip: None,
+            words: None,
+        }
+    }
+
+    fn pen(width_pt: f64, dash_pt: &[f64]) -> Pen {
+        Pen {
+            width_pt,
+            color: Color([0; 3]),
+            dash_pt: dash_pt.to_vec(),
+            is_round: false,
+        }
+    }
+
+    #[test]
+    fn the_ending_says_the_form() {
+        let of = |name: &str| Format::of(FilePath::new(name));
+        assert_eq!(of("a.svg"), Ok(Format::Svg));
+        assert_eq!(of("dir.png/A.B.PDF"), Ok(Format::Pdf));
+        assert_eq!(of("x.Png"), Ok(Format::Png));
+        for wrong in ["", "svg", ".svg", "a.jpg", "a.svg.gz", "a.png/b"] {
+            let message = of(wrong).unwrap_err().to_string();
+            assert!(
+                message.starts_with(&format!("{wrong}: a figure is written as .svg")),
+                "{message}"
+            );
+        }
+    }
+
+    #[test]
+    fn places_that_no_file_can_say_are_refused() {
+        for bad in [f64::NAN, f64::INFINITY, -1e300, 20_001.0] {
+            let scene = page(vec![
+                line(Point { x: 1.0, y: 1.0 }, pen(1.0, &[])),
+                line(Point { x: bad, y: 1.0 }, pen(1.0, &[])),
+            ]);
+            for format in [Format::Svg, Format::Pdf, Format::Png] {
+                assert_eq!(write(&scene, format), Err(Unwritable::Place(1)));
+            }
+            for pen in [pen(bad, &[]), pen(1.0, &[1.0, bad])] {
+                let scene = page(vec![line(Point { x: 1.0, y: 1.0 }, pen)]);
+                assert_eq!(rounded(&scene), Err(Unwritable::Place(0)));
+            }
+        }
+        for (width_pt, height_pt) in [
+            (0.0, 1.0),
+            (1.0, -1.0),
+            (f64::NAN, 1.0),
+            (1.0, 1e9),
+            (0.004, 1.0),
+        ] {
+            let scene = Scene {
+                width_pt,
+                height_pt,
+                ..page(vec![])
+            };
+            assert!(matches!(rounded(&scene), Err(Unwritable::Size { .. })));
+        }
+    }
+
+    #[test]
+    fn a_page_is_rounded_to_hundredths() {
+        let scene = page(vec![line(
+            Point {
+                x: 1.23456,
+                y: -0.001,
+            },
+            pen(0.555, &[2.0001, 0.999]),
+        )]);
+        let round = rounded(&scene).unwrap();
+        assert_eq!(
+            round.items[0],
+            line(Point { x: 1.23, y: 0.0 }, pen(0.56, &[2.0, 1.0]))
+        );
+        assert!(round.items[0].path.points().all(|p| p.y.is_sign_positive()));
+        assert_eq!(rounded(&round), Ok(round.clone()));
+        let dots = rounded(&page(vec![line(
+            Point { x: 1.0, y: 1.0 },
+            pen(1.0, &[0.001, 0.001]),
+        )]));
+        assert_eq!(
+            dots.unwrap().items[0],
+            line(Point { x: 1.0, y: 1.0 }, pen(1.0, &[]))
+        );
+    }
+}

@@ -1,0 +1,232 @@
+//! Lines, marks and words, put on a page.
+
+use super::letters::{self, Label};
+use super::scene::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
+
+/// Size of the titles of axes, pt.
+pub const TITLE_PT: f64 = 8.0;
+/// Size of the labels of ticks and of the legend, pt.
+pub const LABEL_PT: f64 = 7.0;
+/// Radius of a mark, pt.
+pub const MARK_PT: f64 = 1.6;
+
+/// Black.
+pub const BLACK: Color = Color([0; 3]);
+/// The paper.
+pub const WHITE: Color = Color([255; 3]);
+
+/// Grey: 0 is black, 255 white.
+pub const fn grey(level: u8) -> Color {
+    Color([level; 3])
+}
+
+/// The place `x`, `y`, pt.
+pub const fn at(x: f64, y: f64) -> Point {
+    Point { x, y }
+}
+
+/// A rectangle on the page, pt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Left edge.
+    pub left: f64,
+    /// Upper edge.
+    pub top: f64,
+    /// Right edge.
+    pub right: f64,
+    /// Lower edge.
+    pub bottom: f64,
+}
+
+impl Frame {
+    /// Its width, pt.
+    pub fn width(&self) -> f64 {
+        self.right - self.left
+    }
+
+    /// Its height, pt.
+    pub fn height(&self) -> f64 {
+        self.bottom - self.top
+    }
+
+    /// The same with edges `by` farther out, pt.
+    pub fn grown(&self, by: f64) -> Self {
+        Self {
+            left: self.left - by,
+            top: self.top - by,
+            right: self.right + by,
+            bottom: self.bottom + by,
+        }
+    }
+
+    /// Whether `point` is inside.
+    pub fn holds(&self, point: Point) -> bool {
+        (self.left..=self.right).contains(&point.x) && (self.top..=self.bottom).contains(&point.y)
+    }
+
+    /// Whether some of `other` is inside.
+    pub fn meets(&self, other: &Self) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
+    }
+
+    /// Upper left and lower right corner.
+    pub fn corners(&self) -> [Point; 2] {
+        [at(self.left, self.top), at(self.right, self.bottom)]
+    }
+
+    /// Its outline.
+    pub fn outline(&self) -> Path {
+        let corners = [
+            at(self.left, self.top),
+            at(self.right, self.top),
+            at(self.right, self.bottom),
+            at(self.left, self.bottom),
+        ];
+        Path::polygon(corners)
+    }
+}
+
+/// A circle.
+pub fn circle(middle: Point, radius_pt: f64) -> Path {
+    /// Distance of the control points of a quarter of a circle, in radii.
+    const BEND: f64 = 0.552_285;
+    let (r, b) = (radius_pt, BEND * radius_pt);
+    let to = |x: f64, y: f64| at(middle.x + x, middle.y + y);
+    Path(vec![
+        Segment::Move(to(r, 0.0)),
+        Segment::Cubic(to(r, b), to(b, r), to(0.0, r)),
+        Segment::Cubic(to(-b, r), to(-r, b), to(-r, 0.0)),
+        Segment::Cubic(to(-r, -b), to(-b, -r), to(0.0, -r)),
+        Segment::Cubic(to(b, -r), to(r, -b), to(r, 0.0)),
+        Segment::Close,
+    ])
+}
+
+/// A sharp solid line of this width.
+pub fn pen(width_pt: f64, color: Color) -> Pen {
+    Pen {
+        width_pt,
+        color,
+        dash_pt: Vec::new(),
+        is_round: false,
+    }
+}
+
+/// What marks the points of a series.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mark {
+    /// A filled circle.
+    Dot,
+    /// A filled square.
+    Square,
+    /// A filled triangle.
+    Triangle,
+    /// An empty diamond.
+    Diamond,
+    /// An empty circle.
+    Ring,
+    /// An empty triangle on its tip.
+    Tip,
+}
+
+/// The length of `markup` at this size, pt.
+pub fn width(markup: &str, size_pt: f64) -> f64 {
+    letters::label(markup, size_pt).width_pt
+}
+
+/// The height of a figure 0 at this size, pt.
+pub fn height(size_pt: f64) -> f64 {
+    letters::label("0", size_pt).ascent_pt
+}
+
+impl Scene {
+    /// An empty page.
+    pub fn new(width_pt: f64, height_pt: f64, title: &str) -> Self {
+        Self {
+            width_pt,
+            height_pt,
+            title: title.to_owned(),
+            items: Vec::new(),
+        }
+    }
+
+    /// Fills `path`.
+    pub fn fill(&mut self, path: Path, color: Color) {
+        self.put(path, Paint::Fill(color), None, None);
+    }
+
+    /// Draws the line of `path`, cut off outside of `clip`.
+    pub fn stroke(&mut self, path: Path, pen: Pen, clip: Option<&Frame>) {
+        self.put(path, Paint::Stroke(pen), clip.map(Frame::corners), None);
+    }
+
+    /// Draws a straight line.
+    pub fn line(&mut self, ends: [Point; 2], width_pt: f64, color: Color) {
+        self.stroke(Path::polyline(ends), pen(width_pt, color), None);
+    }
+
+    /// Writes `markup` with `share` of its length to the left of `place`, which is on its baseline.
+    pub fn write(&mut self, markup: &str, size_pt: f64, place: Point, share: f64) {
+        let label = letters::label(markup, size_pt);
+        let left = place.x - share * label.width_pt;
+        self.letters(label, |p| at(left + p.x, place.y + p.y));
+    }
+
+    /// Writes `markup` upwards, its middle at `middle`, which is on its baseline.
+    pub fn write_up(&mut self, markup: &str, size_pt: f64, middle: Point) {
+        let label = letters::label(markup, size_pt);
+        let bottom = middle.y + 0.5 * label.width_pt;
+        self.letters(label, |p| at(middle.x + p.y, bottom - p.x));
+    }
+
+    fn letters(&mut self, label: Label, to: impl Fn(Point) -> Point) {
+        let path = label.path.mapped(to);
+        self.put(path, Paint::Fill(BLACK), None, Some(label.words));
+    }
+
+    /// Puts a mark at `middle`.
+    pub fn mark(&mut self, mark: Mark, middle: Point, color: Color) {
+        let r = MARK_PT;
+        let polygon = |points: &[(f64, f64)]| {
+            Path::polygon(points.iter().map(|&(x, y)| at(middle.x + x, middle.y + y)))
+        };
+        let (path, is_filled) = match mark {
+            Mark::Dot => (circle(middle, r), true),
+            Mark::Ring => (circle(middle, r), false),
+            Mark::Square => {
+                let r = 0.92 * r;
+                (polygon(&[(-r, -r), (r, -r), (r, r), (-r, r)]), true)
+            }
+            Mark::Triangle => {
+                let (x, y) = (1.2 * r, 0.9 * r);
+                (polygon(&[(0.0, -1.3 * r), (x, y), (-x, y)]), true)
+            }
+            Mark::Tip => {
+                let (x, y) = (1.2 * r, -0.9 * r);
+                (polygon(&[(0.0, 1.3 * r), (x, y), (-x, y)]), false)
+            }
+            Mark::Diamond => {
+                let r = 1.35 * r;
+                (polygon(&[(0.0, -r), (r, 0.0), (0.0, r), (-r, 0.0)]), false)
+            }
+        };
+        if is_filled {
+            self.fill(path, color);
+        } else {
+            self.fill(path.clone(), WHITE);
+            self.stroke(path, pen(0.6, color), None);
+        }
+    }
+
+    fn put(&mut self, path: Path, paint: Paint, clip: Option<[Point; 2]>, words: Option<String>) {
+        self.items.push(Item {
+            path,
+            paint,
+            clip,
+            words,
+        });
+    }
+}

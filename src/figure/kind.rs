@@ -1,0 +1,98 @@
+//! The kinds of figures of a run, by the names of the lab's panes and of a CSV's columns.
+
+use crate::export::columns::{COLUMNS, Column};
+use crate::observe::recording::Curve;
+use crate::scenario::problem;
+use crate::scenario::screen::{ABOVE, THREE_D, TRACES};
+
+/// What a figure shows of a run.
+#[derive(Clone, Debug)]
+pub enum Kind {
+    /// Columns of its CSV over time, a panel each.
+    OverTime(Vec<&'static Column>),
+    /// The path of the traced point from above.
+    Above,
+    /// The same in space.
+    ThreeD,
+}
+
+/// The names that stand alone; a list of columns is the other way to name a figure.
+pub const NAMES: [&str; 3] = [TRACES, ABOVE, THREE_D];
+
+impl Kind {
+    /// x, y and z of the traced point over time.
+    pub fn traces() -> Self {
+        let column = |curve: Curve| Column::find(curve.column());
+        Self::OverTime(Curve::OF_POINT.into_iter().filter_map(column).collect())
+    }
+
+    /// The kind of that name: `traces`, `above`, `3d`, or columns with commas between them.
+    ///
+    /// # Errors
+    /// When there is no such kind or column: what was meant, perhaps.
+    pub fn named(name: &str) -> Result<Self, String> {
+        match name {
+            TRACES => return Ok(Self::traces()),
+            ABOVE => return Ok(Self::Above),
+            THREE_D => return Ok(Self::ThreeD),
+            _ => {}
+        }
+        let names = name.split(',').map(str::trim);
+        names
+            .map(column)
+            .collect::<Result<_, _>>()
+            .map(Self::OverTime)
+    }
+}
+
+fn column(name: &str) -> Result<&'static Column, String> {
+    if NAMES.contains(&name) {
+        return Err(format!(
+            "{name} is a figure of its own: no columns can stand beside it"
+        ));
+    }
+    let known = NAMES
+        .into_iter()
+        .chain(COLUMNS.iter().map(|column| column.name));
+    Column::find(name).ok_or_else(|| {
+        let near = problem::nearest(name, known);
+        format!("is neither traces, above, 3d nor a column of the CSV: {near}")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn columns(kind: &Kind) -> Vec<&str> {
+        match kind {
+            Kind::OverTime(columns) => columns.iter().map(|column| column.name).collect(),
+            Kind::Above | Kind::ThreeD => Vec::new(),
+        }
+    }
+
+    #[test]
+    fn kinds_have_the_names_of_panes_and_columns() {
+        assert_eq!(
+            columns(&Kind::named("traces").unwrap()),
+            ["x_m", "y_m", "z_m"]
+        );
+        let two = Kind::named("tilt_deg, energy_J").unwrap();
+        assert_eq!(columns(&two), ["tilt_deg", "energy_J"]);
+        assert!(matches!(Kind::named("above"), Ok(Kind::Above)));
+        assert!(matches!(Kind::named("3d"), Ok(Kind::ThreeD)));
+    }
+
+    #[test]
+    fn an_unknown_name_is_told_the_nearest() {
+        for (wrong, near) in [
+            ("tilt_dg", "tilt_deg"),
+            ("abov", "above"),
+            ("x_m,energy", "energy_J"),
+        ] {
+            let refusal = Kind::named(wrong).unwrap_err();
+            assert!(refusal.contains(near), "{refusal}");
+        }
+        assert!(Kind::named("x_m,above").unwrap_err().contains("of its own"));
+    }
+}

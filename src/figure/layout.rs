@@ -1,0 +1,200 @@
+//! Where the parts of a chart stand on the page. Every label is measured, so that none is cut and none overlaps another.
+
+use super::axis::{Scale, widest};
+use super::chart::{Axis, Chart, Panel};
+use super::ink::{self, Frame, LABEL_PT, TITLE_PT};
+use super::ticks::Ticks;
+
+/// Between anything and the edge of the page, pt.
+pub const EDGE: f64 = 2.0;
+/// Between an axis and the labels of its ticks, pt.
+pub const GAP: f64 = 3.0;
+/// Between the labels of an axis and its title, at the left and below, pt.
+const TITLE_GAP: f64 = 6.0;
+const TITLE_BELOW: f64 = 4.5;
+/// Between two panels, pt, beside the height of a label: the labels at their ends must not touch.
+const PANEL_GAP: f64 = 2.5;
+/// The smallest letters of a title that is too long for its axis, pt.
+const LEAST_TITLE_PT: f64 = 5.5;
+/// The page of 86 mm, for which the heights below are meant, pt.
+const COLUMN_PT: f64 = 243.78;
+/// Height of one panel alone, of each of two, of each of more, pt.
+const HEIGHTS: [f64; 3] = [140.0, 88.0, 66.0];
+
+/// A panel in its place.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// Its frame.
+    pub frame: Frame,
+    /// From values to the page, across.
+    pub x: Scale,
+    /// From values to the page, up.
+    pub y: Scale,
+    /// Its ticks at the left.
+    pub ticks: Ticks,
+    /// Title of its axis, and the size of its letters, pt.
+    pub title: (String, f64),
+}
+
+/// A chart with everything but its legend in its place. The legend is put in afterwards, and where it stands above the panels
+/// these move down.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    /// The panels, from the top.
+    pub panels: Vec<Placed>,
+    /// The ticks below.
+    pub ticks: Ticks,
+    /// Title of the axis below, and the size of its letters, pt.
+    pub title: (String, f64),
+    /// Where the titles of the axes at the left have their baseline, pt.
+    pub titles_at: f64,
+    /// Height of the page, pt.
+    pub height_pt: f64,
+}
+
+impl Layout {
+    /// The places of the parts of `chart`, `above` pt below the upper edge of the page.
+    pub fn new(chart: &Chart, above: f64) -> Self {
+        let label = ink::height(LABEL_PT);
+        let x_range = x_range(chart);
+        let y_ranges: Vec<_> = chart.panels.iter().map(y_range).collect();
+        let top = above + EDGE + 0.5 * label;
+        let gap = label + PANEL_GAP;
+        let mut height = panel_height(chart);
+        let mut right = chart.width_pt - EDGE - 1.0;
+        let mut left = EDGE;
+        // Which ticks there are depends on the room, and the room on their labels: the second time nothing changes.
+        for _ in 0..3 {
+            let ticks = ticks_of(chart, &y_ranges, height);
+            let widest = ticks.iter().map(widest).fold(0.0, f64::max);
+            left = EDGE + title_height() + TITLE_GAP + widest + GAP;
+            right = right.min(right_edge(chart, x_range, left, right));
+            if chart.is_true_to_scale {
+                let (width, span) = (right - left, x_range.1 - x_range.0);
+                height = width / span * (y_ranges[0].1 - y_ranges[0].0);
+            }
+        }
+        let x = Scale {
+            range: x_range,
+            is_log: chart.x.is_log,
+            places: (left, right),
+        };
+        let below = x.ticks_below(&chart.x);
+        let place = |(index, (panel, ticks)): (usize, (&Panel, Ticks))| {
+            let top = top + index as f64 * (height + gap);
+            let frame = Frame {
+                left,
+                top,
+                right,
+                bottom: top + height,
+            };
+            Placed {
+                y: upright(&panel.y, y_ranges[index], frame.bottom, frame.top),
+                x,
+                title: fitted(panel.y.title(&ticks), height + 0.7 * gap),
+                frame,
+                ticks,
+            }
+        };
+        let ticks = ticks_of(chart, &y_ranges, height);
+        let panels: Vec<_> = chart
+            .panels
+            .iter()
+            .zip(ticks)
+            .enumerate()
+            .map(place)
+            .collect();
+        let bottom = panels.last().map_or(top, |panel| panel.frame.bottom);
+        Self {
+            title: fitted(chart.x.title(&below), chart.width_pt - 2.0 * EDGE),
+            titles_at: EDGE + ink::height(TITLE_PT) + 1.0,
+            height_pt: bottom + GAP + 1.5 * label + TITLE_BELOW + title_height() + EDGE,
+            ticks: below,
+            panels,
+        }
+    }
+
+    /// The baseline of the labels below, pt.
+    pub fn labels_at(&self) -> f64 {
+        let bottom = self.panels.last().map_or(0.0, |panel| panel.frame.bottom);
+        bottom + GAP + 1.5 + ink::height(LABEL_PT)
+    }
+
+    /// The baseline of the title below, pt.
+    pub fn title_at(&self) -> f64 {
+        self.labels_at() + TITLE_BELOW + ink::height(TITLE_PT)
+    }
+}
+
+/// Height of a title with what hangs below its baseline, pt.
+fn title_height() -> f64 {
+    1.35 * ink::height(TITLE_PT)
+}
+
+/// `title` with the size of letters at which it is no longer than `room`, pt.
+fn fitted(title: String, room: f64) -> (String, f64) {
+    let size = TITLE_PT * (room / ink::width(&title, TITLE_PT)).min(1.0);
+    (title, size.max(LEAST_TITLE_PT))
+}
+
+fn panel_height(chart: &Chart) -> f64 {
+    let count = chart.panels.len();
+    let height = HEIGHTS[count.clamp(1, HEIGHTS.len()) - 1];
+    // A wide figure is lower for its width than a narrow one.
+    let wide = (chart.width_pt / COLUMN_PT).clamp(0.6, 3.0).powf(0.6);
+    // Numbers in the panels' titles are the same for all: the longest title decides.
+    let longest = chart.panels.iter().map(|panel| {
+        let title = panel.y.title(&Ticks::default());
+        ink::width(&title, TITLE_PT)
+    });
+    let most = 1.8 * height * wide;
+    (height * wide).max(longest.fold(0.0, f64::max).min(most))
+}
+
+fn x_range(chart: &Chart) -> (f64, f64) {
+    let points = chart.panels.iter().flat_map(|panel| &panel.series);
+    let values = points.flat_map(|series| series.points.iter().map(|point| point[0]));
+    chart.x.range_of(values)
+}
+
+fn y_range(panel: &Panel) -> (f64, f64) {
+    let values = panel.series.iter().flat_map(|series| {
+        let error = |index: usize| series.errors.get(index).copied().filter(|e| e.is_finite());
+        let points = series.points.iter().enumerate();
+        points.flat_map(move |(index, point)| {
+            let error = error(index).unwrap_or(0.0);
+            [point[1] - error, point[1], point[1] + error]
+        })
+    });
+    panel.y.range_of(values)
+}
+
+fn upright(axis: &Axis, range: (f64, f64), bottom: f64, top: f64) -> Scale {
+    Scale {
+        range,
+        is_log: axis.is_log,
+        places: (bottom, top),
+    }
+}
+
+fn ticks_of(chart: &Chart, ranges: &[(f64, f64)], height: f64) -> Vec<Ticks> {
+    let panels = chart.panels.iter().zip(ranges);
+    let ticks =
+        panels.map(|(panel, &range)| upright(&panel.y, range, height, 0.0).ticks_beside(&panel.y));
+    ticks.collect()
+}
+
+/// Where the panels end at the right, so that half of the last label has room.
+fn right_edge(chart: &Chart, range: (f64, f64), left: f64, right: f64) -> f64 {
+    let scale = Scale {
+        range,
+        is_log: chart.x.is_log,
+        places: (left, right),
+    };
+    let ticks = scale.ticks_below(&chart.x);
+    let over = ticks.major.last().map_or(0.0, |tick| {
+        let end = scale.place(tick.at) + 0.5 * ink::width(&tick.label, LABEL_PT);
+        end - (chart.width_pt - EDGE)
+    });
+    right - over.max(0.0)
+}

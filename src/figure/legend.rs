@@ -1,0 +1,184 @@
+//! Which line is what: in a corner of the panel where nothing is drawn, or above the panels.
+
+use super::chart::{Chart, Style};
+use super::ink::{self, Frame, LABEL_PT, WHITE, at};
+use super::layout::{EDGE, Layout};
+use super::scene::{Path, Pen, Point, Scene};
+
+/// Length of the line of an entry, and its distance from the name, pt.
+const KEY: f64 = 17.0;
+const AFTER_KEY: f64 = 3.5;
+/// Height of a row, pt.
+const ROW: f64 = 9.6;
+/// Between two entries beside each other, pt.
+const BETWEEN: f64 = 11.0;
+/// Between the legend and the panel's frame, and what must be free around it, pt.
+const INSET: f64 = 4.5;
+const FREE: f64 = 2.5;
+/// The part of a panel's width that a legend inside may take.
+const SHARE: f64 = 0.62;
+
+/// The legend of a chart.
+#[derive(Clone, Debug)]
+pub struct Legend {
+    entries: Vec<Entry>,
+}
+
+#[derive(Clone, Debug)]
+struct Entry {
+    /// How the series is drawn; `None` for a remark.
+    style: Option<Style>,
+    name: String,
+    width_pt: f64,
+}
+
+/// The longest name of an entry on a page of this width, pt.
+pub fn longest_name(width_pt: f64) -> f64 {
+    width_pt - 2.0 * EDGE - KEY - AFTER_KEY
+}
+
+impl Legend {
+    /// The legend of `series`, by name and style: every name once, and a remark, if there is one.
+    pub fn new<'a>(
+        series: impl Iterator<Item = (&'a str, &'a Style)>,
+        remark: Option<&str>,
+    ) -> Self {
+        let mut entries: Vec<Entry> = Vec::new();
+        for (name, style) in series.filter(|(name, _)| !name.is_empty()) {
+            if entries.iter().any(|entry| entry.name == name) {
+                continue;
+            }
+            entries.push(Entry {
+                style: Some(style.clone()),
+                width_pt: KEY + AFTER_KEY + ink::width(name, LABEL_PT),
+                name: name.to_owned(),
+            });
+        }
+        entries.extend(remark.map(|remark| Entry {
+            style: None,
+            width_pt: ink::width(remark, LABEL_PT),
+            name: remark.to_owned(),
+        }));
+        Self { entries }
+    }
+
+    /// The legend of `chart`.
+    pub fn of(chart: &Chart, remark: Option<&str>) -> Self {
+        let series = chart.panels.iter().flat_map(|panel| &panel.series);
+        Self::new(
+            series.map(|series| (series.name.as_str(), &series.style)),
+            remark,
+        )
+    }
+
+    /// The rows in which it stands above the panels, within `room` pt.
+    fn rows(&self, room: f64) -> Vec<Vec<&Entry>> {
+        let mut rows: Vec<Vec<&Entry>> = Vec::new();
+        let mut used = 0.0;
+        for entry in &self.entries {
+            match rows.last_mut() {
+                Some(row) if used + BETWEEN + entry.width_pt <= room => {
+                    row.push(entry);
+                    used += BETWEEN + entry.width_pt;
+                }
+                _ => {
+                    rows.push(vec![entry]);
+                    used = entry.width_pt;
+                }
+            }
+        }
+        rows
+    }
+
+    /// The height that it needs above the picture on a page of that width, pt.
+    pub fn height_above(&self, width_pt: f64) -> f64 {
+        let rows = self.rows(width_pt - 2.0 * EDGE).len();
+        if rows == 0 {
+            0.0
+        } else {
+            rows as f64 * ROW + 1.0
+        }
+    }
+
+    /// A corner of the panel, where there is one panel, in which nothing is drawn.
+    pub fn free_corner(&self, chart: &Chart, layout: &Layout) -> Option<Frame> {
+        let ([panel], [placed]) = (&chart.panels[..], &layout.panels[..]) else {
+            return None;
+        };
+        let widest = self.entries.iter().map(|entry| entry.width_pt);
+        let width = widest.fold(0.0, f64::max);
+        let height = self.entries.len() as f64 * ROW - 1.0;
+        let frame = placed.frame.grown(-INSET);
+        let is_small = width <= SHARE * frame.width() && height <= SHARE * frame.height();
+        if !is_small || self.entries.is_empty() {
+            return None;
+        }
+        let lefts = [frame.right - width, frame.left];
+        let tops = [frame.top, frame.bottom - height];
+        let corners = tops.iter().flat_map(|&top| {
+            lefts.map(|left| Frame {
+                left,
+                top,
+                right: left + width,
+                bottom: top + height,
+            })
+        });
+        let is_free = |corner: &Frame| {
+            let around = corner.grown(FREE);
+            panel
+                .series
+                .iter()
+                .all(|series| !placed.has_in(&around, series))
+        };
+        corners.into_iter().find(is_free)
+    }
+
+    /// Draws it in a corner.
+    pub fn draw_in(&self, corner: &Frame, scene: &mut Scene) {
+        scene.fill(corner.outline(), WHITE);
+        let label = ink::height(LABEL_PT);
+        for (row, entry) in self.entries.iter().enumerate() {
+            let base = corner.top + row as f64 * ROW + 0.5 * (ROW - 1.0 + label);
+            entry.draw(at(corner.left, base), scene);
+        }
+    }
+
+    /// Draws it above the picture on a page of that width, from `left` on where there is room, pt.
+    pub fn draw_above(&self, width_pt: f64, left: f64, scene: &mut Scene) {
+        let label = ink::height(LABEL_PT);
+        for (index, row) in self.rows(width_pt - 2.0 * EDGE).iter().enumerate() {
+            let width: f64 = row.iter().map(|entry| entry.width_pt).sum::<f64>()
+                + BETWEEN * (row.len() as f64 - 1.0);
+            let mut x = left.min(width_pt - EDGE - width).max(EDGE);
+            let base = EDGE + index as f64 * ROW + 0.5 * (ROW + label);
+            for entry in row {
+                entry.draw(at(x, base), scene);
+                x += entry.width_pt + BETWEEN;
+            }
+        }
+    }
+}
+
+impl Entry {
+    /// Draws it with its name's baseline at the height of `place`.
+    fn draw(&self, place: Point, scene: &mut Scene) {
+        let Some(style) = &self.style else {
+            scene.write(&self.name, LABEL_PT, place, 0.0);
+            return;
+        };
+        let y = place.y - 0.5 * ink::height(LABEL_PT);
+        if style.width_pt > 0.0 {
+            let ends = [at(place.x, y), at(place.x + KEY, y)];
+            let pen = Pen {
+                is_round: false,
+                ..style.pen()
+            };
+            scene.stroke(Path::polyline(ends), pen, None);
+        }
+        if let Some(mark) = style.mark {
+            scene.mark(mark, at(place.x + 0.5 * KEY, y), style.color);
+        }
+        let name = at(place.x + KEY + AFTER_KEY, place.y);
+        scene.write(&self.name, LABEL_PT, name, 0.0);
+    }
+}

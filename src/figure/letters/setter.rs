@@ -1,0 +1,205 @@
+//! Letters set one behind another: kerning, scripts, and what a slanted letter needs to its right.
+
+use std::borrow::Cow;
+
+use super::Label;
+use super::table::{self, ITALIC, REGULAR, UNITS};
+use crate::figure::{Path, Point};
+
+/// Size of a sub- or superscript, as a share of that of the text it belongs to.
+const SCRIPT: f64 = 0.7;
+/// How far the baseline of a subscript lies below that of its text, as a share of the text's size.
+const BELOW: f64 = 0.18;
+/// How far the baseline of a superscript lies above that of its text, as a share of the text's size.
+const ABOVE: f64 = 0.36;
+/// Advance of the box that stands for a letter which the table does not have, thousandths of the size.
+pub const BOX: f64 = 600.0;
+
+/// A sub- or superscript that has been begun and not ended.
+struct Script {
+    is_above: bool,
+    /// Where it began, and where the text before it ended, pt.
+    began_pt: f64,
+    behind_pt: f64,
+    /// How much of `words` came before it.
+    words_before: usize,
+    /// The size and the baseline of the text around it, pt.
+    outer_size_pt: f64,
+    outer_baseline_pt: f64,
+}
+
+/// The letter before the next one, if they stand in one line.
+struct Before {
+    letter: char,
+    is_italic: bool,
+    /// How far its ink reaches beyond its advance, pt.
+    overhang_pt: f64,
+}
+
+/// A label that is being written.
+pub struct Setter {
+    label: Label,
+    /// Where the next letter begins, pt.
+    x_pt: f64,
+    size_pt: f64,
+    /// Below that of the whole label, pt.
+    baseline_pt: f64,
+    /// Whether the next letter is slanted.
+    pub is_italic: bool,
+    scripts: Vec<Script>,
+    before: Option<Before>,
+    /// The script that has just ended: another one, above or below it, begins where it began.
+    ended: Option<Script>,
+}
+
+impl Setter {
+    /// Begins a label of this size.
+    pub fn new(size_pt: f64) -> Self {
+        Self {
+            label: Label::default(),
+            x_pt: 0.0,
+            size_pt,
+            baseline_pt: 0.0,
+            is_italic: false,
+            scripts: vec![],
+            before: None,
+            ended: None,
+        }
+    }
+
+    /// Sets a letter, or a box where the table has none.
+    pub fn letter(&mut self, letter: char) {
+        let style = if self.is_italic { &*ITALIC } else { &*REGULAR };
+        let drawn = style.letter(letter).or_else(|| REGULAR.letter(letter));
+        let drawn = drawn.unwrap_or_else(missing);
+        let scale = self.size_pt / UNITS;
+        self.x_pt += match self.before.take() {
+            Some(before) if before.is_italic == self.is_italic => {
+                scale * style.kerning(before.letter, letter)
+            }
+            Some(before) if !letter.is_whitespace() => before.overhang_pt,
+            _ => 0.0,
+        };
+        let (x, y) = (self.x_pt, self.baseline_pt);
+        let outline = drawn.outline.mapped(|p| Point {
+            x: x + p.x * scale,
+            y: y + p.y * scale,
+        });
+        self.x_pt += drawn.advance * scale;
+        let mut right_pt = self.x_pt;
+        for point in outline.points() {
+            self.label.ascent_pt = self.label.ascent_pt.max(-point.y);
+            self.label.descent_pt = self.label.descent_pt.max(point.y);
+            right_pt = right_pt.max(point.x);
+        }
+        let overhang_pt = if self.is_italic {
+            right_pt - self.x_pt
+        } else {
+            0.0
+        };
+        self.before = Some(Before {
+            letter,
+            is_italic: self.is_italic,
+            overhang_pt,
+        });
+        self.ended = None;
+        self.label.path.0.extend(outline.0);
+        self.label.words.push(letter);
+    }
+
+    /// Whether a script has been begun and not ended.
+    pub fn is_in_script(&self) -> bool {
+        !self.scripts.is_empty()
+    }
+
+    /// Goes on smaller, above or below the line.
+    pub fn begin_script(&mut self, is_above: bool) {
+        let overhang_pt = self.before.take().map_or(0.0, |before| before.overhang_pt);
+        let (began_pt, behind_pt) = match self.ended.take() {
+            Some(other) if other.is_above != is_above => (other.began_pt, self.x_pt),
+            _ if is_above => (self.x_pt + overhang_pt, self.x_pt),
+            _ => (self.x_pt, self.x_pt),
+        };
+        self.x_pt = began_pt;
+        self.scripts.push(Script {
+            is_above,
+            began_pt,
+            behind_pt,
+            words_before: self.label.words.len(),
+            outer_size_pt: self.size_pt,
+            outer_baseline_pt: self.baseline_pt,
+        });
+        self.baseline_pt += self.size_pt * if is_above { -ABOVE } else { BELOW };
+        self.size_pt *= SCRIPT;
+    }
+
+    /// Goes back to the line around the script.
+    pub fn end_script(&mut self) {
+        let Some(script) = self.scripts.pop() else {
+            return;
+        };
+        self.x_pt = self.x_pt.max(script.behind_pt);
+        (self.size_pt, self.baseline_pt) = (script.outer_size_pt, script.outer_baseline_pt);
+        let words = self.label.words.split_off(script.words_before);
+        self.label.words += &script_words(&words, script.is_above);
+        self.before = None;
+        self.ended = Some(script);
+    }
+
+    /// The label, with what was not ended.
+    pub fn finish(mut self) -> Label {
+        while !self.scripts.is_empty() {
+            self.end_script();
+        }
+        let overhang_pt = self.before.map_or(0.0, |before| before.overhang_pt);
+        Label {
+            width_pt: self.x_pt + overhang_pt,
+            ..self.label
+        }
+    }
+}
+
+/// An upright box, drawn as a line around nothing: the inner contour runs against the outer one.
+pub fn missing() -> table::Letter {
+    let contour = |corners: [(f64, f64); 4]| Path::polygon(corners.map(|(x, y)| Point { x, y }));
+    let mut outline = contour([(70.0, 0.0), (530.0, 0.0), (530.0, -656.0), (70.0, -656.0)]);
+    outline.0.extend(
+        contour([
+            (110.0, -40.0),
+            (110.0, -616.0),
+            (490.0, -616.0),
+            (490.0, -40.0),
+        ])
+        .0,
+    );
+    table::Letter {
+        advance: BOX,
+        outline,
+    }
+}
+
+/// A script in a line of plain text: `⁻³`, `₂`, `_p`, `^(a+b)`.
+fn script_words(words: &str, is_above: bool) -> Cow<'static, str> {
+    let characters: Option<String> = words
+        .chars()
+        .map(|c| script_character(c, is_above))
+        .collect();
+    if let Some(characters) = characters {
+        return characters.into();
+    }
+    let sign = if is_above { '^' } else { '_' };
+    match words.chars().nth(1) {
+        None => format!("{sign}{words}").into(),
+        Some(_) => format!("{sign}({words})").into(),
+    }
+}
+
+/// The character for a digit or a sign as a superscript or a subscript.
+fn script_character(c: char, is_above: bool) -> Option<char> {
+    let above = "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻⁻";
+    let below = "₀₁₂₃₄₅₆₇₈₉₊₋₋";
+    let place = "0123456789+-\u{2212}"
+        .chars()
+        .position(|known| known == c)?;
+    (if is_above { above } else { below }).chars().nth(place)
+}

@@ -1,0 +1,255 @@
+//! The table of letters: outlines, advances and kerning of the font STIX Two Text, regular and italic.
+//!
+//! The files beside this one were made by `make.py`, which says how their lines read. Their copyright and their licence,
+//! the SIL Open Font License, are in `OFL.txt`.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use crate::figure::{Path, Point, Segment};
+
+/// How large the tables draw a letter: lengths are thousandths of its size.
+pub const UNITS: f64 = 1000.0;
+
+/// A letter: lengths are thousandths of its size, y down from the baseline.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Letter {
+    /// From its origin to that of the next letter.
+    pub advance: f64,
+    /// Its outline, filled by the non-zero rule.
+    pub outline: Path,
+}
+
+/// The letters of one style.
+pub struct Style {
+    lines: BTreeMap<u32, &'static str>,
+    left_class: BTreeMap<u32, u32>,
+    right_class: BTreeMap<u32, u32>,
+    kerning: BTreeMap<(u32, u32), f64>,
+}
+
+/// Upright letters.
+pub static REGULAR: LazyLock<Style> = LazyLock::new(|| {
+    Style::new(
+        include_str!("regular.txt"),
+        include_str!("regular.kern.txt"),
+    )
+});
+/// Slanted letters, as for the names of quantities.
+pub static ITALIC: LazyLock<Style> =
+    LazyLock::new(|| Style::new(include_str!("italic.txt"), include_str!("italic.kern.txt")));
+
+impl Style {
+    fn new(letters: &'static str, kerning: &str) -> Self {
+        let mut style = Self {
+            lines: letters.lines().filter_map(numbered).collect(),
+            left_class: BTreeMap::new(),
+            right_class: BTreeMap::new(),
+            kerning: BTreeMap::new(),
+        };
+        let (mut lefts, mut rights) = (0, 0);
+        for line in kerning.lines() {
+            if let Some(members) = line.strip_prefix("left ") {
+                style
+                    .left_class
+                    .extend(codes(members).map(|code| (code, lefts)));
+                lefts += 1;
+            } else if let Some(members) = line.strip_prefix("right ") {
+                style
+                    .right_class
+                    .extend(codes(members).map(|code| (code, rights)));
+                rights += 1;
+            } else {
+                style.kerning.extend(kerned(line));
+            }
+        }
+        style
+    }
+
+    /// The letter, if this style has it.
+    pub fn letter(&self, letter: char) -> Option<Letter> {
+        self.numbered(letter.into())
+    }
+
+    /// By how much the right letter of a pair is moved to the right, in thousandths of their size; mostly not at all.
+    pub fn kerning(&self, left: char, right: char) -> f64 {
+        let classes = (
+            self.left_class.get(&left.into()),
+            self.right_class.get(&right.into()),
+        );
+        let (Some(left), Some(right)) = classes else {
+            return 0.0;
+        };
+        self.kerning.get(&(*left, *right)).copied().unwrap_or(0.0)
+    }
+
+    fn numbered(&self, code: u32) -> Option<Letter> {
+        let line = self.lines.get(&code)?;
+        let (advance, outline) = line.split_once(' ').unwrap_or((line, ""));
+        let outline = match outline.starts_with('+') {
+            true => self.put_together(outline)?,
+            false => read_outline(outline)?,
+        };
+        Some(Letter {
+            advance: advance.parse().ok()?,
+            outline,
+        })
+    }
+
+    /// The outline of a letter that consists of others: `+CODE,RIGHT,UP` for each.
+    fn put_together(&self, parts: &str) -> Option<Path> {
+        let mut whole = Path::default();
+        for part in parts.split(' ') {
+            let mut fields = part.strip_prefix('+')?.split(',');
+            let code = u32::from_str_radix(fields.next()?, 16).ok()?;
+            let right: f64 = fields.next()?.parse().ok()?;
+            let up: f64 = fields.next()?.parse().ok()?;
+            let part = self.numbered(code)?.outline;
+            whole.0.extend(
+                part.mapped(|p| Point {
+                    x: p.x + right,
+                    y: p.y - up,
+                })
+                .0,
+            );
+        }
+        Some(whole)
+    }
+}
+
+/// A line's first field, a number in hexadecimal, and its rest.
+fn numbered(line: &str) -> Option<(u32, &str)> {
+    let (code, rest) = line.split_once(' ')?;
+    Some((u32::from_str_radix(code, 16).ok()?, rest))
+}
+
+fn codes(members: &str) -> impl Iterator<Item = u32> {
+    members
+        .split(' ')
+        .filter_map(|code| u32::from_str_radix(code, 16).ok())
+}
+
+/// `LEFT RIGHT THOUSANDTHS`.
+fn kerned(line: &str) -> Option<((u32, u32), f64)> {
+    let mut fields = line.split(' ');
+    let pair = (fields.next()?.parse().ok()?, fields.next()?.parse().ok()?);
+    Some((pair, fields.next()?.parse().ok()?))
+}
+
+/// The data of an SVG path with the commands m, l, h, v, q and z, y up; `None` where it is not that.
+fn read_outline(data: &str) -> Option<Path> {
+    let mut numbers = Numbers(data);
+    let mut path = Path::default();
+    let (mut at, mut start) = (Point { x: 0.0, y: 0.0 }, Point { x: 0.0, y: 0.0 });
+    let mut command = ' ';
+    while let Some(next) = numbers.0.chars().next() {
+        if next.is_ascii_alphabetic() {
+            command = next;
+            numbers.0 = &numbers.0[1..];
+        }
+        let segment = match command {
+            'm' => Segment::Move(numbers.point(at)?),
+            'l' => Segment::Line(numbers.point(at)?),
+            'h' => Segment::Line(Point {
+                x: at.x + numbers.next()?,
+                ..at
+            }),
+            'v' => Segment::Line(Point {
+                y: at.y - numbers.next()?,
+                ..at
+            }),
+            'q' => Segment::Quadratic(numbers.point(at)?, numbers.point(at)?),
+            'z' => Segment::Close,
+            _ => return None,
+        };
+        at = match segment {
+            Segment::Move(to)
+            | Segment::Line(to)
+            | Segment::Quadratic(_, to)
+            | Segment::Cubic(_, _, to) => to,
+            Segment::Close => start,
+        };
+        if let Segment::Move(to) = segment {
+            start = to;
+        }
+        if segment == Segment::Close {
+            // A number behind it would be read as another z, for ever.
+            command = ' ';
+        }
+        path.0.push(segment);
+    }
+    Some(path)
+}
+
+/// Whole numbers, apart by a blank or by the minus of the next.
+struct Numbers<'a>(&'a str);
+
+impl Numbers<'_> {
+    fn next(&mut self) -> Option<f64> {
+        let text = self.0.trim_start_matches(' ');
+        let digits = text.strip_prefix('-').unwrap_or(text);
+        let sign = text.len() - digits.len();
+        let end = digits
+            .find(|c: char| !c.is_ascii_digit())
+            .unwrap_or(digits.len());
+        let (number, rest) = text.split_at(sign + end);
+        self.0 = rest;
+        number.parse().ok()
+    }
+
+    /// A place that is given from `at`, y up.
+    fn point(&mut self, at: Point) -> Option<Point> {
+        let (right, up) = (self.next()?, self.next()?);
+        Some(Point {
+            x: at.x + right,
+            y: at.y - up,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_line_is_a_letter() {
+        for (style, least) in [(&*REGULAR, 780), (&*ITALIC, 740)] {
+            assert!(style.lines.len() > least, "{}", style.lines.len());
+            for code in style.lines.keys() {
+                let letter = style.numbered(*code);
+                let letter = letter.unwrap_or_else(|| panic!("{code:X}"));
+                assert!((0.0..2600.0).contains(&letter.advance), "{code:X}");
+                let is_blank = char::from_u32(*code).is_some_and(char::is_whitespace);
+                assert_eq!(letter.outline.0.is_empty(), is_blank, "{code:X}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_outline_is_read_as_svg_does() {
+        let point = |x: f64, y: f64| Point { x, y };
+        let path = read_outline("m1 2l3-4 1 1h-5v6q1 1-2 0zm9 9").unwrap();
+        let expected = vec![
+            Segment::Move(point(1.0, -2.0)),
+            Segment::Line(point(4.0, 2.0)),
+            Segment::Line(point(5.0, 1.0)),
+            Segment::Line(point(0.0, 1.0)),
+            Segment::Line(point(0.0, -5.0)),
+            Segment::Quadratic(point(1.0, -6.0), point(-2.0, -5.0)),
+            Segment::Close,
+            Segment::Move(point(10.0, -11.0)),
+        ];
+        assert_eq!(path.0, expected);
+        for broken in ["m1", "x", "m1 2z3", "1 2"] {
+            assert_eq!(read_outline(broken), None, "{broken}");
+        }
+    }
+
+    #[test]
+    fn kerning_moves_the_pairs_that_need_it() {
+        assert!(REGULAR.kerning('A', 'V') < -50.0);
+        assert!(ITALIC.kerning('A', 'V') < -50.0);
+        assert_eq!(REGULAR.kerning('H', 'H'), 0.0);
+        assert_eq!(REGULAR.kerning('→', '\u{10ffff}'), 0.0);
+    }
+}

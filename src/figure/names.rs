@@ -1,0 +1,63 @@
+//! What runs are called beside each other: by what differs.
+
+use super::ink::LABEL_PT;
+use super::letters;
+use super::of_runs::Run;
+use crate::text::number::significant;
+
+/// A name for each of `runs`, as markup no longer than `room_pt`; empty where there is nothing to tell apart. `among_others`
+/// says whether something else is drawn beside a single run.
+pub(super) fn names(runs: &[Run], among_others: bool, room_pt: f64) -> Vec<String> {
+    let differs = |of: &dyn Fn(&Run) -> String| runs.iter().any(|run| of(run) != of(&runs[0]));
+    let title = |run: &Run| run.scenario.file.title.clone();
+    let scheme = |run: &Run| run.scenario.motion.scheme.name.to_owned();
+    let time_step = |run: &Run| step(run);
+    let parts: [(bool, &dyn Fn(&Run) -> String); 3] = [
+        (differs(&title), &title),
+        (differs(&scheme), &scheme),
+        (differs(&time_step), &time_step),
+    ];
+    let is_alike = parts.iter().all(|(differs, _)| !differs);
+    let name = |run: &Run| -> String {
+        if is_alike {
+            return match (runs.len(), among_others) {
+                (1, false) => String::new(),
+                (1, true) => letters::escape(&scheme(run)),
+                _ => letters::shortened(&run.named, LABEL_PT, room_pt),
+            };
+        }
+        // The step comes as markup, and keeps its room; the title is cut.
+        let step = if parts[2].0 {
+            time_step(run)
+        } else {
+            String::new()
+        };
+        let words: Vec<_> = parts[..2]
+            .iter()
+            .filter(|(differs, _)| *differs)
+            .map(|(_, of)| of(run))
+            .collect();
+        let comma = if words.is_empty() || step.is_empty() {
+            ""
+        } else {
+            ", "
+        };
+        let rest = room_pt - super::ink::width(&format!("{comma}{step}"), LABEL_PT);
+        let words = letters::shortened(&words.join(", "), LABEL_PT, rest);
+        format!("{words}{comma}{step}")
+    };
+    runs.iter().map(name).collect()
+}
+
+/// "Δt = 10 ms" as markup.
+fn step(run: &Run) -> String {
+    let seconds = run.scenario.motion.time_step_s;
+    let (number, unit) = match seconds {
+        s if s >= 0.1 => (s, "s"),
+        s if s >= 1e-4 => (s * 1e3, "ms"),
+        s if s >= 1e-7 => (s * 1e6, "µs"),
+        s => (s, "s"),
+    };
+    let number = letters::escape(&significant(number, 6));
+    format!("Δ*t* = {number} {unit}")
+}

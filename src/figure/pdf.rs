@@ -1,0 +1,149 @@
+//! A page as PDF 1.4: one page of paths, without a font, a date or an identifier.
+
+use pdf_writer::types::{LineCapStyle, LineJoinStyle};
+use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
+
+use super::svg::MITER_LIMIT;
+use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
+use crate::text::printable::printable;
+
+const CATALOG: Ref = Ref::new(1);
+const PAGES: Ref = Ref::new(2);
+const PAGE: Ref = Ref::new(3);
+const CONTENT: Ref = Ref::new(4);
+const INFORMATION: Ref = Ref::new(5);
+/// The strongest of the levels from 0 to 10.
+const COMPRESSION: u8 = 9;
+
+/// A page whose places are whole hundredths of a point.
+pub fn written(scene: &Scene) -> Vec<u8> {
+    let content = content(scene);
+    let packed = miniz_oxide::deflate::compress_to_vec_zlib(&content, COMPRESSION);
+    let mut pdf = Pdf::new();
+    // The version which every pdflatex includes without a warning.
+    pdf.set_version(1, 4);
+    pdf.catalog(CATALOG).pages(PAGES);
+    pdf.pages(PAGES).kids([PAGE]).count(1);
+    let mut page = pdf.page(PAGE);
+    let sheet = Rect::new(0.0, 0.0, scene.width_pt as f32, scene.height_pt as f32);
+    page.media_box(sheet).parent(PAGES).contents(CONTENT);
+    page.resources();
+    page.finish();
+    pdf.stream(CONTENT, &packed).filter(Filter::FlateDecode);
+    let mut information = pdf.document_info(INFORMATION);
+    information.title(TextStr(&printable(&scene.title)));
+    information.producer(TextStr(concat!("gyrolab ", env!("CARGO_PKG_VERSION"))));
+    information.finish();
+    pdf.finish()
+}
+
+/// The drawing, not compressed.
+fn content(scene: &Scene) -> Vec<u8> {
+    let mut content = Content::new();
+    // The origin goes to the upper left corner, y down.
+    content.transform([1.0, 0.0, 0.0, -1.0, 0.0, scene.height_pt as f32]);
+    content.set_miter_limit(MITER_LIMIT as f32);
+    let drawn: Vec<&Item> = scene
+        .items
+        .iter()
+        .filter(|item| !item.path.0.is_empty())
+        .collect();
+    for group in drawn.chunk_by(|a, b| a.paint == b.paint && a.clip == b.clip) {
+        put_group(&mut content, group);
+    }
+    content.finish().into_vec()
+}
+
+/// Items that are drawn and cut off alike.
+fn put_group(content: &mut Content, items: &[&Item]) {
+    let Some(first) = items.first() else {
+        return;
+    };
+    content.save_state();
+    if let Some([from, to]) = first.clip {
+        let (width, height) = (to.x - from.x, to.y - from.y);
+        content.rect(from.x as f32, from.y as f32, width as f32, height as f32);
+        content.clip_nonzero().end_path();
+    }
+    match &first.paint {
+        Paint::Fill(color) => put_fill(content, *color),
+        Paint::Stroke(pen) => put_pen(content, pen),
+    }
+    for item in items {
+        // Words as the text that the paths stand for.
+        if let Some(words) = &item.words {
+            let mut span = content.begin_marked_content_with_properties(Name(b"Span"));
+            span.properties().actual_text(TextStr(&printable(words)));
+        }
+        put_path(content, &item.path);
+        match item.paint {
+            Paint::Fill(_) => content.fill_nonzero(),
+            Paint::Stroke(_) => content.stroke(),
+        };
+        if item.words.is_some() {
+            content.end_marked_content();
+        }
+    }
+    content.restore_state();
+}
+
+fn put_fill(content: &mut Content, color: Color) {
+    match shares(color) {
+        [red, green, blue] if red == green && green == blue => content.set_fill_gray(red),
+        [red, green, blue] => content.set_fill_rgb(red, green, blue),
+    };
+}
+
+fn put_pen(content: &mut Content, pen: &Pen) {
+    match shares(pen.color) {
+        [red, green, blue] if red == green && green == blue => content.set_stroke_gray(red),
+        [red, green, blue] => content.set_stroke_rgb(red, green, blue),
+    };
+    content.set_line_width(pen.width_pt as f32);
+    if !pen.dash_pt.is_empty() {
+        content.set_dash_pattern(pen.dash_pt.iter().map(|length| *length as f32), 0.0);
+    }
+    if pen.is_round {
+        content.set_line_join(LineJoinStyle::RoundJoin);
+    }
+    if pen.has_round_ends() {
+        content.set_line_cap(LineCapStyle::RoundCap);
+    }
+}
+
+/// Red, green and blue as shares of white, in thousandths: as exact as 256 steps need.
+fn shares(Color(parts): Color) -> [f32; 3] {
+    parts.map(|part| (libm::round(f64::from(part) / 0.255) / 1000.0) as f32)
+}
+
+fn put_path(content: &mut Content, path: &Path) {
+    let mut at = Point { x: 0.0, y: 0.0 };
+    for segment in &path.0 {
+        match *segment {
+            Segment::Move(to) => content.move_to(to.x as f32, to.y as f32),
+            Segment::Line(to) => content.line_to(to.x as f32, to.y as f32),
+            Segment::Quadratic(control, to) => put_cubic(
+                content,
+                [two_thirds(at, control), two_thirds(to, control), to],
+            ),
+            Segment::Cubic(first, second, to) => put_cubic(content, [first, second, to]),
+            Segment::Close => content.close_path(),
+        };
+        at = segment.end().unwrap_or(at);
+    }
+}
+
+fn put_cubic(content: &mut Content, points: [Point; 3]) -> &mut Content {
+    let [[x1, y1], [x2, y2], [x3, y3]] = points.map(|p| [p.x as f32, p.y as f32]);
+    content.cubic_to(x1, y1, x2, y2, x3, y3)
+}
+
+/// The control point of a cubic curve that is the parabola with this one, in hundredths.
+fn two_thirds(end: Point, control: Point) -> Point {
+    let between =
+        |from: f64, to: f64| libm::round((from + (to - from) * 2.0 / 3.0) * 100.0) / 100.0;
+    Point {
+        x: between(end.x, control.x),
+        y: between(end.y, control.y),
+    }
+}

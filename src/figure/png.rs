@@ -1,0 +1,185 @@
+//! A page as PNG: white paper, and how large it is printed.
+
+use tiny_skia::{
+    FillRule, LineCap, LineJoin, Mask, Paint as Ink, PathBuilder, Pixmap, Shader, Stroke,
+    StrokeDash, Transform,
+};
+
+use super::format::Unwritable;
+use super::svg::MITER_LIMIT;
+use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
+use crate::text::printable::printable;
+
+/// The most dots of a picture: 100 million of them take 400 MB while it is drawn.
+const MOST_DOTS: f64 = 1e8;
+
+/// A page whose places are whole hundredths of a point, with this many dots per inch.
+///
+/// # Errors
+/// Where the picture is too large.
+pub fn written(scene: &Scene, dots_per_inch: f64) -> Result<Vec<u8>, Unwritable> {
+    let dots = |pt: f64| {
+        libm::ceil(pt * dots_per_inch / 72.0 - 1e-6).clamp(1.0, f64::from(u32::MAX)) as u32
+    };
+    let (width, height) = (dots(scene.width_pt), dots(scene.height_pt));
+    let failed = |reason: String| Unwritable::Picture {
+        width,
+        height,
+        reason,
+    };
+    let fits = f64::from(width) * f64::from(height) <= MOST_DOTS;
+    let sheet = fits.then(|| Pixmap::new(width, height)).flatten();
+    let sheet = sheet.ok_or_else(|| failed("it is too large".to_owned()))?;
+    let mut easel = Easel {
+        sheet,
+        scale: (dots_per_inch / 72.0) as f32,
+        clip: None,
+    };
+    easel.sheet.fill(tiny_skia::Color::WHITE);
+    scene.items.iter().for_each(|item| easel.draw(item));
+    packed(&easel.sheet, &scene.title, dots_per_inch).map_err(|error| failed(error.to_string()))
+}
+
+/// The paper while it is drawn on.
+struct Easel {
+    sheet: Pixmap,
+    /// Dots per pt.
+    scale: f32,
+    /// The rectangle of the last item that was cut off, and its mask: many items in turn have the same.
+    clip: Option<([Point; 2], Mask)>,
+}
+
+impl Easel {
+    fn draw(&mut self, item: &Item) {
+        let Some(path) = outline(&item.path) else {
+            return;
+        };
+        self.set_clip(item.clip);
+        let mask = item.clip.and(self.clip.as_ref()).map(|(_, mask)| mask);
+        let transform = Transform::from_scale(self.scale, self.scale);
+        match &item.paint {
+            Paint::Fill(color) => {
+                self.sheet
+                    .fill_path(&path, &ink(*color), FillRule::Winding, transform, mask)
+            }
+            Paint::Stroke(pen) => {
+                self.sheet
+                    .stroke_path(&path, &ink(pen.color), &stroke(pen), transform, mask)
+            }
+        }
+    }
+
+    fn set_clip(&mut self, wanted: Option<[Point; 2]>) {
+        let Some(corners) =
+            wanted.filter(|_| wanted != self.clip.as_ref().map(|(corners, _)| *corners))
+        else {
+            return;
+        };
+        let [from, to] = corners;
+        let rectangle = [
+            from,
+            Point { x: to.x, ..from },
+            to,
+            Point { y: to.y, ..from },
+        ];
+        let mask = Mask::new(self.sheet.width(), self.sheet.height());
+        self.clip = mask.map(|mut mask| {
+            if let Some(path) = outline(&Path::polygon(rectangle)) {
+                let transform = Transform::from_scale(self.scale, self.scale);
+                mask.fill_path(&path, FillRule::Winding, true, transform);
+            }
+            (corners, mask)
+        });
+    }
+}
+
+/// `None` for a path without a line.
+fn outline(path: &Path) -> Option<tiny_skia::Path> {
+    let mut builder = PathBuilder::new();
+    for segment in &path.0 {
+        match *segment {
+            Segment::Move(to) => builder.move_to(to.x as f32, to.y as f32),
+            Segment::Line(to) => builder.line_to(to.x as f32, to.y as f32),
+            Segment::Quadratic(control, to) => {
+                builder.quad_to(control.x as f32, control.y as f32, to.x as f32, to.y as f32);
+            }
+            Segment::Cubic(first, second, to) => {
+                let [[x1, y1], [x2, y2], [x3, y3]] =
+                    [first, second, to].map(|p| [p.x as f32, p.y as f32]);
+                builder.cubic_to(x1, y1, x2, y2, x3, y3);
+            }
+            Segment::Close => builder.close(),
+        }
+    }
+    builder.finish()
+}
+
+fn ink(Color([red, green, blue]): Color) -> Ink<'static> {
+    let color = tiny_skia::Color::from_rgba8(red, green, blue, u8::MAX);
+    Ink {
+        shader: Shader::SolidColor(color),
+        ..Ink::default()
+    }
+}
+
+fn stroke(pen: &Pen) -> Stroke {
+    // An odd number of lengths is gone through twice, as in SVG and PDF.
+    let twice = 1 + pen.dash_pt.len() % 2;
+    let dash = pen
+        .dash_pt
+        .repeat(twice)
+        .into_iter()
+        .map(|length| length as f32)
+        .collect();
+    Stroke {
+        width: pen.width_pt as f32,
+        miter_limit: MITER_LIMIT as f32,
+        line_cap: if pen.has_round_ends() {
+            LineCap::Round
+        } else {
+            LineCap::Butt
+        },
+        line_join: if pen.is_round {
+            LineJoin::Round
+        } else {
+            LineJoin::Miter
+        },
+        dash: StrokeDash::new(dash, 0.0),
+    }
+}
+
+/// The file: in grey where all is grey.
+fn packed(
+    sheet: &Pixmap,
+    title: &str,
+    dots_per_inch: f64,
+) -> Result<Vec<u8>, ::png::EncodingError> {
+    let colors = || sheet.data().chunks_exact(4);
+    let is_grey = colors().all(|dot| dot[0] == dot[1] && dot[1] == dot[2]);
+    let (form, data): (_, Vec<u8>) = match is_grey {
+        true => (
+            ::png::ColorType::Grayscale,
+            colors().map(|dot| dot[0]).collect(),
+        ),
+        false => (
+            ::png::ColorType::Rgb,
+            colors().flat_map(|dot| dot[..3].to_vec()).collect(),
+        ),
+    };
+    let mut file = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut file, sheet.width(), sheet.height());
+    encoder.set_color(form);
+    encoder.set_depth(::png::BitDepth::Eight);
+    encoder.set_compression(::png::Compression::High);
+    let dots_per_metre = libm::round(dots_per_inch / 0.0254) as u32;
+    encoder.set_pixel_dims(Some(::png::PixelDimensions {
+        xppu: dots_per_metre,
+        yppu: dots_per_metre,
+        unit: ::png::Unit::Meter,
+    }));
+    encoder.add_itxt_chunk("Title".to_owned(), printable(title).into_owned())?;
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&data)?;
+    writer.finish()?;
+    Ok(file)
+}

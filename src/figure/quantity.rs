@@ -1,0 +1,148 @@
+//! What is written along the axis of a quantity: symbol and unit of a column, a readout or a key of a scenario.
+
+use super::chart::Axis;
+use super::letters;
+use super::ticks::with_minus;
+use crate::analysis::readouts;
+
+/// The ends of names, and the units that they stand for.
+const UNITS: [(&str, &str); 17] = [
+    ("_uncertainty_rad_per_s", "rad/s"),
+    ("_rad_per_s", "rad/s"),
+    ("_m_per_s2", "m/s2"),
+    ("_kg_m2", "kg m2"),
+    ("_Nms2", "N m s2"),
+    ("_Nms", "N m s"),
+    ("_Nm", "N m"),
+    ("_Js", "J s"),
+    ("_deg", "deg"),
+    ("_rpm", "rpm"),
+    ("_rad", "rad"),
+    ("_kg", "kg"),
+    ("_s", "s"),
+    ("_m", "m"),
+    ("_N", "N"),
+    ("_J", "J"),
+    ("_ns", "ns"),
+];
+/// The parts of a vector, by the numbers that keys give them.
+const PARTS: [(&str, &str); 3] = [("0", "*x*"), ("1", "*y*"), ("2", "*z*")];
+/// Columns whose readout has another name.
+const OTHER_NAMES: [(&str, &str); 1] = [("step", "steps")];
+
+/// The axis of a column, of a readout, or of a key of a scenario.
+pub fn axis(name: &str) -> Axis {
+    let other = OTHER_NAMES.iter().find(|(column, _)| *column == name);
+    let readout = readouts::find(other.map_or(name, |(_, readout)| readout));
+    match readout {
+        Some(readout) if !readout.symbol.is_empty() => {
+            Axis::new(readout.symbol, unit_markup(readout.unit))
+        }
+        Some(readout) => Axis::new(words(name).0, unit_markup(readout.unit)),
+        None => of_key(name),
+    }
+}
+
+/// The axis of a dotted key: the value at the start, where it is that of a readout.
+fn of_key(key: &str) -> Axis {
+    let last = key.rsplit('.').next().unwrap_or(key);
+    let readout = readouts::find(last).filter(|readout| !readout.symbol.is_empty());
+    if let Some(readout) = readout {
+        let is_start = key.starts_with("start.");
+        let index = if is_start { "_{0}" } else { "" };
+        return Axis::new(
+            format!("{}{index}", readout.symbol),
+            unit_markup(readout.unit),
+        );
+    }
+    let (name, unit) = words(key);
+    Axis::new(name, unit_markup(unit))
+}
+
+/// A name as words in markup, and its unit.
+pub fn words(name: &str) -> (String, &'static str) {
+    let mut unit = "";
+    let part = |part: &str| -> String {
+        if let Some((_, letter)) = PARTS.iter().find(|(number, _)| *number == part) {
+            return (*letter).to_owned();
+        }
+        let end = UNITS.iter().find(|(end, _)| part.ends_with(end));
+        let (bare, of_part) = match end {
+            Some((end, unit)) => (&part[..part.len() - end.len()], *unit),
+            None => (part, ""),
+        };
+        if !of_part.is_empty() {
+            unit = of_part;
+        }
+        letters::escape(&bare.replace('_', " "))
+    };
+    let mut parts: Vec<&str> = name.split('.').collect();
+    if parts.len() > 1 && ["motion", "body"].contains(&parts[0]) {
+        parts.remove(0);
+    }
+    let words: Vec<String> = parts.into_iter().map(part).collect();
+    (words.join(" "), unit)
+}
+
+/// A unit in markup: rad/s becomes rad s^{−1}.
+pub fn unit_markup(unit: &str) -> String {
+    let (above, below) = unit.split_once('/').unwrap_or((unit, ""));
+    let power = |word: &str, sign: &str| -> String {
+        let digits = word.trim_start_matches(|c: char| !c.is_ascii_digit());
+        let base = &word[..word.len() - digits.len()];
+        let base = if base == "deg" { "°" } else { base };
+        match (digits, sign) {
+            ("", "") => base.to_owned(),
+            ("", sign) => format!("{base}^{{{}}}", with_minus(&format!("{sign}1"))),
+            (digits, sign) => format!("{base}^{{{}}}", with_minus(&format!("{sign}{digits}"))),
+        }
+    };
+    let above = above
+        .split(' ')
+        .filter(|word| !word.is_empty() && *word != "1");
+    let below = below.split(' ').filter(|word| !word.is_empty());
+    let all = above
+        .map(|word| power(word, ""))
+        .chain(below.map(|word| power(word, "-")));
+    all.collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::columns::COLUMNS;
+
+    #[test]
+    fn columns_have_symbols_and_units() {
+        let written = |name: &str| {
+            let axis = axis(name);
+            (axis.name, axis.unit)
+        };
+        let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
+        assert_eq!(written("Lx_Js"), pair("*L*_{*x*}", "J s"));
+        assert_eq!(written("wz_rad_per_s"), pair("*ω*_{*z*}", "rad s^{−1}"));
+        assert_eq!(written("tilt_deg"), pair("*θ*", "°"));
+        assert_eq!(
+            written("steps_per_second"),
+            pair("steps per second", "s^{−1}")
+        );
+        assert_eq!(written("start.tilt_deg"), pair("*θ*_{0}", "°"));
+        assert_eq!(written("motion.time_step_s"), pair("Δ*t*", "s"));
+        assert_eq!(
+            written("start.momentum_Js.2"),
+            pair("start momentum *z*", "J s")
+        );
+        assert_eq!(
+            written("motion.gravity_m_per_s2"),
+            pair("gravity", "m s^{−2}")
+        );
+    }
+
+    #[test]
+    fn every_column_of_a_run_has_a_name_and_no_underscore_in_it() {
+        for column in COLUMNS {
+            let name = axis(column.name).name;
+            assert!(!name.is_empty() && !name.contains("_m"), "{name}");
+        }
+    }
+}

@@ -1,0 +1,399 @@
+//! The path in space: a box with grids on its far sides, axes along its near edges, the path's shadow on the floor, and depth
+//! by weight and grey of the line.
+//!
+//! x and y have one scale; z has its own, since a swing is often small beside the precession.
+
+use super::axis::Scale;
+use super::chart::Axis;
+use super::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
+use super::layout::EDGE;
+use super::legend::Legend;
+use super::of_runs::{Drawn, Run};
+use super::quantity;
+use super::scene::{Color, Path, Pen, Point, Scene};
+use super::ticks::{Tick, Ticks};
+use crate::observe::camera::Camera;
+use nalgebra::Vector3;
+
+/// Height of the box, of the length of its sides.
+const TALL: f64 = 0.72;
+/// Distance of the eye from the middle of the box, in the same.
+const EYE: f64 = 5.0;
+/// The lowest and the highest eye with which both floor and walls are seen, degrees.
+const PITCHES_DEG: (f64, f64) = (8.0, 65.0);
+/// Degrees of depth.
+const DEPTHS: usize = 6;
+/// Width of the nearest and of the farthest line, pt, and the part of white in the farthest.
+const WIDTHS: (f64, f64) = (0.95, 0.5);
+const FARTHEST_WHITE: f64 = 0.58;
+/// Length of a tick, and of the gap between it and its label, pt.
+const TICK: f64 = 2.5;
+const TICK_GAP: f64 = 2.2;
+/// Between labels and title, pt.
+const TITLE_GAP: f64 = 3.0;
+/// Points on the page nearer to each other than this are one, pt.
+const SAME_PT: f64 = 0.04;
+
+/// Ways around the box.
+const SIDES: [f64; 2] = [-0.5, 0.5];
+
+/// The box on the page.
+struct Space {
+    camera: Camera,
+    /// What the three sides of the box show.
+    ranges: [(f64, f64); 3],
+    /// The length of a side on the page, pt.
+    side_pt: f64,
+}
+
+/// The figure of paths in space on a page of that width.
+pub(super) fn scene(title: &str, runs: &[Run], drawn: &[Drawn], width_pt: f64) -> Scene {
+    let mut space = Space {
+        camera: camera(runs),
+        ranges: ranges(drawn),
+        side_pt: 0.5 * width_pt,
+    };
+    let series = drawn
+        .iter()
+        .map(|drawn| (drawn.name.as_str(), &drawn.style));
+    let legend = Legend::new(series, None);
+    // The labels do not grow with the box: the room that is left over tells how much larger it may be.
+    let mut items = space.draw(drawn);
+    for _ in 0..4 {
+        let (left, _, right, _) = extent(&items);
+        let over = right - left - (width_pt - 2.0 * EDGE);
+        space.side_pt = (space.side_pt - over / 1.45).max(0.1 * width_pt);
+        items = space.draw(drawn);
+        if over.abs() < 0.2 {
+            break;
+        }
+    }
+    let (left, top, right, bottom) = extent(&items);
+    let above = legend.height_above(width_pt) + EDGE;
+    let shift = at(0.5 * (width_pt - left - right), above - top);
+    for item in &mut items.items {
+        let path = std::mem::take(&mut item.path);
+        item.path = path.mapped(|p| at(p.x + shift.x, p.y + shift.y));
+    }
+    items.title = title.to_owned();
+    items.width_pt = width_pt;
+    items.height_pt = above + bottom - top + EDGE;
+    legend.draw_above(width_pt, EDGE, &mut items);
+    items
+}
+
+/// The direction that the first run's file asks for, or the usual one; never so low or so high that a side of the box vanishes.
+fn camera(runs: &[Run]) -> Camera {
+    let file = runs.first().and_then(|run| run.scenario.file.view.as_ref());
+    let camera = file.and_then(|view| view.camera).map(Camera::of);
+    let camera = camera.unwrap_or_default();
+    Camera {
+        yaw_deg: camera.yaw_deg,
+        pitch_deg: camera.pitch_deg.clamp(PITCHES_DEG.0, PITCHES_DEG.1),
+    }
+}
+
+fn ranges(drawn: &[Drawn]) -> [(f64, f64); 3] {
+    let range = |index: usize| {
+        let values = drawn.iter().flat_map(|drawn| &drawn.course.path);
+        Axis::default().range_of(values.map(|point| point[index]))
+    };
+    let [x, y, z] = [0, 1, 2].map(range);
+    let half = 0.5 * (x.1 - x.0).max(y.1 - y.0);
+    let square = |(low, high): (f64, f64)| (0.5 * (low + high) - half, 0.5 * (low + high) + half);
+    [square(x), square(y), z]
+}
+
+/// Left, upper, right and lower end of what is drawn, pt.
+fn extent(scene: &Scene) -> (f64, f64, f64, f64) {
+    let points = scene.items.iter().flat_map(|item| item.path.points());
+    let none = (
+        f64::INFINITY,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NEG_INFINITY,
+    );
+    points.fold(none, |(left, top, right, bottom), p| {
+        (left.min(p.x), top.min(p.y), right.max(p.x), bottom.max(p.y))
+    })
+}
+
+impl Space {
+    /// A place in the box: from −1/2 to 1/2 along each side, but for its height.
+    fn boxed(&self, point: &[f64; 3]) -> Vector3<f64> {
+        let share = |index: usize| {
+            let (low, high) = self.ranges[index];
+            (point[index] - low) / (high - low) - 0.5
+        };
+        Vector3::new(share(0), share(1), TALL * share(2))
+    }
+
+    /// Where a place in the box stands on the page, pt.
+    fn place(&self, boxed: &Vector3<f64>) -> Point {
+        let (right, up) = self.camera.project(boxed);
+        let size = self.side_pt * EYE / (EYE + self.camera.depth(boxed));
+        at(size * right, -size * up)
+    }
+
+    /// The end of an axis that is nearer to the eye.
+    fn near(&self, axis: usize) -> f64 {
+        let mut ahead = Vector3::zeros();
+        ahead[axis] = 1.0;
+        if self.camera.depth(&ahead) < 0.0 {
+            0.5
+        } else {
+            -0.5
+        }
+    }
+
+    fn draw(&self, drawn: &[Drawn]) -> Scene {
+        let mut scene = Scene::new(0.0, 0.0, "");
+        let edges = [self.edge(0), self.edge(1), self.edge(2)];
+        let ticks = [0, 1, 2].map(|axis| self.ticks(axis, &edges[axis]));
+        self.walls(&ticks, &mut scene);
+        for drawn in drawn {
+            let floor = |point: &[f64; 3]| {
+                let mut boxed = self.boxed(point);
+                boxed.z = -0.5 * TALL;
+                self.place(&boxed)
+            };
+            let shadow = drawn.course.path.iter().map(floor);
+            scene.stroke(Path::polyline(apart(shadow)), round(0.45, grey(198)), None);
+        }
+        self.paths(drawn, &mut scene);
+        for axis in 0..3 {
+            self.axis(axis, &edges[axis], &ticks[axis], &mut scene);
+        }
+        scene
+    }
+
+    /// The ends of the edge along which the axis runs.
+    fn edge(&self, axis: usize) -> [Vector3<f64>; 2] {
+        let (x, y, floor) = (self.near(0), self.near(1), -0.5 * TALL);
+        match axis {
+            0 => SIDES.map(|side| Vector3::new(side, y, floor)),
+            1 => SIDES.map(|side| Vector3::new(x, side, floor)),
+            _ => {
+                // The one farther to the left of the two uprights between a near and a far side.
+                let uprights = [(x, -y), (-x, y)].map(|(x, y)| Vector3::new(x, y, 0.0));
+                let left = uprights
+                    .into_iter()
+                    .min_by(|a, b| self.place(a).x.total_cmp(&self.place(b).x));
+                let foot = left.unwrap_or_default();
+                SIDES.map(|side| Vector3::new(foot.x, foot.y, TALL * side))
+            }
+        }
+    }
+
+    /// Where the value `share` of the way along an edge stands.
+    fn along(edge: &[Vector3<f64>; 2], share: f64) -> Vector3<f64> {
+        edge[0] + (edge[1] - edge[0]) * share
+    }
+
+    fn share(&self, axis: usize, value: f64) -> f64 {
+        let (low, high) = self.ranges[axis];
+        (value - low) / (high - low)
+    }
+
+    fn ticks(&self, axis: usize, edge: &[Vector3<f64>; 2]) -> Ticks {
+        /// Between two labels, beside and above each other, pt.
+        const APART: (f64, f64) = (6.0, 6.5);
+        let (low, high) = self.ranges[axis];
+        let place = |tick: &Tick| self.place(&Self::along(edge, self.share(axis, tick.at)));
+        let height = ink::height(LABEL_PT);
+        let fits = |ticks: &[Tick]| {
+            ticks.len() <= 6
+                && ticks.windows(2).all(|pair| {
+                    let (a, b) = (place(&pair[0]), place(&pair[1]));
+                    let half = |tick: &Tick| 0.5 * ink::width(&tick.label, LABEL_PT);
+                    let wide = half(&pair[0]) + half(&pair[1]) + APART.0;
+                    (a.x - b.x).abs() >= wide || (a.y - b.y).abs() >= height + APART.1
+                })
+        };
+        let mut ticks = Ticks::linear(low, high, fits);
+        // Labels at a corner would stand beside those of another axis.
+        let is_inside = |tick: &Tick| (0.03..=0.97).contains(&self.share(axis, tick.at));
+        if ticks.major.iter().filter(|tick| is_inside(tick)).count() >= 2 {
+            ticks.major.retain(is_inside);
+        }
+        ticks
+    }
+
+    /// The far sides: their grids, and their outlines.
+    fn walls(&self, ticks: &[Ticks; 3], scene: &mut Scene) {
+        let (x, y, top) = (self.near(0), self.near(1), 0.5 * TALL);
+        let mut line = |a: [f64; 3], b: [f64; 3], width: f64, level: u8| {
+            let ends = [a, b].map(|[x, y, z]| self.place(&Vector3::new(x, y, z)));
+            scene.line(ends, width, grey(level));
+        };
+        for axis in 0..3 {
+            for tick in &ticks[axis].major {
+                let share = self.share(axis, tick.at) - 0.5;
+                let [first, second] = match axis {
+                    0 => [
+                        [[share, -0.5, -top], [share, 0.5, -top]],
+                        [[share, -y, -top], [share, -y, top]],
+                    ],
+                    1 => [
+                        [[-0.5, share, -top], [0.5, share, -top]],
+                        [[-x, share, -top], [-x, share, top]],
+                    ],
+                    _ => {
+                        let z = share * TALL;
+                        [[[-x, -0.5, z], [-x, 0.5, z]], [[-0.5, -y, z], [0.5, -y, z]]]
+                    }
+                };
+                line(first[0], first[1], 0.35, 215);
+                line(second[0], second[1], 0.35, 215);
+            }
+        }
+        let corner = [-x, -y];
+        for z in [-top, top] {
+            line([corner[0], corner[1], z], [x, -y, z], 0.4, 140);
+            line([corner[0], corner[1], z], [-x, y, z], 0.4, 140);
+        }
+        for (x, y) in [(-x, -y), (x, -y), (-x, y)] {
+            line([x, y, -top], [x, y, top], 0.4, 140);
+        }
+    }
+
+    /// An axis with its ticks, labels and title, outside of the box.
+    fn axis(&self, axis: usize, edge: &[Vector3<f64>; 2], ticks: &Ticks, scene: &mut Scene) {
+        let ends = edge.map(|end| self.place(&end));
+        scene.line(ends, 0.6, BLACK);
+        let out = self.outwards(axis, edge);
+        let height = ink::height(LABEL_PT);
+        let mut reach: f64 = 0.0;
+        for tick in &ticks.major {
+            let foot = self.place(&Self::along(edge, self.share(axis, tick.at)));
+            let to = |length: f64| at(foot.x + out.x * length, foot.y + out.y * length);
+            scene.line([foot, to(TICK)], 0.5, BLACK);
+            // As far out as the label needs to be clear of the tick.
+            let half = at(0.5 * ink::width(&tick.label, LABEL_PT), 0.5 * height);
+            let clear = TICK + TICK_GAP + half.x * out.x.abs() + half.y * out.y.abs();
+            let middle = to(clear);
+            reach = reach.max(clear + half.x * out.x.abs() + half.y * out.y.abs());
+            let base = at(middle.x, middle.y + half.y);
+            scene.write(&tick.label, LABEL_PT, base, 0.5);
+        }
+        let name = ["x_m", "y_m", "z_m"][axis];
+        let title = quantity::axis(name).title(ticks);
+        let middle = self.place(&Self::along(edge, 0.5));
+        let (size, cap) = (TITLE_PT, ink::height(TITLE_PT));
+        if axis == 2 {
+            let x = middle.x - reach - TITLE_GAP - 0.4 * cap;
+            scene.write_up(&title, size, at(x, middle.y));
+            return;
+        }
+        let half = at(0.5 * ink::width(&title, size), 0.6 * cap);
+        let clear = reach + TITLE_GAP + half.x * out.x.abs() + half.y * out.y.abs();
+        let base = at(
+            middle.x + out.x * clear,
+            middle.y + out.y * clear + 0.5 * cap,
+        );
+        scene.write(&title, size, base, 0.5);
+    }
+
+    /// The direction on the page that leads from an axis out of the box.
+    fn outwards(&self, axis: usize, edge: &[Vector3<f64>; 2]) -> Point {
+        if axis == 2 {
+            return at(-1.0, 0.0);
+        }
+        let middle = Self::along(edge, 0.5);
+        let mut outside = middle;
+        let across = 1 - axis;
+        outside[across] += 0.1 * middle[across].signum();
+        let (a, b) = (self.place(&middle), self.place(&outside));
+        let length = (b.x - a.x).hypot(b.y - a.y).max(1e-9);
+        at((b.x - a.x) / length, (b.y - a.y) / length)
+    }
+
+    /// The paths, the farthest parts first.
+    fn paths(&self, drawn: &[Drawn], scene: &mut Scene) {
+        let paths: Vec<Vec<(Point, f64)>> = drawn
+            .iter()
+            .map(|drawn| {
+                let boxed = drawn.course.path.iter().map(|point| self.boxed(point));
+                let place = |boxed: Vector3<f64>| (self.place(&boxed), self.camera.depth(&boxed));
+                boxed.map(place).collect()
+            })
+            .collect();
+        let depths = || paths.iter().flatten().map(|(_, depth)| *depth);
+        let (near, far) = (
+            depths().fold(f64::INFINITY, f64::min),
+            depths().fold(f64::NEG_INFINITY, f64::max),
+        );
+        let share = Scale {
+            range: (far, near),
+            is_log: false,
+            places: (0.0, DEPTHS as f64),
+        };
+        let degree = |depth: f64| (share.place(depth).max(0.0) as usize).min(DEPTHS - 1);
+        for nearness in 0..DEPTHS {
+            for (path, drawn) in paths.iter().zip(drawn) {
+                for piece in pieces(path, |depth| degree(depth) == nearness) {
+                    let part = nearness as f64 / (DEPTHS - 1) as f64;
+                    let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
+                    let color = paler(drawn.style.color, FARTHEST_WHITE * (1.0 - part));
+                    let pen = Pen {
+                        dash_pt: drawn.style.dash_pt.to_vec(),
+                        ..round(width, color)
+                    };
+                    scene.stroke(Path::polyline(piece), pen, None);
+                }
+            }
+        }
+    }
+}
+
+/// The pieces of a path of which `is_here` says so of the depth of their begin.
+fn pieces(path: &[(Point, f64)], is_here: impl Fn(f64) -> bool) -> Vec<Vec<Point>> {
+    let mut pieces = Vec::new();
+    let mut piece: Vec<Point> = Vec::new();
+    for pair in path.windows(2) {
+        if is_here(pair[0].1) {
+            if piece.is_empty() {
+                piece.push(pair[0].0);
+            }
+            piece.push(pair[1].0);
+        } else if !piece.is_empty() {
+            pieces.push(std::mem::take(&mut piece));
+        }
+    }
+    pieces.push(piece);
+    let drawn = pieces.into_iter().map(|piece| apart(piece.into_iter()));
+    drawn.filter(|piece| piece.len() > 1).collect()
+}
+
+/// `points` without those that stand where the one before stands; the last stays.
+fn apart(points: impl Iterator<Item = Point>) -> Vec<Point> {
+    let mut kept: Vec<Point> = Vec::new();
+    let mut last = None;
+    for point in points.filter(|point| point.x.is_finite() && point.y.is_finite()) {
+        let is_apart = |before: &Point| {
+            (before.x - point.x).abs() > SAME_PT || (before.y - point.y).abs() > SAME_PT
+        };
+        last = Some(point);
+        if kept.last().is_none_or(is_apart) {
+            kept.push(point);
+        }
+    }
+    match last {
+        Some(last) if kept.last() != Some(&last) => kept.push(last),
+        _ => {}
+    }
+    kept
+}
+
+fn round(width_pt: f64, color: Color) -> Pen {
+    Pen {
+        is_round: true,
+        ..pen(width_pt, color)
+    }
+}
+
+/// `color` with that part of white in it.
+fn paler(color: Color, white: f64) -> Color {
+    let mixed = |part: u8| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8;
+    Color(color.0.map(mixed))
+}

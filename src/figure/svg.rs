@@ -1,0 +1,253 @@
+//! A page as SVG 1.1: paths alone, no font, no script, no style sheet.
+
+use std::fmt::Write;
+
+use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
+use crate::text::printable::printable;
+
+const MM_PER_PT: f64 = 25.4 / 72.0;
+/// How much farther a sharp corner may reach than half the line's width: what SVG takes if nothing is said.
+pub const MITER_LIMIT: f64 = 4.0;
+
+/// A page whose places are whole hundredths of a point. The words of a text are its label for readers of the screen.
+pub fn written(scene: &Scene) -> String {
+    let mut out = String::new();
+    let (width, height) = (scene.width_pt, scene.height_pt);
+    put(
+        &mut out,
+        format_args!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" role=\"img\">\n",
+            number(width * MM_PER_PT),
+            number(height * MM_PER_PT),
+            number(width),
+            number(height)
+        ),
+    );
+    put(
+        &mut out,
+        format_args!("<title>{}</title>\n", escaped(&scene.title)),
+    );
+    put(
+        &mut out,
+        format_args!(
+            "<path fill=\"#fff\" d=\"M0 0h{}v{}H0z\"/>\n",
+            number(width),
+            number(height)
+        ),
+    );
+    for clip in clips(scene) {
+        let [from, to] = clip;
+        put(
+            &mut out,
+            format_args!(
+                "<clipPath id=\"{}\"><path d=\"M{} {}H{}V{}H{}z\"/></clipPath>\n",
+                name(&clip),
+                number(from.x),
+                number(from.y),
+                number(to.x),
+                number(to.y),
+                number(from.x)
+            ),
+        );
+    }
+    for group in scene
+        .items
+        .chunk_by(|a, b| a.paint == b.paint && a.clip == b.clip)
+    {
+        put_group(&mut out, group);
+    }
+    out += "</svg>\n";
+    out
+}
+
+/// Writing to a `String` cannot fail.
+fn put(out: &mut String, arguments: std::fmt::Arguments<'_>) {
+    let _ = out.write_fmt(arguments);
+}
+
+/// The rectangles that something is cut off at, each once.
+fn clips(scene: &Scene) -> Vec<[Point; 2]> {
+    let mut clips: Vec<[Point; 2]> = Vec::new();
+    for clip in scene.items.iter().filter_map(|item| item.clip) {
+        if !clips.contains(&clip) {
+            clips.push(clip);
+        }
+    }
+    clips
+}
+
+/// The name of a rectangle says where it is: where two figures are put into one document, equal names mean the same.
+fn name(clip: &[Point; 2]) -> String {
+    let parts = clip
+        .iter()
+        .flat_map(|p| [p.x, p.y])
+        .map(number)
+        .collect::<Vec<_>>();
+    format!("clip_{}", parts.join("_"))
+}
+
+/// Items that are drawn and cut off alike.
+fn put_group(out: &mut String, items: &[Item]) {
+    let Some(first) = items.first() else {
+        return;
+    };
+    *out += "<g";
+    if let Some(clip) = &first.clip {
+        put(out, format_args!(" clip-path=\"url(#{})\"", name(clip)));
+    }
+    match &first.paint {
+        Paint::Fill(color) => put(out, format_args!(" fill=\"{}\"", hex(*color))),
+        Paint::Stroke(pen) => put_pen(out, pen),
+    }
+    *out += ">\n";
+    for item in items {
+        *out += "<path";
+        if let Some(words) = &item.words {
+            put(
+                out,
+                format_args!(" role=\"img\" aria-label=\"{}\"", escaped(words)),
+            );
+        }
+        put(out, format_args!(" d=\"{}\"/>\n", data(&item.path)));
+    }
+    *out += "</g>\n";
+}
+
+fn put_pen(out: &mut String, pen: &Pen) {
+    put(
+        out,
+        format_args!(
+            " fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"",
+            hex(pen.color),
+            number(pen.width_pt)
+        ),
+    );
+    if !pen.dash_pt.is_empty() {
+        let lengths: Vec<String> = pen.dash_pt.iter().copied().map(number).collect();
+        put(
+            out,
+            format_args!(" stroke-dasharray=\"{}\"", lengths.join(" ")),
+        );
+    }
+    if pen.is_round {
+        *out += " stroke-linejoin=\"round\"";
+    }
+    if pen.has_round_ends() {
+        *out += " stroke-linecap=\"round\"";
+    }
+}
+
+/// The data of a path. Each line begins at its place on the page and goes on by steps, which are short numbers.
+fn data(path: &Path) -> String {
+    let mut data = Data::default();
+    for segment in &path.0 {
+        match *segment {
+            Segment::Move(to) => data.begin(to),
+            Segment::Line(to) if hundredths(to.y) == data.at[1] => data.step('h', &[to], &[0]),
+            Segment::Line(to) if hundredths(to.x) == data.at[0] => data.step('v', &[to], &[1]),
+            Segment::Line(to) => data.step('l', &[to], &[0, 1]),
+            Segment::Quadratic(control, to) => data.step('q', &[control, to], &[0, 1]),
+            Segment::Cubic(first, second, to) => data.step('c', &[first, second, to], &[0, 1]),
+            Segment::Close => data.close(),
+        }
+    }
+    data.text
+}
+
+#[derive(Default)]
+struct Data {
+    text: String,
+    /// The command that is repeated where only numbers follow.
+    command: char,
+    /// Where the line is and where it began, in hundredths.
+    at: [i64; 2],
+    start: [i64; 2],
+}
+
+impl Data {
+    fn begin(&mut self, to: Point) {
+        self.at = [hundredths(to.x), hundredths(to.y)];
+        self.start = self.at;
+        self.text.push('M');
+        self.command = 'M';
+        self.numbers(&[self.at[0], self.at[1]]);
+    }
+
+    /// A command with the steps from where the line is to `points`, of which the last is where it goes; `axes` are those
+    /// of x (0) and y (1) that the command takes.
+    fn step(&mut self, command: char, points: &[Point], axes: &[usize]) {
+        let places: Vec<[i64; 2]> = points
+            .iter()
+            .map(|p| [hundredths(p.x), hundredths(p.y)])
+            .collect();
+        let steps = places
+            .iter()
+            .flat_map(|place| axes.iter().map(|&axis| place[axis] - self.at[axis]));
+        let steps: Vec<i64> = steps.collect();
+        if command != self.command {
+            self.text.push(command);
+            self.command = command;
+        }
+        self.numbers(&steps);
+        self.at = places.last().copied().unwrap_or(self.at);
+    }
+
+    fn close(&mut self) {
+        self.text.push('z');
+        self.command = 'z';
+        self.at = self.start;
+    }
+
+    /// Numbers of hundredths, with a blank where one would run into the next.
+    fn numbers(&mut self, hundredths: &[i64]) {
+        for &value in hundredths {
+            let number = number(value as f64 / 100.0);
+            if self.text.ends_with(|c: char| c.is_ascii_digit()) && !number.starts_with('-') {
+                self.text.push(' ');
+            }
+            self.text += &number;
+        }
+    }
+}
+
+fn hundredths(pt: f64) -> i64 {
+    libm::round(pt * 100.0) as i64
+}
+
+/// A number with two decimals at most, in as few characters as possible: `12.5`, `-.25`, `0`.
+fn number(value: f64) -> String {
+    let cents = hundredths(value);
+    let (whole, rest) = (cents.abs() / 100, cents.abs() % 100);
+    let sign = if cents < 0 { "-" } else { "" };
+    match (whole, rest % 10) {
+        (whole, _) if rest == 0 => format!("{sign}{whole}"),
+        (0, 0) => format!("{sign}.{}", rest / 10),
+        (0, _) => format!("{sign}.{rest:02}"),
+        (whole, 0) => format!("{sign}{whole}.{}", rest / 10),
+        (whole, _) => format!("{sign}{whole}.{rest:02}"),
+    }
+}
+
+/// `#rgb` where that says it all, else `#rrggbb`.
+fn hex(Color([red, green, blue]): Color) -> String {
+    match [red, green, blue].iter().all(|part| part % 17 == 0) {
+        true => format!("#{:x}{:x}{:x}", red / 17, green / 17, blue / 17),
+        false => format!("#{red:02x}{green:02x}{blue:02x}"),
+    }
+}
+
+/// Text for an element or an attribute in double quotes. What XML cannot hold is spelled out or becomes U+FFFD.
+fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in printable(text).chars() {
+        match c {
+            '&' => safe += "&amp;",
+            '<' => safe += "&lt;",
+            '>' => safe += "&gt;",
+            '"' => safe += "&quot;",
+            '\u{fffe}' | '\u{ffff}' => safe.push('\u{fffd}'),
+            c => safe.push(c),
+        }
+    }
+    safe
+}

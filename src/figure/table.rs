@@ -1,0 +1,156 @@
+//! A CSV that is no run: the table of a comparison, or of a sweep.
+
+use crate::scenario::Problem;
+use crate::text::number::NONE;
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+/// The longest file that is read whole: a sweep of millions of runs.
+const LONGEST: u64 = 1 << 30;
+
+/// What kind of table it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// Errors of schemes over time steps.
+    Comparison,
+    /// Readouts over what was varied.
+    Sweep {
+        /// The keys that were varied, the last of which runs fastest.
+        varied: Vec<String>,
+    },
+}
+
+/// The columns of a table.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// What kind of table it is.
+    pub subject: Subject,
+    /// The title in its header, or empty.
+    pub title: String,
+    /// The names of its columns.
+    pub names: Vec<String>,
+    /// Its rows, as they are written.
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// The table in the file `path`; `None` where that is a run or no CSV.
+    ///
+    /// # Errors
+    /// When it is a table and cannot be read.
+    pub fn read(path: &Path) -> Result<Option<Self>, Problem> {
+        if path.extension().is_none_or(|ending| ending != "csv") || !path.is_file() {
+            return Ok(None);
+        }
+        let refused = |error: std::io::Error| Problem::at("", format!("cannot be read: {error}"));
+        let file = File::open(path).map_err(refused)?;
+        let size = file.metadata().map_err(refused)?.len();
+        let mut lines = BufReader::new(file);
+        let (header, names) = head(&mut lines).map_err(refused)?;
+        let Some((subject, title)) = subject(&header, &names) else {
+            return Ok(None);
+        };
+        if size > LONGEST {
+            return Err(Problem::at("", format!("is longer than {LONGEST} bytes")));
+        }
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .from_reader(lines);
+        let mut rows = Vec::new();
+        for (index, row) in reader.records().enumerate() {
+            let row = row.map_err(|error| Problem::at("", format!("cannot be read: {error}")))?;
+            if row.len() != names.len() {
+                let rule = format!(
+                    "row {}: has {} values, and {} columns have a name",
+                    index + 1,
+                    row.len(),
+                    names.len()
+                );
+                return Err(Problem::at("", rule));
+            }
+            rows.push(row.iter().map(str::to_owned).collect());
+        }
+        if rows.is_empty() {
+            return Err(Problem::at("", "has no rows: there is nothing to draw"));
+        }
+        Ok(Some(Self {
+            subject,
+            title,
+            names,
+            rows,
+        }))
+    }
+
+    /// How many rows it has.
+    pub fn count(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The texts of the column of that name.
+    pub fn texts(&self, name: &str) -> Option<Vec<&str>> {
+        let place = self.names.iter().position(|other| other == name)?;
+        Some(self.rows.iter().map(|row| row[place].as_str()).collect())
+    }
+
+    /// The numbers of the column of that name, NaN where there is none; `None` where the column has texts that are no numbers.
+    pub fn numbers(&self, name: &str) -> Option<Vec<f64>> {
+        let number = |text: &str| match text.trim() {
+            "" | NONE => Some(f64::NAN),
+            "true" => Some(1.0),
+            "false" => Some(0.0),
+            text => text.parse().ok(),
+        };
+        self.texts(name)?.into_iter().map(number).collect()
+    }
+}
+
+/// The lines of comments at the begin of a CSV without their marks, and the names of its columns.
+fn head(lines: &mut impl BufRead) -> std::io::Result<(String, Vec<String>)> {
+    let mut header = String::new();
+    let mut line = Vec::new();
+    loop {
+        line.clear();
+        if lines.read_until(b'\n', &mut line)? == 0 {
+            return Ok((header, Vec::new()));
+        }
+        let text = String::from_utf8_lossy(&line);
+        let text = text.trim_start_matches('\u{feff}').trim_end();
+        match text.strip_prefix('#') {
+            Some(comment) => {
+                header.push_str(comment.strip_prefix(' ').unwrap_or(comment));
+                header.push('\n');
+            }
+            None => {
+                let names = text
+                    .split(',')
+                    .map(|name| name.trim_matches('"').to_owned());
+                return Ok((header, names.collect()));
+            }
+        }
+    }
+}
+
+fn subject(header: &str, names: &[String]) -> Option<(Subject, String)> {
+    let table: Option<toml::Table> = header.parse().ok();
+    let title = |table: &toml::Table| {
+        let title = table.get("title").and_then(toml::Value::as_str);
+        title.unwrap_or_default().to_owned()
+    };
+    let has = |name: &str| names.iter().any(|other| other == name);
+    if has("scheme") && has("time_step_s") && has("error_m") {
+        let title = table.as_ref().map(title).unwrap_or_default();
+        return Some((Subject::Comparison, title));
+    }
+    let table = table?;
+    let vary = table.get("vary")?.as_array()?;
+    let keys = vary.iter().filter_map(|vary| vary.get("key")?.as_str());
+    let varied: Vec<String> = keys.map(str::to_owned).collect();
+    let of_scenario = table.get("scenario").and_then(toml::Value::as_table);
+    let title = match title(&table) {
+        own if own.is_empty() => of_scenario.map(title).unwrap_or_default(),
+        own => own,
+    };
+    Some((Subject::Sweep { varied }, title))
+}
