@@ -1,11 +1,13 @@
 //! `gyrolab writeup`: a run as a folder of files for a write-up.
 
 use super::args::WriteupArgs;
+use super::progress::{self, Meter};
 use super::run::played;
 use super::scenario::scenario_of;
-use super::{INTERRUPTED, complain, progress, tell};
+use super::{INTERRUPTED, complain, tell};
 use crate::export::Folder;
 use crate::export::stream::Ended;
+use crate::study::writeup::figures::figures;
 use crate::study::writeup::{CSV, Writeup};
 use crate::text::printable::Shown;
 use anyhow::Context;
@@ -27,9 +29,19 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
         Ended::NotFinite(error) => Some(error),
         Ended::Done | Ended::Stopped => None,
     };
-    let writeup = Writeup::new(scenario, played.readouts(), broken, Vec::new());
-    for (name, text) in writeup.texts() {
-        fs::write(folder.path().join(name), text).with_context(cannot_write)?;
+    let readouts = played.readouts();
+    let mut meter = Meter::new();
+    let drawings = figures(&scenario, &readouts, |step, of| {
+        meter.show(step, of);
+        interruption.go_on()
+    });
+    meter.clear();
+    let Some(drawings) = drawings.map_err(anyhow::Error::msg)? else {
+        return Ok(ExitCode::from(INTERRUPTED));
+    };
+    let writeup = Writeup::new(scenario, readouts, broken, drawings);
+    for (name, bytes) in writeup.files()? {
+        fs::write(folder.path().join(name), bytes).with_context(cannot_write)?;
     }
     if interruption.may_act_at_once() {
         return Ok(ExitCode::from(INTERRUPTED));

@@ -46,6 +46,13 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
     done(lab.run(&["run", "w/run.toml", "-o", "run.csv"]));
     assert_eq!(lab.read("w/run.csv"), lab.read("run.csv"));
     let page = lab.read("w/README.md");
+    for name in ["traces", "swings", "above", "3d"] {
+        assert!(page.contains(&format!("]({name}.svg)")), "{name}: {page}");
+        let svg = lab.read(&format!("w/{name}.svg"));
+        assert!(svg.contains("width=\"86mm\""), "{name}: {svg:.300}");
+        let pdf = fs::read(lab.file("w").join(name).with_extension("pdf")).unwrap();
+        assert!(pdf.starts_with(b"%PDF-"), "{name}");
+    }
     for words in [
         "# The wobble push",
         "(0, 0, -50) N on the point top on 200 time steps from step 1 on",

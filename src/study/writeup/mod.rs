@@ -3,6 +3,7 @@
 //!
 //! The same run gives the same bytes each time: what the machine's clock says is left out.
 
+pub mod figures;
 mod languages;
 mod latex;
 mod page;
@@ -11,8 +12,10 @@ mod quantities;
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Source};
 use crate::export::columns::COLUMNS;
+use crate::figure::{self, Format, Unwritable};
 use crate::run::NotFinite;
 use crate::scenario::Scenario;
+pub use figures::Drawing;
 pub use languages::Lines;
 pub use quantities::Quantity;
 use serde_json::{Map, Value};
@@ -28,15 +31,6 @@ pub const PAGE: &str = "README.md";
 pub const LATEX: &str = "readouts.tex";
 /// Every readout.
 pub const READOUTS_FILE: &str = "readouts.json";
-
-/// A figure of the write-up, in the file `NAME.svg` and in `NAME.pdf`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Drawing {
-    /// The file's name without its ending.
-    pub name: String,
-    /// What is to be seen.
-    pub caption: String,
-}
 
 /// What a write-up is made of.
 #[derive(Clone, Debug)]
@@ -71,15 +65,30 @@ impl Writeup {
         }
     }
 
-    /// The text files, each with its name; the CSV and the figures are not among them.
-    pub fn texts(&self) -> [(&'static str, String); 4] {
+    /// All files but the CSV, each with its name and its bytes.
+    ///
+    /// # Errors
+    /// When a figure is too large for its form.
+    pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Unwritable> {
         let page = page::page(self).unwrap_or_default(); // a String takes what is written to it
-        [
+        let caption = &self.readouts.title;
+        let texts = [
             (RUN_FILE, self.scenario.to_toml()),
             (READOUTS_FILE, self.readouts_json()),
-            (LATEX, latex::table(&self.quantities, &self.readouts.title)),
+            (LATEX, latex::table(&self.quantities, caption)),
             (PAGE, page),
-        ]
+        ];
+        let mut files: Vec<_> = texts
+            .into_iter()
+            .map(|(name, text)| (name.to_owned(), text.into_bytes()))
+            .collect();
+        for drawing in &self.drawings {
+            for (ending, format) in [("svg", Format::Svg), ("pdf", Format::Pdf)] {
+                let bytes = figure::write(&drawing.scene, format)?;
+                files.push((format!("{}.{ending}", drawing.name), bytes));
+            }
+        }
+        Ok(files)
     }
 
     /// Lines that read the CSV.
