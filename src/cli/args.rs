@@ -1,5 +1,7 @@
 //! The command line, as clap reads it.
 
+use super::layout::LayoutArgs;
+use super::verify::VerifyArgs;
 use crate::physics::scheme;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -39,6 +41,8 @@ pub(super) enum Command {
     Show(ShowArgs),
     /// Hold schemes and time steps against the exact motion: errors, drifts, cost, measured order
     Compare(CompareArgs),
+    /// Compute a CSV again from its header: the same, or the first row that differs
+    Verify(VerifyArgs),
     /// List the shipped presets, or print one as TOML
     Presets {
         /// The preset to print
@@ -236,9 +240,8 @@ pub(super) struct RunArgs {
     #[command(flatten)]
     pub(super) length: LengthArgs,
 
-    /// Write every N-th row only, and the last
-    #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true, value_parser = one_or_more)]
-    pub(super) every: NonZeroU64,
+    #[command(flatten)]
+    pub(super) layout: LayoutArgs,
 
     /// Give the summary as one JSON object
     #[arg(long)]
@@ -311,7 +314,7 @@ pub(super) struct CompareArgs {
     pub(super) force: bool,
 }
 
-fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
+pub(super) fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
     text.parse()
         .map_err(|_| "must be a whole number, 1 or more".to_owned())
 }

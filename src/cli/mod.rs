@@ -5,6 +5,7 @@
 mod args;
 mod compare;
 mod info;
+mod layout;
 mod lesson;
 mod notes;
 mod played;
@@ -14,6 +15,7 @@ mod scenario;
 mod sessions;
 mod settings;
 mod show;
+mod verify;
 mod workbench;
 
 use crate::scenario::presets;
@@ -55,6 +57,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Run(args) => run::run(&args),
         Command::Show(args) => show::show(&args),
         Command::Compare(args) => compare::compare(&args),
+        Command::Verify(args) => verify::verify(&args),
         Command::Presets { name } => info::presets(name.as_deref()),
         Command::Sessions { folder } => sessions::list(folder.as_deref()),
         Command::Schemes => info::schemes(),
@@ -143,6 +146,17 @@ fn misused(error: Refused) -> ExitCode {
         }
         _ => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
     }
+}
+
+/// Ends the process as clap does where it refuses: `message` is about the command `name`.
+fn refuse(name: &str, kind: ErrorKind, message: &str) -> ! {
+    let mut command = Cli::command();
+    command.build();
+    let error = match command.find_subcommand_mut(name) {
+        Some(command) => command.error(kind, message),
+        None => command.error(kind, message),
+    };
+    error.exit()
 }
 
 /// What is said where stdout takes no more.

@@ -1,17 +1,17 @@
 //! `gyrolab run`: a run from its start to its end, without a terminal.
 
-use super::args::{Cli, RunArgs};
+use super::args::RunArgs;
 use super::progress::{self, Interruption, Meter};
 use super::scenario::scenario_of;
-use super::{INTERRUPTED, complain, print, tell};
+use super::{INTERRUPTED, complain, print, refuse, tell};
 use crate::analysis::health::{Advice, advise};
 use crate::analysis::{Health, Monitor, Readouts};
 use crate::export::stream::{self, Ended};
 use crate::export::{CsvWriter, Destination, Summary};
-use crate::run::{Simulation, Step};
+use crate::run::{Clock, Simulation, Step};
+use crate::text::number::shortest;
 use crate::text::printable::Shown;
-use anyhow::Context;
-use clap::CommandFactory;
+use anyhow::{Context, bail};
 use clap::error::ErrorKind;
 use std::cell::RefCell;
 use std::io;
@@ -29,29 +29,25 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     if args.json && to_stdout {
         let message =
             "--json and -o - both claim stdout: write the CSV to a file, or leave --json out";
-        let mut command = Cli::command();
-        command.build();
-        let run = command.find_subcommand_mut("run");
-        let error = match run {
-            Some(run) => run.error(ErrorKind::ArgumentConflict, message),
-            None => command.error(ErrorKind::ArgumentConflict, message),
-        };
-        error.exit();
+        refuse("run", ErrorKind::ArgumentConflict, message);
     }
+    let layout = args.layout.layout();
     let scenario = Arc::new(scenario_of(&args.scenario, &args.length)?);
+    if layout.begins_after(&scenario) {
+        let end = shortest(Clock::end_s(&scenario));
+        bail!("no row is left by --from: the run ends at {end} s");
+    }
     let output_path = args.output.as_deref().unwrap_or(Path::new("the output"));
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let mut output = output
-        .map(|destination| CsvWriter::new(destination, &scenario))
+        .map(|destination| CsvWriter::with_layout(destination, &scenario, layout))
         .transpose()
         .with_context(|| cannot_write(output_path))?;
     let mut simulation = Simulation::new(Arc::clone(&scenario));
     let mut monitor = Monitor::new(simulation.now());
-    let every = args.every.get();
     let (ended, wall) = play(
         &mut simulation,
         &mut monitor,
-        every,
         output.as_mut(),
         &interruption,
     )
@@ -62,6 +58,9 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let mut rows = None;
     if let Some(csv) = output {
         rows = Some(csv.count());
+        if csv.count() == 0 && ended == Ended::Done {
+            bail!("no row lies between --from and --to: they are closer than the rows");
+        }
         csv.finish()
             .with_context(|| cannot_write(output_path))?
             .keep()?;
@@ -101,7 +100,6 @@ fn cannot_write(path: &Path) -> String {
 fn play(
     simulation: &mut Simulation,
     monitor: &mut Monitor,
-    every: u64,
     output: Option<&mut CsvWriter<Destination>>,
     interruption: &Interruption,
 ) -> io::Result<(Ended, Duration)> {
@@ -110,7 +108,7 @@ fn play(
     // Each step is followed at once and held against the exact motion after its block: that is no stepping.
     let monitor = RefCell::new(monitor);
     let each = |step: &Step| monitor.borrow_mut().follow_ahead(step);
-    let ended = stream::play(simulation, steps, every, output, each, |progress| {
+    let ended = stream::play(simulation, steps, output, each, |progress| {
         monitor.borrow_mut().catch_up();
         meter.show(progress.step, progress.steps);
         match interruption.has_come() {

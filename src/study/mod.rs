@@ -1,1 +1,3 @@
 //! What many runs say, and what an exported run is worth: sweeps, verification, write-ups.
+
+pub mod verify;
