@@ -1,6 +1,7 @@
 //! The command line, as clap reads it.
 
 use super::layout::LayoutArgs;
+use super::manual::ManArgs;
 use super::verify::VerifyArgs;
 use crate::physics::scheme;
 use clap::builder::PossibleValuesParser;
@@ -73,11 +74,8 @@ pub(super) enum Command {
         /// The shell
         shell: clap_complete::Shell,
     },
-    /// Print the manual page
-    Man {
-        /// class: lessons in front of a class, sharing a screen, an account for a class [without it: the manual page]
-        topic: Option<String>,
-    },
+    /// Print the manual: all of it, the page of a command, or a topic
+    Man(ManArgs),
 }
 
 /// What is run, and what is changed in it first.
@@ -308,6 +306,10 @@ pub(super) struct CompareArgs {
     /// Write the table as CSV to this file, or to stdout for -
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
+
+    /// Give the table as one JSON object
+    #[arg(long)]
+    pub(super) json: bool,
 
     /// Replace an existing file
     #[arg(long)]

@@ -4,9 +4,12 @@
 
 mod args;
 mod compare;
+mod complete;
+mod examples;
 mod info;
 mod layout;
 mod lesson;
+mod manual;
 mod notes;
 mod played;
 mod progress;
@@ -24,7 +27,7 @@ use anyhow::Context;
 use args::{Cli, Command};
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{CommandFactory, Parser};
+use clap::{CommandFactory, FromArgMatches};
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -35,7 +38,14 @@ const INTERRUPTED: u8 = 130;
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    match complete::answered() {
+        Ok(false) => {}
+        Ok(true) => return ExitCode::SUCCESS,
+        Err(error) => return misused(Refused::ByClap(error)),
+    }
+    let parsed = command().try_get_matches();
+    let parsed = parsed.and_then(|matches| Cli::from_arg_matches(&matches));
+    let cli = match parsed {
         Ok(cli) => cli,
         Err(error) => return misused(explained(error)),
     };
@@ -47,6 +57,11 @@ pub fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// The command line with its examples, and with what completes its values.
+fn command() -> clap::Command {
+    complete::with_completers(examples::with_examples(Cli::command()))
 }
 
 fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
@@ -65,8 +80,8 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Readouts => info::readouts(),
         Command::Lesson(args) => lesson::lesson(&args),
         Command::Check { files } => info::check(&files),
-        Command::Completions { shell } => info::completions(shell),
-        Command::Man { topic } => info::man(topic.as_deref()),
+        Command::Completions { shell } => complete::completions(shell),
+        Command::Man(args) => manual::man(&args),
     }
 }
 

@@ -41,9 +41,11 @@ pub const POINT_COLUMNS: &[PointColumn] = &[
         Cell::Number(Whole(p.sample.step))
     }),
     column("t_s", "time", |p| number(p.sample.time_s)),
-    column("point", "name of the point; rim.0 is the rim's first", |p| {
-        Cell::Text(&p.point.name)
-    }),
+    column(
+        "point",
+        "name of the point; rim.0 is the rim's first",
+        |p| Cell::Text(&p.point.name),
+    ),
     column("mass_kg", "mass of the point", |p| {
         number(p.point.mass.mass)
     }),

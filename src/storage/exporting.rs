@@ -172,8 +172,8 @@ impl Job {
         };
         let (path, steps) = (self.path, shared.steps);
         let cannot_write = |error| refused(&path, error).fact();
-        let (ended, _) = stream::play(&mut simulation, steps, csv, |_| {}, watch)
-            .map_err(cannot_write)?;
+        let (ended, _) =
+            stream::play(&mut simulation, steps, csv, |_| {}, watch).map_err(cannot_write)?;
         let rows = self.csv.count();
         let destination = self.csv.finish().map_err(cannot_write)?;
         if ended == Ended::Stopped || shared.is_cancelled() {

@@ -2,9 +2,9 @@
 
 use crate::support::ground::names;
 use crate::support::scenarios::preset;
-use gyrolab::export::{CsvWriter, Layout};
 use gyrolab::export::destination::DestinationError;
 use gyrolab::export::stream;
+use gyrolab::export::{CsvWriter, Layout};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
 use gyrolab::scenario::presets::PRESETS;
@@ -108,7 +108,8 @@ fn the_estimate_of_no_rows_but_two_is_right() {
 fn it_reports_progress_and_leaves_no_file_when_cancelled() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
-    let mut exporting = Exporting::begin(endless(), &path, Layout::every(every(1000)), false).unwrap();
+    let mut exporting =
+        Exporting::begin(endless(), &path, Layout::every(every(1000)), false).unwrap();
     while exporting.progress().0 == 0 {
         thread::sleep(Duration::from_millis(1));
     }
@@ -180,7 +181,12 @@ fn what_cannot_be_written_is_refused_at_once_in_words() {
     ];
     for (path, words) in cases {
         for replace in [false, true] {
-            let refused = Exporting::begin(scenario("cusps", &[]), path, Layout::every(every(1)), replace);
+            let refused = Exporting::begin(
+                scenario("cusps", &[]),
+                path,
+                Layout::every(every(1)),
+                replace,
+            );
             let fact = refused.err().unwrap().fact();
             assert!(fact.contains(words) && !fact.contains("--force"), "{fact}");
         }
@@ -211,7 +217,8 @@ fn the_rows_before_numbers_that_are_not_finite_are_kept() {
 
 #[test]
 fn a_dash_is_a_file_in_the_lab() {
-    let exporting = Exporting::begin(endless(), Path::new("-"), Layout::every(every(1000)), false).unwrap();
+    let exporting =
+        Exporting::begin(endless(), Path::new("-"), Layout::every(every(1000)), false).unwrap();
     let is_part = |name: &String| name.starts_with(".gyrolab-") && name.ends_with(".part");
     assert!(names(Path::new(".")).iter().any(is_part));
     drop(exporting);
@@ -227,7 +234,12 @@ fn child() {
         return;
     };
     let folder = Path::new(&folder);
-    let exporting = Exporting::begin(endless(), &folder.join("run.csv"), Layout::every(every(1000)), false);
+    let exporting = Exporting::begin(
+        endless(),
+        &folder.join("run.csv"),
+        Layout::every(every(1000)),
+        false,
+    );
     let mut exporting = exporting.unwrap();
     at_exit::run_hooks(Release::Suspend);
     let (step, _) = exporting.progress();

@@ -1,14 +1,13 @@
 //! The one table of commands: the name of each, its value, and what it does.
 
 use super::Command;
+use super::exporting::export;
 use super::looking::{
     bare, camera, cursor, detail, exact, fill, hide, look_at, magnify, next, phase, pin, point_at,
     show, since, speed, sum_to, window, zoom,
 };
-use super::exporting::export;
 use super::reading::{
-    Read, count, go_to, next_push, nudge, open, push, run_until, save, set, step, told,
-    wait,
+    Read, count, go_to, next_push, nudge, open, push, run_until, save, set, step, told, wait,
 };
 use crate::scenario::Problem;
 use toml::Value;
