@@ -10,6 +10,7 @@ use crate::scenario::presets::PRESETS;
 use crate::teach::shipped::LESSONS;
 use anyhow::{Context, bail};
 use clap::{Arg, Command};
+use clap_complete::Shell;
 use clap_complete::engine::{
     ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter,
 };
@@ -76,8 +77,27 @@ fn completer(command: &str, arg: &str) -> Option<fn(&OsStr) -> Vec<CompletionCan
         .or_else(|| of_all().map(|(_, completer)| *completer))
 }
 
+/// The scripts for shells in which clap's own do not know that a value holds `=`, as those of `--set` do, or do not
+/// complete when they are loaded by name.
+const SCRIPTS: [(Shell, &str); 2] = [
+    (Shell::Bash, include_str!("completion.bash")),
+    (Shell::Zsh, include_str!("completion.zsh")),
+];
+
 /// `gyrolab completions`: the script for a shell.
-pub(super) fn completions(shell: clap_complete::Shell) -> anyhow::Result<ExitCode> {
+pub(super) fn completions(shell: Shell) -> anyhow::Result<ExitCode> {
+    let first = match shell {
+        Shell::Zsh => "#compdef gyrolab\n", // it must be the first line of a file that compinit finds
+        _ => "",
+    };
+    let script = script(shell)?;
+    print(&format!("{first}{}{script}", what_is_completed()))
+}
+
+fn script(shell: Shell) -> anyhow::Result<String> {
+    if let Some((_, script)) = SCRIPTS.iter().find(|(of, _)| *of == shell) {
+        return Ok(script.replace("VARIABLE", VARIABLE));
+    }
     let name = shell.to_string();
     let shells = Shells::builtins();
     let Some(shell) = shells.completer(&name) else {
@@ -85,13 +105,7 @@ pub(super) fn completions(shell: clap_complete::Shell) -> anyhow::Result<ExitCod
     };
     let mut script = Vec::new();
     shell.write_registration(VARIABLE, "gyrolab", "gyrolab", "gyrolab", &mut script)?;
-    let script = String::from_utf8(script).context("the completion script is not text")?;
-    // zsh wants its line first in a file that it loads by itself.
-    let (first, rest) = match script.split_once('\n') {
-        Some((first, rest)) if first.starts_with('#') => (format!("{first}\n"), rest),
-        _ => (String::new(), script.as_str()),
-    };
-    print(&format!("{first}{}{rest}", what_is_completed()))
+    String::from_utf8(script).context("the completion script is not text")
 }
 
 /// What the script completes, as its comment: each command with its options.

@@ -12,7 +12,7 @@ use crate::text::printable::{Shown, printable};
 use anyhow::{Context, bail};
 use clap::{Args, Command};
 use clap_mangen::Man;
-use roff::{synopsis, terms, verbatim};
+use roff::{synopsis, terms, title, verbatim};
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::{self, ExitCode, Stdio};
@@ -117,7 +117,7 @@ fn shown_by_man(page: &str) -> io::Result<bool> {
 fn page(gyrolab: &Command) -> anyhow::Result<String> {
     let mut page = Vec::new();
     let main = Man::new(gyrolab.clone());
-    main.render_title(&mut page)?;
+    page.extend(title("gyrolab").as_bytes());
     main.render_name_section(&mut page)?;
     page.extend(synopsis(gyrolab).as_bytes());
     main.render_description_section(&mut page)?;
@@ -157,10 +157,9 @@ fn page(gyrolab: &Command) -> anyhow::Result<String> {
 /// The page of one command.
 fn page_of(command: &Command) -> anyhow::Result<String> {
     let name = command.get_name();
-    let title = format!("gyrolab-{name}");
-    let mut page = Vec::new();
-    let man = Man::new(command.clone().display_name(title.clone())).title(title);
-    man.render_title(&mut page)?;
+    let full_name = format!("gyrolab-{name}");
+    let mut page = title(&full_name).into_bytes();
+    let man = Man::new(command.clone().display_name(full_name));
     man.render_name_section(&mut page)?;
     page.extend(synopsis(command).as_bytes());
     man.render_description_section(&mut page)?;
@@ -179,5 +178,7 @@ fn page_of(command: &Command) -> anyhow::Result<String> {
 }
 
 fn finished(page: Vec<u8>) -> anyhow::Result<String> {
-    String::from_utf8(page).context("the manual is not text")
+    let page = String::from_utf8(page).context("the manual is not text")?;
+    // clap_mangen's space above possible values is two line breaks with an empty line between them.
+    Ok(page.replace(".br\n\n.br\n", ".sp\n"))
 }

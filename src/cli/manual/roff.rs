@@ -1,5 +1,15 @@
 //! Pieces of manual pages in roff, the language of man(1).
 
+/// The day on which the manual was last gone through.
+const DATE: &str = "2026-11-22";
+
+/// The head of the page `name`.
+pub(super) fn title(name: &str) -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    let name = plain(name);
+    format!(".TH {name} 1 {DATE} \"gyrolab {version}\" \"gyrolab manual\"\n")
+}
+
 /// The manual's synopsis of `command`: every option with its value.
 pub(super) fn synopsis(command: &clap::Command) -> String {
     let mut line = format!("\\fB{}\\fR", plain(command.get_name()));
