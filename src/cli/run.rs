@@ -1,18 +1,18 @@
 //! `gyrolab run`: a run from its start to its end, without a terminal.
 
-use super::args::{Cli, RunArgs};
+use super::args::RunArgs;
 use super::progress::{self, Interruption, Meter};
 use super::scenario::scenario_of;
-use super::{INTERRUPTED, complain, print, tell};
+use super::{INTERRUPTED, complain, print, refuse, tell};
 use crate::analysis::health::{Advice, advise};
 use crate::analysis::{Health, Monitor, Readouts};
 use crate::export::stream::{self, Ended};
 use crate::export::{CsvWriter, Destination, Summary};
-use crate::run::{Simulation, Step};
+use crate::run::{Clock, Simulation, Step};
 use crate::scenario::Scenario;
+use crate::text::number::shortest;
 use crate::text::printable::Shown;
-use anyhow::Context;
-use clap::CommandFactory;
+use anyhow::{Context, bail};
 use clap::error::ErrorKind;
 use std::cell::RefCell;
 use std::io::{self, Write};
@@ -30,23 +30,27 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     if args.json && to_stdout {
         let message =
             "--json and -o - both claim stdout: write the CSV to a file, or leave --json out";
-        let mut command = Cli::command();
-        command.build();
-        let run = command.find_subcommand_mut("run");
-        let error = match run {
-            Some(run) => run.error(ErrorKind::ArgumentConflict, message),
-            None => command.error(ErrorKind::ArgumentConflict, message),
-        };
-        error.exit();
+        refuse("run", ErrorKind::ArgumentConflict, message);
     }
+    let layout = args.layout.layout();
     let scenario = Arc::new(scenario_of(&args.scenario, &args.length)?);
+    if layout.begins_after(&scenario) {
+        let end = shortest(Clock::end_s(&scenario));
+        bail!("no row is left by --from: the run ends at {end} s");
+    }
     let output_path = args.output.as_deref().unwrap_or(Path::new("the output"));
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
-    let every = args.every.get();
-    let mut played = played(&scenario, every, output, &interruption)
+    let csv = output
+        .map(|destination| CsvWriter::with_layout(destination, &scenario, layout))
+        .transpose()
         .with_context(|| cannot_write(output_path))?;
+    let mut played =
+        played(&scenario, csv, &interruption).with_context(|| cannot_write(output_path))?;
     if played.ended == Ended::Stopped {
         return Ok(ExitCode::from(INTERRUPTED)); // what was written so far goes with its temporary name
+    }
+    if played.rows == Some(0) && played.ended == Ended::Done {
+        bail!("no row lies between --from and --to: they are closer than the rows");
     }
     if let Some(output) = played.output.take() {
         output.keep()?;
@@ -108,28 +112,18 @@ impl<W> Played<W> {
     }
 }
 
-/// Plays the run of `scenario` to its end and writes every `every`-th row of it to `output`.
+/// Plays the run of `scenario` to its end and writes its rows to `csv`.
 ///
 /// # Errors
-/// When `output` cannot be written.
+/// When `csv` cannot be written.
 pub(super) fn played<W: Write>(
     scenario: &Arc<Scenario>,
-    every: u64,
-    output: Option<W>,
+    mut csv: Option<CsvWriter<W>>,
     interruption: &Interruption,
 ) -> io::Result<Played<W>> {
-    let mut csv = output
-        .map(|output| CsvWriter::new(output, scenario))
-        .transpose()?;
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut monitor = Monitor::new(simulation.now());
-    let (ended, wall) = play(
-        &mut simulation,
-        &mut monitor,
-        every,
-        csv.as_mut(),
-        interruption,
-    )?;
+    let (ended, wall) = play(&mut simulation, &mut monitor, csv.as_mut(), interruption)?;
     let rows = csv.as_ref().map(CsvWriter::count);
     let output = csv.map(CsvWriter::finish).transpose()?;
     Ok(Played {
@@ -146,7 +140,6 @@ pub(super) fn played<W: Write>(
 fn play<W: Write>(
     simulation: &mut Simulation,
     monitor: &mut Monitor,
-    every: u64,
     output: Option<&mut CsvWriter<W>>,
     interruption: &Interruption,
 ) -> io::Result<(Ended, Duration)> {
@@ -155,7 +148,7 @@ fn play<W: Write>(
     // Each step is followed at once and held against the exact motion after its block: that is no stepping.
     let monitor = RefCell::new(monitor);
     let each = |step: &Step| monitor.borrow_mut().follow_ahead(step);
-    let ended = stream::play(simulation, steps, every, output, each, |progress| {
+    let ended = stream::play(simulation, steps, output, each, |progress| {
         monitor.borrow_mut().catch_up();
         meter.show(progress.step, progress.steps);
         match interruption.has_come() {

@@ -5,8 +5,8 @@ use super::progress::{self, Meter};
 use super::run::played;
 use super::scenario::scenario_of;
 use super::{INTERRUPTED, complain, tell};
-use crate::export::Folder;
 use crate::export::stream::Ended;
+use crate::export::{CsvWriter, Folder};
 use crate::study::writeup::figures::figures;
 use crate::study::writeup::{CSV, Writeup};
 use crate::text::printable::Shown;
@@ -21,7 +21,8 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let folder = Folder::begin(&args.output, args.force)?;
     let cannot_write = || format!("cannot write {}", Shown(&args.output));
     let csv = File::create(folder.path().join(CSV)).with_context(cannot_write)?;
-    let mut played = played(&scenario, 1, Some(csv), &interruption).with_context(cannot_write)?;
+    let csv = CsvWriter::new(csv, &scenario).with_context(cannot_write)?;
+    let mut played = played(&scenario, Some(csv), &interruption).with_context(cannot_write)?;
     if played.ended == Ended::Stopped {
         return Ok(ExitCode::from(INTERRUPTED)); // the folder goes with its temporary name
     }

@@ -1,15 +1,14 @@
 //! The files of the lab: their folder, which of them may be read and written, and the export in progress.
 
 use super::carry_out::{Answer, Done, Refusal, UnderWay};
-use crate::export::Destination;
 use crate::export::destination::DestinationError;
+use crate::export::{Destination, Layout};
 use crate::scenario::Scenario;
 use crate::storage::confined::Confined;
 use crate::storage::exporting::{self, Exporting, Written};
 use crate::text::printable::{Shown, is_steering};
 use indicatif::{DecimalBytes, HumanCount};
 use std::io::Write;
-use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -78,7 +77,7 @@ impl Files {
         &mut self,
         scenario: &Arc<Scenario>,
         path: &Path,
-        every: NonZeroU64,
+        layout: Layout,
         force: bool,
     ) -> Answer {
         if self.exporting.is_some() {
@@ -86,7 +85,7 @@ impl Files {
         }
         is_named(path)?;
         self.admit(path)?;
-        let begun = Exporting::begin(Arc::clone(scenario), path, every, force);
+        let begun = Exporting::begin(Arc::clone(scenario), path, layout, force);
         self.exporting = Some(begun.map_err(refusal)?);
         self.failure = None;
         Ok(Done::saying("the export goes on in the background").going_on(UnderWay::Exporting))

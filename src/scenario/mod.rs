@@ -11,6 +11,7 @@ pub mod dotted;
 mod edits;
 pub mod file;
 pub(crate) mod growing;
+pub mod head;
 pub mod keys;
 mod kind;
 mod model;

@@ -10,6 +10,7 @@ mod chosen;
 mod commands;
 mod coverage;
 mod exact;
+mod exported;
 mod finding;
 mod health;
 mod journal;
