@@ -82,7 +82,7 @@ pub(super) fn key_list() -> Result<String, std::fmt::Error> {
         };
         writeln!(text, "{path}{must}\n    {about}")?;
     }
-    text.push_str("\nA * stands for a number from 0: [[body.point]], [[push]], [[expected]] and [[edit]] may be repeated.\n");
+    text.push_str("\nA * stands for a number from 0: [[body.point]], [[body.part]], [[push]], [[expected]] and [[edit]] may be repeated.\n");
     text.push_str("A table may be left out whole where none of its keys is wanted, but [start] and [motion].\n");
     Ok(text)
 }
@@ -162,10 +162,15 @@ fn described(scenario: &Scenario) -> String {
         1 => ", 1 edit".to_owned(),
         more => format!(", {more} edits"),
     };
+    let parts = match scenario.body.parts.len() {
+        0 => String::new(),
+        1 => "1 part and ".to_owned(),
+        more => format!("{more} parts and "),
+    };
     format!(
-        "good: \"{}\", {} points, scheme {}, steps: {}{edits}{}",
+        "good: \"{}\", {parts}{} points, scheme {}, steps: {}{edits}{}",
         scenario.file.title,
-        scenario.body.mechanics.points().len(),
+        scenario.body.points_before_parts(),
         scenario.motion.scheme.name,
         steps_in_words(scenario, scenario.steps),
         pushes_without_effect(scenario),

@@ -23,6 +23,7 @@ mod mangled;
 mod messages;
 mod mouse;
 mod parameters;
+mod parts;
 mod pictures;
 mod present;
 mod presets;
