@@ -15,7 +15,7 @@ const MINOR_TICK: f64 = 1.7;
 /// Half the width of the ends of an error bar, pt.
 const BAR_END: f64 = 1.7;
 /// What is said where error bars would be hidden by their marks.
-const SMALL_ERRORS: &str = "error bars smaller than the marks are left out";
+const SMALL_ERRORS: &str = "errors smaller than marks";
 
 impl Chart {
     /// The chart on its page.
