@@ -10,6 +10,7 @@ mod chosen;
 mod commands;
 mod coverage;
 mod exact;
+mod figure_files;
 mod finding;
 mod health;
 mod journal;
