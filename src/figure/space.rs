@@ -10,7 +10,7 @@ use super::layout::EDGE;
 use super::legend::Legend;
 use super::of_runs::{Drawn, Run};
 use super::quantity;
-use super::scene::{Color, Path, Pen, Point, Scene};
+use super::scene::{Color, Pen, Point, Scene};
 use super::ticks::{Tick, Ticks};
 use crate::observe::camera::Camera;
 use nalgebra::Vector3;
@@ -158,7 +158,7 @@ impl Space {
                 self.place(&boxed)
             };
             let shadow = drawn.course.path.iter().map(floor);
-            scene.stroke(Path::polyline(apart(shadow)), round(0.45, grey(198)), None);
+            scene.curve(&[apart(shadow)], &round(0.45, grey(198)), None);
         }
         self.paths(drawn, &mut scene);
         for axis in 0..3 {
@@ -331,16 +331,15 @@ impl Space {
         let degree = |depth: f64| (share.place(depth).max(0.0) as usize).min(DEPTHS - 1);
         for nearness in 0..DEPTHS {
             for (path, drawn) in paths.iter().zip(drawn) {
-                for piece in pieces(path, |depth| degree(depth) == nearness) {
-                    let part = nearness as f64 / (DEPTHS - 1) as f64;
-                    let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
-                    let color = paler(drawn.style.color, FARTHEST_WHITE * (1.0 - part));
-                    let pen = Pen {
-                        dash_pt: drawn.style.dash_pt.to_vec(),
-                        ..round(width, color)
-                    };
-                    scene.stroke(Path::polyline(piece), pen, None);
-                }
+                let part = nearness as f64 / (DEPTHS - 1) as f64;
+                let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
+                let color = paler(drawn.style.color, FARTHEST_WHITE * (1.0 - part));
+                let pen = Pen {
+                    dash_pt: drawn.style.dash_pt.to_vec(),
+                    ..round(width, color)
+                };
+                let here = pieces(path, |depth| degree(depth) == nearness);
+                scene.curve(&here, &pen, None);
             }
         }
     }
