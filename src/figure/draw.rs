@@ -117,7 +117,7 @@ impl Panel {
             .iter()
             .filter(|series| series.style.width_pt > 0.0)
         {
-            scene.curve(&placed.line(series), &series.style.pen(), Some(frame));
+            placed.draw_line(series, scene);
         }
         draw_frame(placed, layout, scene);
         for series in &self.series {

@@ -5,6 +5,7 @@
 
 use super::axis::Scale;
 use super::chart::Axis;
+use super::curve;
 use super::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
 use super::layout::EDGE;
 use super::legend::Legend;
@@ -31,8 +32,6 @@ const TICK: f64 = 2.5;
 const TICK_GAP: f64 = 2.2;
 /// Between labels and title, pt.
 const TITLE_GAP: f64 = 3.0;
-/// Points on the page nearer to each other than this are one, pt.
-const SAME_PT: f64 = 0.04;
 
 /// Ways around the box.
 const SIDES: [f64; 2] = [-0.5, 0.5];
@@ -157,8 +156,8 @@ impl Space {
                 boxed.z = -0.5 * TALL;
                 self.place(&boxed)
             };
-            let shadow = drawn.course.path.iter().map(floor);
-            scene.curve(&[apart(shadow)], &round(0.45, grey(198)), None);
+            let shadow = drawn.course.path.iter().map(floor).collect();
+            curve::put(vec![shadow], round(0.45, grey(198)), None, &mut scene);
         }
         self.paths(drawn, &mut scene);
         for axis in 0..3 {
@@ -338,8 +337,8 @@ impl Space {
                     dash_pt: drawn.style.dash_pt.to_vec(),
                     ..round(width, color)
                 };
-                let here = pieces(path, |depth| degree(depth) == nearness);
-                scene.curve(&here, &pen, None);
+                let pieces = pieces(path, |depth| degree(depth) == nearness);
+                curve::put(pieces, pen, None, scene);
             }
         }
     }
@@ -359,29 +358,10 @@ fn pieces(path: &[(Point, f64)], is_here: impl Fn(f64) -> bool) -> Vec<Vec<Point
             pieces.push(std::mem::take(&mut piece));
         }
     }
-    pieces.push(piece);
-    let drawn = pieces.into_iter().map(|piece| apart(piece.into_iter()));
-    drawn.filter(|piece| piece.len() > 1).collect()
-}
-
-/// `points` without those that stand where the one before stands; the last stays.
-fn apart(points: impl Iterator<Item = Point>) -> Vec<Point> {
-    let mut kept: Vec<Point> = Vec::new();
-    let mut last = None;
-    for point in points.filter(|point| point.x.is_finite() && point.y.is_finite()) {
-        let is_apart = |before: &Point| {
-            (before.x - point.x).abs() > SAME_PT || (before.y - point.y).abs() > SAME_PT
-        };
-        last = Some(point);
-        if kept.last().is_none_or(is_apart) {
-            kept.push(point);
-        }
+    if !piece.is_empty() {
+        pieces.push(piece);
     }
-    match last {
-        Some(last) if kept.last() != Some(&last) => kept.push(last),
-        _ => {}
-    }
-    kept
+    pieces
 }
 
 fn round(width_pt: f64, color: Color) -> Pen {

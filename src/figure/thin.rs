@@ -1,8 +1,7 @@
 //! Lines with fewer points that look the same: for curves in a plane, which may turn back and cover themselves.
 
 use super::cover;
-use super::ink::Frame;
-use super::scene::{Item, Paint, Path, Pen, Point, Scene};
+use super::scene::{Path, Point};
 
 /// How far a line may leave its points, as a share of its width: a tenth of a dot at 600 dpi for a line of 0.7 pt.
 const TOLERANCE: f64 = 0.02;
@@ -20,35 +19,13 @@ pub enum Thinned {
     Area(Path),
 }
 
-impl Scene {
-    /// Draws a line of several pieces, cut off outside of `clip`, with no more points than its look needs.
-    pub fn curve(&mut self, pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>) {
-        let thinned = match pen.has_round_ends() {
-            true => plane_curve(pieces, pen.width_pt),
-            false => Thinned::Lines(few_points(pieces, pen.width_pt)),
-        };
-        let (paths, paint) = match thinned {
-            Thinned::Lines(lines) => (
-                lines.into_iter().map(Path::polyline).collect(),
-                Paint::Stroke(pen.clone()),
-            ),
-            Thinned::Area(area) => (vec![area], Paint::Fill(pen.color)),
-        };
-        let clip = clip.map(Frame::corners);
-        let item = |path| Item {
-            path,
-            paint: paint.clone(),
-            clip,
-            words: None,
-        };
-        self.items.extend(paths.into_iter().map(item));
-    }
-}
-
 /// A solid line with round corners and ends, `width_pt` wide, with fewer points. Where it runs over itself so often that the
 /// outline of its ink has fewer points than the line, it becomes that area.
 pub fn plane_curve(pieces: &[Vec<Point>], width_pt: f64) -> Thinned {
-    let lines = few_points(pieces, width_pt);
+    let lines: Vec<Vec<Point>> = pieces
+        .iter()
+        .map(|piece| simplified(piece, TOLERANCE * width_pt))
+        .collect();
     let count: usize = lines.iter().map(Vec::len).sum();
     if count > MANY {
         let area = cover::area(&lines, width_pt);
@@ -57,13 +34,6 @@ pub fn plane_curve(pieces: &[Vec<Point>], width_pt: f64) -> Thinned {
         }
     }
     Thinned::Lines(lines)
-}
-
-fn few_points(pieces: &[Vec<Point>], width_pt: f64) -> Vec<Vec<Point>> {
-    pieces
-        .iter()
-        .map(|piece| simplified(piece, TOLERANCE * width_pt))
-        .collect()
 }
 
 /// Some of the points, the first and the last among them: none of the others lies farther than `within_pt` from the line
