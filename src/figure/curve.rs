@@ -1,15 +1,19 @@
 //! The line of a series on the page, without the points that nobody could see.
 
-use super::axis::Scale;
 use super::chart::Series;
 use super::clip::clipped;
 use super::ink::{Frame, at};
 use super::layout::Placed;
-use super::scene::Point;
+use super::scene::{Path, Pen, Point, Scene};
+use super::thin::{Thinned, plane_curve, simplified};
 
 /// Width of a column of which only first, lowest, highest and last point are drawn, pt. It is well below the width of a line,
 /// and below a dot at 300 dpi.
 const COLUMN_PT: f64 = 0.2;
+/// Swings of a dashed line that are lower than this are drawn as their middle, pt: they would take up its dashes.
+const FLAT_PT: f64 = 0.4;
+/// How far a dashed line may leave its points, as a share of its width.
+const TOLERANCE: f64 = 0.02;
 /// How far outside of its panel a line is followed, pt: half its width, which is cut off at the edge.
 const BEYOND_PT: f64 = 2.0;
 
@@ -19,11 +23,11 @@ impl Placed {
         at(self.x.place(point[0]), self.y.place(point[1]))
     }
 
-    /// The pieces of the line of `series` in this panel.
-    pub fn line(&self, series: &Series) -> Vec<Vec<Point>> {
+    /// Draws the line of `series` in this panel.
+    pub fn draw_line(&self, series: &Series, scene: &mut Scene) {
         let places = series.points.iter().map(|point| self.place(point));
         let pieces = clipped(places, &self.frame.grown(BEYOND_PT));
-        pieces.into_iter().map(thinned).collect()
+        put(pieces, series.style.pen(), Some(&self.frame), scene);
     }
 
     /// Whether something of `series` is drawn in `frame`.
@@ -46,11 +50,35 @@ impl Placed {
     }
 }
 
-/// `points` with their first, lowest, highest and last point of each column alone, where they run to the right.
-fn thinned(points: Vec<Point>) -> Vec<Point> {
-    let runs_right = points.windows(2).all(|pair| pair[1].x >= pair[0].x);
-    if points.len() < 8 || !runs_right {
-        return points;
+/// Draws a line that is cut off outside of `clip`, in fewer pieces that look the same.
+pub fn put(pieces: Vec<Vec<Point>>, pen: Pen, clip: Option<&Frame>, scene: &mut Scene) {
+    let runs_right = |piece: &Vec<Point>| piece.windows(2).all(|pair| pair[1].x >= pair[0].x);
+    let is_dashed = !pen.dash_pt.is_empty();
+    let lines = if pieces.iter().all(runs_right) {
+        let flat = if is_dashed { FLAT_PT } else { 0.0 };
+        pieces.iter().map(|piece| thinned(piece, flat)).collect()
+    } else if is_dashed {
+        let within = TOLERANCE * pen.width_pt;
+        pieces
+            .iter()
+            .map(|piece| simplified(piece, within))
+            .collect()
+    } else {
+        match plane_curve(&pieces, pen.width_pt) {
+            Thinned::Lines(lines) => lines,
+            Thinned::Area(area) => return scene.fill_in(area, pen.color, clip),
+        }
+    };
+    for line in lines {
+        scene.stroke(Path::polyline(line), pen.clone(), clip);
+    }
+}
+
+/// `points`, which run to the right, with their first, lowest, highest and last of each column alone; with one in the middle,
+/// where all of a column's are no farther apart than `flat_pt`.
+fn thinned(points: &[Point], flat_pt: f64) -> Vec<Point> {
+    if points.len() < 8 {
+        return points.to_vec();
     }
     let column = |point: &Point| (point.x / COLUMN_PT).floor();
     let mut kept = Vec::new();
@@ -60,6 +88,14 @@ fn thinned(points: Vec<Point>) -> Vec<Point> {
         let lowest = column.iter().max_by(by_height);
         let highest = column.iter().min_by(by_height);
         let last = column.last();
+        if let (Some(lowest), Some(highest)) = (lowest, highest)
+            && column.len() > 1
+            && lowest.y - highest.y < flat_pt
+        {
+            let x = 0.5 * (column[0].x + column[column.len() - 1].x);
+            kept.push(at(x, 0.5 * (lowest.y + highest.y)));
+            continue;
+        }
         // In the order in which the line comes to them.
         let mut four: Vec<&Point> = [first, lowest, highest, last]
             .into_iter()
@@ -72,14 +108,6 @@ fn thinned(points: Vec<Point>) -> Vec<Point> {
     kept
 }
 
-impl Scale {
-    /// Whether two places of the axis can be told apart at all.
-    pub fn is_sound(&self) -> bool {
-        let (low, high) = self.range;
-        low < high && (high - low).is_finite()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -90,7 +118,7 @@ mod tests {
         fn thinning_keeps_every_extreme(values in prop::collection::vec(-1e3_f64..1e3, 8..4000), width in 1.0_f64..200.0) {
             let step = width / values.len() as f64;
             let points: Vec<_> = values.iter().enumerate().map(|(i, &y)| at(i as f64 * step, y)).collect();
-            let kept = thinned(points.clone());
+            let kept = thinned(&points, 0.0);
             let columns = (width / COLUMN_PT) as usize + 2;
             prop_assert!(kept.len() <= 4 * columns);
             for column in points.chunk_by(|a, b| (a.x / COLUMN_PT).floor() == (b.x / COLUMN_PT).floor()) {

@@ -4,7 +4,7 @@ use super::chart::{Chart, Panel, Series};
 use super::ink::{self, BLACK, LABEL_PT, MARK_PT, at, circle, grey, pen};
 use super::layout::{EDGE, GAP, Layout, Placed};
 use super::legend::Legend;
-use super::scene::{Path, Scene};
+use super::scene::Scene;
 use super::slope;
 
 /// Width of axes, ticks and error bars, pt.
@@ -15,7 +15,7 @@ const MINOR_TICK: f64 = 1.7;
 /// Half the width of the ends of an error bar, pt.
 const BAR_END: f64 = 1.7;
 /// What is said where error bars would be hidden by their marks.
-const SMALL_ERRORS: &str = "error bars smaller than the marks are left out";
+const SMALL_ERRORS: &str = "errors smaller than marks";
 
 impl Chart {
     /// The chart on its page.
@@ -117,9 +117,7 @@ impl Panel {
             .iter()
             .filter(|series| series.style.width_pt > 0.0)
         {
-            for piece in placed.line(series) {
-                scene.stroke(Path::polyline(piece), series.style.pen(), Some(frame));
-            }
+            placed.draw_line(series, scene);
         }
         draw_frame(placed, layout, scene);
         for series in &self.series {

@@ -158,6 +158,11 @@ impl Scene {
         self.put(path, Paint::Fill(color), None, None);
     }
 
+    /// Fills `path`, cut off outside of `clip`.
+    pub fn fill_in(&mut self, path: Path, color: Color, clip: Option<&Frame>) {
+        self.put(path, Paint::Fill(color), clip.map(Frame::corners), None);
+    }
+
     /// Draws the line of `path`, cut off outside of `clip`.
     pub fn stroke(&mut self, path: Path, pen: Pen, clip: Option<&Frame>) {
         self.put(path, Paint::Stroke(pen), clip.map(Frame::corners), None);

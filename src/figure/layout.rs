@@ -21,6 +21,9 @@ const COLUMN_PT: f64 = 243.78;
 /// Height of one panel alone, of each of two, of each of more, pt.
 const HEIGHTS: [f64; 3] = [140.0, 88.0, 66.0];
 
+/// Many decades need a higher panel.
+const LOG: f64 = 1.25;
+
 /// A panel in its place.
 #[derive(Clone, Debug)]
 pub struct Placed {
@@ -140,6 +143,8 @@ fn fitted(title: String, room: f64) -> (String, f64) {
 fn panel_height(chart: &Chart) -> f64 {
     let count = chart.panels.len();
     let height = HEIGHTS[count.clamp(1, HEIGHTS.len()) - 1];
+    let is_log = chart.panels.iter().any(|panel| panel.y.is_log);
+    let height = if is_log { LOG * height } else { height };
     // A wide figure is lower for its width than a narrow one.
     let wide = (chart.width_pt / COLUMN_PT).clamp(0.6, 3.0).powf(0.6);
     // Numbers in the panels' titles are the same for all: the longest title decides.

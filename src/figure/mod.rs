@@ -2,6 +2,7 @@
 //!
 //! - [`format`](mod@format): a page as the bytes of a file, by [`svg`], [`pdf`] and [`png`].
 //! - [`letters`]: text as outlines.
+//! - [`thin`]: lines with fewer points; [`cover`]: the outline of what a line covers.
 //! - [`scene`]: what stands on the page, as filled and stroked paths; no back end is named there.
 //! - [`chart`]: what a figure with axes shows; [`layout`] gives its parts their places, and [`draw`] puts them on a page.
 //! - [`of_runs`]: figures of runs, whose numbers [`course`] takes from stepping through them; [`kind`] has their names.
@@ -11,6 +12,7 @@ pub mod axis;
 pub mod chart;
 pub mod clip;
 pub mod course;
+pub mod cover;
 pub mod curve;
 pub mod dense;
 pub mod draw;
@@ -32,6 +34,7 @@ pub mod slope;
 mod space;
 pub mod svg;
 pub mod table;
+pub mod thin;
 pub mod ticks;
 
 pub use format::{Format, Unwritable, write};

@@ -71,6 +71,8 @@ fn comparison(
             {
                 best = Some((count, slope));
             }
+            // Panels beside each other share their names.
+            let slope = slope.filter(|_| columns.len() == 1);
             let slope = slope.map(|(_, slope)| format!(", slope {}", significant(slope, 2)));
             let slope = super::ticks::with_minus(&slope.unwrap_or_default());
             let room = longest_name(width_pt) - super::ink::width(&slope, LABEL_PT);

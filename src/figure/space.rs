@@ -5,12 +5,13 @@
 
 use super::axis::Scale;
 use super::chart::Axis;
+use super::curve;
 use super::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
 use super::layout::EDGE;
 use super::legend::Legend;
 use super::of_runs::{Drawn, Run};
 use super::quantity;
-use super::scene::{Color, Path, Pen, Point, Scene};
+use super::scene::{Color, Pen, Point, Scene};
 use super::ticks::{Tick, Ticks};
 use crate::observe::camera::Camera;
 use nalgebra::Vector3;
@@ -31,8 +32,6 @@ const TICK: f64 = 2.5;
 const TICK_GAP: f64 = 2.2;
 /// Between labels and title, pt.
 const TITLE_GAP: f64 = 3.0;
-/// Points on the page nearer to each other than this are one, pt.
-const SAME_PT: f64 = 0.04;
 
 /// Ways around the box.
 const SIDES: [f64; 2] = [-0.5, 0.5];
@@ -157,8 +156,8 @@ impl Space {
                 boxed.z = -0.5 * TALL;
                 self.place(&boxed)
             };
-            let shadow = drawn.course.path.iter().map(floor);
-            scene.stroke(Path::polyline(apart(shadow)), round(0.45, grey(198)), None);
+            let shadow = drawn.course.path.iter().map(floor).collect();
+            curve::put(vec![shadow], round(0.45, grey(198)), None, &mut scene);
         }
         self.paths(drawn, &mut scene);
         for axis in 0..3 {
@@ -331,16 +330,15 @@ impl Space {
         let degree = |depth: f64| (share.place(depth).max(0.0) as usize).min(DEPTHS - 1);
         for nearness in 0..DEPTHS {
             for (path, drawn) in paths.iter().zip(drawn) {
-                for piece in pieces(path, |depth| degree(depth) == nearness) {
-                    let part = nearness as f64 / (DEPTHS - 1) as f64;
-                    let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
-                    let color = paler(drawn.style.color, FARTHEST_WHITE * (1.0 - part));
-                    let pen = Pen {
-                        dash_pt: drawn.style.dash_pt.to_vec(),
-                        ..round(width, color)
-                    };
-                    scene.stroke(Path::polyline(piece), pen, None);
-                }
+                let part = nearness as f64 / (DEPTHS - 1) as f64;
+                let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
+                let color = paler(drawn.style.color, FARTHEST_WHITE * (1.0 - part));
+                let pen = Pen {
+                    dash_pt: drawn.style.dash_pt.to_vec(),
+                    ..round(width, color)
+                };
+                let pieces = pieces(path, |depth| degree(depth) == nearness);
+                curve::put(pieces, pen, None, scene);
             }
         }
     }
@@ -360,29 +358,10 @@ fn pieces(path: &[(Point, f64)], is_here: impl Fn(f64) -> bool) -> Vec<Vec<Point
             pieces.push(std::mem::take(&mut piece));
         }
     }
-    pieces.push(piece);
-    let drawn = pieces.into_iter().map(|piece| apart(piece.into_iter()));
-    drawn.filter(|piece| piece.len() > 1).collect()
-}
-
-/// `points` without those that stand where the one before stands; the last stays.
-fn apart(points: impl Iterator<Item = Point>) -> Vec<Point> {
-    let mut kept: Vec<Point> = Vec::new();
-    let mut last = None;
-    for point in points.filter(|point| point.x.is_finite() && point.y.is_finite()) {
-        let is_apart = |before: &Point| {
-            (before.x - point.x).abs() > SAME_PT || (before.y - point.y).abs() > SAME_PT
-        };
-        last = Some(point);
-        if kept.last().is_none_or(is_apart) {
-            kept.push(point);
-        }
+    if !piece.is_empty() {
+        pieces.push(piece);
     }
-    match last {
-        Some(last) if kept.last() != Some(&last) => kept.push(last),
-        _ => {}
-    }
-    kept
+    pieces
 }
 
 fn round(width_pt: f64, color: Color) -> Pen {

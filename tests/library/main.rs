@@ -11,6 +11,7 @@ mod commands;
 mod coverage;
 mod exact;
 mod exported;
+mod figure_files;
 mod finding;
 mod health;
 mod journal;

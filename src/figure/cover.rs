@@ -1,0 +1,307 @@
+//! The area that the ink of a line covers, as outlines.
+//!
+//! The ink is put into a grid of square cells, the boundary of the inked cells is followed, and its steps are made straight
+//! again. The grid is finer than the dots of a printer, and what it cannot tell apart is one area.
+
+use super::scene::{Path, Point, Segment};
+use super::thin::simplified;
+
+/// Sides of a cell, pt: at 1200 and at 600 dots an inch. The coarser one is taken where the finer one gives too many points.
+const CELLS_PT: [f64; 2] = [0.06, 0.12];
+/// Points of an outline beyond which the grid is made coarser: a file of 800 kB.
+const MANY: usize = 100_000;
+/// Cells of a grid at most.
+const MOST_CELLS: f64 = 64e6;
+/// How far an outline may leave the middles of the cells' sides, in cells.
+const SMOOTH: f64 = 1.0;
+/// An outline of so many sides of cells is a dot that cannot be seen.
+const SMALLEST: usize = 8;
+
+/// The outline of the ink of lines with round corners and ends, `width_pt` wide; inked is what it winds about.
+pub fn area(lines: &[Vec<Point>], width_pt: f64) -> Path {
+    let mut area = Path::default();
+    for cell_pt in CELLS_PT {
+        let Some(mut grid) = Grid::around(lines, width_pt, cell_pt) else {
+            continue;
+        };
+        for pair in lines.iter().flat_map(|line| line.windows(2)) {
+            grid.ink(pair[0], pair[1], 0.5 * width_pt / cell_pt);
+        }
+        area = grid.outlines();
+        if area.0.len() <= MANY {
+            break;
+        }
+    }
+    area
+}
+
+/// Cells in rows from the top, with an empty one at each edge.
+struct Grid {
+    /// The place of the upper left corner, pt.
+    origin: Point,
+    cell_pt: f64,
+    columns: usize,
+    is_inked: Vec<bool>,
+}
+
+impl Grid {
+    /// `None` where nothing is drawn, where a place is not a number, or where the grid would be too large.
+    fn around(lines: &[Vec<Point>], width_pt: f64, cell_pt: f64) -> Option<Self> {
+        let points = || lines.iter().flatten();
+        let (left, right) = range(points().map(|p| p.x))?;
+        let (top, bottom) = range(points().map(|p| p.y))?;
+        let margin = 0.5 * width_pt + 2.0 * cell_pt;
+        let count = |from: f64, to: f64| libm::ceil((to - from + 2.0 * margin) / cell_pt);
+        let (columns, rows) = (count(left, right), count(top, bottom));
+        let fits = columns * rows <= MOST_CELLS;
+        fits.then(|| Self {
+            origin: Point {
+                x: left - margin,
+                y: top - margin,
+            },
+            cell_pt,
+            columns: columns as usize,
+            is_inked: vec![false; columns as usize * rows as usize],
+        })
+    }
+
+    /// Inks the cells whose middle is at most `radius` (in cells) from the straight line between two places on the page.
+    fn ink(&mut self, from: Point, to: Point, radius: f64) {
+        let to_cells = |p: Point| {
+            let x = (p.x - self.origin.x) / self.cell_pt - 0.5;
+            (x, (p.y - self.origin.y) / self.cell_pt - 0.5)
+        };
+        let (mut upper, mut lower) = (to_cells(from), to_cells(to));
+        if upper.1 > lower.1 {
+            std::mem::swap(&mut upper, &mut lower);
+        }
+        let first = libm::ceil(upper.1 - radius).max(0.0) as usize;
+        let last = libm::floor(lower.1 + radius).max(0.0) as usize;
+        for row in first..=last {
+            let (left, right) = across(upper, lower, radius, row as f64);
+            if left > right {
+                continue;
+            }
+            let (begin, end) = (libm::ceil(left).max(0.0) as usize, libm::floor(right) + 1.0);
+            let end = (end.max(0.0) as usize).min(self.columns);
+            let row = row * self.columns;
+            if let Some(cells) = self.is_inked.get_mut(row + begin..row + end) {
+                cells.fill(true);
+            }
+        }
+    }
+
+    /// Whether the cell right of and below the corner of cells is inked.
+    fn at(&self, x: isize, y: isize) -> bool {
+        let is_inside = x >= 0 && y >= 0 && (x as usize) < self.columns;
+        is_inside
+            && self
+                .is_inked
+                .get(y as usize * self.columns + x as usize)
+                .copied()
+                .unwrap_or(false)
+    }
+
+    /// All outlines, with the ink to their right.
+    fn outlines(&self) -> Path {
+        let mut path = Path::default();
+        let mut is_done = vec![false; self.is_inked.len()];
+        for index in 0..self.is_inked.len() {
+            let (x, y) = (
+                (index % self.columns) as isize,
+                (index / self.columns) as isize,
+            );
+            if is_done[index] || !self.begins(x, y) {
+                continue;
+            }
+            let outline = self.outline((x, y), &mut is_done);
+            if outline.len() <= SMALLEST {
+                continue;
+            }
+            let corners = simplified(&outline, SMOOTH);
+            let place = |p: &Point| Point {
+                x: self.origin.x + p.x * self.cell_pt,
+                y: self.origin.y + p.y * self.cell_pt,
+            };
+            path.0
+                .extend(Path::polyline(corners[..corners.len() - 1].iter().map(place)).0);
+            path.0.push(Segment::Close);
+        }
+        path
+    }
+
+    /// Whether an outline runs to the right along the upper side of this cell; each outline does so somewhere.
+    fn begins(&self, x: isize, y: isize) -> bool {
+        self.at(x, y) && !self.at(x, y - 1)
+    }
+
+    /// The middles of the sides of cells along one outline, the first once more at its end. The sides where it runs to the
+    /// right are marked.
+    fn outline(&self, start: (isize, isize), is_done: &mut [bool]) -> Vec<Point> {
+        let (mut at, mut step) = (start, (1, 0));
+        let mut middles = Vec::new();
+        loop {
+            let (x, y) = at;
+            if step == (1, 0) {
+                is_done[y as usize * self.columns + x as usize] = true;
+            }
+            middles.push(Point {
+                x: x as f64 + 0.5 * step.0 as f64,
+                y: y as f64 + 0.5 * step.1 as f64,
+            });
+            at = (x + step.0, y + step.1);
+            let right = (-step.1, step.0);
+            let ahead = |side: (isize, isize)| {
+                // The cell ahead on one side of the corner: the corner's cell is to its right and below.
+                let to = |a: isize, b: isize| if a + b < 0 { -1 } else { 0 };
+                self.at(at.0 + to(step.0, side.0), at.1 + to(step.1, side.1))
+            };
+            step = match (ahead(right), ahead((-right.0, -right.1))) {
+                (false, _) => right,
+                (true, true) => (-right.0, -right.1),
+                (true, false) => step,
+            };
+            if at == start && step == (1, 0) {
+                middles.extend(middles.first().copied());
+                return middles;
+            }
+        }
+    }
+}
+
+/// From where to where a row of cells crosses the places at most `radius` from a straight line. They are convex: what one
+/// row crosses is in one piece, that of the two circles about the ends and of the band between.
+fn across(upper: (f64, f64), lower: (f64, f64), radius: f64, row: f64) -> (f64, f64) {
+    let (dx, dy) = (lower.0 - upper.0, lower.1 - upper.1);
+    let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut reach = |from: f64, to: f64| {
+        left = left.min(from);
+        right = right.max(to);
+    };
+    for (x, y) in [upper, lower] {
+        let square = radius * radius - (row - y) * (row - y);
+        if square >= 0.0 {
+            let half = square.sqrt();
+            reach(x - half, x + half);
+        }
+    }
+    let length = (dx * dx + dy * dy).sqrt();
+    if length > 0.0 {
+        // The two long sides of the band, each a straight line from beside one end to beside the other.
+        for side in [-radius, radius] {
+            let (aside, down) = (side * dy / length, -side * dx / length);
+            let share = (row - upper.1 - down) / dy;
+            if dy > 0.0 && (0.0..=1.0).contains(&share) {
+                let x = upper.0 + aside + share * dx;
+                reach(x, x);
+            } else if dy == 0.0 && (row - upper.1).abs() <= radius {
+                reach(upper.0.min(lower.0), upper.0.max(lower.0));
+            }
+        }
+    }
+    (left, right)
+}
+
+fn range(numbers: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    let start = (f64::INFINITY, f64::NEG_INFINITY);
+    let (low, high) = numbers.fold(start, |(low, high), n| (low.min(n), high.max(n)));
+    (low <= high && (high - low).is_finite()).then_some((low, high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// How often the outlines wind about a place, clockwise on a page with y down.
+    fn winding(area: &Path, x: f64, y: f64) -> i32 {
+        let (mut count, mut at, mut start) =
+            (0, Point { x: 0.0, y: 0.0 }, Point { x: 0.0, y: 0.0 });
+        for segment in &area.0 {
+            let to = segment.end().unwrap_or(start);
+            if let Segment::Move(_) = segment {
+                start = to;
+            } else if (at.y <= y) != (to.y <= y) {
+                let crossing = at.x + (y - at.y) / (to.y - at.y) * (to.x - at.x);
+                count += i32::from(crossing > x) * if to.y > at.y { 1 } else { -1 };
+            }
+            at = to;
+        }
+        count
+    }
+
+    fn distance(lines: &[Vec<Point>], x: f64, y: f64) -> f64 {
+        let to = |pair: &[Point]| {
+            let (dx, dy) = (pair[1].x - pair[0].x, pair[1].y - pair[0].y);
+            let (px, py) = (x - pair[0].x, y - pair[0].y);
+            let square = dx * dx + dy * dy;
+            let share = if square > 0.0 {
+                ((px * dx + py * dy) / square).clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
+            libm::hypot(px - share * dx, py - share * dy)
+        };
+        lines
+            .iter()
+            .flat_map(|line| line.windows(2))
+            .map(to)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+        #[test]
+        fn inside_is_what_is_inked(
+            places in prop::collection::vec((0.0_f64..12.0, 0.0_f64..12.0), 2..12),
+            tries in prop::collection::vec((-2.0_f64..14.0, -2.0_f64..14.0), 300),
+            width in 0.4_f64..3.0,
+        ) {
+            let line: Vec<Point> = places.into_iter().map(|(x, y)| Point { x, y }).collect();
+            let lines = [line[..line.len() / 2].to_vec(), line[line.len() / 2..].to_vec()];
+            let area = area(&lines, width);
+            for (x, y) in tries {
+                let beyond = distance(&lines, x, y) - 0.5 * width;
+                // Half the diagonal of a cell, and what the smoothing takes.
+                if beyond.abs() > CELLS_PT[0] * (0.71 + SMOOTH) {
+                    prop_assert_eq!(winding(&area, x, y), i32::from(beyond < 0.0), "{} {}: {}", x, y, beyond);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_circle_is_a_ring_of_two_outlines() {
+        let place = |i: usize| {
+            let turn = i as f64 / 200.0 * std::f64::consts::TAU;
+            Point {
+                x: 50.0 + 30.0 * libm::cos(turn),
+                y: 50.0 + 30.0 * libm::sin(turn),
+            }
+        };
+        let ring = area(&[(0..=200).map(place).collect()], 2.0);
+        let outlines = ring
+            .0
+            .iter()
+            .filter(|segment| **segment == Segment::Close)
+            .count();
+        assert_eq!(outlines, 2);
+        assert!((60..400).contains(&ring.0.len()), "{}", ring.0.len());
+        assert_eq!(winding(&ring, 50.0, 50.0), 0);
+        assert_eq!(winding(&ring, 50.0, 20.0), 1);
+    }
+
+    #[test]
+    fn what_has_no_place_covers_nothing() {
+        let far = |x: f64| vec![Point { x: 0.0, y: 0.0 }, Point { x, y: 1.0 }];
+        for line in [
+            vec![],
+            far(f64::NAN)[1..].to_vec(),
+            far(f64::INFINITY),
+            far(1e12),
+        ] {
+            assert_eq!(area(&[line], 0.7), Path::default());
+        }
+        assert!(!area(&[far(f64::NAN), far(3.0)], 0.7).0.is_empty());
+    }
+}
