@@ -14,6 +14,16 @@ pub struct Camera {
     pub pitch_deg: f64,
 }
 
+/// Seen shorter than this part of its length, the axle points too much at the eye to be read.
+const SHORT: f64 = 0.75;
+/// Where an axle that is to be seen from the side points: from the picture's right so far away from the eye, degrees. The
+/// wheel is then an open ellipse behind its axle.
+const ASIDE_DEG: f64 = 30.0;
+/// An axle nearer to the vertical than this, degrees, is seen from every side alike.
+const UPRIGHT_DEG: f64 = 8.0;
+/// Directions that are chosen are multiples of this, degrees.
+const NOTCH_DEG: f64 = 10.0;
+
 /// How much larger than the whole a round picture shows what it shows: 1 where it shows the whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zoom {
@@ -80,6 +90,22 @@ impl Camera {
         self.pitch_deg = (self.pitch_deg + pitch_deg).clamp(-90.0, 90.0);
     }
 
+    /// The camera turned about the vertical so that `axle` (a direction, world frame) is seen from the side; as it is where
+    /// the axle can be read from here.
+    pub fn aside_of(self, axle: &Vector3<f64>) -> Self {
+        let (right, up) = self.project(axle);
+        let is_upright = axle.xy().norm() < UPRIGHT_DEG.to_radians().sin() * axle.norm();
+        if is_upright || !(right.hypot(up) < SHORT * axle.norm()) {
+            return self;
+        }
+        let azimuth_deg = libm::atan2(axle.y, axle.x).to_degrees();
+        let yaw_deg = ((azimuth_deg - ASIDE_DEG) / NOTCH_DEG).round() * NOTCH_DEG;
+        Self {
+            yaw_deg: yaw_deg.rem_euclid(360.0),
+            ..self
+        }
+    }
+
     /// Where `point` (world frame, m) stands in the picture: right and up, m.
     pub fn project(&self, point: &Vector3<f64>) -> (f64, f64) {
         let (sin_yaw, cos_yaw) = self.yaw_deg.to_radians().sin_cos();
@@ -129,6 +155,30 @@ mod tests {
         let (right, up) = camera.project(&at);
         let length = right.hypot(up).hypot(camera.depth(&at));
         assert!((length - at.norm()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_axle_that_points_at_the_eye_is_seen_from_the_side() {
+        let camera = Camera::default();
+        let (mut turned, mut kept) = (0, 0);
+        for azimuth in 0..360 {
+            let (sin, cos) = f64::from(azimuth).to_radians().sin_cos();
+            let axle = Vector3::new(cos, sin, 1.0).normalize();
+            let aside = camera.aside_of(&axle);
+            let (right, up) = aside.project(&axle);
+            assert!(right.hypot(up) >= SHORT, "{azimuth}");
+            assert_eq!(aside.aside_of(&axle), aside);
+            assert_eq!(aside.pitch_deg, camera.pitch_deg);
+            match aside == camera {
+                true => kept += 1,
+                false => turned += 1,
+            }
+        }
+        assert!(turned > 30 && kept > 240, "{turned} {kept}");
+        let upright = Vector3::new(0.0, -0.1, 1.0);
+        assert_eq!(camera.aside_of(&upright), camera);
+        let none = Vector3::from_element(f64::NAN);
+        assert_eq!(camera.aside_of(&none), camera);
     }
 
     #[test]

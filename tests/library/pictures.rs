@@ -281,6 +281,8 @@ fn a_push_that_acts_is_an_arrow() {
                 view,
                 reading: None,
                 explained: None,
+                ghost: None,
+                pinned: None,
             },
             ROUND,
         );
@@ -297,6 +299,8 @@ fn a_push_that_acts_is_an_arrow() {
                 view,
                 reading: None,
                 explained: None,
+                ghost: None,
+                pinned: None,
             },
             ROUND
         )
@@ -420,6 +424,8 @@ fn the_nearer_mass_is_drawn_over_the_farther_one() {
             view,
             reading: None,
             explained: None,
+            ghost: None,
+            pinned: None,
         };
         let picture = drawn(pane, (60, 24));
         // The legend has these signs too.
@@ -710,6 +716,8 @@ proptest! {
                     view,
                     reading,
                     explained: None,
+                    ghost: None,
+                    pinned: None,
                 }.render(inside, &mut buf),
             }
             for position in around.positions().filter(|position| !inside.contains(*position)) {

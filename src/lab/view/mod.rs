@@ -121,6 +121,9 @@ pub struct View {
     pub cursor: Option<u64>,
     /// Where the 3-D view is looked at from.
     pub camera: Camera,
+    /// Whether that direction was chosen by hand, a file or a command. One that was not is turned so that the axle is seen
+    /// from the side.
+    pub camera_is_chosen: bool,
     /// How much larger than the whole the round pictures are shown.
     pub zoom: Zoom,
     /// The panes that share the screen; if empty, as many as there is room for.
@@ -169,6 +172,7 @@ impl View {
             magnified: 1.0,
             cursor: None,
             camera: Camera::default(),
+            camera_is_chosen: false,
             zoom: Zoom::default(),
             shown: Vec::new(),
             page: Page::default(),
@@ -213,8 +217,14 @@ impl View {
             self.zoom = Zoom::of(zoom);
         }
         if let Some(camera) = file.camera {
-            self.camera = Camera::of(camera);
+            self.look_from(Camera::of(camera));
         }
+    }
+
+    /// Looks at the 3-D view from where `camera` is. The usual place is no choice.
+    pub fn look_from(&mut self, camera: Camera) {
+        self.camera_is_chosen = camera != Camera::default();
+        self.camera = camera;
     }
 
     /// The time that the traces show of the run of `scenario` while none is chosen by hand, s.
