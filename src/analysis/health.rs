@@ -29,9 +29,6 @@ const LEAST_SWING_DEG: f64 = 1e-6;
 /// A nutation that has changed by less than this part is as it was.
 const LEAST_CHANGE: f64 = 0.05;
 
-/// An axle whose direction's length is off 1 by more than this is that of no rotation.
-const LEAST_BENT: f64 = 0.5;
-
 /// How a run stands at one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Health {
@@ -138,7 +135,7 @@ impl Health {
             ),
             nutation: Nutation::of(step, &motion, psi),
             swing_deg,
-            is_a_rotation: (axle.norm() - 1.0).abs() < LEAST_BENT,
+            is_a_rotation: state.is_a_rotation(),
             lag_deg: if lag.is_finite() {
                 lag.to_degrees()
             } else {

@@ -5,7 +5,7 @@
 
 mod legend;
 
-use super::{PaneRow, Width, frame, write};
+use super::{PaneRow, Width, frame, round_title, write};
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, View};
 use crate::observe::ages::{Age, Ages};
@@ -91,10 +91,7 @@ impl Widget for FromAbove<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
         let zoom = self.view.zoom.above;
-        let title = match zoom == 1.0 {
-            true => ROW.title.to_owned(),
-            false => format!("{} ×{zoom}", ROW.title),
-        };
+        let title = round_title(ROW.title, zoom, self.reading, area.width);
         let inside = frame(&title, area, self.view.focus == ROW.id, theme, buf);
         if inside.height < 2 || inside.width == 0 {
             return;
@@ -167,11 +164,13 @@ impl FromAbove<'_> {
     }
 
     /// The moment that is shown: the present one, or that of the latest reading where the swings cover each other and the
-    /// eye cannot follow them anyway. They would have to be sent with every frame.
+    /// eye cannot follow them anyway. They would have to be sent with every frame. Where the scheme has broken down, it is
+    /// the last moment before.
     fn now(&self, across: f64) -> Moment {
         let scenario = self.run.scenario();
         let traced = scenario.body.mechanics.points()[scenario.trace].at;
         match self.reading {
+            Some(reading) if reading.last_whole.is_some() => Moment::new(&reading.state, &traced),
             Some(reading) if self.ages(across).are_crowded => {
                 let extremes = &reading.readouts.extremes;
                 let swing_deg = extremes.highest_tilt_deg - extremes.lowest_tilt_deg;

@@ -9,7 +9,7 @@ mod room;
 mod shape;
 mod wheel;
 
-use super::{PaneRow, Width, frame, write};
+use super::{PaneRow, Width, frame, round_title, write};
 use crate::lab::explained::Explained;
 use crate::lab::view::{Pane, View};
 use crate::observe::ages::Ages;
@@ -88,10 +88,7 @@ impl Widget for ThreeD<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
         let zoom = self.view.zoom.three_d;
-        let title = match zoom == 1.0 {
-            true => ROW.title.to_owned(),
-            false => format!("{} ×{zoom}", ROW.title),
-        };
+        let title = round_title(ROW.title, zoom, self.reading, area.width);
         let inside = frame(&title, area, self.view.focus == ROW.id, theme, buf);
         if inside.height < 2 || inside.width == 0 {
             return;
