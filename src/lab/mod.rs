@@ -250,6 +250,11 @@ impl Lab {
         self.player.playback.play_on();
     }
 
+    /// Draws at most so many frames a second.
+    pub fn set_fps(&mut self, fps: u32) {
+        self.view.fps = fps;
+    }
+
     /// Listens to the mouse, or leaves it to the terminal.
     pub fn set_mouse(&mut self, listens: bool) {
         self.view.mouse = listens;

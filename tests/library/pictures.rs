@@ -85,6 +85,7 @@ fn undivided(run: &LiveRun, view: &View) -> Detail {
         curve: Curve::Tilt,
         begin_s: long.begin_s,
         window_s: long.window_s,
+        is_snapshot: false,
     }
 }
 
@@ -228,6 +229,7 @@ fn fast_and_slow_motion_are_both_seen() {
         curve: Curve::Tilt,
         begin_s: 20.0,
         window_s: 20.0,
+        is_snapshot: false,
     };
     let panes = |size| {
         drawn(
@@ -698,7 +700,8 @@ proptest! {
         let inside = Rect::new(3, 3, width, height);
         let read = Reading::new(&mut now, &Pace::new(1.0, false));
         let (run, view, ghost, reading) = (&now, &view, Some(&ghost), Some(&read));
-        let detail = &Detail { curve: Curve::Tilt, begin_s, window_s: share * window_s };
+        let window = share * window_s;
+        let detail = &Detail { curve: Curve::Tilt, begin_s, window_s: window, is_snapshot: false };
         for pane in 0..3 {
             let mut buf = Buffer::filled(around, Cell::new("#"));
             match pane {
