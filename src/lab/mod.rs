@@ -322,7 +322,7 @@ impl Lab {
         }
     }
 
-    /// Turns the camera so that the axle is seen from the side, unless its direction was chosen. A moving picture is left
+    /// Turns the camera so that the axle is seen aslant, unless its direction was chosen. A moving picture is left
     /// as it is: the motion shows where the axle points.
     fn turn_camera(&mut self) {
         let playback = self.player.playback();

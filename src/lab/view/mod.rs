@@ -125,7 +125,7 @@ pub struct View {
     /// Where the 3-D view is looked at from.
     pub camera: Camera,
     /// Whether that direction was chosen by hand, a file or a command. One that was not is turned so that the axle is seen
-    /// from the side.
+    /// aslant.
     pub camera_is_chosen: bool,
     /// How much larger than the whole the round pictures are shown.
     pub zoom: Zoom,
