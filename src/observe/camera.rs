@@ -103,7 +103,7 @@ impl Camera {
         let azimuth_deg = libm::atan2(axle.y, axle.x).to_degrees();
         let yaw_deg = ((azimuth_deg + ASIDE_DEG) / NOTCH_DEG).round() * NOTCH_DEG;
         Self {
-            yaw_deg: yaw_deg.rem_euclid(360.0),
+            yaw_deg: yaw_deg.rem_euclid(360.0) + 0.0, // no negative zero
             ..self
         }
     }
