@@ -200,7 +200,7 @@ impl Lab {
                 Ok(Done::SILENT)
             }
             Command::Camera(camera) => {
-                self.view.camera = *camera;
+                self.view.look_from(*camera);
                 Ok(Done::SILENT)
             }
             Command::Zoom(zoom) => {

@@ -126,6 +126,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('m')], Action::NextMarker, "", "dots: Braille, half blocks, points, ASCII"),
     row(&[Lab], &[Char('c')], Action::ToggleColour, "", "with colour, or without"),
     row(&[Lab], &[Char('b')], Action::ToggleBackground, "", "colours for a dark or a light screen"),
+    row(&[Lab], &[Char('F')], Action::NextFrameRate, "", "frames a second at most: fewer for a slow line, more for a smooth picture"),
     row(&[Lab], &[Char('H')], Action::ToggleHealth, "", "hide the line about the numbers' health, or show it"),
     row(&[Lab], &[Char('T')], Action::TogglePredicted, "", "hide the numbers that theory predicts, or show them"),
     row(&[Lab], &[Char('B')], Action::ToggleBare, "", "a bare screen: two panes with title and time, or all again"),
@@ -302,6 +303,7 @@ mod tests {
             A::NextMarker,
             A::ToggleColour,
             A::ToggleBackground,
+            A::NextFrameRate,
             A::ToggleHealth,
             A::TogglePredicted,
             A::ToggleBare,
@@ -369,6 +371,7 @@ mod tests {
                 | A::NextMarker
                 | A::ToggleColour
                 | A::ToggleBackground
+                | A::NextFrameRate
                 | A::ToggleHealth
                 | A::TogglePredicted
                 | A::ToggleBare

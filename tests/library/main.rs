@@ -35,6 +35,7 @@ mod replay;
 mod rooms;
 mod run_until;
 mod same_bits;
+mod scenes;
 mod schemes;
 mod start;
 mod step_pane;
