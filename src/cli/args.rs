@@ -41,6 +41,8 @@ pub(super) enum Command {
     Compare(CompareArgs),
     /// Draw runs, or a table of compare or of a sweep, on paper: SVG, PDF or PNG
     Figure(FigureArgs),
+    /// Record the lab while it carries out a file of commands, as asciinema plays it
+    Cast(CastArgs),
     /// List the shipped presets, or print one as TOML
     Presets {
         /// The preset to print
@@ -326,6 +328,38 @@ pub(super) struct CompareArgs {
     #[arg(long)]
     pub(super) force: bool,
 }
+
+#[derive(Debug, Args)]
+#[command(after_help = CASTS)]
+pub(super) struct CastArgs {
+    /// The file of commands: [[do]] tables, or - for stdin; gyrolab man lists them
+    #[arg(value_name = "FILE")]
+    pub(super) commands: PathBuf,
+
+    /// Write the recording to this file (asciicast v3), or to stdout for -
+    #[arg(short, long, value_name = "FILE.cast")]
+    pub(super) output: PathBuf,
+
+    /// Columns and lines of the lab
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "100x30", value_parser = size)]
+    pub(super) size: (u16, u16),
+
+    /// The recording's title
+    #[arg(long, value_name = "TITLE")]
+    pub(super) title: Option<String>,
+
+    /// Replace the file if it exists
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+const CASTS: &str = "\
+Time passes at run, run_until and wait_s; a recording ends with the last command, so that one of wait_s at its end shows
+the last picture for so long. chapter makes a marker. The same commands give the same bytes, on every machine.
+
+Examples:
+  gyrolab cast demo.toml -o demo.cast && asciinema play demo.cast
+  gyrolab cast demo.toml --size 80x24 --title 'A push' -o push.cast";
 
 #[derive(Debug, Args)]
 #[command(after_help = FIGURES)]

@@ -3,6 +3,7 @@
 //! Data goes to stdout, talk to stderr. Exit codes: 0 done (a closed pipe too), 1 failed, 2 wrong usage, 130 Ctrl-C.
 
 mod args;
+mod cast;
 mod compare;
 mod figure;
 mod info;
@@ -57,6 +58,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Show(args) => show::show(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Figure(args) => figure::figure(&args),
+        Command::Cast(args) => cast::cast(&args),
         Command::Presets { name } => info::presets(name.as_deref()),
         Command::Sessions { folder } => sessions::list(folder.as_deref()),
         Command::Schemes => info::schemes(),

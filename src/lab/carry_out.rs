@@ -124,6 +124,10 @@ impl Lab {
                 let until = self.now + Duration::try_from_secs_f64(*seconds).unwrap_or_default();
                 Ok(Done::SILENT.going_on(UnderWay::Waiting(until)))
             }
+            Command::Chapter(title) => {
+                self.script.begin_chapter(title);
+                Ok(Done::saying(title))
+            }
             Command::Undo(times) => self.turn(Way::Back, *times),
             Command::Redo(times) => self.turn(Way::On, *times),
             Command::Export {

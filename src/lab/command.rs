@@ -60,6 +60,8 @@ pub enum Command {
     Pause,
     /// Lets the next command of the script wait for this many seconds.
     Wait(f64),
+    /// Begins a part of the script that has this title.
+    Chapter(String),
     /// Undoes this many acts.
     Undo(u32),
     /// Does this many undone acts again.

@@ -6,6 +6,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod cast;
 mod classes;
 mod cli;
 mod commands;

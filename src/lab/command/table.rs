@@ -6,8 +6,8 @@ use super::looking::{
     show, since, speed, sum_to, window, zoom,
 };
 use super::reading::{
-    Read, count, export, go_to, next_push, nudge, open, push, run_until, save, set, step, told,
-    wait,
+    Read, chapter, count, export, go_to, next_push, nudge, open, push, run_until, save, set, step,
+    told, wait,
 };
 use crate::scenario::Problem;
 use toml::Value;
@@ -61,6 +61,7 @@ pub static COMMANDS: &[Row] = &[
     row("run", "true", "let the run go on", |value| told(value, Command::Run)),
     row("pause", "true", "stop the run", |value| told(value, Command::Pause)),
     row("wait_s", "2.5", "let so many seconds pass on the clock before the next command", wait),
+    row("chapter", "\"one line\"", "say this line; a recording (gyrolab cast) has a marker there", chapter),
     row("undo", "1", "take back so many of the things done last", |value| Ok(Command::Undo(count(value)?))),
     row("redo", "1", "bring so many of them again", |value| Ok(Command::Redo(count(value)?))),
     row("export", "\"run.csv\", or { path = \"run.csv\", every = 10, force = true }", "write the run up to here, or to_step, as CSV; force replaces a file", export),

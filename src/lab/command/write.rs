@@ -53,6 +53,7 @@ pub(super) fn written(command: &Command) -> (&'static str, Value) {
         }
         Command::Speed(Speed::Times(speed)) => ("speed", (*speed).into()),
         Command::Speed(Speed::Top) => ("speed", "top".into()),
+        Command::Chapter(title) => ("chapter", title.clone().into()),
         Command::LookAt(text) => ("look_at", text.clone().into()),
         Command::Next(text) => ("next", text.clone().into()),
         Command::Bare(bare) => ("bare", (*bare).into()),
