@@ -10,6 +10,7 @@ mod chosen;
 mod commands;
 mod coverage;
 mod exact;
+mod figures;
 mod finding;
 mod health;
 mod journal;

@@ -11,6 +11,7 @@ mod cli;
 mod commands;
 mod compare;
 mod escapes;
+mod figures;
 mod journeys;
 mod lessons;
 mod messages;
