@@ -140,6 +140,17 @@ impl Lab {
                 let path = self.files.path_of(path);
                 self.files.export(&scenario, &path, *every, *force)
             }
+            Command::Figure {
+                path,
+                kind,
+                exact,
+                to_step,
+                force,
+            } => {
+                let scenario = self.run_up_to(*to_step, "draw")?;
+                let path = self.files.path_of(path);
+                self.files.draw(&scenario, &path, (kind, *exact), *force)
+            }
             Command::Save {
                 path,
                 from_here,

@@ -77,6 +77,19 @@ pub enum Command {
         /// Whether an existing file is replaced.
         force: bool,
     },
+    /// Draws the run up to here.
+    Figure {
+        /// The file; its name's end says in which form.
+        path: String,
+        /// What it shows: traces, above, 3d, or columns.
+        kind: String,
+        /// Whether the exact motion is drawn beside it.
+        exact: bool,
+        /// Up to this step instead of the present one.
+        to_step: Option<u64>,
+        /// Whether an existing file is replaced.
+        force: bool,
+    },
     /// Writes the run up to here as a run file, or the present state as a scenario.
     Save {
         /// The file.

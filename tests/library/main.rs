@@ -11,6 +11,7 @@ mod commands;
 mod coverage;
 mod exact;
 mod figure_files;
+mod figures;
 mod finding;
 mod health;
 mod journal;

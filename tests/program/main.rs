@@ -12,6 +12,7 @@ mod cli;
 mod commands;
 mod compare;
 mod escapes;
+mod figures;
 mod journeys;
 mod lessons;
 mod messages;

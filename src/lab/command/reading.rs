@@ -2,13 +2,16 @@
 
 use super::write::map;
 use super::{Command, Force, Place, PushChoice};
+use crate::figure::Format;
 use crate::lab::numbers;
 use crate::scenario::keys::{self, Kind, Range};
 use crate::scenario::problem::nearest;
+use crate::scenario::screen::TRACES;
 use crate::scenario::{Problem, presets};
 use crate::work::expression::Expression;
 use crate::work::next_push::Toward;
 use std::num::NonZeroU64;
+use std::path::Path;
 use toml::{Table, Value};
 
 /// The largest number of repetitions by one command.
@@ -340,6 +343,30 @@ pub(super) fn export(value: &Value) -> Read {
     Ok(Command::Export {
         path: path(table, value)?,
         every: every.unwrap_or(NonZeroU64::MIN),
+        to_step: whole(table, "to_step", 1)?,
+        force: flag(table, "force")?,
+    })
+}
+
+pub(super) fn figure(value: &Value) -> Read {
+    let given = with_path(value);
+    let table = fields(&given, &["path", "kind", "exact", "to_step", "force"])?;
+    let kind = field(
+        table,
+        "kind",
+        |given| match crate::figure::kind::Kind::named(line(given)?) {
+            Ok(_) => line(given).map(str::to_owned),
+            Err(refusal) => wrong(given, refusal),
+        },
+    )?;
+    let path = path(table, value)?;
+    if let Err(refusal) = Format::of(Path::new(&path)) {
+        return wrong(value, refusal.to_string());
+    }
+    Ok(Command::Figure {
+        path,
+        kind: kind.unwrap_or_else(|| TRACES.to_owned()),
+        exact: flag(table, "exact")?,
         to_step: whole(table, "to_step", 1)?,
         force: flag(table, "force")?,
     })

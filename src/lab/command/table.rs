@@ -6,8 +6,8 @@ use super::looking::{
     show, since, speed, sum_to, window, zoom,
 };
 use super::reading::{
-    Read, chapter, count, export, go_to, next_push, nudge, open, push, run_until, save, set, step,
-    told, wait,
+    Read, chapter, count, export, figure, go_to, next_push, nudge, open, push, run_until, save,
+    set, step, told, wait,
 };
 use crate::scenario::Problem;
 use toml::Value;
@@ -65,6 +65,7 @@ pub static COMMANDS: &[Row] = &[
     row("undo", "1", "take back so many of the things done last", |value| Ok(Command::Undo(count(value)?))),
     row("redo", "1", "bring so many of them again", |value| Ok(Command::Redo(count(value)?))),
     row("export", "\"run.csv\", or { path = \"run.csv\", every = 10, force = true }", "write the run up to here, or to_step, as CSV; force replaces a file", export),
+    row("figure", "\"run.pdf\", or { path = \"run.svg\", kind = \"above\", exact = true, force = true }", "draw the run up to here, or to_step; kind as in gyrolab figure, and the file's end says .svg, .pdf or .png", figure),
     row("save", "\"run.toml\", or { path = \"run.toml\", from_here = true, force = true }", "write the run up to here, or to_step, as a run file; from_here: the present state as a scenario", save),
     row("speed", "20 or \"top\"", "how fast the run is played, simulated seconds a second", speed),
     row("look_at", "\"one line\"", "what the lab says of what there is to see", look_at),

@@ -4,7 +4,7 @@ use super::{Command, CursorTo, Force, NEXT_TURN, NONE, Place, PushChoice, TURN_B
 use crate::lab::view::Pane;
 use crate::observe::pace::Speed;
 use crate::scenario::file::Choice;
-use crate::scenario::screen::ALL_ROWS;
+use crate::scenario::screen::{ALL_ROWS, TRACES};
 use toml::{Table, Value};
 
 /// Name and value of `command`.
@@ -38,6 +38,22 @@ pub(super) fn written(command: &Command) -> (&'static str, Value) {
                 table.insert("every".to_owned(), large(every.get()));
             }
             ("export", short(table))
+        }
+        Command::Figure {
+            path,
+            kind,
+            exact,
+            to_step,
+            force,
+        } => {
+            let mut table = file_written(path, *to_step, *force);
+            if kind != TRACES {
+                table.insert("kind".to_owned(), kind.as_str().into());
+            }
+            if *exact {
+                table.insert("exact".to_owned(), true.into());
+            }
+            ("figure", short(table))
         }
         Command::Save {
             path,
