@@ -3,6 +3,10 @@
 use super::layout::LayoutArgs;
 use super::manual::ManArgs;
 use super::verify::VerifyArgs;
+mod figure;
+
+pub(super) use figure::FigureArgs;
+
 use crate::physics::scheme;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -48,6 +52,8 @@ pub(super) enum Command {
     Writeup(WriteupArgs),
     /// Compute a CSV again from its header: the same, or the first row that differs
     Verify(VerifyArgs),
+    /// Record the lab while it carries out a file of commands, as asciinema plays it
+    Cast(CastArgs),
     /// List the shipped presets, or print one as TOML
     Presets {
         /// The preset to print
@@ -352,86 +358,36 @@ pub(super) struct CompareArgs {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = FIGURES)]
-pub(super) struct FigureArgs {
-    /// Presets' names, or files (.toml or .csv): what gyrolab run takes, or the CSV of compare or of a sweep
-    #[arg(required = true, value_name = "RUN")]
-    pub(super) runs: Vec<String>,
+#[command(after_help = CASTS)]
+pub(super) struct CastArgs {
+    /// The file of commands: [[do]] tables, or - for stdin; gyrolab man lists them
+    #[arg(value_name = "FILE")]
+    pub(super) commands: PathBuf,
 
-    /// Write the figure to this file; its name's end says in which form: .svg, .pdf or .png (600 dpi)
-    #[arg(short, long, value_name = "FILE")]
+    /// Write the recording to this file (asciicast v3), or to stdout for -
+    #[arg(short, long, value_name = "FILE.cast")]
     pub(super) output: PathBuf,
 
-    /// What to draw: traces (x, y, z over time), above, 3d, or columns of the CSV over time with commas between them
-    /// [default: traces]
-    #[arg(long, value_name = "KIND")]
-    pub(super) kind: Option<String>,
+    /// Columns and lines of the lab
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "100x30", value_parser = size)]
+    pub(super) size: (u16, u16),
 
-    /// Begin at this time of the run, s
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = not_negative)]
-    pub(super) from: Option<f64>,
+    /// The recording's title
+    #[arg(long, value_name = "TITLE")]
+    pub(super) title: Option<String>,
 
-    /// End at this time of the run, s
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
-    pub(super) to: Option<f64>,
-
-    /// Draw the exact motion beside it, dashed
-    #[arg(long)]
-    pub(super) exact: bool,
-
-    /// Width of the page: 86mm for a column, 178mm for a page
-    #[arg(long, value_name = "MM", default_value = "86mm", value_parser = width)]
-    pub(super) width: f64,
-
-    /// Draw the run by each of these schemes
-    #[arg(long, value_name = "A,B", value_delimiter = ',', conflicts_with = "scheme", value_parser = PossibleValuesParser::new(scheme::names()))]
-    pub(super) schemes: Vec<String>,
-
-    #[command(flatten)]
-    pub(super) changes: Changes,
-
-    #[command(flatten)]
-    pub(super) length: LengthArgs,
-
-    /// Replace an existing file
+    /// Replace the file if it exists
     #[arg(long)]
     pub(super) force: bool,
 }
 
-const FIGURES: &str = "\
+const CASTS: &str = "\
+Time passes at run, run_until and wait_s; a recording ends with the last command, so that one of wait_s at its end shows
+the last picture for so long. chapter makes a marker. The same commands give the same bytes, on every machine.
+
 Examples:
-  gyrolab figure wobble-push -o wobble.pdf                        x, y and z over time
-  gyrolab figure cusps --kind 3d -o cusps.svg
-  gyrolab figure method-2 --kind tilt_deg --exact -o tilt.pdf     beside the exact motion
-  gyrolab figure method-2 --schemes report,rk4 --kind z_m --to 20 -o schemes.png
-  gyrolab compare cusps -o error.csv && gyrolab figure error.csv -o error.pdf";
-
-/// The narrowest and the widest page, mm.
-const WIDTHS_MM: (f64, f64) = (30.0, 1000.0);
-
-/// A width in mm: 86mm, 8.6cm or 86.
-fn width(text: &str) -> Result<f64, String> {
-    let (number, unit) = match (text.strip_suffix("mm"), text.strip_suffix("cm")) {
-        (Some(number), _) => (number, 1.0),
-        (_, Some(number)) => (number, 10.0),
-        _ => (text, 1.0),
-    };
-    let width_mm = number.trim().parse().map(|number: f64| number * unit);
-    let (least, most) = WIDTHS_MM;
-    match width_mm {
-        Ok(width_mm) if (least..=most).contains(&width_mm) => Ok(width_mm),
-        _ => Err(format!(
-            "must be a width such as 86mm, from {least}mm to {most}mm"
-        )),
-    }
-}
-
-fn not_negative(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(number) if number >= 0.0 && f64::is_finite(number) => Ok(number),
-        _ => Err("must be a number not below zero".to_owned()),
-    }
-}
+  gyrolab cast demo.toml -o demo.cast && asciinema play demo.cast
+  gyrolab cast demo.toml --size 80x24 --title 'A push' -o push.cast";
 
 pub(super) fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
     text.parse()

@@ -3,6 +3,7 @@
 //! Data goes to stdout, talk to stderr. Exit codes: 0 done (a closed pipe too), 1 failed, 2 wrong usage, 130 Ctrl-C.
 
 mod args;
+mod cast;
 mod compare;
 mod complete;
 mod examples;
@@ -76,6 +77,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Compare(args) => compare::compare(&args),
         Command::Figure(args) => figure::figure(&args),
         Command::Verify(args) => verify::verify(&args),
+        Command::Cast(args) => cast::cast(&args),
         Command::Presets { name } => info::presets(name.as_deref()),
         Command::Sessions { folder } => sessions::list(folder.as_deref()),
         Command::Schemes => info::schemes(),

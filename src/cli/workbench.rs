@@ -341,8 +341,10 @@ fn tell_of_exports(lab: &Lab) -> io::Result<()> {
         let path = Shown(&written.path);
         writeln!(
             stdout,
-            "{path}: {} rows; to fetch it, on your own computer:\n  {}",
-            written.rows,
+            "{path}{}; to fetch it, on your own computer:\n  {}",
+            written
+                .rows
+                .map_or(String::new(), |rows| format!(": {rows} rows")),
             exporting::scp_line(&written.path)
         )?;
     }

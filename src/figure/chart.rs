@@ -226,11 +226,18 @@ impl Axis {
             return if self.is_log { (0.1, 10.0) } else { (0.0, 1.0) };
         };
         if self.is_log {
-            let least = 2_f64.sqrt();
-            let factor = (high / low)
-                .powf(MARGIN)
-                .max(if high > 1.3 * low { 1.02 } else { least });
-            return ((low / factor).max(f64::MIN_POSITIVE), high * factor);
+            let (low, high) = (low.max(1.0 / FARTHEST), high.max(1.0 / FARTHEST));
+            let decades = high.log10() - low.log10();
+            let margin = if decades > 0.1 {
+                MARGIN * decades
+            } else {
+                AROUND
+            };
+            let factor = libm::exp10(margin);
+            return (
+                (low / factor).max(0.1 / FARTHEST),
+                (high * factor).min(10.0 * FARTHEST),
+            );
         }
         let largest = low.abs().max(high.abs());
         let span = high - low;

@@ -37,5 +37,8 @@ pub mod table;
 pub mod thin;
 pub mod ticks;
 
+/// Width of a column of a journal's page, 86 mm, pt.
+pub const COLUMN_PT: f64 = 86.0 * 72.0 / 25.4;
+
 pub use format::{Format, Unwritable, write};
 pub use scene::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};

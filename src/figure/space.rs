@@ -3,7 +3,8 @@
 //!
 //! x and y have one scale; z has its own, since a swing is often small beside the precession.
 
-use super::axis::Scale;
+mod path;
+
 use super::chart::Axis;
 use super::curve;
 use super::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
@@ -22,11 +23,6 @@ const TALL: f64 = 0.72;
 const EYE: f64 = 5.0;
 /// The lowest and the highest eye with which both floor and walls are seen, degrees.
 const PITCHES_DEG: (f64, f64) = (8.0, 65.0);
-/// Degrees of depth.
-const DEPTHS: usize = 6;
-/// Width of the nearest and of the farthest line, pt, and the part of white in the farthest.
-const WIDTHS: (f64, f64) = (0.95, 0.5);
-const FARTHEST_WHITE: f64 = 0.58;
 /// Length of a tick, and of the gap between it and its label, pt.
 const TICK: f64 = 2.5;
 const TICK_GAP: f64 = 2.2;
@@ -306,62 +302,6 @@ impl Space {
         let length = (b.x - a.x).hypot(b.y - a.y).max(1e-9);
         at((b.x - a.x) / length, (b.y - a.y) / length)
     }
-
-    /// The paths, the farthest parts first.
-    fn paths(&self, drawn: &[Drawn], scene: &mut Scene) {
-        let paths: Vec<Vec<(Point, f64)>> = drawn
-            .iter()
-            .map(|drawn| {
-                let boxed = drawn.course.path.iter().map(|point| self.boxed(point));
-                let place = |boxed: Vector3<f64>| (self.place(&boxed), self.camera.depth(&boxed));
-                boxed.map(place).collect()
-            })
-            .collect();
-        let depths = || paths.iter().flatten().map(|(_, depth)| *depth);
-        let (near, far) = (
-            depths().fold(f64::INFINITY, f64::min),
-            depths().fold(f64::NEG_INFINITY, f64::max),
-        );
-        let share = Scale {
-            range: (far, near),
-            is_log: false,
-            places: (0.0, DEPTHS as f64),
-        };
-        let degree = |depth: f64| (share.place(depth).max(0.0) as usize).min(DEPTHS - 1);
-        for nearness in 0..DEPTHS {
-            for (path, drawn) in paths.iter().zip(drawn) {
-                let part = nearness as f64 / (DEPTHS - 1) as f64;
-                let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
-                let color = paler(drawn.style.color, FARTHEST_WHITE * (1.0 - part));
-                let pen = Pen {
-                    dash_pt: drawn.style.dash_pt.to_vec(),
-                    ..round(width, color)
-                };
-                let pieces = pieces(path, |depth| degree(depth) == nearness);
-                curve::put(pieces, pen, None, scene);
-            }
-        }
-    }
-}
-
-/// The pieces of a path of which `is_here` says so of the depth of their begin.
-fn pieces(path: &[(Point, f64)], is_here: impl Fn(f64) -> bool) -> Vec<Vec<Point>> {
-    let mut pieces = Vec::new();
-    let mut piece: Vec<Point> = Vec::new();
-    for pair in path.windows(2) {
-        if is_here(pair[0].1) {
-            if piece.is_empty() {
-                piece.push(pair[0].0);
-            }
-            piece.push(pair[1].0);
-        } else if !piece.is_empty() {
-            pieces.push(std::mem::take(&mut piece));
-        }
-    }
-    if !piece.is_empty() {
-        pieces.push(piece);
-    }
-    pieces
 }
 
 fn round(width_pt: f64, color: Color) -> Pen {
@@ -369,10 +309,4 @@ fn round(width_pt: f64, color: Color) -> Pen {
         is_round: true,
         ..pen(width_pt, color)
     }
-}
-
-/// `color` with that part of white in it.
-fn paler(color: Color, white: f64) -> Color {
-    let mixed = |part: u8| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8;
-    Color(color.0.map(mixed))
 }

@@ -4,10 +4,13 @@
 //! 0.30000000000000004. Large and small numbers leave a power of ten to the axis's title, and numbers that differ in far
 //! digits only leave an offset to it.
 
-use crate::text::ladder;
+mod label;
 
-/// The minus sign of a label.
-const MINUS: char = '\u{2212}';
+pub use label::{power_of_ten, with_minus};
+
+use crate::text::ladder;
+use label::Numbers;
+
 /// Numbers from this power of ten on leave a power to the title, and those up to the other.
 const LARGE: i32 = 4;
 const SMALL: i32 = -3;
@@ -42,7 +45,7 @@ pub struct Ticks {
 
 impl Ticks {
     /// The ticks from `low` to `high`, finite and in this order, on a linear axis: the finest for which `fits` says that the
-    /// labels have room. Two ticks, or the one that there is, stand even where it says no.
+    /// labels have room. Where no step of them does, the ends alone have labels.
     pub fn linear(low: f64, high: f64, fits: impl Fn(&[Tick]) -> bool) -> Self {
         let span = high - low;
         if !(span > 0.0 && span.is_finite()) {
@@ -62,10 +65,24 @@ impl Ticks {
             }
             best = ticks;
             if fit {
-                break;
+                return best;
             }
         }
-        best
+        best.with_few_labels(fits)
+    }
+
+    /// The same with labels at the first and the last tick alone, or where these have no room either, at the last.
+    fn with_few_labels(mut self, fits: impl Fn(&[Tick]) -> bool) -> Self {
+        if fits(&self.major) || self.major.len() < 2 {
+            return self;
+        }
+        let inner = self.major.drain(1..self.major.len() - 1);
+        self.minor.extend(inner.map(|tick| tick.at));
+        if !fits(&self.major) {
+            self.minor.push(self.major.remove(0).at);
+        }
+        self.minor.sort_by(f64::total_cmp);
+        self
     }
 
     /// The ticks whose step is the number on that rung of the ladder.
@@ -208,53 +225,6 @@ fn decade(power: i32) -> Tick {
     Tick {
         at: ladder::rung(3 * i64::from(power)),
         label,
-    }
-}
-
-/// Ten to this power, as markup.
-pub fn power_of_ten(power: i32) -> String {
-    format!("10^{{{}}}", with_minus(&power.to_string()))
-}
-
-/// `number` with a minus sign in place of a hyphen.
-pub fn with_minus(number: &str) -> String {
-    number.replace('-', &MINUS.to_string())
-}
-
-/// The whole multiples of 1, 2 or 5 (`digit`) times ten to the power `decade`.
-#[derive(Clone, Copy)]
-struct Numbers {
-    digit: i64,
-    decade: i32,
-}
-
-impl Numbers {
-    /// The number nearest to the exact multiple.
-    fn value(self, count: i64) -> f64 {
-        let text = format!(
-            "{}e{}",
-            i128::from(count) * i128::from(self.digit),
-            self.decade
-        );
-        text.parse().unwrap_or_default()
-    }
-
-    /// The multiple in units of ten to `power`, with all of its digits and no more.
-    fn label(self, count: i64, power: i32) -> String {
-        let exponent = self.decade - power;
-        let whole = i128::from(count) * i128::from(self.digit);
-        let text = match u32::try_from(exponent) {
-            Ok(zeros) if whole != 0 => format!("{whole}{}", "0".repeat(zeros as usize)),
-            Ok(_) => "0".to_owned(),
-            Err(_) => {
-                let decimals = exponent.unsigned_abs() as usize;
-                let digits = format!("{:0>width$}", whole.abs(), width = decimals + 1);
-                let (before, after) = digits.split_at(digits.len() - decimals);
-                let sign = if whole < 0 { "-" } else { "" };
-                format!("{sign}{before}.{after}")
-            }
-        };
-        with_minus(&text)
     }
 }
 

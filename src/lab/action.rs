@@ -29,6 +29,8 @@ pub enum Action {
     Edit,
     /// Asks where to export the run.
     Export,
+    /// Asks where to draw a figure of the run.
+    Figure,
     /// Asks where to save the run file.
     SaveRun,
     /// Asks where to save the present state as a scenario.

@@ -4,6 +4,7 @@ use super::action::Action;
 use super::carry_out::{Answer, Done};
 use super::command::{Command, Place};
 use super::dialog::{Dialog, Question};
+use super::view::Pane;
 use super::{Lab, Request};
 use crate::export::Layout;
 
@@ -22,12 +23,20 @@ impl Lab {
     pub(super) fn dialog_for_a_file(&self, action: Action) -> Result<Dialog, String> {
         let free_name = |about, extension| self.files.free_name(self.work.name(), about, extension);
         match action {
-            Action::Export if self.files.is_exporting() => {
+            Action::Export | Action::Figure if self.files.is_exporting() => {
                 Err("one export at a time: Esc stops the one under way".to_owned())
             }
             Action::Export => {
                 let scenario = self.run_up_to(None, "export")?;
                 Ok(Dialog::export(scenario, free_name("", "csv")))
+            }
+            Action::Figure => {
+                let step = self.run_up_to(None, "draw")?.steps;
+                let kind = match self.view.focus {
+                    pane @ (Pane::FROM_ABOVE | Pane::THREE_D) => pane,
+                    _ => Pane::TRACES,
+                };
+                Ok(Dialog::figure(step, free_name("", "pdf"), kind.id()))
             }
             Action::SaveRun => {
                 let step = self.run_up_to(None, "save")?.steps;
@@ -81,6 +90,13 @@ impl Lab {
                 path: text.to_owned(),
                 layout: Layout::every(dialog.every()?),
                 to_step: Some(scenario.steps),
+                force,
+            }),
+            Question::Figure(to_step) => Some(Command::Figure {
+                path: text.to_owned(),
+                kind: dialog.form().text(1).trim().to_owned(),
+                exact: self.player.run().overlay().is_some(),
+                to_step: Some(*to_step),
                 force,
             }),
             Question::SaveRun(to_step) => Some(Command::Save {

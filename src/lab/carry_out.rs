@@ -124,6 +124,10 @@ impl Lab {
                 let until = self.now + Duration::try_from_secs_f64(*seconds).unwrap_or_default();
                 Ok(Done::SILENT.going_on(UnderWay::Waiting(until)))
             }
+            Command::Chapter(title) => {
+                self.script.begin_chapter(title);
+                Ok(Done::saying(title))
+            }
             Command::Undo(times) => self.turn(Way::Back, *times),
             Command::Redo(times) => self.turn(Way::On, *times),
             Command::Export {
@@ -135,6 +139,17 @@ impl Lab {
                 let scenario = self.run_up_to(*to_step, "export")?;
                 let path = self.files.path_of(path);
                 self.files.export(&scenario, &path, layout.clone(), *force)
+            }
+            Command::Figure {
+                path,
+                kind,
+                exact,
+                to_step,
+                force,
+            } => {
+                let scenario = self.run_up_to(*to_step, "draw")?;
+                let path = self.files.path_of(path);
+                self.files.draw(&scenario, &path, (kind, *exact), *force)
             }
             Command::Save {
                 path,

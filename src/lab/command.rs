@@ -61,6 +61,8 @@ pub enum Command {
     Pause,
     /// Lets the next command of the script wait for this many seconds.
     Wait(f64),
+    /// Begins a part of the script that has this title.
+    Chapter(String),
     /// Undoes this many acts.
     Undo(u32),
     /// Does this many undone acts again.
@@ -71,6 +73,19 @@ pub enum Command {
         path: String,
         /// Which rows and columns it has.
         layout: Layout,
+        /// Up to this step instead of the present one.
+        to_step: Option<u64>,
+        /// Whether an existing file is replaced.
+        force: bool,
+    },
+    /// Draws the run up to here.
+    Figure {
+        /// The file; its name's end says in which form.
+        path: String,
+        /// What it shows: traces, above, 3d, or columns.
+        kind: String,
+        /// Whether the exact motion is drawn beside it.
+        exact: bool,
         /// Up to this step instead of the present one.
         to_step: Option<u64>,
         /// Whether an existing file is replaced.

@@ -38,6 +38,8 @@ pub(super) enum Question {
     GoTo,
     /// The CSV file for the rows of this run, and how many of the rows to write.
     Export(Arc<Scenario>),
+    /// The file for a figure of the run up to this step, and its kind.
+    Figure(u64),
     /// The run file for the run up to this step.
     SaveRun(u64),
     /// The file for this text, the scenario that starts from the present state. The text is that of the moment when the
@@ -84,6 +86,17 @@ impl Dialog {
         let mut dialog = Self::new(Question::Export(scenario), &title, &fields, &[]);
         dialog.show_estimate();
         dialog
+    }
+
+    /// Asks for the file of a figure of the run up to `step`; it offers `path` and `kind`.
+    pub(super) fn figure(step: u64, path: String, kind: &str) -> Self {
+        let fields = [("file", path), ("kind", kind.to_owned())];
+        let info = [
+            "the file's end says in which form: .svg, .pdf or .png",
+            "kind: traces, above, 3d, or columns such as tilt_deg,energy_J",
+        ];
+        let title = format!("draw steps 0 to {step}");
+        Self::new(Question::Figure(step), &title, &fields, &info)
     }
 
     /// Asks for the run file of the run up to `step`, which leaves out `later` actions; it offers `path`.

@@ -3,9 +3,11 @@
 use super::carry_out::{Answer, Done, Refusal, UnderWay};
 use crate::export::destination::DestinationError;
 use crate::export::{Destination, Layout};
+use crate::figure::Format;
+use crate::figure::kind::Kind;
 use crate::scenario::Scenario;
 use crate::storage::confined::Confined;
-use crate::storage::exporting::{self, Exporting, Written};
+use crate::storage::exporting::{self, Drawn, Exporting, Written};
 use crate::text::printable::{Shown, is_steering};
 use indicatif::{DecimalBytes, HumanCount};
 use std::io::Write;
@@ -80,15 +82,44 @@ impl Files {
         layout: Layout,
         force: bool,
     ) -> Answer {
-        if self.exporting.is_some() {
-            return Err("one export at a time: wait until the one under way is done".into());
-        }
-        is_named(path)?;
-        self.admit(path)?;
+        self.may_export_to(path)?;
         let begun = Exporting::begin(Arc::clone(scenario), path, layout, force);
         self.exporting = Some(begun.map_err(refusal)?);
         self.failure = None;
         Ok(Done::saying("the export goes on in the background").going_on(UnderWay::Exporting))
+    }
+
+    /// Begins to draw a figure of that kind of `scenario`, beside the exact motion or without it.
+    ///
+    /// # Errors
+    /// Where the kind is none, the file's name does not say in which form, or as for an export.
+    pub(super) fn draw(
+        &mut self,
+        scenario: &Arc<Scenario>,
+        path: &Path,
+        (kind, exact): (&str, bool),
+        force: bool,
+    ) -> Answer {
+        self.may_export_to(path)?;
+        let kind = Kind::named(kind).map_err(|refusal| format!("{kind} {refusal}"))?;
+        let format = Format::of(path).map_err(|refusal| refusal.to_string())?;
+        let drawn = Drawn {
+            kind,
+            exact,
+            format,
+        };
+        let begun = Exporting::begin_figure(Arc::clone(scenario), path, drawn, force);
+        self.exporting = Some(begun.map_err(refusal)?);
+        self.failure = None;
+        Ok(Done::saying("the figure is drawn in the background").going_on(UnderWay::Exporting))
+    }
+
+    fn may_export_to(&self, path: &Path) -> Result<(), Refusal> {
+        if self.exporting.is_some() {
+            return Err("one export at a time: wait until the one under way is done".into());
+        }
+        is_named(path)?;
+        Ok(self.admit(path)?)
     }
 
     /// Asks the export to stop.
@@ -193,13 +224,21 @@ fn is_named(path: &Path) -> Result<(), Refusal> {
 
 /// The message about a complete export, and how to copy the file.
 fn told(written: &Written) -> String {
-    let rows = HumanCount(written.rows);
+    let rows = written
+        .rows
+        .map(|rows| format!("{} rows, ", HumanCount(rows)));
+    let warnings: String = written
+        .warnings
+        .iter()
+        .map(|warning| format!(" · {warning}"))
+        .collect();
     let end = match &written.not_finite {
         Some(end) => format!(", as far as the numbers are finite (step {})", end.step - 1),
         None => String::new(),
     };
     format!(
-        "wrote {rows} rows, {}{end}: {} · {}",
+        "wrote {}{}{end}: {}{warnings} · {}",
+        rows.unwrap_or_default(),
         DecimalBytes(written.bytes),
         Shown(&written.path),
         exporting::scp_line(&written.path)

@@ -32,6 +32,8 @@ pub struct Script {
     under_way: Option<(Placed, UnderWay)>,
     /// The command that was refused, and why.
     failed: Option<String>,
+    /// Titles of the chapters that were begun and not taken yet.
+    chapters: Vec<String>,
     /// Whether the script waits until the user lets it go on: it comes from a session, or was paused.
     is_held: bool,
     /// Whether the run played when the script was paused, and plays again when it goes on.
@@ -71,6 +73,16 @@ impl Script {
     /// The file of the commands, as the user named it.
     pub fn origin(&self) -> &str {
         &self.origin
+    }
+
+    /// The command that was refused, and why.
+    pub fn failure(&self) -> Option<&str> {
+        self.failed.as_deref()
+    }
+
+    /// Begins a chapter.
+    pub(super) fn begin_chapter(&mut self, title: &str) {
+        self.chapters.push(title.to_owned());
     }
 
     /// How many commands are not complete, with the one under way.
@@ -141,6 +153,11 @@ impl Lab {
             self.on_top.notice_mut().take_back();
             self.changed = true;
         }
+    }
+
+    /// The titles of the chapters that were begun since this was asked last.
+    pub fn take_chapters(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.script.chapters)
     }
 
     /// Carries out the script at once, without a clock. It waits for exports only.

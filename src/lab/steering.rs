@@ -107,7 +107,7 @@ impl Lab {
                     self.on_top.open_dialog(dialog);
                 }
             }
-            Action::Export | Action::SaveRun | Action::SavePresent => {
+            Action::Export | Action::Figure | Action::SaveRun | Action::SavePresent => {
                 match self.dialog_for_a_file(action) {
                     Ok(dialog) => self.on_top.open_dialog(dialog),
                     Err(reason) => self.say(reason),

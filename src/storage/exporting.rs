@@ -1,4 +1,8 @@
-//! Exports a run to a CSV file in the background, and estimates the file's size beforehand.
+//! Exports a run to a CSV file, or draws a figure of it, in the background, and estimates the file's size beforehand.
+
+mod drawing;
+
+pub use drawing::Drawn;
 
 use super::at_exit::{self, Registered, Release};
 use crate::export::destination::{Destination, DestinationError};
@@ -33,10 +37,12 @@ pub struct Exporting {
 pub struct Written {
     /// Absolute path of the file.
     pub path: PathBuf,
-    /// Number of rows.
-    pub rows: u64,
+    /// Number of rows; `None` for a figure.
+    pub rows: Option<u64>,
     /// Size of the file.
     pub bytes: u64,
+    /// What the reader of a figure should know of it.
+    pub warnings: Vec<String>,
     /// Where the run's numbers stopped being finite, if they did. The file has the rows before that.
     pub not_finite: Option<NotFinite>,
 }
@@ -74,20 +80,24 @@ impl Exporting {
             path: std::path::absolute(path).map_err(refused)?,
             scenario,
         };
-        Self::spawn(job).map_err(refused)
+        let (path, steps) = (job.path.clone(), job.scenario.steps);
+        Self::spawn(path, steps, |shared| job.write(shared)).map_err(refused)
     }
 
-    fn spawn(job: Job) -> io::Result<Self> {
+    fn spawn(
+        path: PathBuf,
+        steps: u64,
+        write: impl FnOnce(&Shared) -> Result<Written, String> + Send + 'static,
+    ) -> io::Result<Self> {
         let shared = Arc::new(Shared {
             step: AtomicU64::new(0),
-            steps: job.scenario.steps,
+            steps,
             is_cancelled: AtomicBool::new(false),
             has_ended: AtomicBool::new(false),
         });
         let (at_work, at_end) = (Arc::clone(&shared), Arc::clone(&shared));
-        let path = job.path.clone();
         let work = move || {
-            let result = job.write(&at_work);
+            let result = write(&at_work);
             at_work.has_ended.store(true, Ordering::SeqCst);
             result
         };
@@ -185,7 +195,8 @@ impl Job {
         destination.keep().map_err(|error| error.fact())?;
         Ok(Written {
             path,
-            rows,
+            rows: Some(rows),
+            warnings: Vec::new(),
             bytes,
             not_finite: match ended {
                 Ended::NotFinite(error) => Some(error),

@@ -166,6 +166,7 @@ fn a_command() -> impl Strategy<Value = Command> {
         Just(Command::TakeAdvice),
         "[a-zA-Z\"'=#]{1,20}".prop_map(Command::LookAt),
         "[a-zA-Z\"'=#]{1,20}".prop_map(Command::Next),
+        "[a-zA-Z\"'=#]{1,20}".prop_map(Command::Chapter),
         any::<bool>().prop_map(Command::Bare),
         prop::collection::vec(pane(), 0..4).prop_map(Command::Show),
         prop::collection::vec(part, 0..4).prop_map(Command::Hide),

@@ -12,6 +12,7 @@ mod coverage;
 mod exact;
 mod exported;
 mod figure_files;
+mod figures;
 mod finding;
 mod health;
 mod journal;

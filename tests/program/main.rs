@@ -6,11 +6,13 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod cast;
 mod classes;
 mod cli;
 mod commands;
 mod compare;
 mod escapes;
+mod figures;
 mod journeys;
 mod lessons;
 mod manual;

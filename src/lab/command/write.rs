@@ -4,7 +4,7 @@ use super::{Command, CursorTo, Force, NEXT_TURN, NONE, Place, PushChoice, TURN_B
 use crate::lab::view::Pane;
 use crate::observe::pace::Speed;
 use crate::scenario::file::Choice;
-use crate::scenario::screen::ALL_ROWS;
+use crate::scenario::screen::{ALL_ROWS, TRACES};
 use toml::{Table, Value};
 
 /// Name and value of `command`.
@@ -37,6 +37,22 @@ pub(super) fn written(command: &Command) -> (&'static str, Value) {
             table.extend(toml::Table::try_from(layout.file()).unwrap_or_default());
             ("export", short(table))
         }
+        Command::Figure {
+            path,
+            kind,
+            exact,
+            to_step,
+            force,
+        } => {
+            let mut table = file_written(path, *to_step, *force);
+            if kind != TRACES {
+                table.insert("kind".to_owned(), kind.as_str().into());
+            }
+            if *exact {
+                table.insert("exact".to_owned(), true.into());
+            }
+            ("figure", short(table))
+        }
         Command::Save {
             path,
             from_here,
@@ -51,6 +67,7 @@ pub(super) fn written(command: &Command) -> (&'static str, Value) {
         }
         Command::Speed(Speed::Times(speed)) => ("speed", (*speed).into()),
         Command::Speed(Speed::Top) => ("speed", "top".into()),
+        Command::Chapter(title) => ("chapter", title.clone().into()),
         Command::LookAt(text) => ("look_at", text.clone().into()),
         Command::Next(text) => ("next", text.clone().into()),
         Command::Bare(bare) => ("bare", (*bare).into()),

@@ -162,7 +162,7 @@ fn purpose(action: Action) -> &'static str {
         A::Parameters | A::Edit | A::FindValue | A::Undo | A::Redo => CHANGE,
         A::Move(_) | A::MoveFar(_) => CHANGE,
         A::Push | A::ChoosePush => PUSH,
-        A::Export | A::SaveRun | A::SavePresent => KEEP,
+        A::Export | A::Figure | A::SaveRun | A::SavePresent => KEEP,
         A::Browse => OPEN,
         A::Help | A::Close | A::Redraw | A::Suspend | A::Quit => LEAVE,
         _ => LOOK,

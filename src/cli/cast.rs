@@ -1,0 +1,162 @@
+//! `gyrolab cast`: a recording of the lab while it carries out a file of commands, in the format of asciinema.
+//!
+//! The lab's own clock tells the time: it goes on by the same step from picture to picture, however long the computer needs
+//! for one. Neither settings nor the environment are read, so that a file of commands has one recording.
+
+use super::args::{CastArgs, Changes, Markers};
+use super::progress::{self, Interruption};
+use super::workbench::{DEFAULT, lab};
+use super::{INTERRUPTED, tell};
+use crate::export::Destination;
+use crate::lab::Lab;
+use crate::lab::command;
+use crate::lab::view::theme::{Background, Theme};
+use crate::text::printable::{Shown, printable};
+use crate::tui::recorder::Recorder;
+use anyhow::{Context, bail, ensure};
+use serde_json::{Value, json};
+use std::io::Write;
+use std::process::ExitCode;
+use std::thread;
+use std::time::Duration;
+
+/// From picture to picture.
+const FRAME: Duration = Duration::from_millis(50);
+/// The longest recording: nobody watches more, and a slip in a number shall not fill the disk.
+const LONGEST: Duration = Duration::from_secs(3600);
+/// How often to look whether an export is complete: the recording's clock stands still meanwhile.
+const LOOK: Duration = Duration::from_millis(2);
+
+pub(super) fn cast(args: &CastArgs) -> anyhow::Result<ExitCode> {
+    let commands = command::open(&args.commands)?;
+    let theme = Theme {
+        colour: true,
+        background: Background::Dark,
+    };
+    let mut lab = lab(
+        DEFAULT,
+        &Changes::default(),
+        Some(Markers::Braille),
+        theme,
+        false,
+    )?;
+    let (output, interruption) = progress::open(Some(&args.output), args.force)?;
+    let Some(output) = output else {
+        return Ok(ExitCode::FAILURE); // a path that is given is opened, or an error
+    };
+    let mut cast = Cast::begin(args, &mut lab)?;
+    lab.take_commands(commands);
+    if !cast.record(&mut lab, &interruption)? {
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    let (length, markers) = (cast.now.as_secs_f64(), cast.markers);
+    cast.write(output)
+        .with_context(|| format!("cannot write {}", Shown(&args.output)))?;
+    if interruption.may_act_at_once() {
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    tell(format_args!(
+        "gyrolab: {length:.1} s with {markers} {} in {}",
+        if markers == 1 { "chapter" } else { "chapters" },
+        Shown(&args.output)
+    ));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A recording: a line of JSON for its head and one for each event.
+struct Cast {
+    recorder: Recorder,
+    text: String,
+    now: Duration,
+    /// The time of the last event.
+    written: Duration,
+    markers: usize,
+}
+
+impl Cast {
+    fn begin(args: &CastArgs, lab: &mut Lab) -> anyhow::Result<Self> {
+        let (columns, lines) = args.size;
+        let mut head = json!({
+            "version": 3,
+            "term": { "cols": columns, "rows": lines, "type": "xterm-256color" },
+        });
+        if let Some(title) = &args.title {
+            head["title"] = Value::from(printable(title).into_owned());
+        }
+        Ok(Self {
+            recorder: Recorder::new(lab, args.size)?,
+            text: format!("{head}\n"),
+            now: Duration::ZERO,
+            written: Duration::ZERO,
+            markers: 0,
+        })
+    }
+
+    /// Lets time pass until all commands are carried out; false where a signal has ended it.
+    fn record(&mut self, lab: &mut Lab, interruption: &Interruption) -> anyhow::Result<bool> {
+        loop {
+            self.look(lab)?;
+            if interruption.has_come() {
+                return Ok(false);
+            }
+            if let Some(failure) = lab.script().failure() {
+                bail!("{}", printable(failure));
+            }
+            if lab.script().is_done() {
+                self.event("x", "0");
+                return Ok(true);
+            }
+            ensure!(
+                self.now < LONGEST,
+                "the recording is longer than an hour, the most there may be: shorten its waits, or raise its speed"
+            );
+            self.now += FRAME;
+            self.advance(lab, interruption);
+        }
+    }
+
+    /// Lets the lab take its steps up to now, as many as there are to take. Only a signal cuts them short.
+    fn advance(&self, lab: &mut Lab, interruption: &Interruption) {
+        let mut is_first = true;
+        let mut clock = || match interruption.has_come() && !std::mem::take(&mut is_first) {
+            true => self.now + LONGEST,
+            false => self.now,
+        };
+        lab.advance(&mut clock);
+        while lab.files().is_exporting() && !interruption.has_come() {
+            thread::sleep(LOOK);
+            lab.advance(&mut || self.now);
+        }
+    }
+
+    /// Records what there is to see now, and the chapters that begin with it.
+    fn look(&mut self, lab: &mut Lab) -> anyhow::Result<()> {
+        for title in lab.take_chapters() {
+            self.markers += 1;
+            self.event("m", &title);
+        }
+        let sent = self.recorder.draw(lab)?;
+        if !sent.is_empty() {
+            self.event("o", &sent);
+        }
+        Ok(())
+    }
+
+    /// An event is the time since the one before, s, its kind and its data.
+    fn event(&mut self, kind: &str, data: &str) {
+        let since = (self.now - self.written).as_millis();
+        self.written = self.now;
+        self.text += &format!(
+            "[{}.{:03}, \"{kind}\", {}]\n",
+            since / 1000,
+            since % 1000,
+            Value::from(data)
+        );
+    }
+
+    fn write(&self, mut output: Destination) -> anyhow::Result<()> {
+        output.write_all(self.text.as_bytes())?;
+        output.keep()?;
+        Ok(())
+    }
+}

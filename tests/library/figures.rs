@@ -1,0 +1,578 @@
+//! Figures of runs and of tables: what stands on the page, and where.
+
+use crate::support::scenarios::preset;
+use gyrolab::figure::chart::{Axis, Chart, Panel, Series, Style};
+use gyrolab::figure::kind::Kind;
+use gyrolab::figure::of_runs::{self, Figure, Request, Run};
+use gyrolab::figure::table::Table;
+use gyrolab::figure::{Format, Item, Paint, Point, Scene, of_table, write};
+use gyrolab::run::Simulation;
+use gyrolab::scenario::Scenario;
+use gyrolab::scenario::presets::PRESETS;
+use proptest::prelude::*;
+use std::fs;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// Of a page of 86 mm, pt.
+const COLUMN_PT: f64 = 86.0 * 72.0 / 25.4;
+/// So many steps of a preset are enough for its figure in a test.
+const STEPS: u64 = 250;
+
+fn scenario(name: &str, set: &[&str]) -> Arc<Scenario> {
+    Arc::new(preset(name, set))
+}
+
+fn run(preset: &str, set: &[&str]) -> Run {
+    Run {
+        scenario: scenario(preset, set),
+        named: preset.to_owned(),
+    }
+}
+
+fn request(kind: &str) -> Request {
+    Request {
+        kind: Kind::named(kind).unwrap(),
+        from_s: 0.0,
+        to_s: None,
+        exact: false,
+        width_pt: COLUMN_PT,
+    }
+}
+
+fn drawn(runs: &[Run], request: &Request) -> Figure {
+    let figure = of_runs::figure(runs, request, |_, _| ControlFlow::Continue(()));
+    figure.unwrap().unwrap()
+}
+
+fn refusal(runs: &[Run], request: &Request) -> String {
+    of_runs::figure(runs, request, |_, _| ControlFlow::Continue(())).unwrap_err()
+}
+
+fn words(scene: &Scene) -> Vec<&str> {
+    scene
+        .items
+        .iter()
+        .filter_map(|item| item.words.as_deref())
+        .collect()
+}
+
+#[track_caller]
+fn says(scene: &Scene, wanted: &[&str]) {
+    let words = words(scene);
+    for wanted in wanted {
+        assert!(words.contains(wanted), "{wanted} is not among {words:?}");
+    }
+}
+
+/// Left, upper, right and lower end of what an item shows.
+fn extent(item: &Item) -> [f64; 4] {
+    let none = [
+        f64::INFINITY,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NEG_INFINITY,
+    ];
+    let all = item
+        .path
+        .points()
+        .fold(none, |[left, top, right, bottom], p: Point| {
+            [left.min(p.x), top.min(p.y), right.max(p.x), bottom.max(p.y)]
+        });
+    match item.clip {
+        None => all,
+        Some([a, b]) => [
+            all[0].max(a.x),
+            all[1].max(a.y),
+            all[2].min(b.x),
+            all[3].min(b.y),
+        ],
+    }
+}
+
+/// Nothing leaves the page, and no two words stand upon each other.
+fn is_tidy(scene: &Scene) -> Result<(), String> {
+    let mut texts: Vec<(&str, [f64; 4])> = Vec::new();
+    for item in &scene.items {
+        let here = extent(item);
+        let [left, top, right, bottom] = here;
+        if item.path.0.is_empty() || (left > right && item.clip.is_some()) {
+            continue;
+        }
+        let is_inside = left >= -0.01
+            && top >= -0.01
+            && right <= scene.width_pt + 0.01
+            && bottom <= scene.height_pt + 0.01;
+        if !is_inside {
+            return Err(format!("{:?} leaves the page: {here:?}", item.words));
+        }
+        let Some(word) = &item.words else { continue };
+        for (other, there) in &texts {
+            let apart =
+                right <= there[0] || there[2] <= left || bottom <= there[1] || there[3] <= top;
+            if !apart {
+                return Err(format!("{word} stands upon {other}"));
+            }
+        }
+        texts.push((word, here));
+    }
+    Ok(())
+}
+
+/// The frames in which something is cut off: one a panel.
+fn panels(scene: &Scene) -> Vec<[Point; 2]> {
+    let mut clips: Vec<[Point; 2]> = Vec::new();
+    for clip in scene.items.iter().filter_map(|item| item.clip) {
+        if !clips.contains(&clip) {
+            clips.push(clip);
+        }
+    }
+    clips
+}
+
+/// The lines in a panel.
+fn lines(scene: &Scene, panel: [Point; 2]) -> Vec<&Item> {
+    let is_line = |item: &&Item| item.clip == Some(panel) && matches!(item.paint, Paint::Stroke(_));
+    scene.items.iter().filter(is_line).collect()
+}
+
+fn dashed(scene: &Scene) -> usize {
+    let is_dashed = |item: &&Item| match &item.paint {
+        Paint::Stroke(pen) => item.clip.is_some() && !pen.dash_pt.is_empty(),
+        Paint::Fill(_) => false,
+    };
+    scene.items.iter().filter(is_dashed).count()
+}
+
+#[test]
+fn every_preset_has_a_tidy_figure_of_every_kind() {
+    for name in PRESETS.iter().map(|preset| preset.name) {
+        let steps = scenario(name, &[]).steps.min(STEPS);
+        let runs = [run(name, &[&format!("motion.steps={steps}")])];
+        for kind in [
+            "traces",
+            "above",
+            "3d",
+            "tilt_deg",
+            "energy_J,Lx_Js,azimuth_deg,step,segment",
+        ] {
+            for (width_mm, exact) in [(178.0, true), (40.0, false)] {
+                let request = Request {
+                    exact,
+                    width_pt: width_mm * 72.0 / 25.4,
+                    ..request(kind)
+                };
+                let figure = drawn(&runs, &request);
+                is_tidy(&figure.scene)
+                    .unwrap_or_else(|why| panic!("{name} {kind} {width_mm}: {why}"));
+                assert!(!write(&figure.scene, Format::Svg).unwrap().is_empty());
+            }
+        }
+    }
+}
+
+#[test]
+fn traces_show_x_y_and_z_with_units_and_every_extreme() {
+    let runs = [run("wobble-push", &[])];
+    let figure = drawn(&runs, &request("traces"));
+    says(
+        &figure.scene,
+        &[
+            "x (m)", "y (m)", "z (m)", "t (s)", "0", "200", "−1.0", "0.8",
+        ],
+    );
+    let panels = panels(&figure.scene);
+    assert_eq!(panels.len(), 3);
+    let left = panels[0][0].x;
+    assert!(
+        panels.iter().all(|panel| panel[0].x == left),
+        "one left edge"
+    );
+    let mut simulation = Simulation::new(Arc::clone(&runs[0].scenario));
+    let mut seen = vec![*simulation.now().position()];
+    while simulation.step_number() < runs[0].scenario.steps {
+        seen.push(*simulation.step().unwrap().position());
+    }
+    for (axis, [top_left, bottom_right]) in panels.into_iter().enumerate() {
+        let values = || seen.iter().map(|position| position[axis]);
+        let (least, most) = (
+            values().fold(f64::INFINITY, f64::min),
+            values().fold(f64::NEG_INFINITY, f64::max),
+        );
+        let (low, high) = Axis::default().range_of(values());
+        let place = |value: f64| {
+            bottom_right.y - (value - low) / (high - low) * (bottom_right.y - top_left.y)
+        };
+        let lines = lines(&figure.scene, [top_left, bottom_right]);
+        let ends: Vec<_> = lines.iter().map(|line| extent(line)).collect();
+        let top = ends.iter().map(|end| end[1]).fold(f64::INFINITY, f64::min);
+        let bottom = ends
+            .iter()
+            .map(|end| end[3])
+            .fold(f64::NEG_INFINITY, f64::max);
+        assert!((top - place(most)).abs() < 1e-6, "{top} {}", place(most));
+        assert!(
+            (bottom - place(least)).abs() < 1e-6,
+            "{bottom} {}",
+            place(least)
+        );
+    }
+}
+
+#[test]
+fn a_path_from_above_is_true_to_scale() {
+    let runs = [run("cusps", &[])];
+    let figure = drawn(&runs, &request("above"));
+    says(&figure.scene, &["x (m)", "y (m)"]);
+    let panels = panels(&figure.scene);
+    assert_eq!(panels.len(), 1);
+    let mut simulation = Simulation::new(Arc::clone(&runs[0].scenario));
+    let (mut x, mut y) = ((0.0_f64, 0.0_f64), (0.0_f64, 0.0_f64));
+    while simulation.step_number() < runs[0].scenario.steps {
+        let at = *simulation.step().unwrap().position();
+        (x, y) = (
+            (x.0.min(at.x), x.1.max(at.x)),
+            (y.0.min(at.y), y.1.max(at.y)),
+        );
+    }
+    let ends: Vec<_> = lines(&figure.scene, panels[0])
+        .into_iter()
+        .map(extent)
+        .collect();
+    let size = |low: usize, high: usize| {
+        let least = ends
+            .iter()
+            .map(|end| end[low])
+            .fold(f64::INFINITY, f64::min);
+        ends.iter()
+            .map(|end| end[high])
+            .fold(f64::NEG_INFINITY, f64::max)
+            - least
+    };
+    let (across, up) = (size(0, 2) / (x.1 - x.0), size(1, 3) / (y.1 - y.0));
+    assert!((across / up - 1.0).abs() < 2e-3, "{across} {up}");
+}
+
+#[test]
+fn a_path_in_space_has_three_axes_and_a_shadow() {
+    let figure = drawn(&[run("cusps", &[])], &request("3d"));
+    says(&figure.scene, &["x (m)", "y (m)", "z (m)"]);
+    let greys = figure
+        .scene
+        .items
+        .iter()
+        .filter_map(|item| match &item.paint {
+            Paint::Stroke(pen) if item.path.0.len() > 20 => Some(pen.color.0[0]),
+            _ => None,
+        });
+    let greys: std::collections::BTreeSet<u8> = greys.collect();
+    assert!(greys.len() >= 5, "depths and a shadow: {greys:?}");
+}
+
+#[test]
+fn the_exact_motion_is_dashed_and_named() {
+    let runs = [run("method-2", &["motion.steps=400"])];
+    let request = Request {
+        exact: true,
+        ..request("traces")
+    };
+    let figure = drawn(&runs, &request);
+    says(&figure.scene, &["report", "exact"]);
+    assert_eq!(dashed(&figure.scene), 3);
+}
+
+#[test]
+fn runs_beside_each_other_are_named_by_what_differs() {
+    let figure = |runs: &[Run]| drawn(runs, &request("z_m")).scene;
+    let scheme = |name: &str| {
+        run(
+            "cusps",
+            &[&format!("motion.scheme={name}"), "motion.steps=300"],
+        )
+    };
+    let schemes = figure(&[scheme("report"), scheme("rk4")]);
+    says(&schemes, &["report", "rk4"]);
+    assert!(!words(&schemes).iter().any(|word| word.contains('Δ')));
+    let step = |seconds: f64| {
+        run(
+            "cusps",
+            &[&format!("motion.time_step_s={seconds}"), "motion.steps=300"],
+        )
+    };
+    says(
+        &figure(&[step(0.001), step(0.01)]),
+        &["Δt = 1 ms", "Δt = 10 ms"],
+    );
+    let titles = [
+        run("waves", &["motion.steps=300"]),
+        run("loops", &["motion.steps=300"]),
+    ];
+    let title = |run: &Run| run.scenario.file.title.clone();
+    let two = figure(&titles);
+    let names = words(&two);
+    for run in &titles {
+        let begin: String = title(run).chars().take(4).collect();
+        assert!(
+            names.iter().any(|word| word.starts_with(&begin)),
+            "{begin} {names:?}"
+        );
+    }
+}
+
+#[test]
+fn a_stretch_of_time_is_cut_out_and_one_beyond_the_run_is_refused() {
+    let runs = [run("wobble-push", &[])];
+    let part = Request {
+        from_s: 50.0,
+        to_s: Some(60.0),
+        ..request("z_m")
+    };
+    let figure = drawn(&runs, &part);
+    says(&figure.scene, &["50", "60"]);
+    let panel = panels(&figure.scene)[0];
+    let ends: Vec<_> = lines(&figure.scene, panel)
+        .into_iter()
+        .map(extent)
+        .collect();
+    let left = ends.iter().map(|end| end[0]).fold(f64::INFINITY, f64::min);
+    let right = ends
+        .iter()
+        .map(|end| end[2])
+        .fold(f64::NEG_INFINITY, f64::max);
+    assert!((left - panel[0].x).abs() < 0.01 && (right - panel[1].x).abs() < 0.01);
+    let beyond = |from_s: f64, to_s: Option<f64>| {
+        refusal(
+            &runs,
+            &Request {
+                from_s,
+                to_s,
+                ..request("z_m")
+            },
+        )
+    };
+    assert!(
+        beyond(230.0, None).contains("230 s"),
+        "{}",
+        beyond(230.0, None)
+    );
+    assert!(beyond(20.0, Some(10.0)).contains("--to 10"));
+    assert!(beyond(10.0, Some(10.0)).contains("--to 10"));
+    // Between two steps there is nothing to draw.
+    assert!(beyond(0.01, Some(0.02)).contains("no step"));
+}
+
+#[test]
+fn a_run_of_one_step_has_a_figure() {
+    let runs = [run("method-2", &["motion.steps=1"])];
+    for kind in ["traces", "above", "3d"] {
+        let figure = drawn(&runs, &request(kind));
+        is_tidy(&figure.scene).unwrap();
+        write(&figure.scene, Format::Svg).unwrap();
+    }
+}
+
+#[test]
+fn a_constant_curve_has_an_axis_with_room() {
+    let figure = drawn(&[run("torque-free", &[])], &request("Lz_Js"));
+    is_tidy(&figure.scene).unwrap();
+    assert!(words(&figure.scene).len() > 6);
+}
+
+#[test]
+fn a_black_figure_proposes_a_stretch_that_is_not() {
+    let runs = [run("method-1", &[])];
+    let figure = drawn(&runs, &request("traces"));
+    let [warning] = &figure.warnings[..] else {
+        panic!("{:?}", figure.warnings)
+    };
+    assert!(warning.contains("solid black"), "{warning}");
+    let to_s: f64 = warning
+        .split_once("--to ")
+        .unwrap()
+        .1
+        .split(' ')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    let part = Request {
+        to_s: Some(to_s),
+        ..request("traces")
+    };
+    assert_eq!(drawn(&runs, &part).warnings, [""; 0]);
+    assert_eq!(
+        drawn(&[run("wobble-push", &[])], &request("traces")).warnings,
+        [""; 0]
+    );
+    assert_eq!(
+        drawn(&[run("cusps", &[])], &request("above")).warnings,
+        [""; 0]
+    );
+}
+
+#[test]
+fn a_run_that_breaks_is_drawn_up_to_there() {
+    let push = "push.0={point=\"top\", force_N=[1e300,0,0], first_step=25, steps=1}";
+    let figure = drawn(&[run("method-2", &[push])], &request("traces"));
+    let broke = figure.broke.unwrap();
+    assert!(broke.contains("no longer finite at step 25"), "{broke}");
+    says(&figure.scene, &["x (m)", "2"]);
+    // Where it breaks before the stretch that is asked for, there is no picture.
+    let late = Request {
+        from_s: 10.0,
+        ..request("traces")
+    };
+    let refusal = refusal(&[run("method-2", &[push])], &late);
+    assert!(refusal.contains("step 25"), "{refusal}");
+}
+
+#[test]
+fn a_watcher_can_stop_it() {
+    let long = [run("method-2", &["motion.steps=20000"])];
+    let figure = of_runs::figure(&long, &request("traces"), |_, _| ControlFlow::Break(()));
+    assert!(figure.is_ok_and(|figure| figure.is_none()));
+}
+
+fn table(text: &str) -> Table {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("table.csv");
+    fs::write(&file, text).unwrap();
+    Table::read(&file).unwrap().unwrap()
+}
+
+const COMPARISON: &str = "\
+# title = \"Cusps\"
+scheme,time_step_s,steps,error_m,error_at_end_m,order,energy_drift
+rk4,0.1,10,1e-1,1e-1,n/a,1e-3
+rk4,0.05,20,6.25e-3,1e-1,4.0,1e-4
+rk4,0.025,40,3.9e-4,1e-1,4.0,1e-5
+rk4,0.0125,80,2.44e-5,1e-1,4.0,1e-6
+exact,0.1,10,3e-15,1e-1,n/a,1e-16
+exact,0.05,20,4e-15,1e-1,n/a,1e-16
+exact,0.025,40,n/a,1e-1,n/a,1e-16
+exact,0.0125,80,0,1e-1,n/a,1e-16
+";
+
+#[test]
+fn a_comparison_shows_its_slope() {
+    let chart = of_table::chart(&table(COMPARISON), &[], COLUMN_PT).unwrap();
+    assert_eq!(chart.panels[0].slope, Some(4.0));
+    let scene = chart.scene();
+    is_tidy(&scene).unwrap();
+    says(
+        &scene,
+        &[
+            "rk4, slope 4",
+            "exact",
+            "largest error (m)",
+            "Δt (s)",
+            "4",
+            "1",
+        ],
+    );
+    let other = of_table::chart(&table(COMPARISON), &["energy_drift"], COLUMN_PT).unwrap();
+    says(&other.scene(), &["energy drift"]);
+    let wrong = of_table::chart(&table(COMPARISON), &["eror_m"], COLUMN_PT).unwrap_err();
+    assert!(wrong.contains("error_m"), "{wrong}");
+}
+
+const SWEEP: &str = "\
+# scenario = \"cusps\"
+# measure = [\"measured_precession_rad_per_s\"]
+# [[vary]]
+# key = \"start.tilt_deg\"
+# values = [10, 20, 30, 40]
+start.tilt_deg,measured_precession_rad_per_s,measured_precession_uncertainty_rad_per_s,predicted_precession_rad_per_s,path
+10,0.90,0.01,0.91,cusps
+20,0.88,0.02,0.89,cusps
+30,,,0.87,
+40,0.84,0.000001,0.84,cusps
+";
+
+#[test]
+fn a_sweep_shows_measured_points_with_bars_on_the_predicted_line() {
+    let chart = of_table::chart(&table(SWEEP), &[], COLUMN_PT).unwrap();
+    let [panel] = &chart.panels[..] else {
+        panic!("{chart:?}")
+    };
+    assert_eq!(panel.series.len(), 2);
+    assert!(panel.series[0].style.mark.is_none() && panel.series[1].style.width_pt == 0.0);
+    assert_eq!(panel.series[1].errors[..2], [0.01, 0.02]);
+    let scene = chart.scene();
+    is_tidy(&scene).unwrap();
+    says(
+        &scene,
+        &[
+            "predicted",
+            "measured",
+            "errors smaller than marks",
+            "θ₀ (°)",
+        ],
+    );
+}
+
+#[test]
+fn a_run_is_no_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.csv");
+    fs::write(&file, "# title = \"x\"\nstep,t_s,x_m\n0,0,0\n").unwrap();
+    assert!(Table::read(&file).unwrap().is_none());
+    fs::write(&file, "# [[vary]]\n# key = \"a\"\na,b\n1\n").unwrap();
+    assert!(
+        Table::read(&file)
+            .unwrap_err()
+            .to_string()
+            .contains("row 1")
+    );
+    fs::write(&file, "# [[vary]]\n# key = \"a\"\na,b\n").unwrap();
+    assert!(
+        Table::read(&file)
+            .unwrap_err()
+            .to_string()
+            .contains("no rows")
+    );
+}
+
+fn value() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        any::<f64>(),
+        -10.0..10.0,
+        Just(0.0),
+        Just(1e300),
+        Just(-1e300),
+        Just(1e-300),
+        Just(f64::NAN)
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    #[test]
+    fn any_numbers_have_a_tidy_page(
+        points in prop::collection::vec([value(), value()], 0..40),
+        errors in prop::collection::vec(value(), 0..40),
+        logs in any::<(bool, bool)>(),
+        names in (0_usize..5, "\\PC{0,60}"),
+        width_mm in 40.0..200.0_f64,
+        slope in prop::option::of(value()),
+    ) {
+        let series = (0..names.0).map(|index| Series {
+            name: gyrolab::figure::letters::shortened(&names.1, 7.0, gyrolab::figure::legend::longest_name(width_mm * 72.0 / 25.4) - 6.0) + &index.to_string(),
+            points: points.clone(),
+            errors: errors.iter().map(|error| error.abs()).collect(),
+            style: if index % 2 == 0 { Style::curve(index) } else { Style::marked_line(index) },
+        });
+        let chart = Chart {
+            title: names.1.clone(),
+            width_pt: width_mm * 72.0 / 25.4,
+            x: Axis { is_log: logs.0, ..Axis::new("*t*", "s") },
+            panels: vec![Panel { y: Axis { is_log: logs.1, ..Axis::new("*x*", "m") }, series: series.collect(), slope, ..Panel::default() }],
+            is_true_to_scale: false,
+        };
+        let scene = chart.scene();
+        if let Err(why) = is_tidy(&scene) {
+            prop_assert!(false, "{why}");
+        }
+        prop_assert!(write(&scene, Format::Svg).is_ok());
+    }
+}
