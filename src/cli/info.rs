@@ -79,7 +79,7 @@ pub(super) fn keys() -> anyhow::Result<ExitCode> {
         };
         writeln!(text, "{path}{must}\n    {about}")?;
     }
-    text.push_str("\nA * stands for a number from 0: [[body.point]], [[push]], [[expected]] and [[edit]] may be repeated.\n");
+    text.push_str("\nA * stands for a number from 0: [[body.point]], [[body.part]], [[push]], [[expected]] and [[edit]] may be repeated.\n");
     text.push_str("A table may be left out whole where none of its keys is wanted, but [start] and [motion].\n");
     print(&text)
 }
@@ -155,10 +155,15 @@ fn described(scenario: &Scenario) -> String {
         1 => ", 1 edit".to_owned(),
         more => format!(", {more} edits"),
     };
+    let parts = match scenario.body.parts.len() {
+        0 => String::new(),
+        1 => "1 part and ".to_owned(),
+        more => format!("{more} parts and "),
+    };
     format!(
-        "good: \"{}\", {} points, scheme {}, steps: {}{edits}{}",
+        "good: \"{}\", {parts}{} points, scheme {}, steps: {}{edits}{}",
         scenario.file.title,
-        scenario.body.mechanics.points().len(),
+        scenario.body.points_before_parts(),
         scenario.motion.scheme.name,
         steps_in_words(scenario, scenario.steps),
         pushes_without_effect(scenario),

@@ -4,7 +4,7 @@ use super::checks;
 use super::dotted::{find, is_in, set_key};
 use super::problem::{Found, PRESETS, Problem, Problems, nearest};
 use super::syntax::{mistake, offset_of, syntax_problem};
-use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, start, tables};
+use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, reshape, start, tables};
 use crate::text::number::shortest;
 use crate::text::printable::{brief, printable};
 use std::fs::File;
@@ -203,21 +203,17 @@ impl Document {
     }
 
     /// Writes `value` at the dotted `key`, of which no problem's place will speak. What the value is about is first told
-    /// so that it can be changed: a momentum where there is a spin, a spin that is to be steady where there is a momentum.
+    /// so that it can be changed: a momentum where there is a spin, a spin that is to be steady where there is a momentum, the
+    /// dimensions of a part that is to have another shape.
     ///
     /// # Errors
     /// When the key leads nowhere, or the scenario is wrong before it has the value.
     pub(crate) fn write(&mut self, key: &str, value: Value) -> Result<(), Problems> {
         start::make_room(&mut self.table, key);
+        reshape::prepare(&mut self.table, key, &value);
         if start::is_other_way(&self.table, key, &value) {
             let now = self.scenario()?;
-            start::tell_other_way(
-                &mut self.table,
-                key,
-                &value,
-                &now.body.mechanics,
-                &now.start,
-            );
+            start::tell_other_way(&mut self.table, key, &value, &now);
         }
         set_key(&mut self.table, key, value).map_err(|problem| self.placed(vec![problem]))
     }

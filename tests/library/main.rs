@@ -22,6 +22,7 @@ mod mangled;
 mod messages;
 mod mouse;
 mod parameters;
+mod parts;
 mod pictures;
 mod present;
 mod presets;

@@ -24,7 +24,8 @@ impl Shape {
         let rim = scenario.file.body.rim.as_ref();
         let rim = rim.map(|rim| (rim.radius_m, rim.height_m, rim.points));
         let after = rim.map_or(0, |(_, _, points)| points);
-        let free: Vec<_> = points.iter().skip(after).take(MOST_FREE).collect();
+        let count = scenario.file.body.point.len().min(MOST_FREE);
+        let free: Vec<_> = points.iter().skip(after).take(count).collect();
         let traced = points[scenario.trace].at;
         let mut corners: Vec<_> = rim
             .iter()
