@@ -7,6 +7,7 @@ mod arrows;
 mod phase;
 mod room;
 mod shape;
+mod solids;
 mod wheel;
 
 use super::{PaneRow, Width, frame, write};

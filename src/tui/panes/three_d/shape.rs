@@ -1,5 +1,6 @@
-//! The body as it is drawn: rim, axle and free points.
+//! The body as it is drawn: rim, axle, free points and solid parts.
 
+use super::solids::Solid;
 use crate::observe::live::LiveRun;
 use nalgebra::Vector3;
 
@@ -15,6 +16,8 @@ pub struct Shape {
     pub corners: Vec<(f64, f64)>,
     /// The free points that have a mass.
     pub free: Vec<Vector3<f64>>,
+    /// The solid parts.
+    pub solids: Vec<Solid>,
 }
 
 impl Shape {
@@ -34,6 +37,8 @@ impl Shape {
         let corner = |at: &Vector3<f64>| (at.xy().norm(), at.z);
         corners.extend(free.iter().map(|point| corner(&point.at)));
         corners.push(corner(&traced));
+        let solids = Solid::of(&scenario.body.parts);
+        corners.extend(solids.iter().flat_map(Solid::corners));
         let heights = || corners.iter().map(|(_, height)| *height);
         let axle = (heights().fold(0.0, f64::min), heights().fold(0.0, f64::max));
         let has_mass = free.iter().filter(|point| point.mass > 0.0);
@@ -43,6 +48,7 @@ impl Shape {
             axle,
             corners,
             free,
+            solids,
         }
     }
 
