@@ -1,7 +1,6 @@
 //! Solid parts as lines: what of a part is seen in a picture.
 
 use crate::physics::part::{Part, Shape};
-use crate::scenario::reshape::block_of;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
@@ -19,9 +18,9 @@ pub struct Line {
     pub is_mark: bool,
 }
 
-/// The lines of `part`. Of a part that is given by its moments those of the block that has them.
+/// The lines of `part`. Of a part that is given by its moments those of the thin ellipsoid that has them.
 pub fn lines(part: &Part) -> Vec<Line> {
-    let mut lines = own_lines(&part.shape);
+    let mut lines = own_lines(part);
     for line in &mut lines {
         for point in &mut line.points {
             *point = part.centre + part.directions * *point;
@@ -31,8 +30,8 @@ pub fn lines(part: &Part) -> Vec<Line> {
 }
 
 /// The lines of a solid in its own frame.
-fn own_lines(shape: &Shape) -> Vec<Line> {
-    match *shape {
+fn own_lines(part: &Part) -> Vec<Line> {
+    match part.shape {
         Shape::Ring { radius } => vec![circle(radius, 0.0), mark(0.0, radius, 0.0)],
         Shape::Cylinder { radius, length } => {
             let mut lines = round([(radius, -0.5 * length), (radius, 0.5 * length)]);
@@ -53,18 +52,7 @@ fn own_lines(shape: &Shape) -> Vec<Line> {
             Vector3::new(0.0, 0.0, -0.5 * length),
             Vector3::new(0.0, 0.0, 0.5 * length),
         ])],
-        Shape::Ball { radius } | Shape::Shell { radius } => {
-            let equator = circle(radius, 0.0);
-            let turned = |turn: fn(&Vector3<f64>) -> Vector3<f64>| Line {
-                points: equator.points.iter().map(turn).collect(),
-                is_mark: false,
-            };
-            let [meridian, across] = [
-                turned(|at| Vector3::new(at.x, 0.0, at.y)),
-                turned(|at| Vector3::new(0.0, at.x, at.y)),
-            ];
-            vec![equator, meridian, across]
-        }
+        Shape::Ball { radius } | Shape::Shell { radius } => ellipsoid([radius; 3]),
         Shape::Cone { radius, length } => {
             let base = 0.25 * length;
             let mut lines = round([(0.0, base - length), (radius, base)]);
@@ -72,8 +60,22 @@ fn own_lines(shape: &Shape) -> Vec<Line> {
             lines
         }
         Shape::Block { size } => block(&size),
-        Shape::Moments(moments) => block(&block_of(&moments)),
+        Shape::Moments(_) => ellipsoid(part.distances),
     }
+}
+
+/// The equator and two meridians.
+fn ellipsoid([x, y, z]: [f64; 3]) -> Vec<Line> {
+    let round = circle(1.0, 0.0);
+    let turned = |turn: &dyn Fn(&Vector3<f64>) -> Vector3<f64>| Line {
+        points: round.points.iter().map(turn).collect(),
+        is_mark: false,
+    };
+    vec![
+        turned(&|at| Vector3::new(x * at.x, y * at.y, 0.0)),
+        turned(&|at| Vector3::new(x * at.x, 0.0, z * at.y)),
+        turned(&|at| Vector3::new(0.0, y * at.x, z * at.y)),
+    ]
 }
 
 /// A round solid between two circles, radius and height of each; of a flat one the circle alone, and none of radius 0.
@@ -208,13 +210,13 @@ mod tests {
     }
 
     #[test]
-    fn moments_are_seen_as_the_block_that_has_them() {
-        let size = Vector3::new(0.2, 0.4, 0.6);
-        let block = Shape::Block { size };
-        let seen = extents(Shape::Moments(block.moments_per_mass()));
-        for ((_, most), half) in seen.into_iter().zip([0.1, 0.2, 0.3]) {
-            assert!((most - half).abs() < 1e-15);
-        }
+    fn moments_are_seen_as_the_thin_ellipsoid_that_has_them() {
+        // Of a shell of radius R they are 2 R²/3, three times.
+        let seen = extents(Shape::Moments(Vector3::repeat(2.0 / 3.0 * 0.25)));
+        assert!(seen.iter().all(|(_, most)| (most - 0.5).abs() < 1e-15));
+        // A + B = C: a disk.
+        let flat = extents(Shape::Moments(Vector3::new(1.0, 2.0, 3.0)));
+        assert_eq!(flat[2], (0.0, 0.0));
     }
 
     #[test]

@@ -154,7 +154,9 @@ pub struct Part {
     pub centre: Vector3<f64>,
     /// Its own directions x, y and axis as columns, body frame.
     pub directions: Matrix3<f64>,
-    distances: [f64; 3],
+    /// Distances of the six points from the centre along its own x, y and axis, m. They are the half axes of the thin
+    /// ellipsoid (the shell between two similar ones) that has the same moments.
+    pub distances: [f64; 3],
 }
 
 impl Part {

@@ -20,7 +20,7 @@ pub mod presets;
 pub mod problem;
 mod pushes;
 pub mod rescale;
-pub(crate) mod reshape;
+mod reshape;
 mod rotor;
 pub mod screen;
 pub(crate) mod solids;

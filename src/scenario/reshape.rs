@@ -106,7 +106,7 @@ fn size(shape: &Shape) -> Vector3<f64> {
 }
 
 /// The sides of the block that has these moments divided by the mass, m.
-pub(crate) fn block_of(moments: &Vector3<f64>) -> Vector3<f64> {
+fn block_of(moments: &Vector3<f64>) -> Vector3<f64> {
     let [a, b, c] = (*moments).into();
     let side = |twice: f64| (6.0 * twice.max(0.0)).sqrt();
     Vector3::new(side(b + c - a), side(a + c - b), side(a + b - c))
