@@ -168,7 +168,7 @@ pub const MOST_POINTS: i64 = 100_000;
 pub const MOST_PHASES: i64 = 1000;
 
 /// What `start.momentum_Js` is, and what may stand for it.
-pub(super) const STATED: &str = "angular momentum L about the pivot, J s; or give spin_rpm, spin_rad_per_s or omega_rad_per_s instead";
+pub(super) const STATED: &str = "angular momentum L about the pivot, J s; or give spin_rpm or spin_rad_per_s instead, or omega_rad_per_s";
 
 /// Every key there is, in the order in which files are written.
 #[rustfmt::skip]

@@ -39,7 +39,7 @@ pub const PRESETS: &[Preset] = presets![
     "sleeping-unstable": "e, then |L|: at 40 J s it stays up."
     "falling": "e, then |L|: at 30 J s it falls less far, at 60 much less."
     "torque-free": "e, then gravity: at 9.8 m/s2 a torque acts, and the tilt no longer stays."
-    "heavy-top": "t draws the exact motion; e, then scheme: which schemes keep to it at this time step?"
+    "heavy-top": "e, then scheme; t draws the exact motion: which schemes keep to it at this dt?"
     "wing-nut": "e, then tilt: at 0.1 degrees it waits longer, and then turns over as fast."
     "phone": "e, then wy: at 0 nothing slips, and it comes round flat."
     "rugby-pass": "e, then wx: a larger slip of the wrist widens the circle, its time stays."
