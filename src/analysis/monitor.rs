@@ -53,7 +53,7 @@ impl Monitor {
     #[inline]
     pub fn follow(&mut self, step: &Step) {
         self.measure(step);
-        self.hold(step.after());
+        self.hold_distance(step.after());
     }
 
     /// The same, but for the exact motion: [`catch_up`](Self::catch_up) comes to that later, at the latest when health or
@@ -70,7 +70,7 @@ impl Monitor {
     pub fn catch_up(&mut self) {
         let states = std::mem::take(&mut self.unheld);
         for state in &states {
-            self.hold(state);
+            self.hold_distance(state);
         }
         self.unheld = states;
         self.unheld.clear();
@@ -101,17 +101,26 @@ impl Monitor {
     /// How far off the exact motion the run is at `step`; `None` where that would take too long.
     pub fn deviation(&mut self, step: &Step) -> Option<Deviation> {
         self.catch_up();
-        self.hold(step.after())
+        let deviation = Deviation::of(step.after(), self.truth.as_mut()?);
+        self.take_in(deviation.distance_m);
+        self.truth.as_ref().map(|_| deviation)
     }
 
-    fn hold(&mut self, state: &State) -> Option<Deviation> {
-        let deviation = Deviation::of(state, self.truth.as_mut()?);
-        if !deviation.distance_m.is_finite() {
-            self.truth = None; // it has left the range of numbers, and does not come back
-            return None;
+    #[inline]
+    fn hold_distance(&mut self, state: &State) {
+        if let Some(truth) = &mut self.truth {
+            let distance_m = Deviation::distance_of(state, truth);
+            self.take_in(distance_m);
         }
-        self.most_distance_m = self.most_distance_m.max(deviation.distance_m);
-        Some(deviation)
+    }
+
+    #[inline]
+    fn take_in(&mut self, distance_m: f64) {
+        if distance_m.is_finite() {
+            self.most_distance_m = self.most_distance_m.max(distance_m);
+        } else {
+            self.truth = None; // it has left the range of numbers, and does not come back
+        }
     }
 
     /// What theory says of the exact motion at `time_s` (s); `None` for a lopsided body, a push off the axle, or a
