@@ -5,7 +5,7 @@ use super::extremes::Extremes;
 use super::health::Health;
 use super::measure::Instruments;
 use super::theory::Theory;
-use super::trial::{Deviation, distance_m};
+use super::trial::Deviation;
 use crate::physics::{State, SymmetricTop};
 use crate::run::{Step, Truth};
 use crate::scenario::Scenario;
@@ -53,7 +53,7 @@ impl Monitor {
     #[inline]
     pub fn follow(&mut self, step: &Step) {
         self.measure(step);
-        self.hold(step.after());
+        self.hold_distance(step.after());
     }
 
     /// The same, but for the exact motion: [`catch_up`](Self::catch_up) comes to that later, at the latest when health or
@@ -70,7 +70,7 @@ impl Monitor {
     pub fn catch_up(&mut self) {
         let states = std::mem::take(&mut self.unheld);
         for state in &states {
-            self.hold(state);
+            self.hold_distance(state);
         }
         self.unheld = states;
         self.unheld.clear();
@@ -101,17 +101,21 @@ impl Monitor {
     /// How far off the exact motion the run is at `step`; `None` where that would take too long.
     pub fn deviation(&mut self, step: &Step) -> Option<Deviation> {
         self.catch_up();
-        self.hold(step.after());
-        let truth = self.truth.as_mut()?;
-        Some(Deviation::of(step.after(), truth))
+        let deviation = Deviation::of(step.after(), self.truth.as_mut()?);
+        self.take_in(deviation.distance_m);
+        self.truth.as_ref().map(|_| deviation)
     }
 
-    /// Takes in how far `state` is from the exact motion.
-    fn hold(&mut self, state: &State) {
-        let Some(truth) = &mut self.truth else {
-            return;
-        };
-        let distance_m = distance_m(state, truth);
+    #[inline]
+    fn hold_distance(&mut self, state: &State) {
+        if let Some(truth) = &mut self.truth {
+            let distance_m = Deviation::distance_of(state, truth);
+            self.take_in(distance_m);
+        }
+    }
+
+    #[inline]
+    fn take_in(&mut self, distance_m: f64) {
         if distance_m.is_finite() {
             self.most_distance_m = self.most_distance_m.max(distance_m);
         } else {

@@ -3,7 +3,7 @@
 use crate::physics::State;
 use crate::run::{NotFinite, Simulation, Step, Truth};
 use crate::scenario::Scenario;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -53,23 +53,24 @@ impl Deviation {
     pub fn of(seen: &State, truth: &mut Truth) -> Self {
         let exact = truth.state_at(seen.time_s);
         Self {
-            distance_m: distance_between(seen, &exact.orientation, truth.scenario()),
+            distance_m: distance_m(seen, &exact.orientation, truth.scenario()),
             spin: seen.momentum.dot(&seen.axle()) - exact.momentum.dot(&exact.axle()),
             lz: seen.momentum.z - exact.momentum.z,
         }
     }
+
+    /// Its distance alone, m.
+    #[inline]
+    pub fn distance_of(seen: &State, truth: &mut Truth) -> f64 {
+        let exact = truth.orientation_at(seen.time_s);
+        distance_m(seen, &exact, truth.scenario())
+    }
 }
 
-/// The distance of [`Deviation`] alone, m: it takes less time than all three.
+/// Distance of the traced point from where it is if the body stands as `exact`, m.
 #[inline]
-pub(super) fn distance_m(seen: &State, truth: &mut Truth) -> f64 {
-    let exact = truth.orientation_at(seen.time_s);
-    distance_between(seen, &exact, truth.scenario())
-}
-
-/// How far the traced point of `scenario` is from where it is at the orientation `exact`, m.
-fn distance_between(seen: &State, exact: &Matrix3<f64>, scenario: &Scenario) -> f64 {
-    let at: Vector3<f64> = scenario.body.mechanics.points()[scenario.trace].at;
+fn distance_m(seen: &State, exact: &Matrix3<f64>, scenario: &Scenario) -> f64 {
+    let at = &scenario.body.mechanics.points()[scenario.trace].at;
     ((seen.orientation - exact) * at).norm()
 }
 
@@ -182,5 +183,43 @@ fn stride(steps: u64) -> u64 {
     match steps / LOOKS {
         0 => 1,
         stride => stride | 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::exact::Kind;
+    use crate::scenario::Document;
+
+    #[test]
+    fn the_distance_alone_is_that_of_the_whole_deviation_to_the_last_bit() {
+        let pushed_aside = [
+            "body.point.2={name='aside',at_m=[0.3,0,1.5],mass_kg=0}",
+            "push.0={point='aside',force_N=[1,0,0],from_s=1,for_s=1}",
+            "motion.time_step_s=0.01",
+        ];
+        for (preset, sets, kind) in [
+            ("wobble-push", &[][..], Kind::Closed),
+            ("cusps", &[], Kind::Closed),
+            ("sleeping", &["motion.gravity_m_per_s2=-9.8"], Kind::Closed),
+            ("method-2", &pushed_aside, Kind::Integrated),
+        ] {
+            let mut document = Document::open(preset).unwrap();
+            sets.iter().for_each(|set| document.set(set).unwrap());
+            let scenario = Arc::new(document.scenario().unwrap());
+            let mut simulation = Simulation::new(Arc::clone(&scenario));
+            let truths = || Truth::new(Arc::clone(&scenario));
+            let (mut whole, mut alone) = (truths(), truths());
+            let mut kinds = Vec::new();
+            for _ in 0..400 {
+                let state = simulation.step().unwrap().after();
+                let deviation = Deviation::of(state, &mut whole);
+                let distance_m = Deviation::distance_of(state, &mut alone);
+                assert_eq!(distance_m.to_bits(), deviation.distance_m.to_bits());
+                kinds.push(alone.kind());
+            }
+            assert!(kinds.contains(&kind), "{preset}");
+        }
     }
 }

@@ -57,20 +57,20 @@ impl Truth {
     /// The state at `time_s`, s, not negative. Later times cost little; one before the forces last changed goes
     /// through the changes from the start again.
     pub fn state_at(&mut self, time_s: f64) -> State {
-        self.begin_piece_of(time_s);
+        self.go_to(time_s);
         self.piece.at(time_s)
     }
 
-    /// The orientation of [`state_at`](Self::state_at) alone, from body to world components: it takes less time.
+    /// The orientation of [`state_at`](Self::state_at) alone, which takes half of the time.
     #[inline]
     pub fn orientation_at(&mut self, time_s: f64) -> Matrix3<f64> {
-        self.begin_piece_of(time_s);
+        self.go_to(time_s);
         self.piece.orientation_at(time_s)
     }
 
-    /// Begins the piece of the motion that `time_s` (s) lies in, unless it is begun.
+    /// Goes to the piece that `time_s` lies in.
     #[inline]
-    fn begin_piece_of(&mut self, time_s: f64) {
+    fn go_to(&mut self, time_s: f64) {
         if time_s < self.piece.begin_s() {
             self.pieces = 0;
             self.begin_piece(self.scenario.start);

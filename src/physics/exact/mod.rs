@@ -8,6 +8,7 @@
 
 mod elliptic;
 mod lagrange;
+mod part;
 mod phases;
 mod scheme;
 mod taylor;
@@ -96,9 +97,10 @@ impl ExactMotion {
         }
     }
 
-    /// The orientation of [`at`](Self::at) alone, from body to world components.
+    /// The orientation of [`at`](Self::at) alone, which the closed form has in half of the time.
+    #[inline]
     pub fn orientation_at(&mut self, time_s: f64) -> Matrix3<f64> {
-        match &mut self.solution {
+        match &self.solution {
             Solution::Closed(top) => top.orientation_at(time_s - self.begin_s),
             Solution::Integrated(_) | Solution::None => self.at(time_s).orientation,
         }
