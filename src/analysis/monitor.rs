@@ -5,7 +5,7 @@ use super::extremes::Extremes;
 use super::health::Health;
 use super::measure::Instruments;
 use super::theory::Theory;
-use super::trial::Deviation;
+use super::trial::{Deviation, distance_m};
 use crate::physics::{State, SymmetricTop};
 use crate::run::{Step, Truth};
 use crate::scenario::Scenario;
@@ -101,17 +101,22 @@ impl Monitor {
     /// How far off the exact motion the run is at `step`; `None` where that would take too long.
     pub fn deviation(&mut self, step: &Step) -> Option<Deviation> {
         self.catch_up();
-        self.hold(step.after())
+        self.hold(step.after());
+        let truth = self.truth.as_mut()?;
+        Some(Deviation::of(step.after(), truth))
     }
 
-    fn hold(&mut self, state: &State) -> Option<Deviation> {
-        let deviation = Deviation::of(state, self.truth.as_mut()?);
-        if !deviation.distance_m.is_finite() {
+    /// Takes in how far `state` is from the exact motion.
+    fn hold(&mut self, state: &State) {
+        let Some(truth) = &mut self.truth else {
+            return;
+        };
+        let distance_m = distance_m(state, truth);
+        if distance_m.is_finite() {
+            self.most_distance_m = self.most_distance_m.max(distance_m);
+        } else {
             self.truth = None; // it has left the range of numbers, and does not come back
-            return None;
         }
-        self.most_distance_m = self.most_distance_m.max(deviation.distance_m);
-        Some(deviation)
     }
 
     /// What theory says of the exact motion at `time_s` (s); `None` for a lopsided body, a push off the axle, or a

@@ -9,7 +9,7 @@ use super::theory::Axis;
 use super::{Extremes, Health, Measured, Monitor, Theory};
 use crate::physics::SymmetricTop;
 use crate::run::{Sample, Simulation};
-use crate::scenario::problem;
+use crate::scenario::{problem, start};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::f64::consts::PI;
 use std::time::Duration;
@@ -29,6 +29,8 @@ pub struct Readouts {
     pub sample: Sample,
     /// L·axle, J s.
     pub spin: f64,
+    /// The rate of the spin about the axle, rad/s; of the rotor alone where the scenario names one.
+    pub spin_rad_per_s: f64,
     /// I3/I1 of a symmetric body.
     pub kappa: Option<f64>,
     /// How it stands.
@@ -65,6 +67,7 @@ impl Readouts {
             time_step_s: step.motion().time_step_s,
             sample: step.sample(),
             spin: state.momentum.dot(&state.axle()),
+            spin_rad_per_s: step.scenario().spin_rad_per_s(state),
             kappa: SymmetricTop::of(&step.scenario().body.mechanics).map(|top| top.kappa()),
             health: *health,
             advice: advice.copied(),
@@ -230,6 +233,9 @@ pub struct Readout {
     get: fn(&Readouts) -> Value,
 }
 
+/// In the name of a readout that is the standard error of another.
+const ERROR: &str = "_uncertainty";
+
 /// How a readout is obtained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
@@ -270,6 +276,29 @@ impl Source {
 }
 
 impl Readout {
+    /// Whether it is the standard error of another readout.
+    pub fn is_uncertainty(&self) -> bool {
+        self.name.contains(ERROR)
+    }
+
+    /// The readout that is the standard error of this one.
+    pub fn uncertainty(&self) -> Option<&'static Self> {
+        let is_its_error = |other: &&Self| {
+            let stem = other.name.split_once(ERROR);
+            stem.is_some_and(|(stem, _)| self.name.starts_with(stem))
+        };
+        READOUTS
+            .iter()
+            .find(is_its_error)
+            .filter(|_| !self.is_uncertainty())
+    }
+
+    /// The readout in which theory says what this measured one should be.
+    pub fn predicted(&self) -> Option<&'static Self> {
+        let what = self.name.strip_prefix("measured_")?;
+        find(&format!("predicted_{what}"))
+    }
+
     /// What `readouts` has under this name.
     pub fn of(&self, readouts: &Readouts) -> Value {
         (self.get)(readouts)
@@ -415,6 +444,7 @@ readouts! {
     "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what is measured is strobed", |r| r.nutation_is_resolved();
     "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation), "*ω*_{n}";
     "L_axle_Js", "J s", State, "L along the axle", |r| r.spin, "*L*_{3}";
+    "spin_rpm", "rpm", State, "rate of the spin about the axle: omega along it, or, where start.rotor names a part, L along it over that part's moment", |r| start::rpm(r.spin_rad_per_s);
     "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps", |r| r.theory_about_z().map(|theory| theory.sleeping_limit);
     "health", "", Exact, "whether the numbers hold, in one sentence", |r| r.health.sentence(r.advice.as_ref());
     "wall_s", "s", Clock, "time spent on stepping alone", |r| r.stepping.map(|wall| wall.as_secs_f64());

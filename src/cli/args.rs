@@ -4,6 +4,9 @@ mod figure;
 
 pub(super) use figure::FigureArgs;
 
+use super::layout::LayoutArgs;
+use super::manual::ManArgs;
+use super::verify::VerifyArgs;
 use crate::physics::scheme;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -45,6 +48,10 @@ pub(super) enum Command {
     Compare(CompareArgs),
     /// Draw runs, or a table of compare or of a sweep, on paper: SVG, PDF or PNG
     Figure(FigureArgs),
+    /// Make a folder for a write-up of a run: CSV, figures, measured numbers beside theory, and how to make it again
+    Writeup(WriteupArgs),
+    /// Compute a CSV again from its header: the same, or the first row that differs
+    Verify(VerifyArgs),
     /// List the shipped presets, or print one as TOML
     Presets {
         /// The preset to print
@@ -75,11 +82,8 @@ pub(super) enum Command {
         /// The shell
         shell: clap_complete::Shell,
     },
-    /// Print the manual page
-    Man {
-        /// class: lessons in front of a class, sharing a screen, an account for a class [without it: the manual page]
-        topic: Option<String>,
-    },
+    /// Print the manual: all of it, the page of a command, or a topic
+    Man(ManArgs),
 }
 
 /// What is run, and what is changed in it first.
@@ -256,15 +260,31 @@ pub(super) struct RunArgs {
     #[command(flatten)]
     pub(super) length: LengthArgs,
 
-    /// Write every N-th row only, and the last
-    #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true, value_parser = one_or_more)]
-    pub(super) every: NonZeroU64,
+    #[command(flatten)]
+    pub(super) layout: LayoutArgs,
 
     /// Give the summary as one JSON object
     #[arg(long)]
     pub(super) json: bool,
 
     /// Replace an existing file
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct WriteupArgs {
+    #[command(flatten)]
+    pub(super) scenario: ScenarioArgs,
+
+    /// The folder: a new or an empty one
+    #[arg(short, long, value_name = "FOLDER")]
+    pub(super) output: PathBuf,
+
+    #[command(flatten)]
+    pub(super) length: LengthArgs,
+
+    /// Write into a folder that holds files, and replace those of the same names
     #[arg(long)]
     pub(super) force: bool,
 }
@@ -326,12 +346,16 @@ pub(super) struct CompareArgs {
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
 
+    /// Give the table as one JSON object
+    #[arg(long)]
+    pub(super) json: bool,
+
     /// Replace an existing file
     #[arg(long)]
     pub(super) force: bool,
 }
 
-fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
+pub(super) fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
     text.parse()
         .map_err(|_| "must be a whole number, 1 or more".to_owned())
 }

@@ -9,6 +9,7 @@ use signal_hook::flag;
 use signal_hook::iterator::Signals;
 use std::fmt;
 use std::io::{self, IsTerminal};
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -26,6 +27,14 @@ impl Interruption {
     /// Whether a signal has come.
     pub(super) fn has_come(&self) -> bool {
         self.has_come.load(Ordering::SeqCst)
+    }
+
+    /// Whether to go on, for what asks as it works.
+    pub(super) fn go_on(&self) -> ControlFlow<()> {
+        match self.has_come() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
     }
 
     /// From now on, with no file to clear away, the first signal ends the process on the spot. Gives whether one has

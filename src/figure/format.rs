@@ -87,7 +87,7 @@ pub fn write(scene: &Scene, format: Format) -> Result<Vec<u8>, Unwritable> {
     }
 }
 
-/// The page in whole hundredths of a point, all of them numbers that a file can hold.
+/// The page in whole hundredths of a point, all of them numbers that a file can hold, without empty paths.
 pub fn rounded(scene: &Scene) -> Result<Scene, Unwritable> {
     let (width_pt, height_pt) = (scene.width_pt, scene.height_pt);
     let is_side = |pt: f64| hundredths(pt) > 0.0 && pt <= LARGEST_PT;
@@ -97,7 +97,8 @@ pub fn rounded(scene: &Scene) -> Result<Scene, Unwritable> {
             height_pt,
         });
     }
-    let numbered = scene.items.iter().enumerate();
+    let is_drawn = |(_, item): &(usize, &Item)| !item.path.0.is_empty();
+    let numbered = scene.items.iter().enumerate().filter(is_drawn);
     let item = |(index, item)| rounded_item(item).ok_or(Unwritable::Place(index));
     Ok(Scene {
         width_pt: hundredths(width_pt),

@@ -43,19 +43,14 @@ fn content(scene: &Scene) -> Vec<u8> {
     // The origin goes to the upper left corner, y down.
     content.transform([1.0, 0.0, 0.0, -1.0, 0.0, scene.height_pt as f32]);
     content.set_miter_limit(MITER_LIMIT as f32);
-    let drawn: Vec<&Item> = scene
-        .items
-        .iter()
-        .filter(|item| !item.path.0.is_empty())
-        .collect();
-    for group in drawn.chunk_by(|a, b| a.paint == b.paint && a.clip == b.clip) {
+    for group in scene.groups() {
         put_group(&mut content, group);
     }
     content.finish().into_vec()
 }
 
 /// Items that are drawn and cut off alike.
-fn put_group(content: &mut Content, items: &[&Item]) {
+fn put_group(content: &mut Content, items: &[Item]) {
     let Some(first) = items.first() else {
         return;
     };

@@ -143,3 +143,11 @@ pub struct Scene {
     /// What is on it, from the back to the front.
     pub items: Vec<Item>,
 }
+
+impl Scene {
+    /// The items in their order; those of one slice are drawn and cut off alike.
+    pub fn groups(&self) -> impl Iterator<Item = &[Item]> {
+        let is_alike = |a: &Item, b: &Item| a.paint == b.paint && a.clip == b.clip;
+        self.items.chunk_by(is_alike)
+    }
+}

@@ -50,10 +50,7 @@ pub fn written(scene: &Scene) -> String {
             ),
         );
     }
-    for group in scene
-        .items
-        .chunk_by(|a, b| a.paint == b.paint && a.clip == b.clip)
-    {
+    for group in scene.groups() {
         put_group(&mut out, group);
     }
     out += "</svg>\n";

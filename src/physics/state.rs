@@ -2,6 +2,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+/// An axle whose direction's length is outside these is that of no rotation.
+const LEAST_AXLE: f64 = 0.5;
+const MOST_AXLE: f64 = 1.5;
+
 /// What passes from step to step and from scheme to scheme: time, orientation and angular momentum, no more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
@@ -17,6 +21,13 @@ impl State {
     /// The axle's direction, world frame: the body direction that was +z upright, whatever the masses.
     pub fn axle(&self) -> Vector3<f64> {
         self.orientation.column(2).into_owned()
+    }
+
+    /// Whether the orientation is still that of a rigid body: a scheme that breaks down stretches it, or lets it collapse,
+    /// before the numbers stop being finite.
+    #[inline]
+    pub fn is_a_rotation(&self) -> bool {
+        (LEAST_AXLE * LEAST_AXLE..MOST_AXLE * MOST_AXLE).contains(&self.axle().norm_squared())
     }
 
     /// Whether every number is finite.

@@ -1,1 +1,7 @@
 //! What many runs say, and what an exported run is worth: sweeps, verification, write-ups.
+//!
+//! - [`verify`]: a CSV, computed again and held against its rows.
+//! - [`writeup`]: a run as a folder of files for a write-up.
+
+pub mod verify;
+pub mod writeup;

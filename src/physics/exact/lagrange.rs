@@ -122,13 +122,25 @@ impl LagrangeTop {
         let norm2 = alpha.norm_sqr() + beta.norm_sqr();
         listener.hear(|| phases::parameters(t, [alpha, beta], norm2));
         let level = spin * (2.0 * self.across / norm2);
-        let turn = self.vertical.as_ref() * Quaternion::new(alpha.re, beta.re, beta.im, alpha.im);
+        let turn = self.turn(alpha, beta);
         let orientation = rotation_matrix(&turn, 1.0 / norm2);
         listener.hear(|| phases::orientation(&turn, &orientation));
         let in_frame = Vector3::new(level.re, level.im, self.momentum_vertical);
         let momentum = self.vertical * in_frame;
         listener.hear(|| phases::momentum(&in_frame, &momentum));
         (orientation, momentum)
+    }
+
+    /// The orientation of [`at`](Self::at) alone.
+    pub fn orientation_at(&self, t: f64) -> Matrix3<f64> {
+        let (alpha, beta, _) = self.parts_at(t);
+        let norm2 = alpha.norm_sqr() + beta.norm_sqr();
+        rotation_matrix(&self.turn(alpha, beta), 1.0 / norm2)
+    }
+
+    /// The quaternion from the body to the world, of any length.
+    fn turn(&self, alpha: Complex<f64>, beta: Complex<f64>) -> Quaternion<f64> {
+        self.vertical.as_ref() * Quaternion::new(alpha.re, beta.re, beta.im, alpha.im)
     }
 
     /// Time from one lowest tilt to the next, s. None where nothing returns: a free top, the separatrix, a body at rest.
@@ -151,6 +163,8 @@ impl LagrangeTop {
     }
 
     /// alpha, beta and alpha beta' - beta alpha' (of the body without extra spin), all short of one common real factor.
+    // In line, so that who needs no bracket does not compute it.
+    #[inline(always)]
     fn parts_at(&self, t: f64) -> (Complex<f64>, Complex<f64>, Complex<f64>) {
         let since = t + self.since_origin;
         let cells = (since * self.lattice.per_period).round();

@@ -96,6 +96,14 @@ impl ExactMotion {
         }
     }
 
+    /// The orientation of [`at`](Self::at) alone, from body to world components.
+    pub fn orientation_at(&mut self, time_s: f64) -> Matrix3<f64> {
+        match &mut self.solution {
+            Solution::Closed(top) => top.orientation_at(time_s - self.begin_s),
+            Solution::Integrated(_) | Solution::None => self.at(time_s).orientation,
+        }
+    }
+
     /// When it began, s.
     pub fn begin_s(&self) -> f64 {
         self.begin_s

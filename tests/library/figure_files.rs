@@ -1,0 +1,399 @@
+//! A page as SVG, PDF and PNG: what the files hold, that hostile words cannot break them, and that the three agree.
+
+use gyrolab::figure::ink::{BLACK, at, circle, pen};
+use gyrolab::figure::{
+    Color, Format, Item, Paint, Path, Pen, Point, Scene, Segment, letters, write,
+};
+
+const HOSTILE: &str =
+    "</title><script>x</script> & \"q\" 'a' ]]> \u{0}\u{1b}[2J\u{202e}\u{ffff} 速い \\) (";
+const RED: Color = Color([200, 30, 30]);
+
+/// A page of 100 pt x 60 pt: a red disk, a dashed line that is cut off, a black square, a label.
+fn page(title: &str, words: &str) -> Scene {
+    let mut scene = Scene::new(100.0, 60.0, title);
+    scene.fill(circle(at(20.0, 20.0), 10.0), RED);
+    let dashed = Pen {
+        dash_pt: vec![4.0, 2.0],
+        ..pen(2.0, BLACK)
+    };
+    scene.items.push(Item {
+        path: Path::polyline([at(0.0, 45.0), at(90.0, 45.0)]),
+        paint: Paint::Stroke(dashed),
+        clip: Some([at(10.0, 40.0), at(60.0, 50.0)]),
+        words: None,
+    });
+    scene.fill(
+        Path::polygon([
+            at(70.0, 10.0),
+            at(80.0, 10.0),
+            at(80.0, 20.0),
+            at(70.0, 20.0),
+        ]),
+        BLACK,
+    );
+    scene.write(&letters::escape(words), 8.0, at(50.0, 58.0), 0.5);
+    scene
+}
+
+fn svg(scene: &Scene) -> String {
+    String::from_utf8(write(scene, Format::Svg).unwrap()).unwrap()
+}
+
+/// The words of a PDF's drawing, not compressed.
+fn content(pdf: &[u8]) -> String {
+    let find = |what: &[u8], from: usize| {
+        pdf[from..]
+            .windows(what.len())
+            .position(|part| part == what)
+            .unwrap()
+            + from
+    };
+    let begin = find(b"\nstream\n", 0) + 8;
+    let end = find(b"\nendstream", begin);
+    let content = miniz_oxide::inflate::decompress_to_vec_zlib(&pdf[begin..end]).unwrap();
+    String::from_utf8_lossy(&content).into_owned()
+}
+
+struct Picture {
+    width: usize,
+    height: usize,
+    /// Red, green and blue of each dot.
+    dots: Vec<[u8; 3]>,
+    dots_per_metre: u32,
+}
+
+impl Picture {
+    fn of(bytes: &[u8]) -> Self {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
+            .read_info()
+            .unwrap();
+        let mut data = vec![0; reader.output_buffer_size().unwrap()];
+        let frame = reader.next_frame(&mut data).unwrap();
+        let step = frame.color_type.samples();
+        let dots = data
+            .chunks_exact(step)
+            .map(|dot| [dot[0], dot[1 % step], dot[2 % step]])
+            .collect();
+        let size = reader.info().pixel_dims.unwrap();
+        assert_eq!((size.xppu, size.unit), (size.yppu, png::Unit::Meter));
+        Self {
+            width: frame.width as usize,
+            height: frame.height as usize,
+            dots,
+            dots_per_metre: size.xppu,
+        }
+    }
+
+    /// The dot at a place on a page that is 100 pt wide.
+    fn at(&self, x_pt: f64, y_pt: f64) -> [u8; 3] {
+        let scale = 600.0 / 72.0;
+        self.dots[(y_pt * scale) as usize * self.width + (x_pt * scale) as usize]
+    }
+}
+
+#[test]
+fn svg_has_a_size_on_paper_a_title_and_the_words_and_nothing_that_it_would_have_to_look_for() {
+    let text = svg(&page("A title", "ab"));
+    let document = roxmltree::Document::parse(&text).unwrap();
+    let root = document.root_element();
+    assert_eq!(root.attribute("width"), Some("35.28mm"));
+    assert_eq!(root.attribute("height"), Some("21.17mm"));
+    assert_eq!(root.attribute("viewBox"), Some("0 0 100 60"));
+    let title = root.first_element_child().unwrap();
+    assert_eq!(
+        (title.tag_name().name(), title.text()),
+        ("title", Some("A title"))
+    );
+    let label = root
+        .descendants()
+        .find(|node| node.has_attribute("aria-label"))
+        .unwrap();
+    assert_eq!(label.attribute("aria-label"), Some("ab"));
+    let names = ["svg", "title", "g", "path", "clipPath"];
+    for node in root.descendants().filter(roxmltree::Node::is_element) {
+        assert!(names.contains(&node.tag_name().name()), "{node:?}");
+        for attribute in node.attributes() {
+            assert!(!attribute.name().starts_with("on") && !attribute.name().ends_with("href"));
+        }
+    }
+    let clip = root
+        .descendants()
+        .find(|node| node.has_attribute("clip-path"))
+        .unwrap();
+    let reference = clip.attribute("clip-path").unwrap();
+    let name = reference
+        .strip_prefix("url(#")
+        .unwrap()
+        .strip_suffix(')')
+        .unwrap();
+    let rectangle = root
+        .descendants()
+        .find(|node| node.attribute("id") == Some(name))
+        .unwrap();
+    assert_eq!(
+        rectangle.first_child().unwrap().attribute("d"),
+        Some("M10 40H60V50H10z")
+    );
+    assert_eq!(clip.attribute("stroke-dasharray"), Some("4 2"));
+    assert_eq!(clip.attribute("stroke-width"), Some("2"));
+    let red = root
+        .descendants()
+        .find(|node| node.attribute("fill") == Some("#c81e1e"));
+    assert!(
+        red.unwrap()
+            .first_element_child()
+            .unwrap()
+            .attribute("d")
+            .unwrap()
+            .starts_with("M30 20c0 5.52")
+    );
+}
+
+/// The places of a path in SVG, as a reader of it computes them.
+fn places(data: &str) -> Vec<(f64, f64)> {
+    let (mut at, mut start) = ((0.0, 0.0), (0.0, 0.0));
+    let mut places = vec![];
+    let mut rest = data;
+    while !rest.is_empty() {
+        let command = rest.chars().next().unwrap();
+        let end = rest[1..]
+            .find(|c: char| c.is_ascii_alphabetic())
+            .map_or(rest.len(), |end| end + 1);
+        let numbers: Vec<f64> = rest[1..end]
+            .replace('-', " -")
+            .split_whitespace()
+            .map(|n| n.parse().unwrap())
+            .collect();
+        rest = &rest[end..];
+        let size = match command {
+            'h' | 'v' | 'z' => 1,
+            'M' | 'l' => 2,
+            'q' => 4,
+            'c' => 6,
+            other => panic!("{other}"),
+        };
+        assert_eq!(numbers.len() % size, 0);
+        for step in numbers.chunks(size) {
+            let from = if command == 'M' { (0.0, 0.0) } else { at };
+            let steps: Vec<(f64, f64)> = match command {
+                'h' => vec![(step[0], 0.0)],
+                'v' => vec![(0.0, step[0])],
+                _ => step.chunks(2).map(|pair| (pair[0], pair[1])).collect(),
+            };
+            let points: Vec<_> = steps
+                .iter()
+                .map(|step| (from.0 + step.0, from.1 + step.1))
+                .collect();
+            at = *points.last().unwrap();
+            places.extend(points);
+        }
+        match command {
+            'M' => start = at,
+            'z' => at = start,
+            _ => {}
+        }
+    }
+    places
+}
+
+#[test]
+fn the_places_in_svg_are_those_of_the_page() {
+    let corners = [
+        at(0.0, 0.0),
+        at(10.004, 0.0),
+        at(10.0, -0.006),
+        at(-3.25, 7.5),
+        at(-3.25, 7.4),
+        at(1e4, -1e4),
+    ];
+    let mut path = Path::polygon(corners);
+    path.0.push(Segment::Line(at(1.0, 1.0)));
+    path.0
+        .push(Segment::Quadratic(at(5.0, 5.125), at(-6.07, 0.5)));
+    path.0
+        .push(Segment::Cubic(at(5.0, 5.12), at(-6.0, 0.0), at(0.0, 0.0)));
+    let expected: Vec<(f64, f64)> = path
+        .points()
+        .map(|p| ((p.x * 100.0).round() / 100.0, (p.y * 100.0).round() / 100.0))
+        .collect();
+    let mut scene = Scene::new(10.0, 10.0, "");
+    scene.fill(path, RED);
+    let text = svg(&scene);
+    let data = text
+        .rsplit("d=\"")
+        .next()
+        .unwrap()
+        .split('"')
+        .next()
+        .unwrap();
+    let found = places(data);
+    assert_eq!(found.len(), expected.len(), "{data}");
+    for (found, expected) in found.iter().zip(&expected) {
+        assert!(
+            (found.0 - expected.0).abs() < 1e-6 && (found.1 - expected.1).abs() < 1e-6,
+            "{data}"
+        );
+    }
+}
+
+#[test]
+fn pdf_strokes_and_cuts_off_and_names_no_font() {
+    let pdf = write(&page("A title", "ab"), Format::Pdf).unwrap();
+    let text = String::from_utf8_lossy(&pdf);
+    assert!(text.starts_with("%PDF-1.4"));
+    assert!(text.contains("/MediaBox [0 0 100 60]"));
+    assert!(text.contains("/Title (A title)"));
+    for absent in ["/Font", "/CreationDate", "/ModDate", "/ID", "/Type3"] {
+        assert!(!text.contains(absent), "{absent}");
+    }
+    let drawing = content(&pdf);
+    let lines: Vec<&str> = drawing.lines().collect();
+    assert_eq!(lines[0], "1 0 0 -1 0 60 cm");
+    let dashed = "q\n10 40 50 10 re\nW\nn\n0 G\n2 w\n[4 2] 0 d\n0 45 m\n90 45 l\nS\nQ\n";
+    assert!(drawing.contains(dashed), "{drawing}");
+    assert!(
+        drawing.contains("0.784 0.118 0.118 rg\n30 20 m\n30 25.52 25.52 30 20 30 c\n"),
+        "{drawing}"
+    );
+    assert!(
+        drawing.contains("70 10 m\n80 10 l\n80 20 l\n70 20 l\nh\nf\n"),
+        "{drawing}"
+    );
+    assert!(
+        drawing.contains("/Span <<") && drawing.contains("/ActualText (ab)"),
+        "{drawing}"
+    );
+    assert_eq!(
+        drawing.matches(" BDC").count(),
+        drawing.matches("EMC").count()
+    );
+}
+
+#[test]
+fn png_has_the_dots_of_the_page() {
+    let picture = Picture::of(&write(&page("A title", "ab"), Format::Png).unwrap());
+    assert_eq!(
+        (picture.width, picture.height),
+        (834, 500),
+        "100 pt x 60 pt at 600 dots an inch"
+    );
+    assert_eq!(picture.dots_per_metre, 23622);
+    let (white, black, red) = ([255; 3], [0; 3], [200, 30, 30]);
+    for (x, y, color) in [
+        (20.0, 20.0, red),
+        (20.0, 10.4, red),
+        (20.0, 9.6, white),
+        (5.0, 45.0, white),  // cut off
+        (11.0, 45.0, white), // between two dashes
+        (12.5, 45.0, black),
+        (12.5, 43.6, white),
+        (12.5, 44.2, black),
+        (61.0, 45.0, white),
+        (75.0, 15.0, black),
+        (81.0, 15.0, white),
+    ] {
+        assert_eq!(picture.at(x, y), color, "{x} {y}");
+    }
+    let in_label = (480..760)
+        .flat_map(|x| (540..600).map(move |y| (f64::from(x) / 10.0 - 10.0, f64::from(y) / 10.0)));
+    assert!(
+        in_label
+            .filter(|(x, y)| picture.at(*x, *y) == black)
+            .count()
+            > 100
+    );
+    let grey = Scene::new(10.0, 10.0, "");
+    let bytes = write(&grey, Format::Png).unwrap();
+    assert_eq!(bytes[25], 0, "a page without colour is in grey");
+    assert!(Picture::of(&bytes).dots.iter().all(|dot| *dot == white));
+}
+
+#[test]
+fn words_cannot_break_a_file() {
+    for hostile in [
+        HOSTILE.to_owned(),
+        "<".repeat(100_000),
+        String::new(),
+        "\\\\(((".to_owned(),
+    ] {
+        let scene = page(&hostile, &hostile.chars().take(500).collect::<String>());
+        let text = svg(&scene);
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let is_script = |node: roxmltree::Node<'_, '_>| node.tag_name().name() == "script";
+        assert!(!document.descendants().any(is_script));
+        assert!(!text.chars().any(|c| c.is_control() && c != '\n'));
+        let title = document.root_element().first_element_child().unwrap();
+        if hostile == HOSTILE {
+            let shown = "</title><script>x</script> & \"q\" 'a' ]]> \\u{0}\\u{1b}[2J\\u{202e}\u{fffd} 速い \\) (";
+            assert_eq!(title.text(), Some(shown));
+        }
+        let pdf = write(&scene, Format::Pdf).unwrap();
+        let drawing = content(&pdf);
+        assert!(
+            hostile.is_empty() || drawing.ends_with("EMC\nQ"),
+            "{}",
+            &drawing[drawing.len() - 40..]
+        );
+        let picture = Picture::of(&write(&scene, Format::Png).unwrap());
+        assert_eq!(picture.at(75.0, 15.0), [0; 3]);
+    }
+}
+
+/// The sums were computed on one machine; all others must come to them. What packs a PDF's drawing and a PNG's dots may
+/// change with its crate, what they hold may not.
+#[test]
+fn a_file_is_the_same_each_time_and_everywhere() {
+    let known = [(Format::Svg, 2_219_561_319), (Format::Pdf, 1_263_165_774)];
+    for (format, crc) in known {
+        let bytes = write(&page("A title", "Äß Ω"), format).unwrap();
+        assert_eq!(bytes, write(&page("A title", "Äß Ω"), format).unwrap());
+        let stable = if format == Format::Pdf {
+            content(&bytes).into_bytes()
+        } else {
+            bytes
+        };
+        assert_eq!(crc32fast::hash(&stable), crc, "{format:?}");
+    }
+    let picture = Picture::of(&write(&page("A title", "Äß Ω"), Format::Png).unwrap());
+    assert_eq!(
+        crc32fast::hash(picture.dots.as_flattened()),
+        2_315_199_443,
+        "pixels"
+    );
+}
+
+#[test]
+fn dashes_of_an_odd_number_and_of_no_length_are_drawn() {
+    for dash_pt in [vec![5.0], vec![5.0, 0.0, 5.0], vec![0.0, 0.0], vec![0.001]] {
+        let mut scene = Scene::new(100.0, 20.0, "");
+        let dashed = Pen {
+            dash_pt: dash_pt.clone(),
+            ..pen(4.0, BLACK)
+        };
+        scene.stroke(
+            Path::polyline([at(0.0, 10.0), at(100.0, 10.0)]),
+            dashed,
+            None,
+        );
+        let picture = Picture::of(&write(&scene, Format::Png).unwrap());
+        assert_eq!(picture.at(2.0, 10.0), [0; 3], "{dash_pt:?}");
+        let is_gap = dash_pt == [5.0];
+        assert_eq!(picture.at(7.0, 10.0) == [255; 3], is_gap, "{dash_pt:?}");
+    }
+}
+
+#[test]
+fn empty_paths_and_points_alone_break_nothing() {
+    let mut scene = Scene::new(10.0, 10.0, "");
+    let alone: [Point; 1] = [at(5.0, 5.0)];
+    for path in [Path::default(), Path::polyline(alone), Path::polygon(alone)] {
+        scene.fill(path.clone(), BLACK);
+        scene.stroke(path, pen(1.0, BLACK), None);
+    }
+    for format in [Format::Svg, Format::Pdf, Format::Png] {
+        write(&scene, format).unwrap();
+    }
+    roxmltree::Document::parse(&svg(&scene)).unwrap();
+    assert!(!content(&write(&scene, Format::Pdf).unwrap()).contains("\nf\nf\n"));
+}
