@@ -43,6 +43,7 @@ mod textbook;
 mod theory;
 mod truth;
 mod undo;
+mod wobble;
 mod words;
 mod workbench;
 mod workings;
