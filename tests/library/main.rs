@@ -39,6 +39,7 @@ mod scenes;
 mod schemes;
 mod start;
 mod step_pane;
+mod sweep;
 mod textbook;
 mod theory;
 mod truth;
