@@ -19,6 +19,7 @@ mod scenario;
 mod sessions;
 mod settings;
 mod show;
+mod sweep;
 mod verify;
 mod workbench;
 mod writeup;
@@ -75,6 +76,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Show(args) => show::show(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Figure(args) => figure::figure(&args),
+        Command::Sweep(args) => sweep::sweep(&args),
         Command::Verify(args) => verify::verify(&args),
         Command::Presets { name } => info::presets(name.as_deref()),
         Command::Sessions { folder } => sessions::list(folder.as_deref()),
