@@ -2,9 +2,11 @@
 
 use super::cost::is_affordable;
 use super::extremes::Extremes;
+use super::frozen::Frozen;
 use super::health::Health;
-use super::measure::Instruments;
+use super::measure::{Instruments, Measured};
 use super::theory::Theory;
+use super::tilt_swing::TiltSwing;
 use super::trial::Deviation;
 use crate::physics::{State, SymmetricTop};
 use crate::run::{Step, Truth};
@@ -22,6 +24,10 @@ pub struct Monitor {
     unheld: Vec<State>,
     /// The change of forces since which the instruments measure.
     changes: u64,
+    /// The step from which on they do.
+    since: u64,
+    tilt_swing: TiltSwing,
+    frozen: Option<Frozen>,
 }
 
 impl Monitor {
@@ -36,6 +42,9 @@ impl Monitor {
             most_distance_m: 0.0,
             unheld: Vec::new(),
             changes: step.changes(),
+            since: step.number(),
+            tilt_swing: TiltSwing::new(step),
+            frozen: Frozen::new(step),
         }
     }
 
@@ -76,13 +85,19 @@ impl Monitor {
         self.unheld.clear();
     }
 
-    fn measure(&mut self, step: &Step) {
+    /// As [`follow`](Self::follow), without holding the step against the exact motion: for a reader of what is measured and of the extremes alone.
+    #[inline]
+    pub fn measure(&mut self, step: &Step) {
         self.extremes.follow(step);
         if step.changes() == self.changes {
             self.instruments.follow(step);
+            self.tilt_swing.follow(step);
         } else {
             self.changes = step.changes();
+            self.since = step.number();
             self.instruments = Instruments::new(step);
+            self.tilt_swing = TiltSwing::new(step);
+            self.frozen = Frozen::new(step);
         }
     }
 
@@ -143,6 +158,22 @@ impl Monitor {
     /// The least and the greatest over every step of the run.
     pub fn extremes(&self) -> &Extremes {
         &self.extremes
+    }
+
+    /// By how much the tilt has swung since the forces last changed, degrees; `None` before it was seen whole.
+    pub fn tilt_swing_deg(&self) -> Option<Measured> {
+        self.tilt_swing.measured()
+    }
+
+    /// What the linear theory of the report's scheme says of the motion since the forces last changed; `None` where it says
+    /// nothing.
+    pub fn frozen(&self) -> Option<Frozen> {
+        self.frozen
+    }
+
+    /// The step at which the forces last changed.
+    pub fn since(&self) -> u64 {
+        self.since
     }
 
     /// What has been measured since the forces last changed.

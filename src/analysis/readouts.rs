@@ -4,6 +4,7 @@
 //! A bare name is the live value of the run's last step. `predicted_...` is theory's, `measured_...` the run's own. What
 //! cannot be stated honestly is [`Value::Nothing`], null in JSON: no number of it is ever NaN or infinite.
 
+use super::frozen::Frozen;
 use super::health::Advice;
 use super::theory::Axis;
 use super::{Extremes, Health, Measured, Monitor, Theory};
@@ -45,6 +46,12 @@ pub struct Readouts {
     pub precession: Option<Measured>,
     /// Nutation period since the forces last changed, s.
     pub nutation: Option<Measured>,
+    /// Swing of the tilt since the forces last changed, degrees.
+    pub tilt_swing: Option<Measured>,
+    /// What the linear theory of the report's scheme says of the motion since the forces last changed.
+    pub frozen: Option<Frozen>,
+    /// The step at which they did.
+    pub since: u64,
     /// Time spent on stepping alone, where it was measured.
     pub stepping: Option<Duration>,
 }
@@ -75,6 +82,9 @@ impl Readouts {
             extremes: *monitor.extremes(),
             precession: monitor.instruments().precession_rad_per_s(),
             nutation: monitor.instruments().nutation_period_s(),
+            tilt_swing: monitor.tilt_swing_deg(),
+            frozen: monitor.frozen(),
+            since: monitor.since(),
             stepping: None,
         }
     }
@@ -87,6 +97,7 @@ impl Readouts {
             Source::Measured => {
                 self.precession = monitor.instruments().precession_rad_per_s();
                 self.nutation = monitor.instruments().nutation_period_s();
+                self.tilt_swing = monitor.tilt_swing_deg();
             }
             Source::Exact => {
                 let deviation = monitor.deviation(simulation.now());
@@ -421,6 +432,10 @@ readouts! {
     "nutation_multiplier", "", Scheme, "the report's scheme alone: its factor on a nutation's size each step; the truth is 1", |r| r.health.nutation.map(|nutation| nutation.multiplier);
     "lag_deg", "deg", State, "angle between axle and L", |r| r.health.lag_deg;
     "steady_lag_deg", "deg", Scheme, "the report's scheme alone: its angle between axle and L in steady precession", |r| r.health.nutation.map(|nutation| nutation.scheme_lag_deg);
+    "predicted_lag_deg", "deg", Scheme, "the report's scheme alone: the mean angle between axle and L, |tau| dt/(|L| |1 - A|), at the last change of the forces; null where that linear theory is off by more than about a tenth", |r| r.frozen.and_then(|frozen| frozen.lag_deg());
+    "predicted_tilt_swing_deg", "deg", Scheme, "the report's scheme alone: the swing of the tilt about that lag, by the same theory; null too where the scheme damps or feeds the nutation in the run", |r| r.frozen.and_then(|frozen| frozen.swing_deg(r.sample.step.saturating_sub(r.since)));
+    "measured_tilt_swing_deg", "deg", Measured, "greatest tilt less least tilt, as the steps show it", |r| value(r.tilt_swing);
+    "measured_tilt_swing_uncertainty_deg", "deg", Measured, "how much more the tilt swings between the steps", |r| uncertainty(r.tilt_swing);
     "true_steady_lag_deg", "deg", Theory, "the true angle between axle and L in steady precession", |r| r.health.nutation.map(|nutation| nutation.true_lag_deg);
     "distance_m", "m", Exact, "distance of the traced point from the exact motion's", |r| r.health.deviation.map(|off| off.distance_m);
     "most_distance_m", "m", Exact, "the largest such distance so far", |r| r.health.most_distance_m;

@@ -8,6 +8,7 @@ mod figure;
 pub(super) use figure::FigureArgs;
 
 use crate::physics::scheme;
+use crate::study::sweep::Shard;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroU64;
@@ -54,9 +55,11 @@ pub(super) enum Command {
     Verify(VerifyArgs),
     /// Record the lab while it carries out a file of commands, as asciinema plays it
     Cast(CastArgs),
-    /// List the shipped presets, or print one as TOML
+    /// Run a grid of runs on all cores and write a row for each, or list the shipped sweeps
+    Sweep(SweepArgs),
+    /// List the shipped presets, or print one, or a shipped sweep, as TOML
     Presets {
-        /// The preset to print
+        /// The preset or sweep to print
         name: Option<String>,
     },
     /// List the sessions that --resume can come back to: name, time, step, whether it is in use, run
@@ -69,7 +72,7 @@ pub(super) enum Command {
     Schemes,
     /// List the lessons, open the lab with one, or print it for paper
     Lesson(LessonArgs),
-    /// Validate scenario files, run files, the headers of CSVs, files of commands, and lessons (.md), which are played
+    /// Validate scenario files, run files, sweep files, the headers of CSVs, files of commands, and lessons (.md), which are played
     Check {
         /// Files to look at; a preset is none
         #[arg(required = true, value_name = "FILE")]
@@ -378,6 +381,47 @@ pub(super) struct CastArgs {
 
     /// Replace the file if it exists
     #[arg(long)]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SweepArgs {
+    /// A shipped sweep's or preset's name, or a file (.toml or .csv): a sweep file, a sweep's CSV, or what run takes
+    /// [without it: the list of the shipped sweeps]
+    #[arg(requires = "output")]
+    pub(super) scenario: Option<String>,
+
+    #[command(flatten)]
+    pub(super) changes: Changes,
+
+    /// Vary a key over N values from A to B, both among them, or over the values V1, V2 and so on; may be repeated, the
+    /// last runs fastest
+    #[arg(long, value_name = "KEY=A..B:N|V1,V2", requires = "scenario")]
+    pub(super) vary: Vec<String>,
+
+    /// The readouts to write, of those that gyrolab readouts lists [default: those of the sweep file, or every number]
+    #[arg(
+        long,
+        value_name = "READOUT,...",
+        value_delimiter = ',',
+        requires = "scenario"
+    )]
+    pub(super) measure: Vec<String>,
+
+    /// Only every N-th point, the K-th first: one of N parts that --join puts together
+    #[arg(long, value_name = "K/N", requires = "scenario")]
+    pub(super) shard: Option<Shard>,
+
+    /// Join these CSVs, which are all shards of one sweep, into one
+    #[arg(long, value_name = "PART.csv", num_args = 1.., requires = "output", conflicts_with_all = ["scenario", "set", "time_step", "scheme"])]
+    pub(super) join: Vec<PathBuf>,
+
+    /// Write the CSV to this file; until it is whole the rows are in FILE.part, and the same command goes on there
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+
+    /// Replace what another sweep has left under these names
+    #[arg(long, requires = "output")]
     pub(super) force: bool,
 }
 

@@ -32,6 +32,14 @@ const EXAMPLES: &[(&str, &str)] = &[
   gyrolab verify *.csv && echo all good     exit code 1 where one differs",
     ),
     (
+        "sweep",
+        "  gyrolab sweep                                     the shipped sweeps
+  gyrolab sweep wobble-over-time-step -o wobble.csv
+  gyrolab sweep method-2 --vary motion.time_step_s=0.01..0.1:10 --vary motion.scheme=report,rk4 -o grid.csv
+  gyrolab sweep grid.csv -o again.csv               a sweep's CSV runs again: its header is the sweep file
+  gyrolab man sweep                                 sweep files, and sweeps on many machines",
+    ),
+    (
         "presets",
         "  gyrolab presets                           what there is to run
   gyrolab presets method-2 > mine.toml      one of them, to change",

@@ -10,6 +10,7 @@ use crate::scenario::keys::{KEYS, Key};
 use crate::scenario::presets::{self, PRESETS, Preset};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problems, Scenario, Window};
+use crate::study::sweep::{Sweep, shipped as sweeps};
 use crate::teach::shipped;
 use crate::text::number::{decimal, shortest};
 use crate::text::printable::{Shown, printable, printable_lines};
@@ -22,10 +23,12 @@ pub(super) fn presets(name: Option<&str>) -> anyhow::Result<ExitCode> {
     let Some(name) = name else {
         return print(&preset_list()?);
     };
-    match presets::find(name) {
-        Some(preset) => print(preset.text),
+    let preset = presets::find(name).map(|preset| preset.text);
+    match preset.or_else(|| sweeps::find(name).map(|sweep| sweep.text)) {
+        Some(text) => print(text),
         None => {
-            let near = nearest(name, PRESETS.iter().map(|preset| preset.name));
+            let sweeps = sweeps::SWEEPS.iter().map(|sweep| sweep.name);
+            let near = nearest(name, PRESETS.iter().map(|preset| preset.name).chain(sweeps));
             bail!("no preset named {}: {near}", printable(name))
         }
     }
@@ -42,6 +45,7 @@ fn preset_list() -> anyhow::Result<String> {
         text.push('\n');
     }
     text.push_str("gyrolab run NAME runs one; gyrolab presets NAME prints it as TOML.\n");
+    text.push_str("gyrolab sweep lists the sweeps, grids of many runs.\n");
     Ok(text)
 }
 
@@ -153,7 +157,23 @@ fn checked(document: &Document) -> Result<String, Problems> {
         let plural = if commands == 1 { "" } else { "s" };
         return Ok(format!("good: {commands} command{plural}"));
     }
+    if document.is_sweep() {
+        return Sweep::open(document).map(|sweep| described_sweep(&sweep));
+    }
     document.scenario().map(|scenario| described(&scenario))
+}
+
+fn described_sweep(sweep: &Sweep) -> String {
+    let axes = sweep.axes().iter();
+    let axes: Vec<_> = axes
+        .map(|axis| format!("{} ({})", axis.key, axis.values.len()))
+        .collect();
+    let (rows, measured) = (sweep.rows(), sweep.measure().len());
+    format!(
+        "good: the sweep \"{}\", rows: {rows}, over {}, readouts: {measured}",
+        sweep.title(),
+        axes.join(" and ")
+    )
 }
 
 fn described(scenario: &Scenario) -> String {

@@ -20,6 +20,7 @@ mod scenario;
 mod sessions;
 mod settings;
 mod show;
+mod sweep;
 mod verify;
 mod workbench;
 mod writeup;
@@ -76,6 +77,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Show(args) => show::show(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Figure(args) => figure::figure(&args),
+        Command::Sweep(args) => sweep::sweep(&args),
         Command::Verify(args) => verify::verify(&args),
         Command::Cast(args) => cast::cast(&args),
         Command::Presets { name } => info::presets(name.as_deref()),

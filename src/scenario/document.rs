@@ -136,12 +136,17 @@ impl Document {
     pub fn from_file(origin: &str, file: &ScenarioFile) -> Result<Self, Problems> {
         let table = toml::Table::try_from(file)
             .map_err(|error| Problems::one(origin, Problem::at("", error.to_string())))?;
-        Ok(Self {
+        Ok(Self::from_table(origin, table))
+    }
+
+    /// The scenario whose tables and keys are `table`, which is a part of the file `origin`.
+    pub fn from_table(origin: &str, table: toml::Table) -> Self {
+        Self {
             origin: origin.to_owned(),
             text: String::new(),
             table,
             set: Vec::new(),
-        })
+        }
     }
 
     /// The scenario that `file` would be written and read as, checked, without writing and reading it.
@@ -163,28 +168,13 @@ impl Document {
     /// When there is no `=`, or the key leads nowhere. Whether key and value are allowed shows in
     /// [`scenario`](Self::scenario).
     pub fn set(&mut self, argument: &str) -> Result<(), Problems> {
-        let place = set_place(argument);
-        let fail = |mut problem: Problem| {
-            problem.place = Some(place.clone());
-            Problems::one(self.origin.as_str(), problem)
-        };
         let Some((key, value)) = argument.split_once('=') else {
-            return Err(fail(Problem::at(
-                "",
-                "must be KEY=VALUE, such as motion.time_step_s=0.05",
-            )));
+            let rule = "must be KEY=VALUE, such as motion.time_step_s=0.05";
+            return Err(self.refused(argument, Problem::at("", rule)));
         };
-        let (value, mistake) = match value.trim().parse() {
-            Ok(value) => (value, None),
-            Err(error) => (
-                Value::String(value.to_owned()),
-                mistake(value.trim(), &error),
-            ),
-        };
-        start::make_room(&mut self.table, key.trim());
-        reshape::prepare(&mut self.table, key.trim(), &value);
-        if let Err(problem) = set_key(&mut self.table, key.trim(), value) {
-            return Err(fail(problem));
+        let (value, mistake) = toml_or_text(value);
+        if let Err(problem) = self.set_value(key.trim(), value) {
+            return Err(self.refused(argument, problem));
         }
         self.set.push(Setting {
             key: key.trim().to_owned(),
@@ -192,6 +182,21 @@ impl Document {
             mistake,
         });
         Ok(())
+    }
+
+    fn refused(&self, argument: &str, mut problem: Problem) -> Problems {
+        problem.place = Some(set_place(argument));
+        Problems::one(self.origin.as_str(), problem)
+    }
+
+    /// Writes `value` at the dotted `key` as `--set` does.
+    ///
+    /// # Errors
+    /// When the key leads nowhere.
+    pub fn set_value(&mut self, key: &str, value: Value) -> Result<(), Problem> {
+        start::make_room(&mut self.table, key);
+        reshape::prepare(&mut self.table, key, &value);
+        set_key(&mut self.table, key, value)
     }
 
     /// Writes `value` at the dotted `key`, of which no problem's place will speak. What the value is about is first told
@@ -232,11 +237,22 @@ impl Document {
     /// # Errors
     /// Everything that is wrong with it, each with its place.
     pub fn scenario(&self) -> Result<Scenario, Problems> {
+        if self.is_sweep() {
+            let rule = "is a sweep of many runs, not a scenario: gyrolab sweep runs it";
+            return Err(Problems::one(self.origin.as_str(), Problem::at("", rule)));
+        }
         let problems = keys::check(&self.table);
         if !problems.list.is_empty() {
             return Err(self.placed(problems));
         }
         checks::scenario(self.file()?).map_err(|problems| self.placed(problems))
+    }
+
+    /// Whether it is a sweep's file, or the header of a sweep's CSV: no scenario has these keys.
+    pub fn is_sweep(&self) -> bool {
+        ["scenario", "vary", "measure"]
+            .iter()
+            .any(|key| self.table.contains_key(*key))
     }
 
     /// The file's shape; its numbers are not checked.
@@ -313,6 +329,17 @@ impl Document {
             origin: self.origin.clone(),
             list: lines.into_iter().map(|(_, problem)| problem).collect(),
             more,
+        }
+    }
+}
+
+/// `text` as TOML, or else as text; and why an array or a table is no TOML.
+pub fn toml_or_text(text: &str) -> (Value, Option<String>) {
+    match text.trim().parse() {
+        Ok(value) => (value, None),
+        Err(error) => {
+            let mistake = mistake(text.trim(), &error);
+            (Value::String(text.to_owned()), mistake)
         }
     }
 }

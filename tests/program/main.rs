@@ -21,6 +21,7 @@ mod mouse;
 mod readme;
 mod sessions;
 mod settings;
+mod sweep;
 mod terminal;
 mod verify;
 mod writeups;

@@ -14,6 +14,7 @@ const TOPICS: &[(&str, &str)] = &[
     ("numbers", include_str!("../topics/numbers.txt")),
     ("scenario", include_str!("../topics/scenario.txt")),
     ("schemes", include_str!("../topics/schemes.txt")),
+    ("sweep", include_str!("../topics/sweep.txt")),
 ];
 
 /// The names of the topics.
