@@ -23,8 +23,11 @@ use std::process::ExitCode;
 /// The environment variable by which the script asks; its value is the name of the shell.
 pub(super) const VARIABLE: &str = "GYROLAB_COMPLETE";
 
+/// What can stand where the given text was begun.
+type Completer = fn(&OsStr) -> Vec<CompletionCandidate>;
+
 /// What completes the values of the arguments called so, in every command that has one.
-const COMPLETERS: &[(&str, fn(&OsStr) -> Vec<CompletionCandidate>)] = &[
+const COMPLETERS: &[(&str, Completer)] = &[
     ("scenario", scenarios),
     ("runs", scenarios),
     ("set", settings),
@@ -38,7 +41,7 @@ const COMPLETERS: &[(&str, fn(&OsStr) -> Vec<CompletionCandidate>)] = &[
 ];
 
 /// The same for arguments whose name says less: command, argument.
-const COMPLETERS_OF: &[(&str, &str, fn(&OsStr) -> Vec<CompletionCandidate>)] = &[
+const COMPLETERS_OF: &[(&str, &str, Completer)] = &[
     ("presets", "name", presets),
     ("lesson", "name", lessons),
     ("verify", "files", csv_files),
