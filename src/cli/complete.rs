@@ -23,8 +23,11 @@ use std::process::ExitCode;
 /// The environment variable by which the script asks; its value is the name of the shell.
 pub(super) const VARIABLE: &str = "GYROLAB_COMPLETE";
 
+/// What completes a value, of which the beginning is typed.
+type Completer = fn(&OsStr) -> Vec<CompletionCandidate>;
+
 /// What completes the values of the arguments called so, in every command that has one.
-const COMPLETERS: &[(&str, fn(&OsStr) -> Vec<CompletionCandidate>)] = &[
+const COMPLETERS: &[(&str, Completer)] = &[
     ("scenario", scenarios),
     ("runs", scenarios),
     ("set", settings),
@@ -38,7 +41,7 @@ const COMPLETERS: &[(&str, fn(&OsStr) -> Vec<CompletionCandidate>)] = &[
 ];
 
 /// The same for arguments whose name says less: command, argument.
-const COMPLETERS_OF: &[(&str, &str, fn(&OsStr) -> Vec<CompletionCandidate>)] = &[
+const COMPLETERS_OF: &[(&str, &str, Completer)] = &[
     ("presets", "name", presets),
     ("lesson", "name", lessons),
     ("verify", "files", csv_files),
@@ -67,7 +70,7 @@ pub(super) fn with_completers(command: Command) -> Command {
     command.mut_args(complete).mut_subcommands(with_completers)
 }
 
-fn completer(command: &str, arg: &str) -> Option<fn(&OsStr) -> Vec<CompletionCandidate>> {
+fn completer(command: &str, arg: &str) -> Option<Completer> {
     let of_command = COMPLETERS_OF
         .iter()
         .find(|(of, id, _)| (*of, *id) == (command, arg));

@@ -101,11 +101,11 @@ impl LayoutFile {
             (None, true) => Shape::Points(POINT_COLUMNS.iter().collect()),
             (Some(names), false) => {
                 let known = COLUMNS.iter().map(|column| column.name);
-                Shape::Columns(chosen(names, known, Column::find)?)
+                Shape::Columns(chosen(names, &known, Column::find)?)
             }
             (Some(names), true) => {
                 let known = POINT_COLUMNS.iter().map(|column| column.name);
-                Shape::Points(chosen(names, known, PointColumn::find)?)
+                Shape::Points(chosen(names, &known, PointColumn::find)?)
             }
         };
         Ok(Layout { file: self, shape })
@@ -115,7 +115,7 @@ impl LayoutFile {
 /// The columns that `names` name.
 fn chosen<C>(
     names: &[String],
-    known: impl Iterator<Item = &'static str> + Clone,
+    known: &(impl Iterator<Item = &'static str> + Clone),
     find: impl Fn(&str) -> Option<&'static C>,
 ) -> Result<Vec<&'static C>, LayoutError> {
     let wrong = |rule: String| LayoutError {
