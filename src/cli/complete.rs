@@ -23,7 +23,7 @@ use std::process::ExitCode;
 /// The environment variable by which the script asks; its value is the name of the shell.
 pub(super) const VARIABLE: &str = "GYROLAB_COMPLETE";
 
-/// What can stand where the given text was begun.
+/// What completes a value, of which the beginning is typed.
 type Completer = fn(&OsStr) -> Vec<CompletionCandidate>;
 
 /// What completes the values of the arguments called so, in every command that has one.
@@ -70,7 +70,7 @@ pub(super) fn with_completers(command: Command) -> Command {
     command.mut_args(complete).mut_subcommands(with_completers)
 }
 
-fn completer(command: &str, arg: &str) -> Option<fn(&OsStr) -> Vec<CompletionCandidate>> {
+fn completer(command: &str, arg: &str) -> Option<Completer> {
     let of_command = COMPLETERS_OF
         .iter()
         .find(|(of, id, _)| (*of, *id) == (command, arg));

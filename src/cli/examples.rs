@@ -27,6 +27,17 @@ const EXAMPLES: &[(&str, &str)] = &[
   gyrolab compare cusps --json              the same numbers, for a program",
     ),
     (
+        "figure",
+        "  gyrolab figure method-2 -o method-2.svg                  x, y, z over time
+  gyrolab figure method-2 --kind 3d -o path.pdf
+  gyrolab figure wobble-push --exact --from 0 --to 60 -o wobble.png
+  gyrolab figure errors.csv -o errors.pdf                  the table of gyrolab compare -o",
+    ),
+    (
+        "writeup",
+        "  gyrolab writeup wobble-push -o wobble      run, CSV, figures, table and text in a folder",
+    ),
+    (
         "verify",
         "  gyrolab verify method-2.csv               the same rows, or the first that differs
   gyrolab verify *.csv && echo all good     exit code 1 where one differs",

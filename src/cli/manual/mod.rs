@@ -52,7 +52,10 @@ pub(super) fn man(args: &ManArgs) -> anyhow::Result<ExitCode> {
         None => {
             let names = names();
             let near = nearest(topic, names.iter().map(String::as_str));
-            bail!("no topic or command named {}: {near}", printable(topic))
+            bail!(
+                "no topic named {}, and no command: {near}",
+                printable(topic)
+            )
         }
     }
 }
