@@ -244,7 +244,7 @@ impl Sweep {
     /// The point behind the `row`-th row in words: `motion.time_step_s = 0.1, motion.scheme = "rk4"`.
     pub fn point_in_words(&self, row: u64) -> String {
         let values = self.axes.iter().zip(self.values(row));
-        let pairs = values.map(|(axis, value)| format!("{} = {value}", axis.key));
+        let pairs = values.map(|(axis, value)| format!("{} = {}", axis.key, in_words(value)));
         pairs.collect::<Vec<_>>().join(", ")
     }
 
@@ -302,6 +302,14 @@ fn inside(problems: Problems, document: &Document) -> Problems {
     };
     let list: Vec<_> = problems.list.into_iter().map(whole).collect();
     document.placed(list)
+}
+
+/// A varied value as TOML has it, but for large numbers without their zeros.
+fn in_words(value: &Value) -> String {
+    match value {
+        Value::Float(_) => label(value),
+        other => other.to_string(),
+    }
 }
 
 /// A varied value as it stands in its column.
