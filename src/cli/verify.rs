@@ -6,14 +6,13 @@ use crate::study::verify::{Kind, Unverified, Verified, verify as verified};
 use crate::text::printable::{Shown, printable_lines};
 use clap::Args;
 use std::fmt::Write;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArgs {
-    /// CSVs that gyrolab run, gyrolab compare or the lab wrote
+    /// CSVs that gyrolab run, compare, sweep or the lab wrote
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
 }
@@ -28,10 +27,7 @@ pub(super) fn verify(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
             meter
                 .unwrap_or_else(PoisonError::into_inner)
                 .show(step, steps);
-            match interruption.has_come() {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
-            }
+            interruption.go_on()
         });
         meter.lock().unwrap_or_else(PoisonError::into_inner).clear();
         match result {
@@ -74,6 +70,8 @@ fn told(file: &Path, result: &Verified) -> String {
     }
     match result.kind {
         Kind::Run => line(result.verdict.clone()),
+        Kind::Sweep { failures: 0 } => {}
+        Kind::Sweep { failures } => line(format!("runs that failed, and have empty rows: {failures}")),
         Kind::Comparison => line(
             "a comparison: ns_per_step and wall_s are times by the clock, which nothing can compute again"
                 .to_owned(),

@@ -3,6 +3,7 @@
 
 mod comparison;
 mod lines;
+mod of_sweep;
 
 use crate::analysis::Monitor;
 use crate::export::layout::LayoutError;
@@ -45,6 +46,11 @@ pub enum Kind {
     Run,
     /// The errors of schemes and time steps, by `gyrolab compare -o`.
     Comparison,
+    /// The readouts of many runs, by `gyrolab sweep -o`.
+    Sweep {
+        /// How many of them failed, and have empty rows.
+        failures: u64,
+    },
 }
 
 /// Why a file was not verified.
@@ -88,10 +94,7 @@ pub fn verify(
                 None => Unverified::Stopped,
             })?
         }
-        _ if document.table().contains_key("vary") => {
-            let rule = "is the CSV of a sweep: gyrolab verify recomputes runs and comparisons only";
-            return Err(refused(whole(rule.to_owned())));
-        }
+        _ if document.table().contains_key("vary") => of_sweep::verify(path, watch)?,
         _ => {
             let layout = Layout::read(&text).map_err(|error| refused(of_layout(&error)))?;
             let scenario = document.scenario().map_err(Unverified::Refused)?;
