@@ -444,7 +444,7 @@ readouts! {
     "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what is measured is strobed", |r| r.nutation_is_resolved();
     "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation), "*ω*_{n}";
     "L_axle_Js", "J s", State, "L along the axle", |r| r.spin, "*L*_{3}";
-    "spin_rpm", "rpm", State, "rate of the spin about the axle: omega along it, or, where start.rotor names a part, L along it over that part's moment", |r| start::rpm(r.spin_rad_per_s);
+    "spin_rpm", "rpm", State, "rate of the spin about the axle: omega along it, or, where start.rotor names a part, L along it over that part's moment", |r| start::rpm(r.spin_rad_per_s), "*ω*_{3}";
     "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps", |r| r.theory_about_z().map(|theory| theory.sleeping_limit);
     "health", "", Exact, "whether the numbers hold, in one sentence", |r| r.health.sentence(r.advice.as_ref());
     "wall_s", "s", Clock, "time spent on stepping alone", |r| r.stepping.map(|wall| wall.as_secs_f64());
