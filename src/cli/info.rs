@@ -162,15 +162,16 @@ fn described(scenario: &Scenario) -> String {
         1 => ", 1 edit".to_owned(),
         more => format!(", {more} edits"),
     };
+    let points = scenario.body.points_before_parts();
+    let plural = if points == 1 { "" } else { "s" };
     let parts = match scenario.body.parts.len() {
         0 => String::new(),
         1 => "1 part and ".to_owned(),
         more => format!("{more} parts and "),
     };
     format!(
-        "good: \"{}\", {parts}{} points, scheme {}, steps: {}{edits}{}",
+        "good: \"{}\", {parts}{points} point{plural}, scheme {}, steps: {}{edits}{}",
         scenario.file.title,
-        scenario.body.points_before_parts(),
         scenario.motion.scheme.name,
         steps_in_words(scenario, scenario.steps),
         pushes_without_effect(scenario),

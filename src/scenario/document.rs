@@ -182,6 +182,7 @@ impl Document {
             ),
         };
         start::make_room(&mut self.table, key.trim());
+        reshape::prepare(&mut self.table, key.trim(), &value);
         if let Err(problem) = set_key(&mut self.table, key.trim(), value) {
             return Err(fail(problem));
         }

@@ -2,11 +2,13 @@
 //! and how they are listed and changed.
 
 use crate::support::scenarios::{parse, read};
+use crate::support::stage::{SMALL, Stage};
 use gyrolab::physics::SymmetricTop;
 use gyrolab::physics::exact::{ExactMotion, Kind};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::file::ScenarioFile;
 use gyrolab::scenario::{Document, Scenario};
+use gyrolab::tui::keymap::Key;
 use gyrolab::work::Parameter;
 use gyrolab::work::parameters::{changed, parameters, table_of};
 use nalgebra::{Matrix3, Rotation3, Vector3};
@@ -434,6 +436,11 @@ fn dotted_keys_set_a_part_from_the_command_line() {
     let scenario = document.scenario().unwrap();
     assert_eq!(scenario.body.parts.len(), 2);
     assert!((scenario.body.mechanics.inertia()[(2, 2)] - (0.5 + 0.004)).abs() < 1e-15);
+    document.set("body.part.1.axis.0=1").unwrap();
+    document.set("body.part.1.shape=cone").unwrap();
+    let changed = document.scenario().unwrap().file;
+    assert_eq!(changed.body.part[1].axis, Some([1.0, 0.0, 1.0]));
+    assert_eq!(changed.body.part[1].length_m, Some(0.2));
     document.set("body.part.0.radius_m=0").unwrap();
     let told = document.scenario().unwrap_err().to_string();
     assert!(
@@ -450,4 +457,30 @@ fn a_run_file_of_parts_is_read_back_as_it_was() {
     let again = parse(&scenario.to_toml());
     assert_eq!(again.to_toml(), scenario.to_toml());
     assert_eq!(again.body.mechanics, scenario.body.mechanics);
+}
+
+#[test]
+fn solids_are_seen_as_what_they_are() {
+    let filled = |preset: &str, set: &[&str], seconds: f64| {
+        let mut stage = Stage::open(preset, set, SMALL);
+        stage.wait(seconds).press("d").picture()
+    };
+    insta::assert_snapshot!("wing_nut_3d", filled("wing-nut", &[], 0.6));
+    // A cone that stands on its apex, and a rod beside it.
+    let cone = [
+        "body.part.0={shape='cone',name='cone',mass_kg=1,at_m=[0,0,0.6],radius_m=0.3,length_m=0.8}",
+        "body.part.1={shape='rod',name='rod',mass_kg=0.1,at_m=[0.6,0,0.6],axis=[1,0,0],length_m=0.4}",
+    ];
+    insta::assert_snapshot!("cone_and_rod_3d", filled("sleeping", &cone, 0.6));
+}
+
+#[test]
+fn a_part_is_edited_in_the_pane_of_values() {
+    let mut stage = Stage::open("wing-nut", &[], SMALL);
+    stage
+        .commands("pause = true")
+        .press("e/outer")
+        .key(Key::Enter);
+    stage.shows("part nut").shows("outer radius");
+    insta::assert_snapshot!("part_in_the_pane", stage.picture());
 }
