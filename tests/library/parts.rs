@@ -8,7 +8,6 @@ use gyrolab::physics::exact::{ExactMotion, Kind};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::file::ScenarioFile;
 use gyrolab::scenario::{Document, Scenario};
-use gyrolab::tui::keymap::Key;
 use gyrolab::work::Parameter;
 use gyrolab::work::parameters::{changed, parameters, table_of};
 use nalgebra::{Matrix3, Rotation3, Vector3};
@@ -477,10 +476,14 @@ fn solids_are_seen_as_what_they_are() {
 #[test]
 fn a_part_is_edited_in_the_pane_of_values() {
     let mut stage = Stage::open("wing-nut", &[], SMALL);
-    stage
-        .commands("pause = true")
-        .press("e/outer")
-        .key(Key::Enter);
-    stage.shows("part nut").shows("outer radius");
-    insta::assert_snapshot!("part_in_the_pane", stage.picture());
+    stage.commands("pause = true").press("e/outer\n");
+    stage.shows("outer radius, m 0.008").press("0.009\n");
+    stage.shows("outer radius 9e-3 m");
+    let nut = &stage.lab.player().run().scenario().file.body.part[0];
+    assert_eq!(nut.outer_radius_m, Some(0.009));
+    // What is refused says why and changes nothing.
+    stage.press("\n").press("0.001\n");
+    stage.shows("must not be greater than outer_radius_m");
+    let nut = &stage.lab.player().run().scenario().file.body.part[0];
+    assert_eq!(nut.outer_radius_m, Some(0.009));
 }
