@@ -300,7 +300,7 @@ fn turning_points_s(name: &str, set: &[&str]) -> Vec<f64> {
     let turns = tilts.windows(3).enumerate().filter_map(|(index, rows)| {
         let (before, after) = (rows[0] - rows[1], rows[2] - rows[1]);
         let offset = 0.5 * (before - after) / (before + after);
-        (before * after > 0.0).then(|| (index as f64 + 1.0 + offset) * dt)
+        (before * after > 0.0).then_some((index as f64 + 1.0 + offset) * dt)
     });
     turns.collect()
 }

@@ -5,6 +5,7 @@ use gyrolab::physics::observables::{angular_velocity, tilt_deg};
 use gyrolab::physics::rotation;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
+use gyrolab::work::Parameter;
 use gyrolab::work::parameters::{changed, parameters, table_of};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
@@ -395,7 +396,7 @@ fn the_editor_keeps_the_way_in_which_the_start_is_told() {
         listed
             .iter()
             .find(|row| row.key == key)
-            .map(|row| row.shown())
+            .map(Parameter::shown)
     };
     assert_eq!(shown("start.omega_rad_per_s.2").as_deref(), Some("30"));
     assert_eq!(shown("start.omega_frame").as_deref(), Some("body"));
