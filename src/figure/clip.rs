@@ -2,6 +2,7 @@
 
 use super::ink::{Frame, at};
 use super::scene::Point;
+use std::cmp::Ordering;
 
 /// The parts of the line through `points` that lie in `frame`; it is interrupted where a point is not finite.
 pub fn clipped(points: impl Iterator<Item = Point>, frame: &Frame) -> Vec<Vec<Point>> {
@@ -64,7 +65,8 @@ fn inside(from: Point, to: Point, frame: &Frame) -> Option<[Point; 2]> {
             end = end.min(share);
         }
     }
-    if !(begin <= end) {
+    // Neither where one of them is no number.
+    if begin.partial_cmp(&end).is_none_or(Ordering::is_gt) {
         return None;
     }
     let point = |share: f64| match share {

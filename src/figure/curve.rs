@@ -27,7 +27,7 @@ impl Placed {
     pub fn draw_line(&self, series: &Series, scene: &mut Scene) {
         let places = series.points.iter().map(|point| self.place(point));
         let pieces = clipped(places, &self.frame.grown(BEYOND_PT));
-        put(pieces, series.style.pen(), Some(&self.frame), scene);
+        put(&pieces, &series.style.pen(), Some(&self.frame), scene);
     }
 
     /// Whether something of `series` is drawn in `frame`.
@@ -51,7 +51,7 @@ impl Placed {
 }
 
 /// Draws a line that is cut off outside of `clip`, in fewer pieces that look the same.
-pub fn put(pieces: Vec<Vec<Point>>, pen: Pen, clip: Option<&Frame>, scene: &mut Scene) {
+pub fn put(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene: &mut Scene) {
     let runs_right = |piece: &Vec<Point>| piece.windows(2).all(|pair| pair[1].x >= pair[0].x);
     let is_dashed = !pen.dash_pt.is_empty();
     let lines = if pieces.iter().all(runs_right) {
@@ -64,7 +64,7 @@ pub fn put(pieces: Vec<Vec<Point>>, pen: Pen, clip: Option<&Frame>, scene: &mut 
             .map(|piece| simplified(piece, within))
             .collect()
     } else {
-        match plane_curve(&pieces, pen.width_pt) {
+        match plane_curve(pieces, pen.width_pt) {
             Thinned::Lines(lines) => lines,
             Thinned::Area(area) => return scene.fill_in(area, pen.color, clip),
         }

@@ -5,14 +5,17 @@ use super::letters;
 use super::of_runs::Run;
 use crate::text::number::significant;
 
+/// What of a run may differ from the others.
+type Of<'a> = &'a dyn Fn(&Run) -> String;
+
 /// A name for each of `runs`, as markup no longer than `room_pt`; empty where there is nothing to tell apart. `among_others`
 /// says whether something else is drawn beside a single run.
 pub(super) fn names(runs: &[Run], among_others: bool, room_pt: f64) -> Vec<String> {
-    let differs = |of: &dyn Fn(&Run) -> String| runs.iter().any(|run| of(run) != of(&runs[0]));
+    let differs = |of: Of<'_>| runs.iter().any(|run| of(run) != of(&runs[0]));
     let title = |run: &Run| run.scenario.file.title.clone();
     let scheme = |run: &Run| run.scenario.motion.scheme.name.to_owned();
     let time_step = |run: &Run| step(run);
-    let parts: [(bool, &dyn Fn(&Run) -> String); 3] = [
+    let parts: [(bool, Of<'_>); 3] = [
         (differs(&title), &title),
         (differs(&scheme), &scheme),
         (differs(&time_step), &time_step),

@@ -153,7 +153,7 @@ impl Space {
                 self.place(&boxed)
             };
             let shadow = drawn.course.path.iter().map(floor).collect();
-            curve::put(vec![shadow], round(0.45, grey(198)), None, &mut scene);
+            curve::put(&[shadow], &round(0.45, grey(198)), None, &mut scene);
         }
         self.paths(drawn, &mut scene);
         for axis in 0..3 {
@@ -221,8 +221,8 @@ impl Space {
             let ends = [a, b].map(|[x, y, z]| self.place(&Vector3::new(x, y, z)));
             scene.line(ends, width, grey(level));
         };
-        for axis in 0..3 {
-            for tick in &ticks[axis].major {
+        for (axis, ticks) in ticks.iter().enumerate() {
+            for tick in &ticks.major {
                 let share = self.share(axis, tick.at) - 0.5;
                 let [first, second] = match axis {
                     0 => [

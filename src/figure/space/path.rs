@@ -45,7 +45,7 @@ impl Space {
                     ..round(width, color)
                 };
                 let pieces = pieces(path, |depth| degree(depth) == nearness);
-                curve::put(pieces, pen, None, scene);
+                curve::put(&pieces, &pen, None, scene);
             }
         }
     }
