@@ -51,6 +51,7 @@ pub use script::Script;
 pub use values::Values;
 pub use work::Work;
 
+use crate::observe::camera::Camera;
 use crate::observe::playback::Halt;
 use crate::run::NotFinite;
 use crate::scenario::{Scenario, presets};
@@ -329,7 +330,8 @@ impl Lab {
         let is_still = !playback.is_running() || playback.step_number() == 0;
         if is_still && !self.view.camera_is_chosen {
             let axle = self.player.reading().state.axle();
-            self.view.camera = self.view.camera.aside_of(&axle);
+            // From the usual direction each time: the same step has the same picture, whatever was seen before.
+            self.view.camera = Camera::default().aside_of(&axle);
         }
     }
 

@@ -226,6 +226,7 @@ fn every_row_of_the_table_is_written_under_its_name() {
         run = true
         pause = true
         wait_s = 2.5
+        chapter = 'the push'
         undo = 1
         redo = 1
         export = 'run.csv'
