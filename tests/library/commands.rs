@@ -212,6 +212,7 @@ fn every_row_of_the_table_is_written_under_its_name() {
         run = true
         pause = true
         wait_s = 2.5
+        chapter = 'The dip'
         undo = 1
         redo = 1
         export = 'run.csv'
