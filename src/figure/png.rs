@@ -60,11 +60,11 @@ impl Easel {
         match &item.paint {
             Paint::Fill(color) => {
                 self.sheet
-                    .fill_path(&path, &ink(*color), FillRule::Winding, transform, mask)
+                    .fill_path(&path, &ink(*color), FillRule::Winding, transform, mask);
             }
             Paint::Stroke(pen) => {
                 self.sheet
-                    .stroke_path(&path, &ink(pen.color), &stroke(pen), transform, mask)
+                    .stroke_path(&path, &ink(pen.color), &stroke(pen), transform, mask);
             }
         }
     }

@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn a_line_stays_a_line_and_a_million_points_become_an_area() {
         let few = rosette(20_000, 1.0);
-        let Thinned::Lines(lines) = plane_curve(&[few.clone()], 0.7) else {
+        let Thinned::Lines(lines) = plane_curve(std::slice::from_ref(&few), 0.7) else {
             panic!("an area");
         };
         assert!((400..2500).contains(&lines[0].len()), "{}", lines[0].len());

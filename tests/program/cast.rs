@@ -100,7 +100,7 @@ fn a_recording_has_its_size_its_chapters_and_the_picture() {
         "{}",
         seen.last().unwrap()
     );
-    let colours = |row: u16| (0..90).filter_map(move |column| Some((row, column)));
+    let colours = |row: u16| (0..90).map(move |column| (row, column));
     let is_coloured = |(row, column)| {
         screen.screen().cell(row, column).unwrap().fgcolor() != vt100::Color::Default
     };
