@@ -9,6 +9,7 @@ use crate::text::number::{NONE, exponent, fixed, shortest};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
+use serde_json::{Map, Value, json};
 use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -142,6 +143,33 @@ pub struct Table<'a> {
     pub rows: &'a [Row],
     /// What the energy drifts are measured in; `None` where there is nothing to measure them by.
     pub energy_unit: Option<EnergyUnit>,
+}
+
+impl Table<'_> {
+    /// The table as one JSON object: of which run, held against which exact motion, and a row for each scheme and time
+    /// step under the names of the CSV's columns. null stands for a number that there is not.
+    ///
+    /// # Errors
+    /// Never, unless memory runs out.
+    pub fn json(&self, title: &str, duration_s: f64, truth: &str) -> serde_json::Result<Value> {
+        let row = |row: &Row| {
+            let mut value = serde_json::to_value(row)?;
+            for field in value.as_object_mut().into_iter().flat_map(Map::values_mut) {
+                if field == NONE {
+                    *field = Value::Null;
+                }
+            }
+            Ok(value)
+        };
+        let rows: serde_json::Result<Vec<Value>> = self.rows.iter().map(row).collect();
+        Ok(json!({
+            "title": title,
+            "duration_s": duration_s,
+            "exact_motion": truth,
+            "energy_drift_unit": self.energy_unit.map(|unit| unit.to_string()),
+            "rows": rows?,
+        }))
+    }
 }
 
 impl fmt::Display for Table<'_> {

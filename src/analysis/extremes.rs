@@ -3,7 +3,7 @@
 use crate::run::Step;
 
 /// Where the heights of two tilts differ by less than this, the tilts themselves are compared.
-const NEAR: f64 = 1e-14;
+pub(super) const NEAR: f64 = 1e-14;
 
 /// Extremes of tilt and height; to be shown every step of a run. They are those of the CSV's columns, to the last bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +54,7 @@ impl Extremes {
 }
 
 /// cos|cos| of the tilt, with no root to take: it falls as the tilt grows, by no more than the tilt grows (rad).
-fn height(step: &Step) -> f64 {
+pub(super) fn height(step: &Step) -> f64 {
     let axle = step.after().axle();
     axle.z * axle.z.abs() / axle.norm_squared()
 }

@@ -14,6 +14,7 @@ use crate::scenario::{Edit, Motion, Scenario, rescale};
 use crate::work::restart::in_force;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// A run is believed while its traced point keeps within this part of its arm (its distance from the pivot) of the
@@ -27,9 +28,6 @@ pub const BETTER_SCHEME: &str = "srkn11b";
 const LEAST_SWING_DEG: f64 = 1e-6;
 /// A nutation that has changed by less than this part is as it was.
 const LEAST_CHANGE: f64 = 0.05;
-
-/// An axle whose direction's length is off 1 by more than this is that of no rotation.
-const LEAST_BENT: f64 = 0.5;
 
 /// How a run stands at one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,7 +135,7 @@ impl Health {
             ),
             nutation: Nutation::of(step, &motion, psi),
             swing_deg,
-            is_a_rotation: (axle.norm() - 1.0).abs() < LEAST_BENT,
+            is_a_rotation: state.is_a_rotation(),
             lag_deg: if lag.is_finite() {
                 lag.to_degrees()
             } else {
@@ -235,10 +233,29 @@ impl Nutation {
 /// seen to hold. A time step in which the body turns by more than half a turn may come near by luck (wobble-push does at
 /// 0.05 s, and not at 0.02): it is not advised.
 pub fn advise(scenario: &Scenario) -> Advice {
+    advise_while(scenario, &|| true).unwrap_or(Advice::Nothing)
+}
+
+/// As [`advise`], given up soon after `is_wanted` returns false: then `None`.
+pub fn advise_while(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Option<Advice> {
+    let advice = tried(scenario, is_wanted);
+    // Trials that were given up have found nothing out.
+    is_wanted().then_some(advice)
+}
+
+/// What trials of `scenario` lead to; each ends as one that does not hold when `is_wanted` returns false.
+fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
     let (own, scheme) = (scenario.motion.time_step_s, scenario.motion.scheme);
     let trial = |step: f64, scheme| {
         let other = Arc::new(resampled(scenario, step, scheme));
-        Trial::within(&other, BELIEVED_WITHIN * scenario.arm_m())
+        Trial::within(
+            &other,
+            BELIEVED_WITHIN * scenario.arm_m(),
+            |_| match is_wanted() {
+                true => ControlFlow::Continue(()),
+                false => ControlFlow::Break(()),
+            },
+        )
     };
     let holds = |step: f64, scheme| trial(step, scheme).is_some_and(|trial| trial.most_turns < 0.5);
     if !is_affordable(scenario) || duration_s(scenario) / own > most_steps(scenario) {

@@ -1,4 +1,5 @@
 //! What a run's numbers are worth: [`theory`] says what the top should do, [`measure`] and [`extremes`] what the run did,
+//! [`frozen`] what the report's scheme should make of it,
 //! [`health`] what the time step made of it, [`remarks`] the same in words. [`readouts`] is the one table of all these
 //! numbers under their names, and [`compare`] holds schemes and time steps against the exact motion.
 //!
@@ -8,6 +9,7 @@ mod between;
 pub mod compare;
 pub mod cost;
 pub mod extremes;
+pub mod frozen;
 pub mod health;
 pub mod measure;
 pub mod monitor;
@@ -16,6 +18,7 @@ pub mod remarks;
 mod rows;
 mod swing;
 pub mod theory;
+mod tilt_swing;
 pub mod trial;
 mod turns;
 

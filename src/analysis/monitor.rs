@@ -2,9 +2,11 @@
 
 use super::cost::is_affordable;
 use super::extremes::Extremes;
+use super::frozen::Frozen;
 use super::health::Health;
-use super::measure::Instruments;
+use super::measure::{Instruments, Measured};
 use super::theory::Theory;
+use super::tilt_swing::TiltSwing;
 use super::trial::Deviation;
 use crate::physics::{State, SymmetricTop};
 use crate::run::{Step, Truth};
@@ -22,6 +24,10 @@ pub struct Monitor {
     unheld: Vec<State>,
     /// The change of forces since which the instruments measure.
     changes: u64,
+    /// The step from which on they do.
+    since: u64,
+    tilt_swing: TiltSwing,
+    frozen: Option<Frozen>,
 }
 
 impl Monitor {
@@ -36,6 +42,9 @@ impl Monitor {
             most_distance_m: 0.0,
             unheld: Vec::new(),
             changes: step.changes(),
+            since: step.number(),
+            tilt_swing: TiltSwing::new(step),
+            frozen: Frozen::new(step),
         }
     }
 
@@ -53,7 +62,7 @@ impl Monitor {
     #[inline]
     pub fn follow(&mut self, step: &Step) {
         self.measure(step);
-        self.hold(step.after());
+        self.hold_distance(step.after());
     }
 
     /// The same, but for the exact motion: [`catch_up`](Self::catch_up) comes to that later, at the latest when health or
@@ -70,19 +79,25 @@ impl Monitor {
     pub fn catch_up(&mut self) {
         let states = std::mem::take(&mut self.unheld);
         for state in &states {
-            self.hold(state);
+            self.hold_distance(state);
         }
         self.unheld = states;
         self.unheld.clear();
     }
 
-    fn measure(&mut self, step: &Step) {
+    /// As [`follow`](Self::follow), without holding the step against the exact motion: for a reader of what is measured and of the extremes alone.
+    #[inline]
+    pub fn measure(&mut self, step: &Step) {
         self.extremes.follow(step);
         if step.changes() == self.changes {
             self.instruments.follow(step);
+            self.tilt_swing.follow(step);
         } else {
             self.changes = step.changes();
+            self.since = step.number();
             self.instruments = Instruments::new(step);
+            self.tilt_swing = TiltSwing::new(step);
+            self.frozen = Frozen::new(step);
         }
     }
 
@@ -101,17 +116,26 @@ impl Monitor {
     /// How far off the exact motion the run is at `step`; `None` where that would take too long.
     pub fn deviation(&mut self, step: &Step) -> Option<Deviation> {
         self.catch_up();
-        self.hold(step.after())
+        let deviation = Deviation::of(step.after(), self.truth.as_mut()?);
+        self.take_in(deviation.distance_m);
+        self.truth.as_ref().map(|_| deviation)
     }
 
-    fn hold(&mut self, state: &State) -> Option<Deviation> {
-        let deviation = Deviation::of(state, self.truth.as_mut()?);
-        if !deviation.distance_m.is_finite() {
-            self.truth = None; // it has left the range of numbers, and does not come back
-            return None;
+    #[inline]
+    fn hold_distance(&mut self, state: &State) {
+        if let Some(truth) = &mut self.truth {
+            let distance_m = Deviation::distance_of(state, truth);
+            self.take_in(distance_m);
         }
-        self.most_distance_m = self.most_distance_m.max(deviation.distance_m);
-        Some(deviation)
+    }
+
+    #[inline]
+    fn take_in(&mut self, distance_m: f64) {
+        if distance_m.is_finite() {
+            self.most_distance_m = self.most_distance_m.max(distance_m);
+        } else {
+            self.truth = None; // it has left the range of numbers, and does not come back
+        }
     }
 
     /// What theory says of the exact motion at `time_s` (s); `None` for a lopsided body, a push off the axle, or a
@@ -134,6 +158,22 @@ impl Monitor {
     /// The least and the greatest over every step of the run.
     pub fn extremes(&self) -> &Extremes {
         &self.extremes
+    }
+
+    /// By how much the tilt has swung since the forces last changed, degrees; `None` before it was seen whole.
+    pub fn tilt_swing_deg(&self) -> Option<Measured> {
+        self.tilt_swing.measured()
+    }
+
+    /// What the linear theory of the report's scheme says of the motion since the forces last changed; `None` where it says
+    /// nothing.
+    pub fn frozen(&self) -> Option<Frozen> {
+        self.frozen
+    }
+
+    /// The step at which the forces last changed.
+    pub fn since(&self) -> u64 {
+        self.since
     }
 
     /// What has been measured since the forces last changed.

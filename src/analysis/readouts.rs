@@ -4,12 +4,13 @@
 //! A bare name is the live value of the run's last step. `predicted_...` is theory's, `measured_...` the run's own. What
 //! cannot be stated honestly is [`Value::Nothing`], null in JSON: no number of it is ever NaN or infinite.
 
+use super::frozen::Frozen;
 use super::health::Advice;
 use super::theory::Axis;
 use super::{Extremes, Health, Measured, Monitor, Theory};
 use crate::physics::SymmetricTop;
 use crate::run::{Sample, Simulation};
-use crate::scenario::problem;
+use crate::scenario::{problem, start};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::f64::consts::PI;
 use std::time::Duration;
@@ -29,6 +30,8 @@ pub struct Readouts {
     pub sample: Sample,
     /// L·axle, J s.
     pub spin: f64,
+    /// The rate of the spin about the axle, rad/s; of the rotor alone where the scenario names one.
+    pub spin_rad_per_s: f64,
     /// I3/I1 of a symmetric body.
     pub kappa: Option<f64>,
     /// How it stands.
@@ -43,6 +46,12 @@ pub struct Readouts {
     pub precession: Option<Measured>,
     /// Nutation period since the forces last changed, s.
     pub nutation: Option<Measured>,
+    /// Swing of the tilt since the forces last changed, degrees.
+    pub tilt_swing: Option<Measured>,
+    /// What the linear theory of the report's scheme says of the motion since the forces last changed.
+    pub frozen: Option<Frozen>,
+    /// The step at which they did.
+    pub since: u64,
     /// Time spent on stepping alone, where it was measured.
     pub stepping: Option<Duration>,
 }
@@ -65,6 +74,7 @@ impl Readouts {
             time_step_s: step.motion().time_step_s,
             sample: step.sample(),
             spin: state.momentum.dot(&state.axle()),
+            spin_rad_per_s: step.scenario().spin_rad_per_s(state),
             kappa: SymmetricTop::of(&step.scenario().body.mechanics).map(|top| top.kappa()),
             health: *health,
             advice: advice.copied(),
@@ -72,6 +82,9 @@ impl Readouts {
             extremes: *monitor.extremes(),
             precession: monitor.instruments().precession_rad_per_s(),
             nutation: monitor.instruments().nutation_period_s(),
+            tilt_swing: monitor.tilt_swing_deg(),
+            frozen: monitor.frozen(),
+            since: monitor.since(),
             stepping: None,
         }
     }
@@ -84,6 +97,7 @@ impl Readouts {
             Source::Measured => {
                 self.precession = monitor.instruments().precession_rad_per_s();
                 self.nutation = monitor.instruments().nutation_period_s();
+                self.tilt_swing = monitor.tilt_swing_deg();
             }
             Source::Exact => {
                 let deviation = monitor.deviation(simulation.now());
@@ -230,6 +244,9 @@ pub struct Readout {
     get: fn(&Readouts) -> Value,
 }
 
+/// In the name of a readout that is the standard error of another.
+const ERROR: &str = "_uncertainty";
+
 /// How a readout is obtained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
@@ -270,6 +287,29 @@ impl Source {
 }
 
 impl Readout {
+    /// Whether it is the standard error of another readout.
+    pub fn is_uncertainty(&self) -> bool {
+        self.name.contains(ERROR)
+    }
+
+    /// The readout that is the standard error of this one.
+    pub fn uncertainty(&self) -> Option<&'static Self> {
+        let is_its_error = |other: &&Self| {
+            let stem = other.name.split_once(ERROR);
+            stem.is_some_and(|(stem, _)| self.name.starts_with(stem))
+        };
+        READOUTS
+            .iter()
+            .find(is_its_error)
+            .filter(|_| !self.is_uncertainty())
+    }
+
+    /// The readout in which theory says what this measured one should be.
+    pub fn predicted(&self) -> Option<&'static Self> {
+        let what = self.name.strip_prefix("measured_")?;
+        find(&format!("predicted_{what}"))
+    }
+
     /// What `readouts` has under this name.
     pub fn of(&self, readouts: &Readouts) -> Value {
         (self.get)(readouts)
@@ -392,6 +432,10 @@ readouts! {
     "nutation_multiplier", "", Scheme, "the report's scheme alone: its factor on a nutation's size each step; the truth is 1", |r| r.health.nutation.map(|nutation| nutation.multiplier);
     "lag_deg", "deg", State, "angle between axle and L", |r| r.health.lag_deg;
     "steady_lag_deg", "deg", Scheme, "the report's scheme alone: its angle between axle and L in steady precession", |r| r.health.nutation.map(|nutation| nutation.scheme_lag_deg);
+    "predicted_lag_deg", "deg", Scheme, "the report's scheme alone: the mean angle between axle and L, |tau| dt/(|L| |1 - A|), at the last change of the forces; null where that linear theory is off by more than about a tenth", |r| r.frozen.and_then(|frozen| frozen.lag_deg());
+    "predicted_tilt_swing_deg", "deg", Scheme, "the report's scheme alone: the swing of the tilt about that lag, by the same theory; null too where the scheme damps or feeds the nutation in the run", |r| r.frozen.and_then(|frozen| frozen.swing_deg(r.sample.step.saturating_sub(r.since)));
+    "measured_tilt_swing_deg", "deg", Measured, "greatest tilt less least tilt, as the steps show it", |r| value(r.tilt_swing);
+    "measured_tilt_swing_uncertainty_deg", "deg", Measured, "how much more the tilt swings between the steps", |r| uncertainty(r.tilt_swing);
     "true_steady_lag_deg", "deg", Theory, "the true angle between axle and L in steady precession", |r| r.health.nutation.map(|nutation| nutation.true_lag_deg);
     "distance_m", "m", Exact, "distance of the traced point from the exact motion's", |r| r.health.deviation.map(|off| off.distance_m);
     "most_distance_m", "m", Exact, "the largest such distance so far", |r| r.health.most_distance_m;
@@ -415,6 +459,7 @@ readouts! {
     "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what is measured is strobed", |r| r.nutation_is_resolved();
     "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation), "*ω*_{n}";
     "L_axle_Js", "J s", State, "L along the axle", |r| r.spin, "*L*_{3}";
+    "spin_rpm", "rpm", State, "rate of the spin about the axle: omega along it, or, where start.rotor names a part, L along it over that part's moment", |r| start::rpm(r.spin_rad_per_s), "*ω*_{3}";
     "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps", |r| r.theory_about_z().map(|theory| theory.sleeping_limit);
     "health", "", Exact, "whether the numbers hold, in one sentence", |r| r.health.sentence(r.advice.as_ref());
     "wall_s", "s", Clock, "time spent on stepping alone", |r| r.stepping.map(|wall| wall.as_secs_f64());

@@ -3,7 +3,7 @@
 use crate::physics::State;
 use crate::run::{NotFinite, Simulation, Step, Truth};
 use crate::scenario::Scenario;
-use nalgebra::Vector3;
+use nalgebra::Matrix3;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -52,14 +52,26 @@ impl Deviation {
     /// Of a run that is `seen` so, from its `truth`.
     pub fn of(seen: &State, truth: &mut Truth) -> Self {
         let exact = truth.state_at(seen.time_s);
-        let scenario = truth.scenario();
-        let at: Vector3<f64> = scenario.body.mechanics.points()[scenario.trace].at;
         Self {
-            distance_m: ((seen.orientation - exact.orientation) * at).norm(),
+            distance_m: distance_m(seen, &exact.orientation, truth.scenario()),
             spin: seen.momentum.dot(&seen.axle()) - exact.momentum.dot(&exact.axle()),
             lz: seen.momentum.z - exact.momentum.z,
         }
     }
+
+    /// Its distance alone, m.
+    #[inline]
+    pub fn distance_of(seen: &State, truth: &mut Truth) -> f64 {
+        let exact = truth.orientation_at(seen.time_s);
+        distance_m(seen, &exact, truth.scenario())
+    }
+}
+
+/// Distance of the traced point from where it is if the body stands as `exact`, m.
+#[inline]
+fn distance_m(seen: &State, exact: &Matrix3<f64>, scenario: &Scenario) -> f64 {
+    let at = &scenario.body.mechanics.points()[scenario.trace].at;
+    ((seen.orientation - exact) * at).norm()
 }
 
 impl Trial {
@@ -73,9 +85,13 @@ impl Trial {
     }
 
     /// Plays `scenario` to its end; `None` where the traced point leaves the exact motion by more than `limit_m`, or the
-    /// numbers stop being finite.
-    pub fn within(scenario: &Arc<Scenario>, limit_m: f64) -> Option<Self> {
-        Self::play(scenario, limit_m, |_| ControlFlow::Continue(()))
+    /// numbers stop being finite, or `watch` said no.
+    pub fn within(
+        scenario: &Arc<Scenario>,
+        limit_m: f64,
+        watch: impl FnMut(u64) -> ControlFlow<()>,
+    ) -> Option<Self> {
+        Self::play(scenario, limit_m, watch)
             .filter(|trial| trial.broke.is_none() && trial.most_distance_m <= limit_m)
     }
 
@@ -167,5 +183,43 @@ fn stride(steps: u64) -> u64 {
     match steps / LOOKS {
         0 => 1,
         stride => stride | 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::exact::Kind;
+    use crate::scenario::Document;
+
+    #[test]
+    fn the_distance_alone_is_that_of_the_whole_deviation_to_the_last_bit() {
+        let pushed_aside = [
+            "body.point.2={name='aside',at_m=[0.3,0,1.5],mass_kg=0}",
+            "push.0={point='aside',force_N=[1,0,0],from_s=1,for_s=1}",
+            "motion.time_step_s=0.01",
+        ];
+        for (preset, sets, kind) in [
+            ("wobble-push", &[][..], Kind::Closed),
+            ("cusps", &[], Kind::Closed),
+            ("sleeping", &["motion.gravity_m_per_s2=-9.8"], Kind::Closed),
+            ("method-2", &pushed_aside, Kind::Integrated),
+        ] {
+            let mut document = Document::open(preset).unwrap();
+            sets.iter().for_each(|set| document.set(set).unwrap());
+            let scenario = Arc::new(document.scenario().unwrap());
+            let mut simulation = Simulation::new(Arc::clone(&scenario));
+            let truths = || Truth::new(Arc::clone(&scenario));
+            let (mut whole, mut alone) = (truths(), truths());
+            let mut kinds = Vec::new();
+            for _ in 0..400 {
+                let state = simulation.step().unwrap().after();
+                let deviation = Deviation::of(state, &mut whole);
+                let distance_m = Deviation::distance_of(state, &mut alone);
+                assert_eq!(distance_m.to_bits(), deviation.distance_m.to_bits());
+                kinds.push(alone.kind());
+            }
+            assert!(kinds.contains(&kind), "{preset}");
+        }
     }
 }

@@ -1,10 +1,14 @@
 //! The command line, as clap reads it.
 
+use super::layout::LayoutArgs;
+use super::manual::ManArgs;
+use super::verify::VerifyArgs;
 mod figure;
 
 pub(super) use figure::FigureArgs;
 
 use crate::physics::scheme;
+use crate::study::sweep::Shard;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroU64;
@@ -45,11 +49,17 @@ pub(super) enum Command {
     Compare(CompareArgs),
     /// Draw runs, or a table of compare or of a sweep, on paper: SVG, PDF or PNG
     Figure(FigureArgs),
+    /// Make a folder for a write-up of a run: CSV, figures, measured numbers beside theory, and how to make it again
+    Writeup(WriteupArgs),
+    /// Compute a CSV again from its header: the same, or the first row that differs
+    Verify(VerifyArgs),
     /// Record the lab while it carries out a file of commands, as asciinema plays it
     Cast(CastArgs),
-    /// List the shipped presets, or print one as TOML
+    /// Run a grid of runs on all cores and write a row for each, or list the shipped sweeps
+    Sweep(SweepArgs),
+    /// List the shipped presets, or print one, or a shipped sweep, as TOML
     Presets {
-        /// The preset to print
+        /// The preset or sweep to print
         name: Option<String>,
     },
     /// List the sessions that --resume can come back to: name, time, step, whether it is in use, run
@@ -62,7 +72,7 @@ pub(super) enum Command {
     Schemes,
     /// List the lessons, open the lab with one, or print it for paper
     Lesson(LessonArgs),
-    /// Validate scenario files, run files, the headers of CSVs, files of commands, and lessons (.md), which are played
+    /// Validate scenario files, run files, sweep files, the headers of CSVs, files of commands, and lessons (.md), which are played
     Check {
         /// Files to look at; a preset is none
         #[arg(required = true, value_name = "FILE")]
@@ -77,11 +87,8 @@ pub(super) enum Command {
         /// The shell
         shell: clap_complete::Shell,
     },
-    /// Print the manual page
-    Man {
-        /// class: lessons in front of a class, sharing a screen, an account for a class [without it: the manual page]
-        topic: Option<String>,
-    },
+    /// Print the manual: all of it, the page of a command, or a topic
+    Man(ManArgs),
 }
 
 /// What is run, and what is changed in it first.
@@ -258,15 +265,31 @@ pub(super) struct RunArgs {
     #[command(flatten)]
     pub(super) length: LengthArgs,
 
-    /// Write every N-th row only, and the last
-    #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true, value_parser = one_or_more)]
-    pub(super) every: NonZeroU64,
+    #[command(flatten)]
+    pub(super) layout: LayoutArgs,
 
     /// Give the summary as one JSON object
     #[arg(long)]
     pub(super) json: bool,
 
     /// Replace an existing file
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct WriteupArgs {
+    #[command(flatten)]
+    pub(super) scenario: ScenarioArgs,
+
+    /// The folder: a new or an empty one
+    #[arg(short, long, value_name = "FOLDER")]
+    pub(super) output: PathBuf,
+
+    #[command(flatten)]
+    pub(super) length: LengthArgs,
+
+    /// Write into a folder that holds files, and replace those of the same names
     #[arg(long)]
     pub(super) force: bool,
 }
@@ -328,6 +351,10 @@ pub(super) struct CompareArgs {
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
 
+    /// Give the table as one JSON object
+    #[arg(long)]
+    pub(super) json: bool,
+
     /// Replace an existing file
     #[arg(long)]
     pub(super) force: bool,
@@ -357,6 +384,47 @@ pub(super) struct CastArgs {
     pub(super) force: bool,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct SweepArgs {
+    /// A shipped sweep's or preset's name, or a file (.toml or .csv): a sweep file, a sweep's CSV, or what run takes
+    /// [without it: the list of the shipped sweeps]
+    #[arg(requires = "output")]
+    pub(super) scenario: Option<String>,
+
+    #[command(flatten)]
+    pub(super) changes: Changes,
+
+    /// Vary a key over N values from A to B, both among them, or over the values V1, V2 and so on; may be repeated, the
+    /// last runs fastest
+    #[arg(long, value_name = "KEY=A..B:N|V1,V2", requires = "scenario")]
+    pub(super) vary: Vec<String>,
+
+    /// The readouts to write, of those that gyrolab readouts lists [default: those of the sweep file, or every number]
+    #[arg(
+        long,
+        value_name = "READOUT,...",
+        value_delimiter = ',',
+        requires = "scenario"
+    )]
+    pub(super) measure: Vec<String>,
+
+    /// Only every N-th point, the K-th first: one of N parts that --join puts together
+    #[arg(long, value_name = "K/N", requires = "scenario")]
+    pub(super) shard: Option<Shard>,
+
+    /// Join these CSVs, which are all shards of one sweep, into one
+    #[arg(long, value_name = "PART.csv", num_args = 1.., requires = "output", conflicts_with_all = ["scenario", "set", "time_step", "scheme"])]
+    pub(super) join: Vec<PathBuf>,
+
+    /// Write the CSV to this file; until it is whole the rows are in FILE.part, and the same command goes on there
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+
+    /// Replace what another sweep has left under these names
+    #[arg(long, requires = "output")]
+    pub(super) force: bool,
+}
+
 const CASTS: &str = "\
 Time passes at run, run_until and wait_s; a recording ends with the last command, so that one of wait_s at its end shows
 the last picture for so long. chapter makes a marker. The same commands give the same bytes, on every machine.
@@ -365,7 +433,7 @@ Examples:
   gyrolab cast demo.toml -o demo.cast && asciinema play demo.cast
   gyrolab cast demo.toml --size 80x24 --title 'A push' -o push.cast";
 
-fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
+pub(super) fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
     text.parse()
         .map_err(|_| "must be a whole number, 1 or more".to_owned())
 }

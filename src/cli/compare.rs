@@ -3,7 +3,7 @@
 use super::args::CompareArgs;
 use super::progress::{self, Meter};
 use super::scenario::scenario_of;
-use super::{INTERRUPTED, print};
+use super::{INTERRUPTED, print, refuse};
 use crate::analysis::compare::{Row, Table, compare as table_of};
 use crate::analysis::cost::is_affordable;
 use crate::export::Destination;
@@ -15,6 +15,7 @@ use crate::scenario::Scenario;
 use crate::scenario::rescale::MOST_STEPS;
 use crate::text::number::{short, shortest};
 use anyhow::{Context, bail};
+use clap::error::ErrorKind;
 use std::collections::HashSet;
 use std::io::Write;
 use std::ops::ControlFlow;
@@ -22,6 +23,15 @@ use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 
 pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
+    let on_stdout = args
+        .output
+        .as_deref()
+        .is_some_and(Destination::is_for_stdout);
+    if args.json && on_stdout {
+        let message =
+            "--json and -o - both claim stdout: write the CSV to a file, or leave --json out";
+        refuse("compare", ErrorKind::ArgumentConflict, message);
+    }
     let scenario = scenario_of(&args.scenario, &args.length)?;
     if !is_affordable(&scenario) {
         bail!(
@@ -47,10 +57,6 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let Some(rows) = rows else {
         return Ok(ExitCode::from(INTERRUPTED));
     };
-    let on_stdout = args
-        .output
-        .as_deref()
-        .is_some_and(Destination::is_for_stdout);
     if let Some(output) = output {
         write_csv(output, &scenario, &rows).context("cannot write the table")?;
     }
@@ -64,7 +70,16 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         rows: &rows,
         energy_unit: EnergyScale::of(&scenario).map(|scale| scale.unit),
     };
-    print(&format!("{}\n\n{table}", heading(&scenario)))
+    let duration_s = duration_s(&scenario);
+    let truth = kind_of_truth(&scenario, duration_s);
+    let title = scenario.file.title.as_str();
+    if args.json {
+        return print(&format!("{}\n", table.json(title, duration_s, &truth)?));
+    }
+    let duration = shortest(duration_s);
+    print(&format!(
+        "{title}, {duration} s, against the exact motion ({truth})\n\n{table}"
+    ))
 }
 
 fn schemes(args: &CompareArgs) -> Vec<&'static SchemeInfo> {
@@ -112,15 +127,11 @@ fn duration_s(scenario: &Scenario) -> f64 {
     Clock::end_s(scenario)
 }
 
-fn heading(scenario: &Scenario) -> String {
-    let (title, duration) = (scenario.file.title.clone(), duration_s(scenario));
+/// By what the exact motion of `scenario` is obtained.
+fn kind_of_truth(scenario: &Scenario, duration_s: f64) -> String {
     let mut truth = Truth::new(Arc::new(scenario.clone()));
-    truth.state_at(duration);
-    let duration = shortest(duration);
-    format!(
-        "{title}, {duration} s, against the exact motion ({})",
-        truth.kind()
-    )
+    truth.state_at(duration_s);
+    truth.kind().to_string()
 }
 
 /// The table below the run file of the scenario, so that a file tells what was compared.

@@ -1,25 +1,21 @@
-//! The commands that tell: presets, schemes, keys, readouts, check, completions, man.
+//! The commands that tell: presets, schemes, keys, readouts, check.
 
-use super::args::Cli;
 use super::{lesson, print, tell};
 use crate::analysis::readouts::READOUTS;
 use crate::export::summary::steps_in_words;
-use crate::lab::command::{self, COMMANDS};
+use crate::lab::command;
 use crate::physics::scheme::SCHEMES;
 use crate::run::Clock;
-use crate::scenario::keys::{KEYS, Key, Kind};
+use crate::scenario::keys::{KEYS, Key};
 use crate::scenario::presets::{self, PRESETS, Preset};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problems, Scenario, Window};
-use crate::storage::settings;
+use crate::study::sweep::{Sweep, shipped as sweeps};
 use crate::teach::shipped;
 use crate::text::number::{decimal, shortest};
 use crate::text::printable::{Shown, printable, printable_lines};
-use crate::tui::panes::help;
-use anyhow::{Context, bail};
-use clap::CommandFactory;
-use std::fmt::Write as _;
-use std::io::Write as _;
+use anyhow::bail;
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -27,10 +23,12 @@ pub(super) fn presets(name: Option<&str>) -> anyhow::Result<ExitCode> {
     let Some(name) = name else {
         return print(&preset_list()?);
     };
-    match presets::find(name) {
-        Some(preset) => print(preset.text),
+    let preset = presets::find(name).map(|preset| preset.text);
+    match preset.or_else(|| sweeps::find(name).map(|sweep| sweep.text)) {
+        Some(text) => print(text),
         None => {
-            let near = nearest(name, PRESETS.iter().map(|preset| preset.name));
+            let sweeps = sweeps::SWEEPS.iter().map(|sweep| sweep.name);
+            let near = nearest(name, PRESETS.iter().map(|preset| preset.name).chain(sweeps));
             bail!("no preset named {}: {near}", printable(name))
         }
     }
@@ -47,10 +45,15 @@ fn preset_list() -> anyhow::Result<String> {
         text.push('\n');
     }
     text.push_str("gyrolab run NAME runs one; gyrolab presets NAME prints it as TOML.\n");
+    text.push_str("gyrolab sweep lists the sweeps, grids of many runs.\n");
     Ok(text)
 }
 
 pub(super) fn schemes() -> anyhow::Result<ExitCode> {
+    print(&scheme_list()?)
+}
+
+pub(super) fn scheme_list() -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     for scheme in SCHEMES {
         let order = scheme
@@ -59,10 +62,14 @@ pub(super) fn schemes() -> anyhow::Result<ExitCode> {
         writeln!(text, "{:<8} {order:<8} {}", scheme.name, scheme.about)?;
         writeln!(text, "{:<17} {}", "", scheme.source)?;
     }
-    print(&text)
+    Ok(text)
 }
 
 pub(super) fn keys() -> anyhow::Result<ExitCode> {
+    print(&key_list()?)
+}
+
+pub(super) fn key_list() -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     for Key {
         path,
@@ -79,12 +86,16 @@ pub(super) fn keys() -> anyhow::Result<ExitCode> {
         };
         writeln!(text, "{path}{must}\n    {about}")?;
     }
-    text.push_str("\nA * stands for a number from 0: [[body.point]], [[push]], [[expected]] and [[edit]] may be repeated.\n");
+    text.push_str("\nA * stands for a number from 0: [[body.point]], [[body.part]], [[push]], [[expected]] and [[edit]] may be repeated.\n");
     text.push_str("A table may be left out whole where none of its keys is wanted, but [start] and [motion].\n");
-    print(&text)
+    Ok(text)
 }
 
 pub(super) fn readouts() -> anyhow::Result<ExitCode> {
+    print(&readout_list()?)
+}
+
+pub(super) fn readout_list() -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     for readout in READOUTS {
         let unit = match readout.unit {
@@ -97,7 +108,7 @@ pub(super) fn readouts() -> anyhow::Result<ExitCode> {
     }
     text.push_str("\nBehind \"from:\" stands where each number comes from; predicted_... is theory's, measured_... the run's own.\n");
     text.push_str("gyrolab run SCENARIO --json gives all of them; null is a number that there is not, or that cannot be stated.\n");
-    print(&text)
+    Ok(text)
 }
 
 pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
@@ -146,7 +157,23 @@ fn checked(document: &Document) -> Result<String, Problems> {
         let plural = if commands == 1 { "" } else { "s" };
         return Ok(format!("good: {commands} command{plural}"));
     }
+    if document.is_sweep() {
+        return Sweep::open(document).map(|sweep| described_sweep(&sweep));
+    }
     document.scenario().map(|scenario| described(&scenario))
+}
+
+fn described_sweep(sweep: &Sweep) -> String {
+    let axes = sweep.axes().iter();
+    let axes: Vec<_> = axes
+        .map(|axis| format!("{} ({})", axis.key, axis.values.len()))
+        .collect();
+    let (rows, measured) = (sweep.rows(), sweep.measure().len());
+    format!(
+        "good: the sweep \"{}\", rows: {rows}, over {}, readouts: {measured}",
+        sweep.title(),
+        axes.join(" and ")
+    )
 }
 
 fn described(scenario: &Scenario) -> String {
@@ -155,10 +182,16 @@ fn described(scenario: &Scenario) -> String {
         1 => ", 1 edit".to_owned(),
         more => format!(", {more} edits"),
     };
+    let points = scenario.body.points_before_parts();
+    let plural = if points == 1 { "" } else { "s" };
+    let parts = match scenario.body.parts.len() {
+        0 => String::new(),
+        1 => "1 part and ".to_owned(),
+        more => format!("{more} parts and "),
+    };
     format!(
-        "good: \"{}\", {} points, scheme {}, steps: {}{edits}{}",
+        "good: \"{}\", {parts}{points} point{plural}, scheme {}, steps: {}{edits}{}",
         scenario.file.title,
-        scenario.body.mechanics.points().len(),
         scenario.motion.scheme.name,
         steps_in_words(scenario, scenario.steps),
         pushes_without_effect(scenario),
@@ -181,166 +214,4 @@ fn pushes_without_effect(scenario: &Scenario) -> String {
         _ => None,
     });
     idle.collect()
-}
-
-pub(super) fn completions(shell: clap_complete::Shell) -> anyhow::Result<ExitCode> {
-    let mut script = Vec::new();
-    clap_complete::generate(shell, &mut Cli::command(), "gyrolab", &mut script);
-    print(&String::from_utf8(script).context("the completion script is not text")?)
-}
-
-/// The manual's section about files of commands, one paragraph for each command.
-fn commands_page() -> String {
-    let plain = |text: &str| text.replace('\\', "\\e").replace('-', "\\-");
-    let mut page = ".SH \"FILES OF COMMANDS\"\n\
-        A file for \\-\\-do is a list of [[do]] tables with one command each, carried out in order:\n.PP\n.nf\n\
-        [[do]]\nset = { \"motion.time_step_s\" = 0.05 }\n\n[[do]]\ngo_to = \"60 s\"\n.fi\n\
-        .PP\nThe next begins when the one before is done. Refusals count the commands from 0: do.0 is the first. Conditions hold numbers, the names of the CSV's columns and \
-        of the scenario's keys, + \\- * / ( ), abs, comparisons, and, or.\n"
-        .to_owned();
-    for row in COMMANDS {
-        let (value, about) = (plain(row.value), plain(row.about));
-        page += &format!(".TP\n\\fB{} = {value}\\fR\n{about}\n", row.name);
-    }
-    page
-}
-
-/// The manual's section about the files of settings, one paragraph for each key.
-fn settings_page() -> String {
-    let mut page = ".SH \"SETTINGS\"\n\
-        The lab's settings, each a line of $XDG_CONFIG_HOME/gyrolab/config.toml (by default ~/.config/gyrolab/config.toml). What is chosen in the lab is \
-        remembered in settings.toml beside the sessions; config.toml wins, and is never written; options win over both. \
-        No setting changes a number, and show reads none.\n"
-        .to_owned();
-    for (key, kind, about) in settings::KEYS {
-        let value = match kind {
-            Kind::OneOf(words) => format!("\"{}\"", words.join("\", \"")),
-            Kind::Whole(least, most) => format!("{least} to {most}"),
-            _ => "true, false".to_owned(),
-        };
-        let value = value.replace('-', "\\-");
-        page += &format!(".TP\n\\fB{key} = {value}\\fR\n{about}\n");
-    }
-    page
-}
-
-/// The manual's section about the keys of the lab, those of each purpose, pane and place under its name.
-fn keys_page() -> String {
-    let plain = |text: &str| text.replace('\\', "\\e").replace('-', "\\-");
-    let entries = help::entries();
-    let keys: Vec<_> = entries
-        .iter()
-        .filter(|entry| matches!(entry.what, help::What::Key(_)))
-        .collect();
-    let mut page = ".SH \"KEYS IN THE LAB\"\n\
-        The same list is shown by ? in the lab, with the words on its screen.\n"
-        .to_owned();
-    for group in keys.chunk_by(|one, next| one.group == next.group) {
-        let name = match group[0].pane {
-            Some(_) => format!("{}, while this pane has the focus", group[0].group),
-            None => group[0].group.to_owned(),
-        };
-        page += &format!(".SS \"{}\"\n", plain(&name));
-        for entry in group {
-            let (keys, text) = (plain(&entry.name()), plain(entry.text()));
-            page += &format!(".TP\n\\fB\\&{keys}\\fR\n\\&{text}\n");
-        }
-    }
-    page
-}
-
-/// The manual's synopsis of `command`: every option with its value.
-fn synopsis(command: &clap::Command) -> String {
-    let plain = |text: &str| text.replace('-', "\\-");
-    let mut line = format!("\\fB{}\\fR", plain(command.get_name()));
-    if let Some(name) = command.get_bin_name() {
-        line = format!("\\fB{}\\fR", plain(name));
-    }
-    let options = command.get_arguments().filter(|arg| !arg.is_hide_set());
-    let (places, options): (Vec<_>, Vec<_>) = options.partition(|arg| arg.is_positional());
-    for arg in options {
-        let names: Vec<_> = [
-            arg.get_short().map(|short| format!("-{short}")),
-            arg.get_long().map(|long| format!("--{long}")),
-        ]
-        .into_iter()
-        .flatten()
-        .collect();
-        let names = format!("\\fB{}\\fR", plain(&names.join("|")));
-        let value = match (takes_value(arg), arg.get_num_args()) {
-            (None, _) => String::new(),
-            (Some(value), Some(number)) if number.min_values() == 0 => {
-                format!(" [\\fI{}\\fR]", plain(&value))
-            }
-            (Some(value), _) => format!(" \\fI{}\\fR", plain(&value)),
-        };
-        line += &format!(" [{names}{value}]");
-    }
-    for arg in places {
-        let name = arg.get_value_names().and_then(|names| names.first());
-        let name = name.map_or_else(|| arg.get_id().to_string(), ToString::to_string);
-        line += &match arg.is_required_set() {
-            true => format!(" <\\fI{}\\fR>", plain(&name)),
-            false => format!(" [\\fI{}\\fR]", plain(&name)),
-        };
-    }
-    if command.has_subcommands() {
-        line += "\n.br\n\\fBgyrolab\\fR <\\fICOMMAND\\fR> ...";
-    }
-    format!(".SH SYNOPSIS\n{line}\n")
-}
-
-/// What the option `arg` is given; `None` of a flag.
-fn takes_value(arg: &clap::Arg) -> Option<String> {
-    let takes = arg.get_action().takes_values();
-    let name = arg.get_value_names()?.first()?;
-    takes.then(|| name.to_string())
-}
-
-/// The topics of the manual: name, and text.
-const TOPICS: &[(&str, &str)] = &[("class", include_str!("topics/class.txt"))];
-
-/// The manual page, or what it says about `topic`.
-pub(super) fn man(topic: Option<&str>) -> anyhow::Result<ExitCode> {
-    let Some(topic) = topic else {
-        return man_page();
-    };
-    match TOPICS.iter().find(|(name, _)| *name == topic) {
-        Some((_, text)) => print(text),
-        None => {
-            let near = nearest(topic, TOPICS.iter().map(|(name, _)| *name));
-            bail!("no topic named {}: {near}", printable(topic))
-        }
-    }
-}
-
-/// The manual: the page of the program, then one section for each command.
-fn man_page() -> anyhow::Result<ExitCode> {
-    let mut command = Cli::command();
-    command.build();
-    let mut page = Vec::new();
-    let main = clap_mangen::Man::new(command.clone());
-    main.render_title(&mut page)?;
-    main.render_name_section(&mut page)?;
-    page.extend(synopsis(&command).as_bytes());
-    main.render_description_section(&mut page)?;
-    main.render_options_section(&mut page)?;
-    main.render_subcommands_section(&mut page)?;
-    main.render_extra_section(&mut page)?;
-    main.render_version_section(&mut page)?;
-    for sub in command
-        .get_subcommands()
-        .filter(|sub| !sub.is_hide_set() && sub.get_name() != "help")
-    {
-        let title = format!("gyrolab {}", sub.get_name());
-        let man = clap_mangen::Man::new(sub.clone());
-        writeln!(page, ".SH \"{}\"", title.to_uppercase())?;
-        man.render_description_section(&mut page)?;
-        page.extend(synopsis(sub).as_bytes());
-        man.render_options_section(&mut page)?;
-    }
-    page.extend(keys_page().as_bytes());
-    page.extend(commands_page().as_bytes());
-    page.extend(settings_page().as_bytes());
-    print(&String::from_utf8(page).context("the manual is not text")?)
 }

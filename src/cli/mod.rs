@@ -5,9 +5,13 @@
 mod args;
 mod cast;
 mod compare;
+mod complete;
+mod examples;
 mod figure;
 mod info;
+mod layout;
 mod lesson;
+mod manual;
 mod notes;
 mod played;
 mod progress;
@@ -16,7 +20,10 @@ mod scenario;
 mod sessions;
 mod settings;
 mod show;
+mod sweep;
+mod verify;
 mod workbench;
+mod writeup;
 
 use crate::scenario::presets;
 use crate::text::printable::{is_steering, printable, printable_lines};
@@ -24,7 +31,7 @@ use anyhow::Context;
 use args::{Cli, Command};
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{CommandFactory, Parser};
+use clap::{CommandFactory, FromArgMatches};
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -35,7 +42,14 @@ const INTERRUPTED: u8 = 130;
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    match complete::answered() {
+        Ok(false) => {}
+        Ok(true) => return ExitCode::SUCCESS,
+        Err(error) => return misused(Refused::ByClap(error)),
+    }
+    let parsed = command().try_get_matches();
+    let parsed = parsed.and_then(|matches| Cli::from_arg_matches(&matches));
+    let cli = match parsed {
         Ok(cli) => cli,
         Err(error) => return misused(explained(error)),
     };
@@ -49,6 +63,11 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// The command line with its examples, and with what completes its values.
+fn command() -> clap::Command {
+    complete::with_completers(examples::with_examples(Cli::command()))
+}
+
 fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
     let Some(command) = cli.command else {
         return workbench::open(&cli.workbench);
@@ -58,16 +77,19 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Show(args) => show::show(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Figure(args) => figure::figure(&args),
+        Command::Sweep(args) => sweep::sweep(&args),
+        Command::Verify(args) => verify::verify(&args),
         Command::Cast(args) => cast::cast(&args),
         Command::Presets { name } => info::presets(name.as_deref()),
         Command::Sessions { folder } => sessions::list(folder.as_deref()),
         Command::Schemes => info::schemes(),
         Command::Keys => info::keys(),
         Command::Readouts => info::readouts(),
+        Command::Writeup(args) => writeup::writeup(&args),
         Command::Lesson(args) => lesson::lesson(&args),
         Command::Check { files } => info::check(&files),
-        Command::Completions { shell } => info::completions(shell),
-        Command::Man { topic } => info::man(topic.as_deref()),
+        Command::Completions { shell } => complete::completions(shell),
+        Command::Man(args) => manual::man(&args),
     }
 }
 
@@ -147,6 +169,17 @@ fn misused(error: Refused) -> ExitCode {
         }
         _ => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
     }
+}
+
+/// Ends the process as clap does where it refuses: `message` is about the command `name`.
+fn refuse(name: &str, kind: ErrorKind, message: &str) -> ! {
+    let mut command = Cli::command();
+    command.build();
+    let error = match command.find_subcommand_mut(name) {
+        Some(command) => command.error(kind, message),
+        None => command.error(kind, message),
+    };
+    error.exit()
 }
 
 /// What is said where stdout takes no more.

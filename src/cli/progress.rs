@@ -9,6 +9,7 @@ use signal_hook::flag;
 use signal_hook::iterator::Signals;
 use std::fmt;
 use std::io::{self, IsTerminal};
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -26,6 +27,14 @@ impl Interruption {
     /// Whether a signal has come.
     pub(super) fn has_come(&self) -> bool {
         self.has_come.load(Ordering::SeqCst)
+    }
+
+    /// Whether to go on, for what asks as it works.
+    pub(super) fn go_on(&self) -> ControlFlow<()> {
+        match self.has_come() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
     }
 
     /// From now on, with no file to clear away, the first signal ends the process on the spot. Gives whether one has
@@ -92,7 +101,7 @@ pub(super) fn open(
 ///
 /// A write past the limit on a file's size (`ulimit -f`) fails like one to a full disk: its signal, left to itself,
 /// would end the process with the temporary file still there.
-fn interruption() -> io::Result<Interruption> {
+pub(super) fn interruption() -> io::Result<Interruption> {
     let interruption = Interruption {
         has_come: Arc::default(),
         at_once: Arc::default(),
@@ -123,6 +132,8 @@ fn hangup_is_ignored() -> bool {
 
 /// Steps, rate and time left on stderr, for runs that take more than a second and have somebody to watch them.
 pub(super) struct Meter {
+    /// What is counted.
+    of: &'static str,
     begin: Instant,
     bar: Option<ProgressBar>,
 }
@@ -131,7 +142,13 @@ impl Meter {
     const QUIET: Duration = Duration::from_secs(1);
 
     pub(super) fn new() -> Self {
+        Self::counting("step")
+    }
+
+    /// A meter of other things than steps.
+    pub(super) fn counting(of: &'static str) -> Self {
         Self {
+            of,
             begin: Instant::now(),
             bar: None,
         }
@@ -144,8 +161,11 @@ impl Meter {
         let bar = self.bar.get_or_insert_with(|| {
             let bar =
                 ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr_with_hz(4));
-            let template = "{wide_bar} step {human_pos} of {human_len}, {rate}/s, {eta} left";
-            let style = ProgressStyle::with_template(template)
+            let of = self.of;
+            let template = format!(
+                "{{wide_bar}} {of} {{human_pos}} of {{human_len}}, {{rate}}/s, {{eta}} left"
+            );
+            let style = ProgressStyle::with_template(&template)
                 .unwrap_or_else(|_| ProgressStyle::default_bar());
             let rate = |state: &ProgressState, text: &mut dyn fmt::Write| {
                 // What cannot be shown of a rate is not worth an error.

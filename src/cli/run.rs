@@ -1,20 +1,21 @@
 //! `gyrolab run`: a run from its start to its end, without a terminal.
 
-use super::args::{Cli, RunArgs};
+use super::args::RunArgs;
 use super::progress::{self, Interruption, Meter};
 use super::scenario::scenario_of;
-use super::{INTERRUPTED, complain, print, tell};
+use super::{INTERRUPTED, complain, print, refuse, tell};
 use crate::analysis::health::{Advice, advise};
 use crate::analysis::{Health, Monitor, Readouts};
 use crate::export::stream::{self, Ended};
 use crate::export::{CsvWriter, Destination, Summary};
-use crate::run::{Simulation, Step};
+use crate::run::{Clock, Simulation, Step};
+use crate::scenario::Scenario;
+use crate::text::number::shortest;
 use crate::text::printable::Shown;
-use anyhow::Context;
-use clap::CommandFactory;
+use anyhow::{Context, bail};
 use clap::error::ErrorKind;
 use std::cell::RefCell;
-use std::io;
+use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
@@ -29,59 +30,44 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     if args.json && to_stdout {
         let message =
             "--json and -o - both claim stdout: write the CSV to a file, or leave --json out";
-        let mut command = Cli::command();
-        command.build();
-        let run = command.find_subcommand_mut("run");
-        let error = match run {
-            Some(run) => run.error(ErrorKind::ArgumentConflict, message),
-            None => command.error(ErrorKind::ArgumentConflict, message),
-        };
-        error.exit();
+        refuse("run", ErrorKind::ArgumentConflict, message);
     }
+    let layout = args.layout.layout();
     let scenario = Arc::new(scenario_of(&args.scenario, &args.length)?);
+    if layout.begins_after(&scenario) {
+        let end = shortest(Clock::end_s(&scenario));
+        bail!("no row is left by --from: the run ends at {end} s");
+    }
     let output_path = args.output.as_deref().unwrap_or(Path::new("the output"));
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
-    let mut output = output
-        .map(|destination| CsvWriter::new(destination, &scenario))
+    let csv = output
+        .map(|destination| CsvWriter::with_layout(destination, &scenario, layout))
         .transpose()
         .with_context(|| cannot_write(output_path))?;
-    let mut simulation = Simulation::new(Arc::clone(&scenario));
-    let mut monitor = Monitor::new(simulation.now());
-    let every = args.every.get();
-    let (ended, wall) = play(
-        &mut simulation,
-        &mut monitor,
-        every,
-        output.as_mut(),
-        &interruption,
-    )
-    .with_context(|| cannot_write(output_path))?;
-    if ended == Ended::Stopped {
+    let mut played =
+        played(&scenario, csv, &interruption).with_context(|| cannot_write(output_path))?;
+    if played.ended == Ended::Stopped {
         return Ok(ExitCode::from(INTERRUPTED)); // what was written so far goes with its temporary name
     }
-    let mut rows = None;
-    if let Some(csv) = output {
-        rows = Some(csv.count());
-        csv.finish()
-            .with_context(|| cannot_write(output_path))?
-            .keep()?;
+    if played.rows == Some(0) && played.ended == Ended::Done {
+        bail!("no row lies between --from and --to: they are closer than the rows");
+    }
+    if let Some(output) = played.output.take() {
+        output.keep()?;
     }
     if interruption.may_act_at_once() {
         return Ok(ExitCode::from(INTERRUPTED));
     }
-    let health = monitor.health(simulation.now());
-    let advice = advice(&health, &simulation);
-    let readouts = Readouts::new(&simulation, &mut monitor, &health, advice.as_ref());
-    let summary = Summary::new(readouts, wall).with_time_steps_of(&scenario);
+    let summary = Summary::new(played.readouts(), played.wall).with_time_steps_of(&scenario);
     report(args, &summary)?;
-    if let Some(rows) = rows.filter(|_| !to_stdout) {
+    if let Some(rows) = played.rows.filter(|_| !to_stdout) {
         let plural = if rows == 1 { "" } else { "s" };
         tell(format_args!(
             "gyrolab: {rows} row{plural} in {}",
             Shown(output_path)
         ));
     }
-    match ended {
+    match played.ended {
         Ended::NotFinite(error) => {
             complain(&anyhow::Error::new(error).context(args.scenario.scenario.clone()));
             Ok(ExitCode::FAILURE)
@@ -97,12 +83,64 @@ fn cannot_write(path: &Path) -> String {
     }
 }
 
+/// A run that was played to its end.
+pub(super) struct Played<W> {
+    /// How it ended.
+    pub(super) ended: Ended,
+    /// Time spent on stepping alone.
+    pub(super) wall: Duration,
+    /// How many rows were written, where there was an output.
+    pub(super) rows: Option<u64>,
+    /// The output, all rows written to it.
+    pub(super) output: Option<W>,
+    simulation: Simulation,
+    monitor: Monitor,
+}
+
+impl<W> Played<W> {
+    /// What is read off it at its end. Where the run is not to be believed, what would mend it is sought, which takes a
+    /// while.
+    pub(super) fn readouts(&mut self) -> Readouts {
+        let health = self.monitor.health(self.simulation.now());
+        let advice = advice(&health, &self.simulation);
+        Readouts::new(
+            &self.simulation,
+            &mut self.monitor,
+            &health,
+            advice.as_ref(),
+        )
+    }
+}
+
+/// Plays the run of `scenario` to its end and writes its rows to `csv`.
+///
+/// # Errors
+/// When `csv` cannot be written.
+pub(super) fn played<W: Write>(
+    scenario: &Arc<Scenario>,
+    mut csv: Option<CsvWriter<W>>,
+    interruption: &Interruption,
+) -> io::Result<Played<W>> {
+    let mut simulation = Simulation::new(Arc::clone(scenario));
+    let mut monitor = Monitor::new(simulation.now());
+    let (ended, wall) = play(&mut simulation, &mut monitor, csv.as_mut(), interruption)?;
+    let rows = csv.as_ref().map(CsvWriter::count);
+    let output = csv.map(CsvWriter::finish).transpose()?;
+    Ok(Played {
+        ended,
+        wall,
+        rows,
+        output,
+        simulation,
+        monitor,
+    })
+}
+
 /// Plays the run under the user's eyes: progress on stderr, a signal ends it.
-fn play(
+fn play<W: Write>(
     simulation: &mut Simulation,
     monitor: &mut Monitor,
-    every: u64,
-    output: Option<&mut CsvWriter<Destination>>,
+    output: Option<&mut CsvWriter<W>>,
     interruption: &Interruption,
 ) -> io::Result<(Ended, Duration)> {
     let steps = simulation.scenario().steps;
@@ -110,7 +148,7 @@ fn play(
     // Each step is followed at once and held against the exact motion after its block: that is no stepping.
     let monitor = RefCell::new(monitor);
     let each = |step: &Step| monitor.borrow_mut().follow_ahead(step);
-    let ended = stream::play(simulation, steps, every, output, each, |progress| {
+    let ended = stream::play(simulation, steps, output, each, |progress| {
         monitor.borrow_mut().catch_up();
         meter.show(progress.step, progress.steps);
         match interruption.has_come() {

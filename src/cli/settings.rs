@@ -13,9 +13,6 @@ use crate::tui::surroundings;
 use clap::ValueEnum;
 use std::path::Path;
 
-/// Frames a second at most, where nothing is chosen.
-pub(super) const FPS: u32 = 15;
-
 /// What the files of settings hold.
 pub(super) struct Chosen {
     /// The user's file.

@@ -5,9 +5,9 @@ use super::scenario::change;
 use super::show::{Picture, go_to, print_picture};
 use super::{sessions, settings, tell};
 use crate::lab::command;
-use crate::lab::view::View;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::{Background, Theme};
+use crate::lab::view::{FPS, View};
 use crate::lab::{Lab, Summary};
 use crate::scenario::{Document, Scenario};
 use crate::storage::confined::Confined;
@@ -118,6 +118,7 @@ fn open_at(
         lab.files_mut().confine(folder);
     }
     lab.set_mouse(!args.look.no_mouse);
+    lab.set_fps(args.fps.unwrap_or(FPS));
     lab.set_usual_colour(surroundings::theme(ColourChoice::Auto, variable).colour);
     if lesson.is_none()
         && args.scenario.is_none()
@@ -143,9 +144,7 @@ fn open_at(
             .open(&lesson.name, Some(page.number), &mut lab)
             .map_err(anyhow::Error::msg)?;
     }
-    let frames = args.fps.unwrap_or(settings::FPS);
-    app::run(&mut lab, &mut class, session.as_ref().ok(), frames)
-        .context("the terminal cannot be used")?;
+    app::run(&mut lab, &mut class, session.as_ref().ok()).context("the terminal cannot be used")?;
     if let Some(trouble) = lab.take_keeper().and_then(|keeper| keeper.close(PATIENCE)) {
         tell(format_args!("gyrolab: {}", printable(&trouble)));
     }

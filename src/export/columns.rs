@@ -13,6 +13,15 @@ pub struct Column {
     value: fn(&Sample) -> Value,
 }
 
+/// What stands in one field of a CSV.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cell<'a> {
+    /// A number.
+    Number(Value),
+    /// A text, such as the name of a point.
+    Text(&'a str),
+}
+
 /// A number as it is written: a count without a decimal point, any other number so that it reads back as the same f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {

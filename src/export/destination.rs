@@ -34,6 +34,12 @@ pub enum DestinationError {
     /// The path is a folder.
     #[error("{} is a folder: name a file in it", Shown(.0))]
     Folder(PathBuf),
+    /// The path is no folder, where one is to be written.
+    #[error("{} is not a folder: name one that is empty or new", Shown(.0))]
+    NotAFolder(PathBuf),
+    /// The folder holds files, which may not be replaced.
+    #[error("{} holds files; --force replaces those of the same names", Shown(.0))]
+    FolderInUse(PathBuf),
     /// The path is a device, a FIFO or a socket, where only a regular file is allowed.
     #[error("cannot write {}: it is not a regular file, and could take no bytes for as long as it likes; gyrolab run -o writes to such", Shown(.0))]
     NotAFile(PathBuf),
@@ -251,7 +257,7 @@ fn names_a_file(path: &Path) -> bool {
         .is_some_and(|name| text.ends_with(name.as_encoded_bytes()))
 }
 
-fn folder_of(path: &Path) -> &Path {
+pub(super) fn folder_of(path: &Path) -> &Path {
     path.parent()
         .filter(|folder| !folder.as_os_str().is_empty())
         .unwrap_or(Path::new("."))

@@ -1,13 +1,20 @@
-//! Output of the program: [`columns`] is the table of CSV columns, [`mod@csv`] writes rows, [`stream`] plays a run and
-//! writes its rows, [`summary`] describes how a run ended, and [`destination`] is the file or stream that is written.
+//! Output of the program: [`columns`] and [`points`] are the tables of CSV columns, [`layout`] says which rows and columns
+//! a CSV has, [`mod@csv`] writes rows, [`stream`] plays a run and writes its rows, [`summary`] describes how a run ended,
+//! and [`destination`] is the file or stream that is written,
+//! [`folder`] a folder of files.
 
 pub mod columns;
 pub mod csv;
 pub mod destination;
+pub mod folder;
+pub mod layout;
+pub mod points;
 pub mod stream;
 pub mod summary;
 
 pub use columns::{COLUMNS, Column};
 pub use csv::CsvWriter;
 pub use destination::Destination;
+pub use folder::Folder;
+pub use layout::Layout;
 pub use summary::Summary;

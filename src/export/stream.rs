@@ -32,8 +32,8 @@ pub enum Ended {
     NotFinite(NotFinite),
 }
 
-/// Plays `simulation` to the step `steps` and writes the present row, every `every`-th row and the last one to `csv`, if
-/// given. It shows `each` every step, and calls `watch` after each block of steps; `watch` may stop it.
+/// Plays `simulation` to the step `steps` and writes the rows that its layout has to `csv`, if given, the present one
+/// among them. It shows `each` every step, and calls `watch` after each block of steps; `watch` may stop it.
 ///
 /// Returns how the stream ended, and the time spent on stepping alone.
 ///
@@ -42,7 +42,6 @@ pub enum Ended {
 pub fn play<W: Write>(
     simulation: &mut Simulation,
     steps: u64,
-    every: u64,
     mut csv: Option<&mut CsvWriter<W>>,
     mut each: impl FnMut(&Step),
     mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
@@ -50,7 +49,12 @@ pub fn play<W: Write>(
     let points = simulation.scenario().body.mechanics.points().len();
     let block = (BLOCK / points).clamp(16, 4096);
     let mut rows = Vec::with_capacity(if csv.is_some() { block } else { 0 });
-    if let Some(csv) = csv.as_deref_mut() {
+    let layout = csv.as_deref().map(|csv| csv.layout().clone());
+    let has_row = |step: &Step| {
+        let layout = layout.as_ref();
+        layout.is_some_and(|layout| layout.has_row(step, steps))
+    };
+    if let Some(csv) = csv.as_deref_mut().filter(|_| has_row(simulation.now())) {
         csv.write(&simulation.sample())?;
     }
     let mut stepping = Duration::ZERO;
@@ -59,8 +63,7 @@ pub fn play<W: Write>(
         let begin = Instant::now();
         let result = take_block(simulation, steps, block, |step| {
             each(step);
-            let number = step.number();
-            if csv.is_some() && (number.is_multiple_of(every) || number == steps) {
+            if has_row(step) {
                 rows.push(step.sample());
             }
         });
@@ -70,7 +73,7 @@ pub fn play<W: Write>(
         }
         ended = match result {
             Err(error) => {
-                write_last(simulation.now(), every, rows.last(), csv.as_deref_mut())?;
+                write_last(simulation.now(), rows.last(), csv.as_deref_mut())?;
                 Some(Ended::NotFinite(error))
             }
             Ok(()) if simulation.step_number() >= steps => Some(Ended::Done),
@@ -101,17 +104,20 @@ fn take_block(
     Ok(())
 }
 
-/// Writes the row of the last finite step, unless it is written already: it is the run's last row, whatever `every` is.
+/// Writes the row of the last finite step, unless it is written already: it is the run's last row, however many are left
+/// out.
 fn write_last<W: Write>(
     last: &Step,
-    every: u64,
     written: Option<&Sample>,
     csv: Option<&mut CsvWriter<W>>,
 ) -> io::Result<()> {
-    let step = last.number();
+    let Some(csv) = csv else {
+        return Ok(());
+    };
+    let (step, every) = (last.number(), csv.layout().steps_between());
     let is_written = written.is_some_and(|row| row.step == step) || step.is_multiple_of(every);
-    match csv {
-        Some(csv) if !is_written => csv.write(&last.sample()),
-        _ => Ok(()),
+    match !is_written && csv.layout().has_time(last) {
+        true => csv.write(&last.sample()),
+        false => Ok(()),
     }
 }

@@ -149,7 +149,7 @@ pub fn play(
     let last = Simulation::step_at(scenario, recorder.end_s).min(scenario.steps);
     let mut each = |step: &Step| recorder.take(step.time_s(), step.position(), || step.sample());
     each(simulation.now());
-    let ended = stream::play::<io::Sink>(&mut simulation, last, 1, None, each, |progress| {
+    let ended = stream::play::<io::Sink>(&mut simulation, last, None, each, |progress| {
         watch(progress.step, progress.steps)
     });
     match ended {
@@ -213,6 +213,7 @@ fn sample(scenario: &Scenario, state: &State, azimuth: &Azimuth, gravity: f64) -
     Sample {
         step: 0,
         time_s: state.time_s,
+        orientation: state.orientation,
         position: observables::position(body, state, scenario.trace),
         momentum: state.momentum,
         angular_velocity: observables::angular_velocity(body, state),

@@ -152,8 +152,15 @@ impl Space {
                 boxed.z = -0.5 * TALL;
                 self.place(&boxed)
             };
-            let shadow = drawn.course.path.iter().map(floor).collect();
-            curve::put(&[shadow], &round(0.45, grey(198)), None, &mut scene);
+            let shadow = drawn.course.path.iter().map(|point| (floor(point), 0.0));
+            let shadow = path::fresh(shadow.collect()).into_iter();
+            let shadow = shadow.map(|piece| piece.into_iter().map(|(place, _)| place).collect());
+            curve::put(
+                &shadow.collect::<Vec<_>>(),
+                &round(0.45, grey(198)),
+                None,
+                &mut scene,
+            );
         }
         self.paths(drawn, &mut scene);
         for axis in 0..3 {

@@ -93,6 +93,8 @@ pub enum Action {
     ToggleColour,
     /// Chooses the colours for a dark screen or those for a light one.
     ToggleBackground,
+    /// Changes to the next number of frames a second.
+    NextFrameRate,
     /// Hides the line about the numbers' health, or shows it.
     ToggleHealth,
     /// Hides the numbers that theory predicts, or shows them.

@@ -6,6 +6,7 @@ use super::command::{Command, Place};
 use super::dialog::{Dialog, Question};
 use super::view::Pane;
 use super::{Lab, Request};
+use crate::export::Layout;
 
 impl Lab {
     /// Asks for a number: `title` says for what, `label` what it is and in which unit, `about` how to answer. It comes back as
@@ -87,7 +88,7 @@ impl Lab {
             }
             Question::Export(scenario) => Some(Command::Export {
                 path: text.to_owned(),
-                every: dialog.every()?,
+                layout: Layout::every(dialog.every()?),
                 to_step: Some(scenario.steps),
                 force,
             }),

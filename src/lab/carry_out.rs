@@ -132,13 +132,13 @@ impl Lab {
             Command::Redo(times) => self.turn(Way::On, *times),
             Command::Export {
                 path,
-                every,
+                layout,
                 to_step,
                 force,
             } => {
                 let scenario = self.run_up_to(*to_step, "export")?;
                 let path = self.files.path_of(path);
-                self.files.export(&scenario, &path, *every, *force)
+                self.files.export(&scenario, &path, layout.clone(), *force)
             }
             Command::Figure {
                 path,
@@ -215,7 +215,7 @@ impl Lab {
                 Ok(Done::SILENT)
             }
             Command::Camera(camera) => {
-                self.view.camera = *camera;
+                self.view.look_from(*camera);
                 Ok(Done::SILENT)
             }
             Command::Zoom(zoom) => {

@@ -4,6 +4,7 @@
 //! A file of commands is a list of `[[do]]` tables with one command each. The [table](COMMANDS) lists every command with
 //! its name, its value and its effect; [`read`] and the manual use it.
 
+mod exporting;
 mod looking;
 mod reading;
 mod table;
@@ -11,6 +12,7 @@ mod write;
 
 pub use table::{COMMANDS, Row};
 
+use crate::export::Layout;
 use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, Part};
 use crate::observe::camera::{Camera, Zoom};
@@ -19,7 +21,6 @@ use crate::scenario::problem::{Found, nearest};
 use crate::scenario::{Document, Problem, Problems};
 use crate::work::expression::Expression;
 use crate::work::next_push::Toward;
-use std::num::NonZeroU64;
 use std::path::Path;
 use toml::{Table, Value};
 
@@ -70,8 +71,8 @@ pub enum Command {
     Export {
         /// The file.
         path: String,
-        /// 10 writes each tenth row, counted from row 0, and the last.
-        every: NonZeroU64,
+        /// Which rows and columns it has.
+        layout: Layout,
         /// Up to this step instead of the present one.
         to_step: Option<u64>,
         /// Whether an existing file is replaced.

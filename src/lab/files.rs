@@ -1,8 +1,8 @@
 //! The files of the lab: their folder, which of them may be read and written, and the export in progress.
 
 use super::carry_out::{Answer, Done, Refusal, UnderWay};
-use crate::export::Destination;
 use crate::export::destination::DestinationError;
+use crate::export::{Destination, Layout};
 use crate::figure::Format;
 use crate::figure::kind::Kind;
 use crate::scenario::Scenario;
@@ -11,7 +11,6 @@ use crate::storage::exporting::{self, Drawn, Exporting, Written};
 use crate::text::printable::{Shown, is_steering};
 use indicatif::{DecimalBytes, HumanCount};
 use std::io::Write;
-use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -80,11 +79,11 @@ impl Files {
         &mut self,
         scenario: &Arc<Scenario>,
         path: &Path,
-        every: NonZeroU64,
+        layout: Layout,
         force: bool,
     ) -> Answer {
         self.may_export_to(path)?;
-        let begun = Exporting::begin(Arc::clone(scenario), path, every, force);
+        let begun = Exporting::begin(Arc::clone(scenario), path, layout, force);
         self.exporting = Some(begun.map_err(refusal)?);
         self.failure = None;
         Ok(Done::saying("the export goes on in the background").going_on(UnderWay::Exporting))

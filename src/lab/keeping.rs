@@ -233,7 +233,7 @@ impl Lab {
             phase: (self.view.page != Page::default()).then(|| self.view.page.choice()),
             sum_to: self.view.sum_to,
             next_push: self.values.next_push().clone(),
-            camera: Some(KeptCamera {
+            camera: self.view.camera_is_chosen.then_some(KeptCamera {
                 yaw_deg: self.view.camera.yaw_deg,
                 pitch_deg: self.view.camera.pitch_deg,
             }),
@@ -324,7 +324,7 @@ impl Lab {
             && yaw_deg.is_finite()
             && (-90.0..=90.0).contains(&pitch_deg)
         {
-            view.camera = Camera { yaw_deg, pitch_deg };
+            view.look_from(Camera { yaw_deg, pitch_deg });
         }
         if let Some(zoom) = place.zoom {
             view.zoom = Zoom::of(zoom);

@@ -119,6 +119,7 @@ impl Lab {
             changed: true,
         };
         lab.list_parameters();
+        lab.turn_camera();
         lab
     }
 
@@ -249,6 +250,11 @@ impl Lab {
         self.player.playback.play_on();
     }
 
+    /// Draws at most so many frames a second.
+    pub fn set_fps(&mut self, fps: u32) {
+        self.view.fps = fps;
+    }
+
     /// Listens to the mouse, or leaves it to the terminal.
     pub fn set_mouse(&mut self, listens: bool) {
         self.view.mouse = listens;
@@ -308,10 +314,22 @@ impl Lab {
     /// Reads the numbers of the run, and lists its values again if others are in force.
     fn read_now(&mut self) {
         self.player.read(self.now, &self.view);
+        self.turn_camera();
         self.changed = true;
         let step = self.player.playback.step_number();
         if self.values.is_outdated(step, self.work.journal()) {
             self.list_parameters();
+        }
+    }
+
+    /// Turns the camera so that the axle is seen aslant, unless its direction was chosen. A moving picture is left
+    /// as it is: the motion shows where the axle points.
+    fn turn_camera(&mut self) {
+        let playback = self.player.playback();
+        let is_still = !playback.is_running() || playback.step_number() == 0;
+        if is_still && !self.view.camera_is_chosen {
+            let axle = self.player.reading().state.axle();
+            self.view.camera = self.view.camera.aside_of(&axle);
         }
     }
 

@@ -137,6 +137,11 @@ impl Lab {
                 self.say(text);
                 self.remember("background", self.view.theme.background.name());
             }
+            Action::NextFrameRate => {
+                let text = self.view.next_frame_rate();
+                self.say(text);
+                self.remember("fps", i64::from(self.view.fps));
+            }
             Action::ToggleMouse => {
                 let text = self.view.toggle_mouse();
                 self.say(text);

@@ -1,6 +1,6 @@
 //! Searches for a change that makes an unreliable run reliable, by trial runs in the background: it may take a second.
 
-use crate::analysis::health::{Advice, advise};
+use crate::analysis::health::{Advice, advise_while};
 use crate::scenario::Scenario;
 use std::sync::{Arc, OnceLock};
 use std::thread;
@@ -9,7 +9,8 @@ use std::time::Duration;
 /// Delay before a search begins. A held key nudges a value many times a second; each search is then dropped before it begins.
 const DELAY: Duration = Duration::from_millis(200);
 
-/// A search for advice, in progress or finished. Dropping it discards the answer.
+/// A search for advice, in progress or finished. Dropping it ends the search: one that nobody waits for would take the
+/// processor from the run that is edited.
 pub struct Advisor {
     answer: Arc<OnceLock<Advice>>,
     is_reported: bool,
@@ -22,11 +23,12 @@ impl Advisor {
         let asker = Arc::downgrade(&answer);
         let search = move || {
             thread::sleep(DELAY);
-            if asker.strong_count() == 0 {
+            let is_wanted = || asker.strong_count() > 0;
+            if !is_wanted() {
                 return;
             }
-            let advice = advise(&scenario);
-            if let Some(answer) = asker.upgrade() {
+            let advice = advise_while(&scenario, &is_wanted);
+            if let (Some(answer), Some(advice)) = (asker.upgrade(), advice) {
                 let _ = answer.set(advice); // it is set only here, so this succeeds
             }
         };

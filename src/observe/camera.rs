@@ -14,6 +14,17 @@ pub struct Camera {
     pub pitch_deg: f64,
 }
 
+/// Seen shorter than this part of its length, the axle points too much at the eye to be read; seen longer than the other,
+/// the wheel across it is no more than a line.
+const READ: std::ops::RangeInclusive<f64> = 0.75..=0.97;
+/// Where an axle that is to be read points: from the picture's right so far towards the eye, degrees. As long as
+/// it is not below the horizontal, the wheel is then an open ellipse.
+const ASIDE_DEG: f64 = 25.0;
+/// An axle nearer to the vertical than this, degrees, is seen from every side alike.
+const UPRIGHT_DEG: f64 = 8.0;
+/// Directions that are chosen are multiples of this, degrees.
+const NOTCH_DEG: f64 = 10.0;
+
 /// How much larger than the whole a round picture shows what it shows: 1 where it shows the whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zoom {
@@ -80,6 +91,23 @@ impl Camera {
         self.pitch_deg = (self.pitch_deg + pitch_deg).clamp(-90.0, 90.0);
     }
 
+    /// The camera turned about the vertical so that `axle` (a direction, world frame) is seen aslant: long enough to be
+    /// read, and the wheel across it open. It stays as it is where that is so from here.
+    pub fn aside_of(self, axle: &Vector3<f64>) -> Self {
+        let (right, up) = self.project(axle);
+        let is_upright = axle.xy().norm() < UPRIGHT_DEG.to_radians().sin() * axle.norm();
+        let share = right.hypot(up) / axle.norm();
+        if is_upright || share.is_nan() || READ.contains(&share) {
+            return self;
+        }
+        let azimuth_deg = libm::atan2(axle.y, axle.x).to_degrees();
+        let yaw_deg = ((azimuth_deg + ASIDE_DEG) / NOTCH_DEG).round() * NOTCH_DEG;
+        Self {
+            yaw_deg: yaw_deg.rem_euclid(360.0) + 0.0, // no negative zero
+            ..self
+        }
+    }
+
     /// Where `point` (world frame, m) stands in the picture: right and up, m.
     pub fn project(&self, point: &Vector3<f64>) -> (f64, f64) {
         let (sin_yaw, cos_yaw) = self.yaw_deg.to_radians().sin_cos();
@@ -129,6 +157,30 @@ mod tests {
         let (right, up) = camera.project(&at);
         let length = right.hypot(up).hypot(camera.depth(&at));
         assert!((length - at.norm()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_axle_that_cannot_be_read_is_seen_aslant() {
+        let camera = Camera::default();
+        let (mut turned, mut kept) = (0, 0);
+        for azimuth in 0..360 {
+            let (sin, cos) = f64::from(azimuth).to_radians().sin_cos();
+            let axle = Vector3::new(cos, sin, 1.0).normalize();
+            let aside = camera.aside_of(&axle);
+            let (right, up) = aside.project(&axle);
+            assert!(READ.contains(&right.hypot(up)), "{azimuth}");
+            assert_eq!(aside.aside_of(&axle), aside);
+            assert_eq!(aside.pitch_deg, camera.pitch_deg);
+            match aside == camera {
+                true => kept += 1,
+                false => turned += 1,
+            }
+        }
+        assert!(turned > 60 && kept > 120, "{turned} {kept}");
+        let upright = Vector3::new(0.0, -0.1, 1.0);
+        assert_eq!(camera.aside_of(&upright), camera);
+        let none = Vector3::from_element(f64::NAN);
+        assert_eq!(camera.aside_of(&none), camera);
     }
 
     #[test]

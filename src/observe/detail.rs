@@ -27,6 +27,8 @@ pub struct Detail {
     pub begin_s: f64,
     /// Its length, s.
     pub window_s: f64,
+    /// Whether it stands still for a while, because it would pass before anyone had seen it.
+    pub is_snapshot: bool,
 }
 
 /// What the window is chosen by.
@@ -94,6 +96,7 @@ impl Detail {
             curve,
             begin_s: begin_s.max(0.0),
             window_s,
+            is_snapshot: wanted.place == Placement::Latest,
         }
     }
 }

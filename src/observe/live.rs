@@ -10,7 +10,7 @@ use super::path::Path;
 use super::recording::{Moment, Recording};
 use crate::analysis::readouts::Source;
 use crate::analysis::{Health, Instruments, Monitor, Readouts, Theory};
-use crate::physics::Workings;
+use crate::physics::{State, Workings};
 use crate::run::{NotFinite, Simulation, Step};
 use crate::scenario::Scenario;
 use std::cmp::Ordering;
@@ -35,6 +35,8 @@ pub struct LiveRun {
     ahead: Option<Ahead>,
     overlay: Option<Overlay>,
     keeps_workings: bool,
+    /// The last state in which the body was a rigid one, and its step; `None` where it still is one.
+    last_whole: Option<(u64, State)>,
     /// The workings that were asked for last without having been kept, and of which step they are.
     explained: Option<(u64, Arc<Workings>)>,
 }
@@ -88,6 +90,7 @@ impl LiveRun {
             ahead: None,
             overlay: None,
             keeps_workings: false,
+            last_whole: None,
             explained: None,
         };
         run.recording.push(&run.now);
@@ -103,6 +106,10 @@ impl LiveRun {
         let step = self.simulation.step()?;
         self.monitor.follow(step);
         self.now = moment(step);
+        if self.last_whole.is_none() && !step.after().is_a_rotation() {
+            let before = step.before().filter(|before| before.is_a_rotation());
+            self.last_whole = before.map(|before| (step.number() - 1, *before));
+        }
         self.checkpoints.offer(&self.simulation, &self.monitor);
         self.keep();
         Ok(())
@@ -205,6 +212,8 @@ impl LiveRun {
             (checkpoint.simulation.clone(), checkpoint.monitor.clone());
         self.simulation.keep_workings(self.keeps_workings);
         self.now = moment(self.simulation.now());
+        let here = self.simulation.step_number();
+        self.last_whole.take_if(|(step, _)| *step >= here);
         self.adopt(&scenario);
     }
 
@@ -367,6 +376,11 @@ impl LiveRun {
         let workings = again.step().ok()?.workings()?;
         self.explained = Some((before + 1, Arc::clone(workings)));
         Some(Arc::clone(workings))
+    }
+
+    /// The last state in which the body was a rigid one, and its step, where the scheme has broken down since.
+    pub fn last_whole(&self) -> Option<&(u64, State)> {
+        self.last_whole.as_ref()
     }
 
     /// The run itself.

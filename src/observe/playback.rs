@@ -23,8 +23,8 @@ const COST_OF_A_STEP: u64 = 60;
 /// one; it takes a few milliseconds.
 const MOST_COST_PER_KEY: u64 = 1_000_000;
 /// The same for the steps of an edit, after which the run is played to the time at which it stood: about 50 ms for the
-/// first one, and less for each further nudge of a held key.
-const MOST_COST_PER_EDIT: u64 = 25_000_000;
+/// first one, and a little less for each further nudge of a held key.
+const MOST_COST_PER_EDIT: u64 = 10_000_000;
 const MOST_COST_PER_NUDGE: u64 = 8_000_000;
 /// The number of steps after which playing until a condition holds is given up.
 const MOST_UNTIL: u64 = 10_000_000;
@@ -331,7 +331,7 @@ impl Playback {
     }
 
     /// Plays on to `step` and stops there, after an edit or, with `is_again`, after one more nudge of the same value. As
-    /// many steps as take about 50 ms (15 ms for a nudge) are taken before returning, and the others over the next frames.
+    /// many steps as take about 50 ms (40 ms for a nudge) are taken before returning, and the others over the next frames.
     /// Returns whether it has arrived.
     pub fn catch_up(&mut self, step: u64, is_again: bool) -> bool {
         let most = match is_again {

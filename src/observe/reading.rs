@@ -16,8 +16,10 @@ pub const EVERY: Duration = Duration::from_millis(250);
 pub struct Reading {
     /// The run's numbers, as the table of readouts has them.
     pub readouts: Readouts,
-    /// The state at that time.
+    /// The state at that time; where the scheme has broken down, the last one in which the body was a rigid one.
     pub state: State,
+    /// The step of that state, where the scheme has broken down since.
+    pub last_whole: Option<u64>,
     /// Whether the run goes on, and how fast.
     pub pace: String,
 }
@@ -25,9 +27,11 @@ pub struct Reading {
 impl Reading {
     /// Reads `run`, which is played at `pace`.
     pub fn new(run: &mut LiveRun, pace: &Pace) -> Self {
+        let last_whole = run.last_whole();
         Self {
+            state: last_whole.map_or(*run.simulation().state(), |(_, state)| *state),
+            last_whole: last_whole.map(|(step, _)| *step),
             readouts: run.readouts(),
-            state: *run.simulation().state(),
             pace: pace_in_words(pace),
         }
     }

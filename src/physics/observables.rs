@@ -32,7 +32,11 @@ pub fn weight_height(body: &Body, state: &State) -> f64 {
 
 /// Angle of the axle from +z, degrees, 0 to 180.
 pub fn tilt_deg(state: &State) -> f64 {
-    let axle = state.axle();
+    tilt_of(&state.axle())
+}
+
+/// Angle of `axle` from +z, degrees, 0 to 180.
+pub fn tilt_of(axle: &Vector3<f64>) -> f64 {
     libm::atan2(libm::hypot(axle.x, axle.y), axle.z).to_degrees()
 }
 

@@ -52,6 +52,21 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     }
 }
 
+/// The nearest whole number, halves away from zero: [`f64::round`], which is a call to a library where the processor has no
+/// instruction for it.
+#[inline]
+pub fn round(x: f64) -> f64 {
+    const EXACT_BELOW: f64 = 2251799813685248.0; // 2^51
+    if x.is_nan() || x.abs() >= EXACT_BELOW {
+        return x.round();
+    }
+    let even = (x + ROUNDER) - ROUNDER; // halves to the even number
+    let rest = (x - even).abs();
+    let is_half_below = rest == 0.5 && even.abs() < x.abs();
+    let away = if is_half_below { 1.0 } else { 0.0 };
+    (even.abs() + away).copysign(x)
+}
+
 /// Sine and cosine of `angle + rest`, |angle| up to pi/4 and |rest| up to half a unit in its last place.
 #[inline]
 fn kernels(angle: f64, rest: f64) -> (f64, f64) {
@@ -132,6 +147,19 @@ mod tests {
                     assert_near_libm(x);
                     assert_near_libm(-x);
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn rounds_as_the_standard_library_does_bit_for_bit() {
+        let near_halves = (0..2000).map(|n| 0.5 * f64::from(n));
+        let near_halves = near_halves.flat_map(|x| [x.next_down(), x, x.next_up()]);
+        let anything = (0..300_000).map(|i| scattered(i, -60, 60));
+        let edges = [f64::NAN, f64::INFINITY, f64::MAX, f64::MIN_POSITIVE];
+        for x in near_halves.chain(anything).chain(edges) {
+            for x in [x, -x] {
+                assert_eq!(round(x).to_bits(), x.round().to_bits(), "{x:e}");
             }
         }
     }

@@ -1,6 +1,6 @@
-//! What is read off a run at one step: the numbers of one CSV row.
+//! What is read off a run at one step: the numbers of one CSV row, and the orientation.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// The state at one step as it leaves the program.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +9,8 @@ pub struct Sample {
     pub step: u64,
     /// Time, s.
     pub time_s: f64,
+    /// Orientation: turns body-frame vectors into world-frame ones.
+    pub orientation: Matrix3<f64>,
     /// The traced point, world frame, m.
     pub position: Vector3<f64>,
     /// Angular momentum about the pivot, world frame, J s.

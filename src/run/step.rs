@@ -155,6 +155,7 @@ impl Step {
         Sample {
             step: self.number,
             time_s: self.after.time_s,
+            orientation: self.after.orientation,
             position: *self.position(),
             momentum: self.after.momentum,
             angular_velocity: *self.angular_velocity(),

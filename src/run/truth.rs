@@ -8,6 +8,7 @@ use super::pushes::{self, Counting, Stretch};
 use crate::physics::exact::Kind;
 use crate::physics::{ExactMotion, Loads, State};
 use crate::scenario::{Edit, Pushes, Scenario};
+use nalgebra::Matrix3;
 use std::sync::Arc;
 
 /// The exact motion of one scenario, at any time.
@@ -56,6 +57,20 @@ impl Truth {
     /// The state at `time_s`, s, not negative. Later times cost little; one before the forces last changed goes
     /// through the changes from the start again.
     pub fn state_at(&mut self, time_s: f64) -> State {
+        self.go_to(time_s);
+        self.piece.at(time_s)
+    }
+
+    /// The orientation of [`state_at`](Self::state_at) alone, which takes half of the time.
+    #[inline]
+    pub fn orientation_at(&mut self, time_s: f64) -> Matrix3<f64> {
+        self.go_to(time_s);
+        self.piece.orientation_at(time_s)
+    }
+
+    /// Goes to the piece that `time_s` lies in.
+    #[inline]
+    fn go_to(&mut self, time_s: f64) {
         if time_s < self.piece.begin_s() {
             self.pieces = 0;
             self.begin_piece(self.scenario.start);
@@ -64,7 +79,6 @@ impl Truth {
             let state = self.piece.at(self.end_s);
             self.begin_piece(state);
         }
-        self.piece.at(time_s)
     }
 
     /// Goes on as the exact motion of `scenario`, whose past is the same up to the time asked for last.

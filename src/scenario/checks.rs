@@ -21,7 +21,7 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
         None => body.point(TOP).ok_or_else(|| no_top(&body))?,
     };
     let motion = motion(&file.motion);
-    let start = start(&file.start, &body.mechanics, motion.gravity)?;
+    let (start, rotor) = start(&file.start, &body, &file.body.part, motion.gravity)?;
     let pushes = pushes(&file.push, &body)?;
     let edits = edits(&file, &body, &pushes)?;
     if !is_readable(&body, trace, &start, motion.gravity) {
@@ -32,6 +32,7 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
         body: Arc::new(body),
         trace,
         start,
+        rotor,
         motion,
         steps: file.motion.steps,
         written_for_s: motion.time_step_s,

@@ -2,28 +2,19 @@
 
 use super::checks;
 use super::dotted::{find, is_in, set_key};
+use super::head::{LONGEST, read_text, short_enough};
 use super::problem::{Found, PRESETS, Problem, Problems, nearest};
 use super::syntax::{mistake, offset_of, syntax_problem};
-use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, start, tables};
+use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, reshape, start, tables};
 use crate::text::number::shortest;
 use crate::text::printable::{brief, printable};
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::Read;
 use std::path::Path;
 use toml::Value;
 use toml::de::DeTable;
 
-/// The longest file that is read as a scenario, bytes: 100 000 points take about 8 MB.
-const LONGEST: u64 = 16 << 20;
-
 /// The most lines of one: 100 000 points take about 500 000.
 const MOST_LINES: usize = 2_000_000;
-
-/// How the header of every CSV begins that gyrolab writes, below the run file.
-const CSV_HEADER: &str = "step,t_s,";
-
-/// Some programs put it before the first line of a file.
-const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 
 /// A scenario or run file on its way to a [`Scenario`].
 #[derive(Clone, Debug)]
@@ -145,12 +136,17 @@ impl Document {
     pub fn from_file(origin: &str, file: &ScenarioFile) -> Result<Self, Problems> {
         let table = toml::Table::try_from(file)
             .map_err(|error| Problems::one(origin, Problem::at("", error.to_string())))?;
-        Ok(Self {
+        Ok(Self::from_table(origin, table))
+    }
+
+    /// The scenario whose tables and keys are `table`, which is a part of the file `origin`.
+    pub fn from_table(origin: &str, table: toml::Table) -> Self {
+        Self {
             origin: origin.to_owned(),
             text: String::new(),
             table,
             set: Vec::new(),
-        })
+        }
     }
 
     /// The scenario that `file` would be written and read as, checked, without writing and reading it.
@@ -172,27 +168,13 @@ impl Document {
     /// When there is no `=`, or the key leads nowhere. Whether key and value are allowed shows in
     /// [`scenario`](Self::scenario).
     pub fn set(&mut self, argument: &str) -> Result<(), Problems> {
-        let place = set_place(argument);
-        let fail = |mut problem: Problem| {
-            problem.place = Some(place.clone());
-            Problems::one(self.origin.as_str(), problem)
-        };
         let Some((key, value)) = argument.split_once('=') else {
-            return Err(fail(Problem::at(
-                "",
-                "must be KEY=VALUE, such as motion.time_step_s=0.05",
-            )));
+            let rule = "must be KEY=VALUE, such as motion.time_step_s=0.05";
+            return Err(self.refused(argument, Problem::at("", rule)));
         };
-        let (value, mistake) = match value.trim().parse() {
-            Ok(value) => (value, None),
-            Err(error) => (
-                Value::String(value.to_owned()),
-                mistake(value.trim(), &error),
-            ),
-        };
-        start::make_room(&mut self.table, key.trim());
-        if let Err(problem) = set_key(&mut self.table, key.trim(), value) {
-            return Err(fail(problem));
+        let (value, mistake) = toml_or_text(value);
+        if let Err(problem) = self.set_value(key.trim(), value) {
+            return Err(self.refused(argument, problem));
         }
         self.set.push(Setting {
             key: key.trim().to_owned(),
@@ -202,22 +184,33 @@ impl Document {
         Ok(())
     }
 
+    fn refused(&self, argument: &str, mut problem: Problem) -> Problems {
+        problem.place = Some(set_place(argument));
+        Problems::one(self.origin.as_str(), problem)
+    }
+
+    /// Writes `value` at the dotted `key` as `--set` does.
+    ///
+    /// # Errors
+    /// When the key leads nowhere.
+    pub fn set_value(&mut self, key: &str, value: Value) -> Result<(), Problem> {
+        start::make_room(&mut self.table, key);
+        reshape::prepare(&mut self.table, key, &value);
+        set_key(&mut self.table, key, value)
+    }
+
     /// Writes `value` at the dotted `key`, of which no problem's place will speak. What the value is about is first told
-    /// so that it can be changed: a momentum where there is a spin, a spin that is to be steady where there is a momentum.
+    /// so that it can be changed: a momentum where there is a spin, a spin that is to be steady where there is a momentum, the
+    /// dimensions of a part that is to have another shape.
     ///
     /// # Errors
     /// When the key leads nowhere, or the scenario is wrong before it has the value.
     pub(crate) fn write(&mut self, key: &str, value: Value) -> Result<(), Problems> {
         start::make_room(&mut self.table, key);
+        reshape::prepare(&mut self.table, key, &value);
         if start::is_other_way(&self.table, key, &value) {
             let now = self.scenario()?;
-            start::tell_other_way(
-                &mut self.table,
-                key,
-                &value,
-                &now.body.mechanics,
-                &now.start,
-            );
+            start::tell_other_way(&mut self.table, key, &value, &now);
         }
         set_key(&mut self.table, key, value).map_err(|problem| self.placed(vec![problem]))
     }
@@ -244,11 +237,22 @@ impl Document {
     /// # Errors
     /// Everything that is wrong with it, each with its place.
     pub fn scenario(&self) -> Result<Scenario, Problems> {
+        if self.is_sweep() {
+            let rule = "is a sweep of many runs, not a scenario: gyrolab sweep runs it";
+            return Err(Problems::one(self.origin.as_str(), Problem::at("", rule)));
+        }
         let problems = keys::check(&self.table);
         if !problems.list.is_empty() {
             return Err(self.placed(problems));
         }
         checks::scenario(self.file()?).map_err(|problems| self.placed(problems))
+    }
+
+    /// Whether it is a sweep's file, or the header of a sweep's CSV: no scenario has these keys.
+    pub fn is_sweep(&self) -> bool {
+        ["scenario", "vary", "measure"]
+            .iter()
+            .any(|key| self.table.contains_key(*key))
     }
 
     /// The file's shape; its numbers are not checked.
@@ -329,6 +333,17 @@ impl Document {
     }
 }
 
+/// `text` as TOML, or else as text; and why an array or a table is no TOML.
+pub fn toml_or_text(text: &str) -> (Value, Option<String>) {
+    match text.trim().parse() {
+        Ok(value) => (value, None),
+        Err(error) => {
+            let mistake = mistake(text.trim(), &error);
+            (Value::String(text.to_owned()), mistake)
+        }
+    }
+}
+
 fn set_place(argument: &str) -> String {
     format!("--set {}", brief(argument, 80))
 }
@@ -341,76 +356,4 @@ fn no_preset(name: &str) -> Problems {
     };
     let rule = format!("no preset of that name: {near} ({hint})");
     Problems::one(name, Problem::at("", rule))
-}
-
-/// The text of a scenario, or the run file in the header of a CSV, of which no more is read.
-fn read_text(path: &Path) -> Result<String, Problem> {
-    let whole = |rule: String| Problem::at("", rule);
-    let cannot = |error: std::io::Error| whole(format!("cannot be read: {error}"));
-    if path.is_dir() {
-        return Err(whole("is a folder: name a file in it".to_owned()));
-    }
-    let mut reader = BufReader::new(File::open(path).map_err(cannot)?.take(LONGEST + 1));
-    let (mut text, mut header) = (Vec::new(), 0);
-    let is_csv = loop {
-        let begin = text.len();
-        reader.read_until(b'\n', &mut text).map_err(cannot)?;
-        let line = &text[begin..];
-        let line = line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line);
-        if !line.starts_with(b"#") {
-            break line.starts_with(CSV_HEADER.as_bytes());
-        }
-        header = text.len();
-    };
-    if is_csv && header == 0 {
-        let rule = "is a CSV with no run file in its header, the \"# \" lines that gyrolab writes";
-        return Err(whole(rule.to_owned()));
-    }
-    if is_csv {
-        text.truncate(header);
-        let lines = utf8(text)?;
-        let stripped = |line: &str| {
-            let line = line.trim_start_matches(['\u{feff}', '#']);
-            line.strip_prefix(' ').unwrap_or(line).to_owned()
-        };
-        return Ok(lines.split_inclusive('\n').map(stripped).collect());
-    }
-    if path.extension().is_some_and(|extension| extension == "csv") {
-        return Err(whole(format!(
-            "is not the CSV of a run: no line \"{CSV_HEADER}...\" below a run file"
-        )));
-    }
-    let length = std::fs::metadata(path).map_or(0, |file| file.len());
-    if length <= LONGEST {
-        reader.read_to_end(&mut text).map_err(cannot)?; // of a FIFO no more than the limit
-    }
-    if length > LONGEST || text.len() as u64 > LONGEST {
-        let how_long = match length > LONGEST {
-            true => format!("{length} bytes long, longer"),
-            false => "longer".to_owned(),
-        };
-        let most = LONGEST >> 20;
-        return Err(whole(format!(
-            "is {how_long} than {most} MiB ({LONGEST} bytes), the most that a scenario or run file may have"
-        )));
-    }
-    utf8(text)
-}
-
-fn short_enough(text: Vec<u8>) -> Result<String, Problem> {
-    if text.len() as u64 > LONGEST {
-        let rule = format!("is longer than {LONGEST} bytes, the most that is read");
-        return Err(Problem::at("", rule));
-    }
-    utf8(text)
-}
-
-fn utf8(bytes: Vec<u8>) -> Result<String, Problem> {
-    String::from_utf8(bytes).map_err(|error| {
-        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let line = good.iter().filter(|&&byte| byte == b'\n').count() + 1;
-        let mut problem = Problem::at("", "is not text in UTF-8: save the file in that encoding");
-        problem.place = Some(format!("line {line}"));
-        problem
-    })
 }

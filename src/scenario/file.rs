@@ -40,6 +40,8 @@ pub struct BodyFile {
     pub rim: Option<RimFile>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub point: Vec<PointFile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub part: Vec<PartFile>,
 }
 
 /// `[body.rim]`
@@ -64,6 +66,31 @@ pub struct PointFile {
     pub mass_kg: Option<f64>,
 }
 
+/// `[[body.part]]`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs, reason = "the table of keys says what each key means")]
+pub struct PartFile {
+    pub shape: String,
+    pub name: String,
+    pub mass_kg: f64,
+    pub at_m: [f64; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub axis: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radius_m: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inner_radius_m: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outer_radius_m: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub length_m: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size_m: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moments_kg_m2: Option<[f64; 3]>,
+}
+
 /// `[start]`
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -86,9 +113,15 @@ pub struct StartFile {
     pub spin_rad_per_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub steady: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub omega_rad_per_s: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub omega_frame: Option<Frame>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rotor: Option<String>,
 }
 
-/// The frame in which the start's momentum is given.
+/// The frame in which the start's momentum or angular velocity is given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Frame {

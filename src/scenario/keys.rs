@@ -8,6 +8,7 @@ mod check;
 pub use super::kind::{Kind, Range, ZOOM};
 use super::problem::nearest;
 use super::screen::{ALL_ROWS, FILLING, HIDEABLE, PANES, PHASES};
+use super::solids;
 use crate::physics::scheme;
 pub use check::check;
 pub(super) use check::check_part;
@@ -167,8 +168,7 @@ pub const MOST_POINTS: i64 = 100_000;
 pub const MOST_PHASES: i64 = 1000;
 
 /// What `start.momentum_Js` is, and what may stand for it.
-pub(super) const STATED: &str =
-    "angular momentum L about the pivot, J s; or give spin_rpm or spin_rad_per_s instead";
+pub(super) const STATED: &str = "angular momentum L about the pivot, J s; or give spin_rpm or spin_rad_per_s instead, or omega_rad_per_s";
 
 /// Every key there is, in the order in which files are written.
 #[rustfmt::skip]
@@ -185,14 +185,28 @@ pub static KEYS: &[Key] = &[
     must("body.point.*.name", Line, "the point's name, its own").lab("name", "", Typed),
     must("body.point.*.at_m", Vector, "position in the upright pose, m, pivot at the origin").lab("", "m", Hundredth(0.01)),
     may("body.point.*.mass_kg", Number(NotNegative), "mass, kg (default: 0)").lab("mass", "kg", Hundredth(0.01)).or(Absent::Number(0.0)),
+    must("body.part.*.shape", OneOf(&SHAPES), "what kind of solid: it says which dimensions it has").lab("shape", "", Turn),
+    must("body.part.*.name", Line, "the part's name, its own; its centre can be pushed and traced by it").lab("name", "", Typed),
+    must("body.part.*.mass_kg", Number(Positive), "its mass, kg").lab("mass", "kg", Hundredth(0.01)),
+    must("body.part.*.at_m", Vector, "its centre of mass in the upright pose, m, pivot at the origin").lab("", "m", Hundredth(0.01)),
+    may("body.part.*.axis", Vector, "direction of its axis; its own x and y are carried by the shortest turn from +z to it, half a turn about x for -z (if absent: [0, 0, 1])").lab("axis ", "", Hundredth(0.01)),
+    may("body.part.*.radius_m", Number(Positive), "ring, cylinder, ball, shell, cone (its base): radius, m").lab("radius", "m", Hundredth(0.01)),
+    may("body.part.*.inner_radius_m", Number(NotNegative), "tube: radius of the hole, m").lab("inner radius", "m", Hundredth(0.01)),
+    may("body.part.*.outer_radius_m", Number(Positive), "tube: radius of the outside, m").lab("outer radius", "m", Hundredth(0.01)),
+    may("body.part.*.length_m", Number(NotNegative), "tube, rod, cone (its apex against the axis), cylinder (if absent: 0, a disk): along the axis, m").lab("length", "m", Hundredth(0.01)),
+    may("body.part.*.size_m", Vector, "block: its sides along its x, y and axis, m").lab("size ", "m", Hundredth(0.01)),
+    may("body.part.*.moments_kg_m2", Vector, "moments: about its centre, across (x), across (y) and about the axis, kg m^2").lab("I", "kg m2", Hundredth(0.01)),
     may("start.tilt_deg", Number(Any), "turns the upright body about +x, degrees (default: 0)").lab("tilt", "deg", By(1.0)).or(Absent::Number(0.0)),
     may("start.turn_deg", Number(Any), "then turns the tilted body about +z, degrees (default: 0)").lab("turn", "deg", By(1.0)).or(Absent::Number(0.0)),
     may("start.roll_deg", Number(Any), "first turns the upright body about its own axle, degrees (default: 0)").lab("roll", "deg", By(1.0)).or(Absent::Number(0.0)),
-    must("start.momentum_Js", Vector, STATED).unless(&["spin_rpm", "spin_rad_per_s"]).lab("L", "J s", Hundredth(1.0)),
+    must("start.momentum_Js", Vector, STATED).unless(&["spin_rpm", "spin_rad_per_s", "omega_rad_per_s"]).lab("L", "J s", Hundredth(1.0)),
     may("start.momentum_frame", OneOf(&["world", "body"]), "\"body\": L is turned with the body (default: world)").lab("L given in", "", Turn).or(Word("world")),
     may("start.spin_rpm", Number(Any), "instead of momentum_Js: the body turns about its axle, revolutions a minute (rpm); omega = spin * axle").lab("spin", "rpm", Hundredth(1.0)),
     may("start.spin_rad_per_s", Number(Any), "the same in rad/s").lab("spin", "rad/s", Hundredth(0.1)),
     may("start.steady", Flag, "true, with a spin: L is such that the top precesses steadily at this tilt, the slow way; pushes do not count (default: false)").lab("steady", "", Turn).or(Absent::Flag(false)),
+    may("start.omega_rad_per_s", Vector, "instead of momentum_Js: angular velocity, rad/s; L = I omega").lab("w", "rad/s", Hundredth(0.1)),
+    may("start.omega_frame", OneOf(&["world", "body"]), "\"body\": omega is turned with the body (default: world)").lab("w given in", "", Turn).or(Word("world")),
+    may("start.rotor", Line, "name of the part that spins while the rest of the body does not: L along the axle is that part's moment times the spin").lab("rotor", "", Turn),
     may("motion.gravity_m_per_s2", Number(Any), "acceleration of gravity along -z, m/s^2 (default: 9.8)").lab("gravity", "m/s2", By(0.1)).or(Absent::Number(GRAVITY)),
     may("motion.scheme", OneOf(&SCHEME_NAMES), "the numerical scheme (default: report)").lab("scheme", "", Turn).or(Word(scheme::SCHEMES[0].name)),
     must("motion.time_step_s", Number(Positive), "time step dt, s").lab("dt", "s", Ladder),
@@ -227,6 +241,9 @@ pub static KEYS: &[Key] = &[
     must("edit.*.step", Whole(0, i64::MAX), "the step at which the edit was made; it acts from the next one on"),
     must("edit.*.set", Settings, "dotted keys of motion or push and their new values"),
 ];
+
+/// The shapes of parts.
+const SHAPES: [&str; solids::FORMS.len()] = solids::names();
 
 const SCHEME_NAMES: [&str; scheme::SCHEMES.len()] = scheme::names();
 

@@ -3,7 +3,7 @@
 use super::file::ScenarioFile;
 use super::problem::{Problem, nearest};
 use super::pushes::{Push, PushFiles, Pushes};
-use crate::physics::{self, SchemeInfo, State};
+use crate::physics::{self, Part, SchemeInfo, State, observables, part};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -18,6 +18,8 @@ pub struct Scenario {
     pub trace: usize,
     /// Orientation and momentum at t = 0.
     pub start: State,
+    /// The part's moment about the axle, kg m², where only one part of the body spins.
+    pub rotor: Option<f64>,
     /// How it moves at the start.
     pub motion: Motion,
     /// Length of the run in steps.
@@ -30,11 +32,13 @@ pub struct Scenario {
     pub edits: Vec<Edit>,
 }
 
-/// The body and the names of its points.
+/// The body, its solid parts, and the names of its points.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// The mechanics.
+    /// The mechanics: the points of the rim, the points, and then those that stand for the parts.
     pub mechanics: physics::Body,
+    /// The solid parts.
+    pub parts: Vec<Part>,
     pub(crate) names: HashMap<String, usize>,
 }
 
@@ -85,6 +89,11 @@ impl Edit {
 }
 
 impl Body {
+    /// How many points stand before those of the parts.
+    pub fn points_before_parts(&self) -> usize {
+        self.mechanics.points().len() - part::POINTS * self.parts.len()
+    }
+
     /// Index of the point called `name`.
     pub fn point(&self, name: &str) -> Option<usize> {
         self.names.get(name).copied()
@@ -118,6 +127,18 @@ impl Scenario {
     /// Distance of the traced point from the pivot, m: the measure of how far off a run may be.
     pub fn arm_m(&self) -> f64 {
         self.body.mechanics.points()[self.trace].at.norm()
+    }
+
+    /// The rate at which the body spins about its axle in `state`, rad/s: ω3, or L along the axle over the rotor's moment
+    /// where only one part spins.
+    pub fn spin_rad_per_s(&self, state: &State) -> f64 {
+        match self.rotor {
+            Some(moment) => state.axle().dot(&state.momentum) / moment,
+            None => {
+                let omega = observables::angular_velocity(&self.body.mechanics, state);
+                state.axle().dot(&omega)
+            }
+        }
     }
 
     /// The run file: the scenario with its edits, and the version that wrote it. Reading it gives this scenario again.

@@ -2,42 +2,53 @@
 //! that say how long they act.
 
 use super::file::{BodyFile, MotionFile, PushFile};
-use super::keys::{GRAVITY, MOST_POINTS};
+use super::keys::{self, GRAVITY, MOST_POINTS};
 use super::model::{Body, Motion};
 use super::problem::{Found, Problem};
 use super::pushes::Pushes;
 use super::pushes::{Push, Window};
+use super::solids;
 use crate::physics::{self, BodyError, PointMass, SchemeInfo};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
+/// The points that each part counts as, held against the most that there may be.
+const OF_PART: usize = 6;
+
 pub(super) fn body(file: &BodyFile) -> Result<Body, Found> {
     let rim = file.rim.as_ref().map_or(0, |rim| rim.points);
-    let count = rim + file.point.len();
+    let count = rim + file.point.len() + OF_PART * file.part.len();
     if count > usize::try_from(MOST_POINTS).unwrap_or(usize::MAX) {
-        let rule = format!("has {count} points; at most {MOST_POINTS} are allowed");
+        let of_parts = match file.part.is_empty() {
+            true => "",
+            false => ", six for each part",
+        };
+        let rule = format!("has {count} points{of_parts}; at most {MOST_POINTS} are allowed");
         return Err(vec![Problem::at("body", rule)].into());
     }
     let mut points = rim_points(file);
-    let mut names = HashMap::with_capacity(file.point.len());
-    let mut problems = Found::default();
+    let mut named = Named::default();
     for (index, point) in file.point.iter().enumerate() {
-        if names.insert(point.name.clone(), points.len()).is_some() {
-            problems.add(|| {
-                let value = toml::Value::String(point.name.clone());
-                let key = format!("body.point.{index}.name");
-                let rule = "is the name of another point too: each needs its own";
-                Problem::with_value(key, &value, rule)
-            });
-        }
+        named.add(&point.name, points.len(), "point", index);
         points.push(PointMass {
             at: Vector3::from(point.at_m),
             mass: point.mass_kg.unwrap_or(0.0),
         });
     }
-    if !problems.list.is_empty() {
-        return Err(problems);
+    let mut parts = Vec::with_capacity(file.part.len());
+    for (index, solid) in file.part.iter().enumerate() {
+        named.add(&solid.name, points.len(), "part", index);
+        match solids::part(solid) {
+            Ok(part) => {
+                points.extend(part.points());
+                parts.push(part);
+            }
+            Err(problems) => named.refuse(problems, index),
+        }
+    }
+    if !named.problems.list.is_empty() {
+        return Err(named.problems);
     }
     let mechanics = physics::Body::new(points).map_err(|error| {
         let few = match (&error, &file.rim) {
@@ -48,7 +59,44 @@ pub(super) fn body(file: &BodyFile) -> Result<Body, Found> {
         };
         vec![Problem::at("body", format!("{error}{few}"))]
     })?;
-    Ok(Body { mechanics, names })
+    Ok(Body {
+        mechanics,
+        parts,
+        names: named.names,
+    })
+}
+
+/// The names of points and parts as they are found, each with the index of its point, and what is wrong with them.
+#[derive(Default)]
+struct Named {
+    names: HashMap<String, usize>,
+    problems: Found,
+}
+
+impl Named {
+    /// Names the point `point`; the name stands in the table of this kind, `point` or `part`, with this index.
+    fn add(&mut self, name: &str, point: usize, kind: &str, index: usize) {
+        if self.names.insert(name.to_owned(), point).is_some() {
+            self.problems.add(|| {
+                let value = toml::Value::String(name.to_owned());
+                let key = format!("body.{kind}.{index}.name");
+                let rule = match kind {
+                    "point" => "is the name of another point too: each needs its own",
+                    _ => "is the name of a point, or of another part, too: each needs its own",
+                };
+                Problem::with_value(key, &value, rule)
+            });
+        }
+    }
+
+    /// What is wrong with the part of this index, whose keys are those in its table.
+    fn refuse(&mut self, problems: Vec<Problem>, index: usize) {
+        for problem in problems {
+            let key = keys::join(&format!("body.part.{index}"), &problem.key);
+            let key = key.trim_end_matches('.').to_owned();
+            self.problems.add(|| Problem { key, ..problem });
+        }
+    }
 }
 
 fn rim_points(file: &BodyFile) -> Vec<PointMass> {

@@ -21,7 +21,7 @@ macro_rules! presets {
     };
 }
 
-/// Every preset: the report's first, in the report's order, then the textbook's.
+/// Every preset: the report's first, in the report's order, then the textbook's, then famous motions of solid bodies.
 pub const PRESETS: &[Preset] = presets![
     "method-1": "o opens method-1-steeper: L further from the axle, and a wider circle."
     "method-1-steeper": "t draws the exact motion beside it: how far apart are they at the end?"
@@ -39,6 +39,12 @@ pub const PRESETS: &[Preset] = presets![
     "sleeping-unstable": "e, then |L|: at 40 J s it stays up."
     "falling": "e, then |L|: at 30 J s it falls less far, at 60 much less."
     "torque-free": "e, then gravity: at 9.8 m/s2 a torque acts, and the tilt no longer stays."
+    "heavy-top": "e, then scheme; t draws the exact motion: which schemes keep to it at this dt?"
+    "wing-nut": "e, then tilt: at 0.1 degrees it waits longer, and then turns over as fast."
+    "phone": "e, then wy: at 0 nothing slips, and it comes round flat."
+    "rugby-pass": "e, then wx: a larger slip of the wrist widens the circle, its time stays."
+    "earth": "e, then tilt: does the pole go round faster when it leans less?"
+    "poinsot": "o opens wing-nut: a free body again, about its middle axis."
 ];
 
 /// The preset of that name.

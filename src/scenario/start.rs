@@ -1,12 +1,15 @@
-//! The start: how the body stands, and its momentum, told in one of two ways: as it is, or by the spin about the axle.
+//! The start: how the body stands, and its momentum, told in one of three ways: as it is, by the spin about the axle, or by
+//! the angular velocity.
 
 use super::dotted::find;
-use super::file::{Frame, StartFile};
+use super::file::{Frame, PartFile, StartFile};
 use super::keys::STATED;
+use super::model::{Body, Scenario};
 use super::problem::Problem;
+use super::rotor;
 use crate::physics::observables::{VERTICAL_WITHIN, angular_velocity};
 use crate::physics::symmetry::steady_precession;
-use crate::physics::{Body, State, SymmetricTop, rotation};
+use crate::physics::{self, State, SymmetricTop, rotation};
 use crate::text::number;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::TAU;
@@ -15,38 +18,68 @@ use toml::{Table, Value};
 /// rad/s of one revolution a minute.
 const RPM: f64 = TAU / 60.0;
 
-/// The state at t = 0 under the gravity `gravity`, m/s²; pushes do not count.
+/// The state at t = 0 under the gravity `gravity`, m/s², and the rotor's moment where only one part spins; pushes do not
+/// count.
 ///
 /// # Errors
-/// Where the momentum is told in both ways or in none, or asked to be steady where it cannot be.
-pub(super) fn start(file: &StartFile, body: &Body, gravity: f64) -> Result<State, Vec<Problem>> {
+/// Where the momentum is told in several ways or in none, or asked to be steady where it cannot be, or the rotor is none.
+pub(super) fn start(
+    file: &StartFile,
+    body: &Body,
+    parts: &[PartFile],
+    gravity: f64,
+) -> Result<(State, Option<f64>), Vec<Problem>> {
     is_told_once(file)?;
+    let rotor = rotor::moment(file, body, parts)?;
     let orientation = orientation(file);
-    let momentum = match (file.momentum_Js, spin(file)) {
-        (Some(momentum), _) => match file.momentum_frame.unwrap_or_default() {
-            Frame::World => Vector3::from(momentum),
-            Frame::Body => orientation * Vector3::from(momentum),
-        },
-        (None, spin) => {
+    let turned = |frame: Option<Frame>, vector: [f64; 3]| match frame.unwrap_or_default() {
+        Frame::World => Vector3::from(vector),
+        Frame::Body => orientation * Vector3::from(vector),
+    };
+    let mechanics = &body.mechanics;
+    let momentum_of = |velocity: Vector3<f64>| match rotor {
+        None => orientation * (mechanics.inertia() * velocity),
+        Some(moment) => {
+            let across = Vector3::new(velocity.x, velocity.y, 0.0);
+            let along = Vector3::new(0.0, 0.0, moment * velocity.z);
+            orientation * (mechanics.inertia() * across + along)
+        }
+    };
+    let momentum = match (file.momentum_Js, file.omega_rad_per_s, spin(file)) {
+        (Some(momentum), ..) => turned(file.momentum_frame, momentum),
+        (None, Some(omega), _) => {
+            let omega = turned(file.omega_frame, omega);
+            momentum_of(orientation.tr_mul(&omega))
+        }
+        (None, None, spin) => {
             let spin = spin.unwrap_or_default();
             let mut velocity = Vector3::new(0.0, 0.0, spin);
             if file.steady == Some(true) {
-                let precession = steady(body, &orientation, spin, gravity);
+                let precession = steady(mechanics, rotor, &orientation, spin, gravity);
                 velocity += precession.map_err(|rule| refused("steady", true, rule))?;
             }
-            orientation * (body.inertia() * velocity)
+            momentum_of(velocity)
         }
     };
-    Ok(State {
+    let state = State {
         time_s: 0.0,
         orientation,
         momentum,
-    })
+    };
+    Ok((state, rotor))
 }
 
-/// ω3, the component of the angular velocity along the axle, rad/s.
-pub(crate) fn spin_of(body: &Body, state: &State) -> f64 {
-    state.axle().dot(&angular_velocity(body, state))
+/// The angular velocity, world frame, rad/s, of a start that is told by it; its part along the axle is the spin.
+pub(crate) fn omega_of(scenario: &Scenario, state: &State) -> Vector3<f64> {
+    let omega = angular_velocity(&scenario.body.mechanics, state);
+    match scenario.rotor {
+        None => omega,
+        Some(_) => {
+            let axle = state.axle();
+            let spin = scenario.spin_rad_per_s(state);
+            omega + (spin - axle.dot(&omega)) * axle
+        }
+    }
 }
 
 /// The same in revolutions a minute.
@@ -84,52 +117,49 @@ fn refused(name: &str, value: impl Into<Value>, rule: impl Into<String>) -> Vec<
 }
 
 fn is_told_once(file: &StartFile) -> Result<(), Vec<Problem>> {
-    match (file.momentum_Js, file.spin_rpm, file.spin_rad_per_s) {
-        (None, None, None) => {
+    let three = |numbers: Option<[f64; 3]>| numbers.map(|numbers| vector(&numbers.into()));
+    let told: Vec<(&str, Value)> = [
+        ("momentum_Js", three(file.momentum_Js)),
+        ("spin_rpm", file.spin_rpm.map(Value::from)),
+        ("spin_rad_per_s", file.spin_rad_per_s.map(Value::from)),
+        ("omega_rad_per_s", three(file.omega_rad_per_s)),
+    ]
+    .into_iter()
+    .filter_map(|(name, value)| Some((name, value?)))
+    .collect();
+    let way = match &told[..] {
+        [] => {
             let rule = format!("is missing ({STATED})");
             return Err(vec![Problem::at("start.momentum_Js", rule)]);
         }
-        (Some(_), Some(spin), _) => {
-            return Err(refused(
-                "spin_rpm",
-                spin,
-                "is given beside momentum_Js: keep one of the two",
-            ));
+        [(way, _)] => *way,
+        [(first, _), (other, value), ..] => {
+            let rule = format!("is given beside {first}: keep one of the two");
+            return Err(refused(other, value.clone(), rule));
         }
-        (Some(_), _, Some(spin)) => {
-            return Err(refused(
-                "spin_rad_per_s",
-                spin,
-                "is given beside momentum_Js: keep one of the two",
-            ));
-        }
-        (_, Some(_), Some(spin)) => {
-            return Err(refused(
-                "spin_rad_per_s",
-                spin,
-                "is given beside spin_rpm: keep one of the two",
-            ));
-        }
-        _ => {}
+    };
+    let goes_with = |name: &str, wanted: &str| {
+        let rule = format!("goes with {wanted}, and {way} is given: leave it out");
+        Err(vec![Problem::at(format!("start.{name}"), rule)])
+    };
+    if file.momentum_frame.is_some() && way != "momentum_Js" {
+        return goes_with("momentum_frame", "momentum_Js");
     }
-    let is_spun = file.momentum_Js.is_none();
-    match (file.momentum_frame, file.steady) {
-        (Some(_), _) if is_spun => {
-            let rule = "goes with momentum_Js, and a spin is given: leave it out";
-            Err(vec![Problem::at("start.momentum_frame", rule)])
-        }
-        (_, Some(true)) if !is_spun => {
-            let rule = "goes with a spin: give spin_rpm or spin_rad_per_s instead of momentum_Js";
-            Err(refused("steady", true, rule))
-        }
-        _ => Ok(()),
+    if file.omega_frame.is_some() && way != "omega_rad_per_s" {
+        return goes_with("omega_frame", "omega_rad_per_s");
     }
+    if file.steady == Some(true) && !SPIN.contains(&way) {
+        let rule = format!("goes with a spin: give spin_rpm or spin_rad_per_s instead of {way}");
+        return Err(refused("steady", true, rule));
+    }
+    Ok(())
 }
 
 /// The angular velocity, body frame, rad/s, that the spin `spin` (rad/s) lacks for a steady precession: φ'(z − (z·e3)e3),
 /// φ' the slow root.
 fn steady(
-    body: &Body,
+    body: &physics::Body,
+    rotor: Option<f64>,
     orientation: &Matrix3<f64>,
     spin: f64,
     gravity: f64,
@@ -137,6 +167,10 @@ fn steady(
     let top = SymmetricTop::of(body).ok_or(
         "needs a body that is symmetric about its axle, and this one is lopsided: leave it out",
     )?;
+    let top = SymmetricTop {
+        along: rotor.unwrap_or(top.along), // L along the axle is this times the spin
+        ..top
+    };
     let up = orientation.row(2).transpose();
     let across = Vector3::new(up.x, up.y, 0.0);
     if across.norm() <= VERTICAL_WITHIN {
@@ -182,20 +216,31 @@ fn above(number: f64) -> String {
     number::significant(up, 4)
 }
 
-/// The two ways to tell the momentum: the keys of each.
+/// The ways to tell the momentum: the keys of each.
+const WAYS: [&[&str]; 3] = [&MOMENTUM, &SPIN, &OMEGA];
 const MOMENTUM: [&str; 2] = ["momentum_Js", "momentum_frame"];
 const SPIN: [&str; 3] = ["spin_rpm", "spin_rad_per_s", "steady"];
+const OMEGA: [&str; 2] = ["omega_rad_per_s", "omega_frame"];
 
-/// Takes out of the file's `table` what a new value at `key` replaces: the momentum and the other spin by a spin, the
-/// spin by a momentum.
+/// The keys of the way that the key `name` of the start belongs to.
+fn way_of(name: &str) -> Option<&'static [&'static str]> {
+    WAYS.into_iter().find(|way| way.contains(&name))
+}
+
+/// Takes out of the file's `table` what a new value at `key` replaces: the other ways to tell the momentum, and of two
+/// spins the other one.
 pub(super) fn make_room(table: &mut Table, key: &str) {
-    let replaced: &[&str] = match key {
-        "start.spin_rpm" => &["momentum_Js", "momentum_frame", "spin_rad_per_s"],
-        "start.spin_rad_per_s" => &["momentum_Js", "momentum_frame", "spin_rpm"],
-        "start.momentum_Js" => &SPIN,
-        _ => &[],
+    let name = key.strip_prefix("start.").unwrap_or_default();
+    let is_frame_or_flag = ["momentum_frame", "omega_frame", "steady"].contains(&name);
+    let Some(own) = way_of(name).filter(|_| !is_frame_or_flag) else {
+        return;
     };
-    remove(table, replaced);
+    let other = WAYS.into_iter().filter(|way| *way != own).flatten();
+    let other_spin = SPIN[..2]
+        .iter()
+        .filter(|spin| own == SPIN && **spin != name);
+    let replaced: Vec<&str> = other.chain(other_spin).copied().collect();
+    remove(table, &replaced);
 }
 
 fn remove(table: &mut Table, names: &[&str]) {
@@ -204,34 +249,39 @@ fn remove(table: &mut Table, names: &[&str]) {
     }
 }
 
-/// Whether a new `value` at `key` is about the way of telling the momentum that `table` does not use.
+/// Whether a new `value` at `key` is about a way of telling the momentum that `table` does not use.
 pub(super) fn is_other_way(table: &Table, key: &str, value: &Value) -> bool {
-    let is_spun = find(table, "start.momentum_Js").is_none();
+    let is_given = |name: &str| find(table, &format!("start.{name}")).is_some();
     match key {
-        "start.momentum_frame" => is_spun,
-        "start.steady" => !is_spun && value.as_bool() == Some(true),
-        _ => is_spun && key.starts_with("start.momentum_Js."),
+        "start.momentum_frame" => !is_given("momentum_Js"),
+        "start.omega_frame" => !is_given("omega_rad_per_s"),
+        "start.steady" => {
+            let is_spun = is_given("spin_rpm") || is_given("spin_rad_per_s");
+            !is_spun && value.as_bool() == Some(true)
+        }
+        _ if key.starts_with("start.momentum_Js.") => !is_given("momentum_Js"),
+        _ if key.starts_with("start.omega_rad_per_s.") => !is_given("omega_rad_per_s"),
+        _ => false,
     }
 }
 
-/// Tells the momentum in `table` in the way that `key` is about, as it is in the state `start`; `frame` is that of a
-/// momentum, where it is not the world's.
-pub(super) fn tell_other_way(
-    table: &mut Table,
-    key: &str,
-    value: &Value,
-    body: &Body,
-    start: &State,
-) {
-    let is_steady = key == "start.steady";
-    remove(table, if is_steady { &MOMENTUM } else { &SPIN });
-    let momentum = match value.as_str() {
-        Some("body") => start.orientation.tr_mul(&start.momentum),
-        _ => start.momentum,
+/// Tells the momentum in `table` in the way that `key` is about, as it is at the start of `now`; where `value` is a frame,
+/// in that frame, and else in the world's.
+pub(super) fn tell_other_way(table: &mut Table, key: &str, value: &Value, now: &Scenario) {
+    let name = key.split('.').nth(1).unwrap_or_default();
+    let own = way_of(name).unwrap_or(&MOMENTUM);
+    let others = WAYS.into_iter().filter(|way| *way != own).flatten();
+    let others: Vec<&str> = others.copied().collect();
+    remove(table, &others);
+    let start = &now.start;
+    let framed = |in_world: Vector3<f64>| match value.as_str() {
+        Some("body") => vector(&start.orientation.tr_mul(&in_world)),
+        _ => vector(&in_world),
     };
-    let (name, told) = match is_steady {
-        true => ("spin_rad_per_s", spin_of(body, start).into()),
-        false => ("momentum_Js", vector(&momentum)),
+    let (name, told) = match own[0] {
+        "spin_rpm" => ("spin_rad_per_s", now.spin_rad_per_s(start).into()),
+        "omega_rad_per_s" => ("omega_rad_per_s", framed(omega_of(now, start))),
+        _ => ("momentum_Js", framed(start.momentum)),
     };
     if let Some(Value::Table(table)) = table.get_mut("start") {
         table.insert(name.to_owned(), told);

@@ -28,7 +28,7 @@ pub(super) fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
 }
 
 /// The tables of which a file may have several.
-const REPEATED: [&str; 5] = ["do", "push", "edit", "expected", "body.point"];
+const REPEATED: [&str; 6] = ["do", "push", "edit", "expected", "body.point", "body.part"];
 
 /// What is wrong with the line at `offset`, where it begins one of these tables a second time as if it were the only one.
 fn repeated_table(text: &str, offset: usize) -> Option<String> {

@@ -7,7 +7,7 @@ pub use drawing::Drawn;
 use super::at_exit::{self, Registered, Release};
 use crate::export::destination::{Destination, DestinationError};
 use crate::export::stream::{self, Ended};
-use crate::export::{COLUMNS, CsvWriter};
+use crate::export::{COLUMNS, CsvWriter, Layout};
 use crate::run::{Clock, NotFinite, Sample, Simulation};
 use crate::scenario::Scenario;
 use crate::text::printable::printable;
@@ -58,12 +58,11 @@ struct Job {
     scenario: Arc<Scenario>,
     csv: CsvWriter<Destination>,
     path: PathBuf,
-    every: NonZeroU64,
 }
 
 impl Exporting {
     /// Starts writing the run of `scenario`, from step 0 to its last step, to the file `path`. It writes the same bytes as
-    /// `gyrolab run -o`, with rows 0, `every`, twice `every` and so on, and the last. The file appears once it is complete.
+    /// `gyrolab run -o`, with the rows and columns of `layout`. The file appears once it is complete.
     ///
     /// # Errors
     /// [`Exists`](DestinationError::Exists) when there is such a file and `replace` is false; any other error that opening
@@ -71,15 +70,14 @@ impl Exporting {
     pub fn begin(
         scenario: Arc<Scenario>,
         path: &Path,
-        every: NonZeroU64,
+        layout: Layout,
         replace: bool,
     ) -> Result<Self, DestinationError> {
         let refused = |error| refused(path, error);
         let destination = Destination::open_file(path, replace)?;
         let job = Job {
-            csv: CsvWriter::new(destination, &scenario).map_err(refused)?,
+            csv: CsvWriter::with_layout(destination, &scenario, layout).map_err(refused)?,
             path: std::path::absolute(path).map_err(refused)?,
-            every,
             scenario,
         };
         let (path, steps) = (job.path.clone(), job.scenario.steps);
@@ -172,7 +170,6 @@ impl Shared {
 
 impl Job {
     fn write(mut self, shared: &Shared) -> Result<Written, String> {
-        let every = self.every.get();
         let mut simulation = Simulation::new(self.scenario);
         let csv = Some(&mut self.csv);
         let watch = |progress: &stream::Progress| {
@@ -185,8 +182,9 @@ impl Job {
         };
         let (path, steps) = (self.path, shared.steps);
         let cannot_write = |error| refused(&path, error).fact();
-        let (ended, _) = stream::play(&mut simulation, steps, every, csv, |_| {}, watch)
-            .map_err(cannot_write)?;
+        let (ended, _) =
+            stream::play(&mut simulation, steps, csv, |_| {}, watch).map_err(cannot_write)?;
+        let rows = self.csv.count();
         let destination = self.csv.finish().map_err(cannot_write)?;
         if ended == Ended::Stopped || shared.is_cancelled() {
             return Err("the export was stopped, and nothing was written".to_owned());
@@ -197,7 +195,7 @@ impl Job {
         destination.keep().map_err(|error| error.fact())?;
         Ok(Written {
             path,
-            rows: Some(rows(last, every)),
+            rows: Some(rows),
             warnings: Vec::new(),
             bytes,
             not_finite: match ended {

@@ -1,1 +1,9 @@
 //! What many runs say, and what an exported run is worth: sweeps, verification, write-ups.
+//!
+//! - [`sweep`]: a grid of runs, a row each.
+//! - [`verify`]: a CSV, computed again and held against its rows.
+//! - [`writeup`]: a run as a folder of files for a write-up.
+
+pub mod sweep;
+pub mod verify;
+pub mod writeup;

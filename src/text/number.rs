@@ -1,6 +1,8 @@
 //! Numbers in as few digits as a reader needs. Whatever the number, the text is short, and it is never NaN or inf: what
 //! is not a finite number is "n/a". Counts and sizes are `indicatif`'s `HumanCount` and `DecimalBytes`.
 
+use std::fmt;
+
 /// What stands for a number that there is not.
 pub const NONE: &str = "n/a";
 
@@ -107,6 +109,90 @@ pub fn steady(number: f64) -> String {
     }
 }
 
+/// A number whose uncertainty stands behind it in parentheses, in units of its last two digits: 0.886033(24) is
+/// 0.886033 ± 0.000024 (JCGM 100:2008, 7.2.2).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Uncertain {
+    /// The digits, such as `8.86033(24)`.
+    pub digits: String,
+    /// The power of ten by which they are multiplied; 0 where the number is written without one.
+    pub exponent: i32,
+}
+
+/// `number` with its `uncertainty`; `None` where one of them is not finite, or the uncertainty is not above 0. An
+/// uncertainty below the rounding of `number` is stated as that rounding.
+pub fn uncertain(number: f64, uncertainty: f64) -> Option<Uncertain> {
+    if !(number.is_finite() && uncertainty.is_finite() && uncertainty > 0.0) {
+        return None;
+    }
+    let uncertainty = uncertainty.max(number.abs() * f64::EPSILON);
+    // As "2.4e-5": its first digit stands at 10^-5, its second, the last one to be written, at 10^-6.
+    let (two_digits, first) = scientific(uncertainty, 1);
+    let last = first - 1;
+    let two_digits = two_digits.replace('.', "");
+    let power = |number: f64| scientific(number, 16).1;
+    let top = if number == 0.0 {
+        first
+    } else {
+        power(number).max(first)
+    };
+    // Of an uncertainty such as 1.2 the point stands between its digits.
+    let behind = |decimals: usize| match decimals {
+        1 => format!("({}.{})", &two_digits[..1], &two_digits[1..]),
+        _ => format!("({two_digits})"),
+    };
+    if (-3..=5).contains(&top) && last <= 0 {
+        let decimals = last.unsigned_abs() as usize;
+        let digits = without_minus_zero(format!("{number:.decimals$}"));
+        return Some(Uncertain {
+            digits: digits + &behind(decimals),
+            exponent: 0,
+        });
+    }
+    let decimals = (top - last).unsigned_abs() as usize;
+    let digits = match scientific(number, decimals) {
+        (digits, at) if at == top => digits,
+        // It is smaller than its uncertainty, or is rounded up to the next power of ten.
+        _ => {
+            let scaled = number / libm::exp10(f64::from(top));
+            without_minus_zero(format!("{scaled:.decimals$}"))
+        }
+    };
+    Some(Uncertain {
+        digits: digits + &behind(decimals),
+        exponent: top,
+    })
+}
+
+/// The digits of `number`, `decimals` of them after the point, and its power of ten.
+fn scientific(number: f64, decimals: usize) -> (String, i32) {
+    let text = format!("{number:.decimals$e}");
+    match text.split_once('e') {
+        Some((digits, power)) => (digits.to_owned(), power.parse().unwrap_or(0)),
+        None => (text, 0),
+    }
+}
+
+impl Uncertain {
+    /// `number` with the same last digit and the same power of ten.
+    pub fn to_the_same_digit(&self, number: f64) -> String {
+        let digits = self.digits.split('(').next().unwrap_or_default();
+        let decimals = digits.split_once('.').map_or(0, |(_, after)| after.len());
+        let scaled = number / libm::exp10(f64::from(self.exponent));
+        let digits = without_minus_zero(format!("{scaled:.decimals$}"));
+        Self { digits, ..*self }.to_string()
+    }
+}
+
+impl fmt::Display for Uncertain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.exponent {
+            0 => f.write_str(&self.digits),
+            power => write!(f, "{}e{power}", self.digits),
+        }
+    }
+}
+
 /// How many times one number is another, without digits that only flicker.
 pub fn times(ratio: f64) -> String {
     match ratio {
@@ -132,6 +218,32 @@ mod tests {
         assert_eq!(signed(-6e-7, 6), "-0.000001");
         assert_eq!(fixed(-0.4, 0), "0");
         assert_eq!(fixed(-10.0, 0), "-10");
+    }
+
+    #[test]
+    fn an_uncertainty_has_two_digits_and_the_number_ends_with_them() {
+        let cases = [
+            (0.886_033_098, 2.4e-5, "0.886033(24)"),
+            (0.886_033_098, 0.000_099_6, "0.88603(10)"),
+            (-12.345, 0.31, "-12.35(31)"),
+            (12.345, 1.24, "12.3(1.2)"),
+            (123.4, 12.0, "123(12)"),
+            (123_456.0, 120.0, "1.2346(12)e5"),
+            (6.0e7, 1.5e3, "6.00000(15)e7"),
+            (1.234e-5, 2.0e-8, "1.2340(20)e-5"),
+            (0.0, 0.002, "0.0000(20)"),
+            (1.0e-9, 2.0e-8, "0.1(2.0)e-8"),
+            (9.99996, 0.001, "10.0000(10)"),
+            (0.7, 1e-300, "0.70000000000000000(16)"),
+        ];
+        for (number, uncertainty, text) in cases {
+            let stated = uncertain(number, uncertainty).map(|stated| stated.to_string());
+            assert_eq!(stated.as_deref(), Some(text), "{number} +- {uncertainty}");
+        }
+        for uncertainty in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(uncertain(1.0, uncertainty), None);
+        }
+        assert_eq!(uncertain(f64::NAN, 1.0), None);
     }
 
     const WAYS: [fn(f64) -> String; 9] = [

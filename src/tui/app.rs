@@ -20,24 +20,20 @@ const IDLE: Duration = Duration::from_millis(500);
 /// The same while an export is in progress in the background, or a file is being read for the browser.
 const ATTENTIVE: Duration = Duration::from_millis(100);
 
-/// Runs `lab` and the lessons of its `class` on the terminal at up to `frames` frames a second until the user leaves. It
-/// saves the lab in `session`, if given.
+/// Runs `lab` and the lessons of its `class` on the terminal until the user leaves. It saves the lab in `session`, if
+/// given.
 ///
 /// # Errors
 /// When there is no terminal, or it has been closed. The terminal has then been given back, if that was possible.
-pub fn run(
-    lab: &mut Lab,
-    class: &mut Class,
-    session: Option<&Session>,
-    frames: u32,
-) -> io::Result<()> {
+pub fn run(lab: &mut Lab, class: &mut Class, session: Option<&Session>) -> io::Result<()> {
     let mut screen = Screen::enter()?;
-    let mut pacing = Pacing::new(frames);
+    let mut pacing = Pacing::new(lab.view().fps);
     let begin = Instant::now();
     screen::fit(lab, screen.size()?);
     let mut pointer = Pointer::default();
     loop {
         screen.set_mouse(lab.view().mouse)?;
+        pacing.set_rate(lab.view().fps);
         let wait = wait(lab, class, pacing.wait(begin.elapsed()));
         let events = screen.events(wait)?;
         let acted = !events.is_empty();

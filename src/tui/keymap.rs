@@ -94,7 +94,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('i')], Action::TogglePin, "", "pin this run as the reference beside every other, or take it away"),
     row(&[Lab], &[Char('a')], Action::TakeAdvice, "", "take the advice about the numbers: the run from the start with what mends them"),
     row(&[Lab], &[Char('x')], Action::Export, "export", "write the run up to here as CSV"),
-    row(&[Lab], &[Char('F')], Action::Figure, "", "draw the run up to here, for a write-up: SVG, PDF or PNG"),
+    row(&[Lab], &[Char('X')], Action::Figure, "", "draw the run up to here, for a write-up: SVG, PDF or PNG"),
     row(&[Lab], &[Char('s')], Action::SaveRun, "", "save the run file: scenario and all that was done"),
     row(&[Lab], &[Char('S')], Action::SavePresent, "", "save the present state as a scenario"),
     row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file"),
@@ -127,6 +127,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('m')], Action::NextMarker, "", "dots: Braille, half blocks, points, ASCII"),
     row(&[Lab], &[Char('c')], Action::ToggleColour, "", "with colour, or without"),
     row(&[Lab], &[Char('b')], Action::ToggleBackground, "", "colours for a dark or a light screen"),
+    row(&[Lab], &[Char('F')], Action::NextFrameRate, "", "frames a second at most: fewer for a slow line, more for a smooth picture"),
     row(&[Lab], &[Char('H')], Action::ToggleHealth, "", "hide the line about the numbers' health, or show it"),
     row(&[Lab], &[Char('T')], Action::TogglePredicted, "", "hide the numbers that theory predicts, or show them"),
     row(&[Lab], &[Char('B')], Action::ToggleBare, "", "a bare screen: two panes with title and time, or all again"),
@@ -304,6 +305,7 @@ mod tests {
             A::NextMarker,
             A::ToggleColour,
             A::ToggleBackground,
+            A::NextFrameRate,
             A::ToggleHealth,
             A::TogglePredicted,
             A::ToggleBare,
@@ -372,6 +374,7 @@ mod tests {
                 | A::NextMarker
                 | A::ToggleColour
                 | A::ToggleBackground
+                | A::NextFrameRate
                 | A::ToggleHealth
                 | A::TogglePredicted
                 | A::ToggleBare

@@ -295,7 +295,7 @@ fn columns(area: Rect, rows: &[&PaneRow]) -> Vec<(Pane, Rect)> {
     let pair: u16 = of(Width::Round).take(2).map(|row| row.least.1).sum();
     let is_stacked = rounds > 1 && area.height >= pair;
     let (in_a_column, widest) = match is_stacked {
-        true => (2, area.height),
+        true => (2, area.height * 5 / 4),
         false => (1, 2 * area.height),
     };
     let round_columns = rounds.div_ceil(in_a_column);

@@ -12,11 +12,12 @@
 //! - [`keymap`] is the one table of keys.
 //! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`layout`] says which
 //!   places those are, [`theme`] and [`markers`] what colours and dots look like, [`dots`] sets the dots,
-//!   [`trail`] those of a path that fades, [`scene`] those of lines in space.
+//!   [`trail`] those of a path that fades, [`dashes`] of those of other runs some, [`scene`] those of lines in space.
 //! - [`recorder`] draws the lab into memory.
 
 pub mod app;
 pub mod counted;
+pub mod dashes;
 pub mod decoder;
 pub mod dots;
 pub mod keyboard;

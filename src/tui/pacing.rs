@@ -26,10 +26,17 @@ pub struct Pacing {
 impl Pacing {
     /// Frames at `rate` a second at most.
     pub fn new(rate: u32) -> Self {
-        Self {
-            frame: Duration::from_secs(1) / rate.max(1),
+        let mut pacing = Self {
+            frame: Duration::ZERO,
             due: Duration::ZERO,
-        }
+        };
+        pacing.set_rate(rate);
+        pacing
+    }
+
+    /// From the next frame on draws at `rate` frames a second at most.
+    pub fn set_rate(&mut self, rate: u32) {
+        self.frame = Duration::from_secs(1) / rate.max(1);
     }
 
     /// Whether a frame is due at `now`.

@@ -112,7 +112,10 @@ impl History {
 
     /// Drops the oldest runs beyond [`MOST_RUNS`] and [`MOST_POINTS`]; the newest past run always stays.
     fn drop_oldest(&mut self) {
-        let points = |run: &RunRecord| run.journal.base().body.point.len();
+        let points = |run: &RunRecord| {
+            let body = &run.journal.base().body;
+            body.point.len() + body.part.len()
+        };
         let mut points_left = MOST_POINTS;
         let affordable = self.past.iter().rev().take(MOST_RUNS).take_while(|run| {
             let needed = points(run);

@@ -1,12 +1,15 @@
 //! The values of a scenario, each as a parameter that the lab lists, nudges and lets the user type. The table of
 //! [`keys`](crate::scenario::keys) holds their labels, units, nudges and defaults.
 
+mod offered;
+
 use crate::scenario::dotted::{find, set_key};
 use crate::scenario::file::{BodyFile, ScenarioFile};
 use crate::scenario::keys::{EDITABLE_MOTION, InLab, KEYS, Key, Kind, Nudge, Range, join};
-use crate::scenario::{Document, Problems, Scenario, nudge, start};
+use crate::scenario::{Document, Problems, Scenario, nudge};
 use crate::text::number::shortest;
 use crate::text::printable::brief;
+use offered::{is_offered, present};
 use toml::{Table, Value};
 
 /// The most points, and the most pushes, that are listed.
@@ -19,7 +22,7 @@ pub struct Parameter {
     pub key: String,
     /// Its row in the table of keys; a component of a vector has the vector's row.
     pub spec: &'static Key,
-    /// Heading under which it is listed: `scenario`, `body`, `point top`, `start`, `motion`, `push 0`, `view`. Pushes
+    /// Heading under which it is listed: `scenario`, `body`, `point top`, `part wheel`, `start`, `motion`, `push 0`, `view`. Pushes
     /// and points without a name are numbered from 0, as in their keys.
     pub group: String,
     /// Short name of at most 12 characters.
@@ -40,7 +43,7 @@ pub struct Parameter {
 /// the first 50 elements of an array of tables gives a group. `scenario` is the scenario of that file: it provides the spin
 /// or momentum that the file does not contain.
 pub fn parameters(table: &Table, scenario: &Scenario) -> Vec<Parameter> {
-    let names = point_names(table);
+    let names = Names::of(table);
     let mut list = Vec::with_capacity(64);
     for keys in KEYS.chunk_by(|one, next| array_of(one) == array_of(next)) {
         let Some(array) = array_of(&keys[0]) else {
@@ -62,9 +65,10 @@ pub fn parameters(table: &Table, scenario: &Scenario) -> Vec<Parameter> {
 }
 
 /// The part of `file` that [`parameters`] lists, as a TOML table. It is quick for bodies of many points too, as it copies
-/// only the first 50 points.
+/// only the first 50 points and parts.
 pub fn table_of(file: &ScenarioFile) -> Table {
     let point = file.body.point.iter().take(MOST_LISTED).cloned().collect();
+    let part = file.body.part.iter().take(MOST_LISTED).cloned().collect();
     let listed = ScenarioFile {
         gyrolab: None,
         title: file.title.clone(),
@@ -74,6 +78,7 @@ pub fn table_of(file: &ScenarioFile) -> Table {
         body: BodyFile {
             rim: file.body.rim.clone(),
             point,
+            part,
         },
         start: file.start.clone(),
         motion: file.motion.clone(),
@@ -142,10 +147,24 @@ fn length(table: &Table, array: &str) -> usize {
     elements.map_or(0, |elements| elements.len().min(MOST_LISTED))
 }
 
-fn point_names(table: &Table) -> Vec<String> {
-    let name = |index| find(table, &format!("body.point.{index}.name"))?.as_str();
-    let names = (0..length(table, "body.point")).filter_map(name);
-    names.map(str::to_owned).collect()
+/// The names of the points and parts that are listed.
+struct Names {
+    points: Vec<String>,
+    parts: Vec<String>,
+}
+
+impl Names {
+    fn of(table: &Table) -> Self {
+        let names = |array: &str| {
+            let name = |index| find(table, &format!("{array}.{index}.name"))?.as_str();
+            let names = (0..length(table, array)).filter_map(name);
+            names.map(str::to_owned).collect()
+        };
+        Self {
+            points: names("body.point"),
+            parts: names("body.part"),
+        }
+    }
 }
 
 /// The parameters of one key, at its `place` in `table`: none, one, or the three components of a vector.
@@ -153,14 +172,14 @@ fn rows(
     key: &'static Key,
     place: &str,
     table: &Table,
-    names: &[String],
+    names: &Names,
     scenario: &Scenario,
 ) -> Vec<Parameter> {
     let Some(lab) = key.lab.filter(|_| is_offered(place, table)) else {
         return Vec::new();
     };
     let written = find(table, place);
-    let unwritten = || present(key, scenario).or_else(|| lab.absent.value());
+    let unwritten = || present(key, place, table, scenario).or_else(|| lab.absent.value());
     let Some(value) = written.cloned().or_else(unwritten) else {
         return Vec::new();
     };
@@ -182,43 +201,14 @@ fn rows(
     }
 }
 
-/// The spin or momentum of the start, for a file that gives the start by the other one.
-fn present(key: &Key, scenario: &Scenario) -> Option<Value> {
-    let (body, state) = (&scenario.body.mechanics, &scenario.start);
-    match key.path {
-        "start.momentum_Js" => Some(start::vector(&state.momentum)),
-        "start.spin_rpm" => Some(start::rpm(start::spin_of(body, state)).into()),
-        "start.spin_rad_per_s" => Some(start::spin_of(body, state).into()),
-        _ => None,
-    }
-}
-
-/// Whether the key at `place` goes with the other keys of its table: a push has its times either in steps or in seconds.
-fn is_offered(place: &str, table: &Table) -> bool {
-    let Some((push, name)) = place
-        .rsplit_once('.')
-        .filter(|(push, _)| push.starts_with("push."))
-    else {
-        return true;
-    };
-    let is_in_seconds = ["from_s", "for_s"]
-        .iter()
-        .any(|name| find(table, &join(push, name)).is_some());
-    match name {
-        "first_step" | "steps" | "accumulates" => !is_in_seconds,
-        "from_s" | "for_s" => is_in_seconds,
-        _ => true,
-    }
-}
-
 fn group(place: &str, table: &Table) -> String {
     let names: Vec<&str> = place.split('.').collect();
     match names[..] {
         [_] => "scenario".to_owned(),
-        ["body", "point", index, ..] => {
-            let name = find(table, &format!("body.point.{index}.name")).and_then(Value::as_str);
-            name.map_or(format!("point {index}"), |name| {
-                format!("point {}", brief(name, 40))
+        ["body", kind @ ("point" | "part"), index, ..] => {
+            let name = find(table, &format!("body.{kind}.{index}.name")).and_then(Value::as_str);
+            name.map_or(format!("{kind} {index}"), |name| {
+                format!("{kind} {}", brief(name, 40))
             })
         }
         ["push", index, ..] => format!("push {index}"),
@@ -227,10 +217,11 @@ fn group(place: &str, table: &Table) -> String {
     }
 }
 
-fn choices(key: &Key, names: &[String]) -> Vec<String> {
+fn choices(key: &Key, names: &Names) -> Vec<String> {
     match (key.kind, key.path) {
         (Kind::OneOf(words), _) => words.iter().map(|&word| word.to_owned()).collect(),
-        (_, "trace" | "push.*.point") => names.to_vec(),
+        (_, "trace" | "push.*.point") => [&names.points[..], &names.parts].concat(),
+        (_, "start.rotor") => names.parts.clone(),
         _ => Vec::new(),
     }
 }

@@ -47,7 +47,10 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
         source: None,
         trace: old.trace.clone(),
         body: old.body.clone(),
-        start: start(state),
+        start: StartFile {
+            rotor: old.start.rotor.clone(),
+            ..start(state)
+        },
         motion: MotionFile {
             gravity_m_per_s2: Some(motion.gravity),
             scheme: Some(motion.scheme.name.to_owned()),

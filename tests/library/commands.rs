@@ -4,6 +4,7 @@
 
 use crate::support::desk::{Desk, commands};
 use crate::support::stage::{LARGE, SMALL, Stage};
+use gyrolab::export::layout::LayoutFile;
 use gyrolab::lab::Refusal;
 use gyrolab::lab::command::{self, COMMANDS, Command, Force, Place, PushChoice};
 use gyrolab::lab::view::step::Page;
@@ -116,12 +117,25 @@ fn a_command() -> impl Strategy<Value = Command> {
         Just(Place::Start),
         Just(Place::End),
     ];
-    let every = (1..1000u64).prop_map(|every| every.try_into().unwrap());
+    let layout = (1..1000u64, any::<[bool; 4]>(), a_number()).prop_map(
+        |(every, [cut, chosen, points, excel], from_s)| {
+            let names = ["t_s", "z_m"].map(str::to_owned).to_vec();
+            let file = LayoutFile {
+                every: every.try_into().ok(),
+                from_s: cut.then_some(from_s.abs()),
+                to_s: cut.then_some(from_s.abs() + 1.0),
+                columns: chosen.then_some(names),
+                points,
+                excel,
+            };
+            file.check().unwrap()
+        },
+    );
     let to_step = || prop::option::of(1..1_000_000u64);
     let file = || (a_name(), to_step(), any::<bool>());
-    let export = (file(), every).prop_map(|((path, to_step, force), every)| Command::Export {
+    let export = (file(), layout).prop_map(|((path, to_step, force), layout)| Command::Export {
         path,
-        every,
+        layout,
         to_step,
         force,
     });

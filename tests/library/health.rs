@@ -3,7 +3,7 @@
 use crate::support::dice::Dice;
 use crate::support::scenarios::{find_scheme, parse, preset};
 use crate::support::stage::{SMALL, Stage};
-use gyrolab::analysis::health::{Advice, BELIEVED_WITHIN, Health, Picture, advise};
+use gyrolab::analysis::health::{Advice, BELIEVED_WITHIN, Health, Picture, advise, advise_while};
 use gyrolab::analysis::remarks::remarks;
 use gyrolab::analysis::{Monitor, Trial};
 use gyrolab::physics::scheme::SCHEMES;
@@ -12,6 +12,7 @@ use gyrolab::run::{Simulation, Truth};
 use gyrolab::scenario::presets::PRESETS;
 use gyrolab::scenario::{Document, Scenario, rescale};
 use rayon::prelude::*;
+use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -695,4 +696,24 @@ fn the_lab_says_why_there_is_no_drift() {
     let mut stage = Stage::open("method-2", &set, SMALL);
     stage.press(".").shows("E drift  no scale");
     stage.shows("energy n/a: no scale");
+}
+
+#[test]
+fn a_search_for_advice_that_nobody_waits_for_any_more_ends() {
+    let scenario = preset("method-2", &[]);
+    let asked = Cell::new(0);
+    let wanted_for = |times: u32| {
+        asked.set(0);
+        let is_wanted = || {
+            asked.set(asked.get() + 1);
+            asked.get() <= times
+        };
+        (advise_while(&scenario, &is_wanted), asked.get())
+    };
+    let (advice, whole) = wanted_for(u32::MAX);
+    assert_eq!(advice, Some(advise(&scenario)));
+    let (advice, asked) = wanted_for(2);
+    assert_eq!(advice, None);
+    // Each trial that is left is given up at its first look.
+    assert!(asked < 40 && asked < whole / 4, "{asked} of {whole}");
 }

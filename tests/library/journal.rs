@@ -1,12 +1,13 @@
 //! A run is a scenario and its journal: what an edit at a step changes, from which step on, and what it does not change.
 
 use crate::support::scenarios::parse;
-use gyrolab::export::{CsvWriter, stream};
+use gyrolab::export::{CsvWriter, Layout, stream};
 use gyrolab::physics::workings::Value;
 use gyrolab::physics::{Loads, SchemeInfo};
 use gyrolab::run::{Sample, Simulation};
 use gyrolab::scenario::Document;
 use std::fmt::Write;
+use std::num::NonZeroU64;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -343,11 +344,12 @@ fn the_azimuth_counts_every_turn_however_few_rows_there_are() {
             .and_then(|document| document.scenario())
             .unwrap();
         let mut simulation = Simulation::new(Arc::new(scenario));
-        let mut csv = CsvWriter::new(Vec::new(), simulation.scenario()).unwrap();
+        let layout = Layout::every(NonZeroU64::new(every).unwrap());
+        let scenario = Arc::clone(simulation.scenario());
+        let mut csv = CsvWriter::with_layout(Vec::new(), &scenario, layout).unwrap();
         stream::play(
             &mut simulation,
             4000,
-            every,
             Some(&mut csv),
             |_| {},
             |_| ControlFlow::Continue(()),

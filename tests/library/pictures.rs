@@ -85,6 +85,7 @@ fn undivided(run: &LiveRun, view: &View) -> Detail {
         curve: Curve::Tilt,
         begin_s: long.begin_s,
         window_s: long.window_s,
+        is_snapshot: false,
     }
 }
 
@@ -228,6 +229,7 @@ fn fast_and_slow_motion_are_both_seen() {
         curve: Curve::Tilt,
         begin_s: 20.0,
         window_s: 20.0,
+        is_snapshot: false,
     };
     let panes = |size| {
         drawn(
@@ -281,6 +283,8 @@ fn a_push_that_acts_is_an_arrow() {
                 view,
                 reading: None,
                 explained: None,
+                ghost: None,
+                pinned: None,
             },
             ROUND,
         );
@@ -297,6 +301,8 @@ fn a_push_that_acts_is_an_arrow() {
                 view,
                 reading: None,
                 explained: None,
+                ghost: None,
+                pinned: None,
             },
             ROUND
         )
@@ -420,6 +426,8 @@ fn the_nearer_mass_is_drawn_over_the_farther_one() {
             view,
             reading: None,
             explained: None,
+            ghost: None,
+            pinned: None,
         };
         let picture = drawn(pane, (60, 24));
         // The legend has these signs too.
@@ -692,7 +700,8 @@ proptest! {
         let inside = Rect::new(3, 3, width, height);
         let read = Reading::new(&mut now, &Pace::new(1.0, false));
         let (run, view, ghost, reading) = (&now, &view, Some(&ghost), Some(&read));
-        let detail = &Detail { curve: Curve::Tilt, begin_s, window_s: share * window_s };
+        let window = share * window_s;
+        let detail = &Detail { curve: Curve::Tilt, begin_s, window_s: window, is_snapshot: false };
         for pane in 0..3 {
             let mut buf = Buffer::filled(around, Cell::new("#"));
             match pane {
@@ -710,6 +719,8 @@ proptest! {
                     view,
                     reading,
                     explained: None,
+                    ghost: None,
+                    pinned: None,
                 }.render(inside, &mut buf),
             }
             for position in around.positions().filter(|position| !inside.contains(*position)) {

@@ -285,6 +285,71 @@ fn every_figure_in_the_texts_is_that_of_the_run() {
     figure("wobble-push", "true one is ", 100.0 * swing / 0.8, 2, " %");
 }
 
+/// When the tilt of the preset `name` first comes back to a turning point of the kind it began at, and when it first
+/// reaches the other kind, s: by a parabola through the three rows around each.
+fn turning_points_s(name: &str, set: &[&str]) -> Vec<f64> {
+    let scenario = preset_named(name, set);
+    let dt = scenario.motion.time_step_s;
+    let steps = scenario.steps;
+    let mut simulation = Simulation::new(Arc::new(scenario));
+    let mut tilts = vec![simulation.sample().tilt_deg];
+    for _ in 0..steps {
+        simulation.step().unwrap();
+        tilts.push(simulation.sample().tilt_deg);
+    }
+    let turns = tilts.windows(3).enumerate().filter_map(|(index, rows)| {
+        let (before, after) = (rows[0] - rows[1], rows[2] - rows[1]);
+        let offset = 0.5 * (before - after) / (before + after);
+        (before * after > 0.0).then_some((index as f64 + 1.0 + offset) * dt)
+    });
+    turns.collect()
+}
+
+#[test]
+fn the_figures_of_the_free_bodies_are_those_of_their_runs() {
+    let nut = turning_points_s("wing-nut", &[]);
+    figure("wing-nut", "turns over every ", nut[0], 3, " s");
+    figure("wing-nut", "all at once: every ", nut[0], 3, " s");
+    let brick = turning_points_s("poinsot", &[]);
+    figure("poinsot", "from L, once in ", brick[1], 3, " s");
+    let brick = readouts("poinsot");
+    let least = brick.number("measured_lowest_tilt_deg").unwrap();
+    figure("poinsot", "between 40 and ", least, 2, " degrees");
+    let caught = readouts_of(preset_named("phone", &["motion.steps=500"]));
+    let edge = caught.number("tilt_deg").unwrap();
+    figure("phone", "screen at ", edge, 2, " degrees");
+    let pass = readouts("rugby-pass");
+    // Free of forces the axle goes round L at |L|/I1, which theory gives about that axis.
+    let about_momentum = pass.theory.unwrap().precession.unwrap();
+    figure(
+        "rugby-pass",
+        "line of L once in ",
+        TAU / about_momentum,
+        3,
+        " s",
+    );
+    let spin = pass.number("spin_rpm").unwrap() * TAU / 60.0;
+    figure(
+        "rugby-pass",
+        "0.164 s, ",
+        about_momentum / spin,
+        2,
+        " times for each turn",
+    );
+    let earth = readouts("earth");
+    let rate = -earth.number("measured_precession_rad_per_s").unwrap();
+    figure("earth", "backwards, once in ", TAU / rate, 2, " s");
+    figure(
+        "earth",
+        "stays at ",
+        earth.number("tilt_deg").unwrap(),
+        3,
+        " degrees",
+    );
+    // 36 525 days of a century in a second.
+    figure("earth", "it would last ", 1e6 / 36525.0, 0, " millionths");
+}
+
 #[test]
 fn the_figures_in_the_texts_are_those_of_the_runs() {
     let swing = |name: &str| {

@@ -276,7 +276,7 @@ fn csv(simulation: &mut Simulation) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut writer = CsvWriter::new(&mut bytes, simulation.scenario()).unwrap();
     let watch = |_: &stream::Progress| ControlFlow::Continue(());
-    stream::play(simulation, 300, 1, Some(&mut writer), |_| (), watch).unwrap();
+    stream::play(simulation, 300, Some(&mut writer), |_| (), watch).unwrap();
     writer.finish().unwrap();
     bytes
 }

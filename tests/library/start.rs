@@ -5,6 +5,7 @@ use gyrolab::physics::observables::{angular_velocity, tilt_deg};
 use gyrolab::physics::rotation;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
+use gyrolab::work::Parameter;
 use gyrolab::work::parameters::{changed, parameters, table_of};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
@@ -333,4 +334,248 @@ proptest! {
             Err(problems) => prop_assert!(!problems.to_string().contains("NaN") && !problems.to_string().contains("inf "), "{}", problems),
         }
     }
+}
+
+#[test]
+fn an_angular_velocity_makes_the_momentum() {
+    let omega_told = Vector3::new(1.0, -2.0, 30.0);
+    let world = ring("tilt_deg = 40\nturn_deg = 10\nomega_rad_per_s = [1, -2, 30]");
+    assert!((omega(&world) - omega_told).amax() < 1e-13);
+    let body =
+        ring("tilt_deg = 40\nturn_deg = 10\nomega_rad_per_s = [1, -2, 30]\nomega_frame = 'body'");
+    assert!((omega(&body) - body.start.orientation * omega_told).amax() < 1e-13);
+    // I1 = 6.6, I3 = 3.2 kg m².
+    let in_body = body.start.orientation.tr_mul(&body.start.momentum);
+    assert!((in_body - Vector3::new(6.6, -13.2, 96.0)).amax() < 1e-12);
+    // A spin is the angular velocity along the axle.
+    let spun = ring("tilt_deg = 40\nspin_rad_per_s = 20");
+    let told = ring("tilt_deg = 40\nomega_rad_per_s = [0, 0, 20]\nomega_frame = 'body'");
+    assert!((told.start.momentum - spun.start.momentum).amax() < 1e-13);
+}
+
+#[test]
+fn one_way_of_telling_the_momentum_is_enough() {
+    const OMEGA: &str = "omega_rad_per_s = [0, 0, 1]";
+    let cases = [
+        (
+            format!("{OMEGA}\nspin_rpm = 3"),
+            "start.omega_rad_per_s ([0.0, 0.0, 1.0]) is given beside spin_rpm: keep one of the two",
+        ),
+        (
+            format!("{OMEGA}\nspin_rad_per_s = 3"),
+            "is given beside spin_rad_per_s",
+        ),
+        (
+            format!("{OMEGA}\nmomentum_Js = [0, 0, 1]"),
+            "is given beside momentum_Js",
+        ),
+        (
+            format!("{OMEGA}\nmomentum_frame = 'body'"),
+            "start.momentum_frame: goes with momentum_Js, and omega_rad_per_s is given: leave it out",
+        ),
+        (
+            format!("{OMEGA}\nsteady = true"),
+            "start.steady (true) goes with a spin: give spin_rpm or spin_rad_per_s instead of omega_rad_per_s",
+        ),
+        (
+            "spin_rpm = 3\nomega_frame = 'body'".to_owned(),
+            "start.omega_frame: goes with omega_rad_per_s, and spin_rpm is given",
+        ),
+    ];
+    for (start, wanted) in cases {
+        let told = refusal(&start);
+        assert!(told.contains(wanted), "{start}\n{told}");
+    }
+}
+
+#[test]
+fn the_editor_keeps_the_way_in_which_the_start_is_told() {
+    let scenario = ring("tilt_deg = 40\nomega_rad_per_s = [1, -2, 30]\nomega_frame = 'body'");
+    let listed = parameters(&table_of(&scenario.file), &scenario);
+    let shown = |key: &str| {
+        listed
+            .iter()
+            .find(|row| row.key == key)
+            .map(Parameter::shown)
+    };
+    assert_eq!(shown("start.omega_rad_per_s.2").as_deref(), Some("30"));
+    assert_eq!(shown("start.omega_frame").as_deref(), Some("body"));
+    // Its own numbers, and those of the body, change nothing of that.
+    let faster = changed(
+        &scenario.file,
+        "start.omega_rad_per_s.2",
+        Value::Float(60.0),
+    )
+    .unwrap();
+    assert_eq!(faster.file.start.omega_rad_per_s, Some([1.0, -2.0, 60.0]));
+    let wider = changed(&scenario.file, "body.rim.radius_m", Value::Float(1.6)).unwrap();
+    assert_eq!(wider.file.start, scenario.file.start);
+    assert!(wider.start.momentum.norm() > 3.0 * scenario.start.momentum.norm());
+    // Another way to tell it takes its place, and says what was there.
+    let momentum = changed(&scenario.file, "start.momentum_Js.0", Value::Float(0.0)).unwrap();
+    assert_eq!(momentum.file.start.omega_rad_per_s, None);
+    assert_eq!(momentum.file.start.omega_frame, None);
+    assert_eq!(momentum.start.momentum.yz(), scenario.start.momentum.yz());
+    let spun = changed(&scenario.file, "start.spin_rpm", Value::Float(60.0)).unwrap();
+    assert_eq!(spun.file.start.omega_rad_per_s, None);
+    let steady = changed(&scenario.file, "start.steady", Value::Boolean(true)).unwrap();
+    assert_eq!(
+        steady
+            .file
+            .start
+            .spin_rad_per_s
+            .map(|spin| (spin - 30.0).abs() < 1e-12),
+        Some(true)
+    );
+    // And the other way round.
+    let told = changed(&spun.file, "start.omega_rad_per_s.0", Value::Float(0.5)).unwrap();
+    let told = told.file.start.omega_rad_per_s.unwrap();
+    assert!((Vector3::from(told) - Vector3::new(0.5, 0.0, 0.0)).x == 0.0);
+    assert!((told[1].hypot(told[2]) - TAU).abs() < 1e-12);
+    let framed = changed(&spun.file, "start.omega_frame", Value::from("body")).unwrap();
+    let in_body = Vector3::from(framed.file.start.omega_rad_per_s.unwrap());
+    assert!(
+        (in_body - Vector3::new(0.0, 0.0, TAU)).amax() < 1e-13,
+        "{in_body}"
+    );
+}
+
+/// A ring that spins in a frame: a hoop of another plane does not, and both are on an axle of 2 kg.
+fn gyroscope(start: &str) -> String {
+    format!(
+        "title = 'x'\n[[body.point]]\nname = 'top'\nat_m = [0, 0, 0.3]\n\
+         [[body.part]]\nshape = 'cylinder'\nname = 'wheel'\nmass_kg = 1\nat_m = [0, 0, 0.2]\nradius_m = 0.1\n\
+         [[body.part]]\nshape = 'shell'\nname = 'cage'\nmass_kg = 0.5\nat_m = [0, 0, 0.2]\nradius_m = 0.12\n\
+         [[body.part]]\nshape = 'rod'\nname = 'axle'\nmass_kg = 0.1\nat_m = [0, 0, 0.2]\nlength_m = 0.4\n\
+         [start]\n{start}\n[motion]\nscheme = 'exact'\ntime_step_s = 0.01\nsteps = 300\n"
+    )
+}
+
+/// Moment about the axle of the wheel of [`gyroscope`], kg m².
+const WHEEL: f64 = 0.5 * 0.01;
+
+#[test]
+fn a_rotor_has_the_spin_and_the_rest_has_none() {
+    let spun = parse(&gyroscope(
+        "tilt_deg = 30\nspin_rpm = 3000\nrotor = 'wheel'",
+    ));
+    let spin = 3000.0 * TAU / 60.0;
+    let momentum = WHEEL * spin * spun.start.axle();
+    assert!((spun.start.momentum - momentum).amax() < 1e-14);
+    assert!((spun.rotor.unwrap() - WHEEL).abs() < 1e-17);
+    assert!((spun.spin_rad_per_s(&spun.start) - spin).abs() < 1e-11);
+    let listed = parameters(&table_of(&spun.file), &spun);
+    let row = listed.iter().find(|row| row.key == "start.rotor").unwrap();
+    assert_eq!((row.shown().as_str(), row.choices.len()), ("wheel", 3));
+    // The same L told as it is: the spin that the list shows is the rotor's.
+    let told = parse(&gyroscope(
+        "tilt_deg = 30\nmomentum_Js = [0, 0, 1]\nmomentum_frame = 'body'\nrotor = 'wheel'",
+    ));
+    let listed = parameters(&table_of(&told.file), &told);
+    let rate = listed
+        .iter()
+        .find(|row| row.key == "start.spin_rad_per_s")
+        .unwrap();
+    assert!((rate.value.as_float().unwrap() - 1.0 / WHEEL).abs() < 1e-9);
+    // And by an angular velocity: along the axle it is the rotor's, across it that of all that tilts.
+    let told = parse(&gyroscope("omega_rad_per_s = [2, 0, 100]\nrotor = 'wheel'"));
+    let across = told.body.mechanics.inertia()[(0, 0)];
+    assert!((told.start.momentum - Vector3::new(2.0 * across, 0.0, 100.0 * WHEEL)).amax() < 1e-14);
+}
+
+#[test]
+fn a_rotor_precesses_by_its_momentum_alone() {
+    // Steady: I1 cos(tilt) w² − C spin w + M g c = 0 with the wheel's C and the I1 and M c of all of it.
+    let steady = parse(&gyroscope(
+        "tilt_deg = 30\nspin_rpm = 6000\nrotor = 'wheel'\nsteady = true",
+    ));
+    assert!(tilt_swing_deg(steady.clone()) < 1e-9);
+    let body = &steady.body.mechanics;
+    let (across, load) = (body.inertia()[(0, 0)], 9.8 * body.first_moment().z);
+    let (cosine, spin) = (30.0_f64.to_radians().cos(), 6000.0 * TAU / 60.0);
+    let rate =
+        omega(&steady).dot(&Vector3::z()) - omega(&steady).dot(&steady.start.axle()) * cosine;
+    let rate = rate / 30.0_f64.to_radians().sin().powi(2);
+    let rest = across * cosine * rate * rate - WHEEL * spin * rate + load;
+    assert!(rest.abs() < 1e-9 * load, "{rest}");
+    assert!((rate / (load / (WHEEL * spin)) - 1.0).abs() < 0.1);
+    // The run from here on keeps the rotor.
+    let state = steady.start;
+    let again = gyrolab::work::restart::scenario_from(&steady, &state, 0).unwrap();
+    assert_eq!(again.rotor, steady.rotor);
+    assert!(again.rotor.is_some());
+}
+
+#[test]
+fn what_cannot_be_a_rotor_is_refused() {
+    let told = |text: &str| read(text).unwrap_err().to_string();
+    let start = "spin_rpm = 3000\nrotor = 'wheel'";
+    let good = gyroscope(start);
+    let cases = [
+        (
+            gyroscope("spin_rpm = 3000\nrotor = 'weel'"),
+            "start.rotor (\"weel\") is no part of this body: did you mean wheel?",
+        ),
+        (
+            gyroscope("spin_rpm = 3000\nrotor = 'top'"),
+            "start.rotor (\"top\") is no part of this body",
+        ),
+        (
+            gyroscope("spin_rpm = 3000\nrotor = 'axle'"),
+            "has no moment about the axle",
+        ),
+        (
+            good.replace("at_m = [0, 0, 0.3]", "at_m = [0.1, 0, 0.3]\nmass_kg = 1"),
+            "needs a body that is symmetric about its axle, and this one is lopsided",
+        ),
+        (
+            good.replace("radius_m = 0.1\n", "radius_m = 0.1\naxis = [1, 0, 0]\n"),
+            "lopsided",
+        ),
+        (
+            good.replace("shape = 'cylinder'", "shape = 'ball'")
+                .replace("radius_m = 0.1\n", "radius_m = 0.1\naxis = [1, 0, 0]\n"),
+            "must have its axis along the axle, [0, 0, 1]",
+        ),
+    ];
+    for (text, wanted) in cases {
+        let told = told(&text);
+        assert!(told.contains(wanted), "{text}\n{told}");
+    }
+    // Two rods crossed are even, one of them is not; two balls are even about the axle, each of them is off it.
+    let crossed = |a: &str, b: &str| {
+        gyroscope("spin_rpm = 3000\nrotor = 'one'").replace("[start]", &format!("{a}{b}[start]"))
+    };
+    let block = |name: &str, size: &str| {
+        format!(
+            "[[body.part]]\nshape = 'block'\nname = '{name}'\nmass_kg = 1\nat_m = [0, 0, 0.2]\nsize_m = {size}\n"
+        )
+    };
+    let uneven = crossed(
+        &block("one", "[0.1, 0.2, 0]"),
+        &block("two", "[0.2, 0.1, 0]"),
+    );
+    assert!(
+        told(&uneven).contains("must be symmetric about its axis"),
+        "{}",
+        told(&uneven)
+    );
+    let ball = |name: &str, x: f64, y: f64| {
+        format!(
+            "[[body.part]]\nshape = 'ball'\nname = '{name}'\nmass_kg = 1\nat_m = [{x}, {y}, 0.2]\nradius_m = 0.05\n"
+        )
+    };
+    let four = [
+        ball("one", 0.1, 0.0),
+        ball("two", -0.1, 0.0),
+        ball("three", 0.0, 0.1),
+        ball("four", 0.0, -0.1),
+    ]
+    .concat();
+    let off = crossed(&four, "");
+    assert!(
+        told(&off).contains("must have its centre on the axle"),
+        "{}",
+        told(&off)
+    );
 }

@@ -177,7 +177,7 @@ fn the_numbers_of_a_step_are_those_of_a_hand() {
     let mut run = Simulation::new(Arc::clone(&scenario));
     let mut csv = CsvWriter::new(Vec::new(), &scenario).unwrap();
     let watch = |_: &stream::Progress| ControlFlow::Continue(());
-    stream::play(&mut run, 1, 1, Some(&mut csv), |_| (), watch).unwrap();
+    stream::play(&mut run, 1, Some(&mut csv), |_| (), watch).unwrap();
     let text = String::from_utf8(csv.finish().unwrap()).unwrap();
     let row: Vec<f64> = text
         .lines()

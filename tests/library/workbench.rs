@@ -29,6 +29,42 @@ fn pictures_of_the_lab() {
 }
 
 #[test]
+fn every_preset_at_first_sight() {
+    for preset in PRESETS {
+        let sizes = [SMALL, LARGE].map(|size| picture(preset.name, size, 6.0, ""));
+        insta::assert_snapshot!(format!("first_sight_{}", preset.name), sizes.join("\n"));
+    }
+}
+
+#[test]
+fn a_strip_that_stands_still_at_high_speed_says_so() {
+    for size in [SMALL, Rect::new(0, 0, 120, 40), LARGE] {
+        let mut stage = Stage::open("wobble-push", &[], size);
+        stage.wait(4.0).shows_no("still");
+        let mut stage = Stage::open(
+            "wobble-push",
+            &["view.speed=1000", "motion.steps=1000000"],
+            size,
+        );
+        stage.wait(4.0).shows("still");
+        stage.commands("pause = true").shows_no("still");
+    }
+}
+
+#[test]
+fn frames_a_second_are_chosen_by_a_key() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    let mut rates = Vec::new();
+    for _ in 0..6 {
+        stage.press("F").shows("frames a second at most");
+        rates.push(stage.lab.view().fps);
+    }
+    assert_eq!(rates, [30, 2, 5, 10, 15, 30]);
+    stage.lab.set_fps(12);
+    stage.press("F").shows("15 frames a second at most");
+}
+
+#[test]
 fn pictures_of_what_lies_on_top() {
     insta::assert_snapshot!("help_small", picture("method-2", SMALL, 1.0, "?"));
     insta::assert_snapshot!("help_large", picture("method-2", LARGE, 1.0, "?"));

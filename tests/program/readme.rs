@@ -1,4 +1,4 @@
-//! The files and messages that the README shows are what the program takes and says.
+//! The files and messages that the README and the manual show are what the program takes and says.
 
 use crate::support::ground::Ground;
 
@@ -21,6 +21,28 @@ fn block(kind: &str, word: &str) -> String {
     found.remove(0)
 }
 
+/// The lines of the manual's topic around the one that is `line`, as far as they are indented as it is.
+#[track_caller]
+fn example(topic: &str, line: &str) -> String {
+    let ground = Ground::new();
+    let manual = said(&ground.run(&["man", topic]).stdout);
+    let at = manual
+        .lines()
+        .position(|it| it.trim_start().starts_with(line));
+    let lines: Vec<_> = manual.lines().collect();
+    let at = at.unwrap_or_else(|| panic!("{topic} has no line {line}: {manual}"));
+    let indent = lines[at].len() - lines[at].trim_start().len();
+    assert!(indent > 0, "{line} is no example");
+    let is_part = |text: &&&str| text.is_empty() || text.starts_with(&" ".repeat(indent));
+    let above = lines[..at].iter().rev().take_while(is_part).count();
+    let below = lines[at..].iter().take_while(is_part).count();
+    let shown = &lines[at - above..at + below];
+    shown
+        .iter()
+        .map(|text| text.get(indent..).unwrap_or_default().to_owned() + "\n")
+        .collect()
+}
+
 fn said(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
@@ -28,7 +50,7 @@ fn said(bytes: &[u8]) -> String {
 #[test]
 fn the_file_of_commands_can_be_played_again() {
     let ground = Ground::new();
-    ground.write("demo.toml", &block("toml", "[[do]]"));
+    ground.write("demo.toml", &example("lab", "[[do]]"));
     for _ in 0..2 {
         let shown = ground.run(&["show", "--do", "demo.toml"]);
         assert!(shown.status.success(), "{}", said(&shown.stderr));
@@ -52,11 +74,29 @@ fn the_scenario_is_good_and_its_mistakes_are_told_as_shown() {
     assert_eq!(shown, format!("$ gyrolab check my.toml\n{told}"));
 }
 
+/// The picture at the README's head is what its command draws, to the byte.
+#[test]
+fn the_picture_is_what_its_command_draws() {
+    let ground = Ground::new();
+    let readme = include_str!("../../README.md");
+    let command = readme.split("`gyrolab ").nth(1).unwrap();
+    let command = command.split('`').next().unwrap();
+    let args: Vec<_> = command.split_whitespace().collect();
+    assert_eq!(
+        (args[0], args[args.len() - 1]),
+        ("figure", "wobble-push.svg")
+    );
+    let drawn = ground.run(&args);
+    assert!(drawn.status.success(), "{}", said(&drawn.stderr));
+    let shown = include_str!("../../presets/figures/wobble-push.svg");
+    assert_eq!(ground.read("wobble-push.svg"), shown);
+}
+
 #[test]
 fn the_steady_start_is_steady() {
     let ground = Ground::new();
     let scenario = block("toml", "title = ");
-    let tables = block("toml", "steady = true");
+    let tables = example("scenario", "steady = true");
     let (above, _) = scenario.split_once("[start]").unwrap();
     ground.write("my.toml", &(above.to_owned() + &tables));
     let run = ground.run(&["run", "my.toml", "--json"]);
@@ -72,7 +112,7 @@ fn the_steady_start_is_steady() {
 #[test]
 fn the_settings_are_good_and_all_of_them_are_shown() {
     let ground = Ground::new();
-    ground.write("config.toml", &block("toml", "marker = "));
+    ground.write("config.toml", &example("lab", "marker = "));
     let read = gyrolab::storage::settings::read_config(&ground.file("config.toml"));
     assert_eq!(read.problems, None);
     let settings = read.settings;

@@ -39,12 +39,12 @@ fn what_was_chosen_is_there_at_the_next_start() {
     assert!(!is_ascii(&lab) && has_colours(&lab));
     lab.ask("mmm", "dots: ascii");
     lab.ask("c", "without colours");
+    lab.ask("F", "30 frames a second at most");
     lab.quit();
     let text = fs::read_to_string(remembered(&ground)).unwrap();
-    assert!(
-        text.contains("marker = \"ascii\"") && text.contains("colour = \"never\""),
-        "{text}"
-    );
+    for line in ["marker = \"ascii\"", "colour = \"never\"", "fps = 30"] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
     assert_eq!(ground.mode("state/gyrolab/settings.toml"), 0o600);
     for args in [&[][..], &["--resume"]] {
         let mut lab = match args {

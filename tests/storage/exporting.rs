@@ -2,9 +2,9 @@
 
 use crate::support::ground::names;
 use crate::support::scenarios::preset;
-use gyrolab::export::CsvWriter;
 use gyrolab::export::destination::DestinationError;
 use gyrolab::export::stream;
+use gyrolab::export::{CsvWriter, Layout};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
 use gyrolab::scenario::presets::PRESETS;
@@ -28,11 +28,12 @@ fn every(every: u64) -> NonZeroU64 {
 }
 
 fn bytes(scenario: &Arc<Scenario>, every: u64) -> Vec<u8> {
-    let mut csv = CsvWriter::new(Vec::new(), scenario).unwrap();
+    let layout = Layout::every(NonZeroU64::new(every).unwrap());
+    let mut csv = CsvWriter::with_layout(Vec::new(), scenario, layout).unwrap();
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let go_on = |_: &stream::Progress| ControlFlow::Continue(());
     let steps = scenario.steps;
-    stream::play(&mut simulation, steps, every, Some(&mut csv), |_| {}, go_on).unwrap();
+    stream::play(&mut simulation, steps, Some(&mut csv), |_| {}, go_on).unwrap();
     csv.finish().unwrap()
 }
 
@@ -47,7 +48,7 @@ fn wait(exporting: &mut Exporting) -> Result<Written, String> {
 }
 
 fn export(scenario: &Arc<Scenario>, path: &Path, n: u64, replace: bool) -> Result<Written, String> {
-    let begun = Exporting::begin(Arc::clone(scenario), path, every(n), replace);
+    let begun = Exporting::begin(Arc::clone(scenario), path, Layout::every(every(n)), replace);
     wait(&mut begun.map_err(|error| error.fact())?)
 }
 
@@ -72,7 +73,7 @@ fn the_file_is_the_one_that_run_writes() {
         let told = (written.rows, written.bytes, written.path);
         assert_eq!(
             told,
-            (rows, wanted.len() as u64, path),
+            (Some(rows), wanted.len() as u64, path),
             "{} {n}",
             preset.name
         );
@@ -107,7 +108,8 @@ fn the_estimate_of_no_rows_but_two_is_right() {
 fn it_reports_progress_and_leaves_no_file_when_cancelled() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
-    let mut exporting = Exporting::begin(endless(), &path, every(1000), false).unwrap();
+    let mut exporting =
+        Exporting::begin(endless(), &path, Layout::every(every(1000)), false).unwrap();
     while exporting.progress().0 == 0 {
         thread::sleep(Duration::from_millis(1));
     }
@@ -123,7 +125,7 @@ fn it_reports_progress_and_leaves_no_file_when_cancelled() {
 fn dropping_it_leaves_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
-    drop(Exporting::begin(endless(), &path, every(1000), false).unwrap());
+    drop(Exporting::begin(endless(), &path, Layout::every(every(1000)), false).unwrap());
     assert!(names(folder.path()).is_empty());
 }
 
@@ -133,7 +135,7 @@ fn a_file_that_is_there_is_told_of_and_replaced_only_when_asked() {
     let path = folder.path().join("run.csv");
     fs::write(&path, "old").unwrap();
     let scenario = scenario("cusps", &[]);
-    let refused = Exporting::begin(Arc::clone(&scenario), &path, every(1), false);
+    let refused = Exporting::begin(Arc::clone(&scenario), &path, Layout::every(every(1)), false);
     let error = refused.err().unwrap();
     assert!(matches!(error, DestinationError::Exists(_)));
     assert_eq!(error.fact(), format!("{} exists", path.display()));
@@ -147,7 +149,7 @@ fn one_that_comes_up_meanwhile_is_not_replaced() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
     let scenario = scenario("method-2", &["motion.steps=300000"]);
-    let mut exporting = Exporting::begin(scenario, &path, every(1), false).unwrap();
+    let mut exporting = Exporting::begin(scenario, &path, Layout::every(every(1)), false).unwrap();
     fs::write(&path, "other").unwrap();
     let error = wait(&mut exporting).unwrap_err();
     assert_eq!(error, format!("{} exists", path.display()));
@@ -179,7 +181,12 @@ fn what_cannot_be_written_is_refused_at_once_in_words() {
     ];
     for (path, words) in cases {
         for replace in [false, true] {
-            let refused = Exporting::begin(scenario("cusps", &[]), path, every(1), replace);
+            let refused = Exporting::begin(
+                scenario("cusps", &[]),
+                path,
+                Layout::every(every(1)),
+                replace,
+            );
             let fact = refused.err().unwrap().fact();
             assert!(fact.contains(words) && !fact.contains("--force"), "{fact}");
         }
@@ -200,7 +207,7 @@ fn the_rows_before_numbers_that_are_not_finite_are_kept() {
     assert!(fs::read(&path).unwrap() == bytes(&scenario, 7));
     let text = fs::read_to_string(&path).unwrap();
     let rows: Vec<_> = text.lines().filter(|line| !line.starts_with('#')).collect();
-    assert_eq!(written.rows, rows.len() as u64 - 1);
+    assert_eq!(written.rows, Some(rows.len() as u64 - 1));
     assert!(
         rows.last()
             .unwrap()
@@ -210,7 +217,8 @@ fn the_rows_before_numbers_that_are_not_finite_are_kept() {
 
 #[test]
 fn a_dash_is_a_file_in_the_lab() {
-    let exporting = Exporting::begin(endless(), Path::new("-"), every(1000), false).unwrap();
+    let exporting =
+        Exporting::begin(endless(), Path::new("-"), Layout::every(every(1000)), false).unwrap();
     let is_part = |name: &String| name.starts_with(".gyrolab-") && name.ends_with(".part");
     assert!(names(Path::new(".")).iter().any(is_part));
     drop(exporting);
@@ -226,7 +234,12 @@ fn child() {
         return;
     };
     let folder = Path::new(&folder);
-    let exporting = Exporting::begin(endless(), &folder.join("run.csv"), every(1000), false);
+    let exporting = Exporting::begin(
+        endless(),
+        &folder.join("run.csv"),
+        Layout::every(every(1000)),
+        false,
+    );
     let mut exporting = exporting.unwrap();
     at_exit::run_hooks(Release::Suspend);
     let (step, _) = exporting.progress();

@@ -6,6 +6,7 @@ use crate::figure::curve;
 use crate::figure::of_runs::Drawn;
 use crate::figure::scene::{Color, Pen, Point, Scene};
 use nalgebra::Vector3;
+use std::collections::HashSet;
 
 /// Degrees of depth.
 const DEPTHS: usize = 6;
@@ -16,15 +17,15 @@ const FARTHEST_WHITE: f64 = 0.58;
 impl Space {
     /// The paths, the farthest parts first.
     pub(super) fn paths(&self, drawn: &[Drawn], scene: &mut Scene) {
-        let paths: Vec<Vec<(Point, f64)>> = drawn
+        let paths: Vec<Vec<Vec<(Point, f64)>>> = drawn
             .iter()
             .map(|drawn| {
                 let boxed = drawn.course.path.iter().map(|point| self.boxed(point));
                 let place = |boxed: Vector3<f64>| (self.place(&boxed), self.camera.depth(&boxed));
-                boxed.map(place).collect()
+                fresh(boxed.map(place).collect())
             })
             .collect();
-        let depths = || paths.iter().flatten().map(|(_, depth)| *depth);
+        let depths = || paths.iter().flatten().flatten().map(|(_, depth)| *depth);
         let (near, far) = (
             depths().fold(f64::INFINITY, f64::min),
             depths().fold(f64::NEG_INFINITY, f64::max),
@@ -44,11 +45,49 @@ impl Space {
                     dash_pt: drawn.style.dash_pt.to_vec(),
                     ..round(width, color)
                 };
-                let pieces = pieces(path, |depth| degree(depth) == nearness);
+                let parts = path
+                    .iter()
+                    .map(|path| pieces(path, |depth| degree(depth) == nearness));
+                let pieces: Vec<_> = parts.flatten().collect();
                 curve::put(&pieces, &pen, None, scene);
             }
         }
     }
+}
+
+/// From so many points on, a path leaves out the lines that it has drawn before.
+const MANY: usize = 50_000;
+/// Two points within a square of this side stand at one place, pt: a sixth of a line's width.
+const PLACE_PT: f64 = 0.1;
+
+/// `path` in pieces: where it has many points, without the lines between places that a line connects already.
+pub(super) fn fresh(path: Vec<(Point, f64)>) -> Vec<Vec<(Point, f64)>> {
+    if path.len() < MANY {
+        return vec![path];
+    }
+    let place = |point: &Point| [point.x, point.y].map(|length| (length / PLACE_PT).floor() as i32);
+    let mut drawn = HashSet::new();
+    let mut pieces = Vec::new();
+    let mut piece: Vec<(Point, f64)> = Vec::new();
+    for here in path {
+        let Some((last, _)) = piece.last() else {
+            piece.push(here);
+            continue;
+        };
+        let (from, to) = (place(last), place(&here.0));
+        if from == to {
+            continue;
+        }
+        if drawn.insert((from.min(to), from.max(to))) {
+            piece.push(here);
+        } else if piece.len() > 1 {
+            pieces.push(std::mem::replace(&mut piece, vec![here]));
+        } else {
+            piece[0] = here;
+        }
+    }
+    pieces.push(piece);
+    pieces
 }
 
 /// The pieces of a path of which `is_here` says so of the depth of their begin.
@@ -75,4 +114,31 @@ fn pieces(path: &[(Point, f64)], is_here: impl Fn(f64) -> bool) -> Vec<Vec<Point
 fn paler(color: Color, white: f64) -> Color {
     let mixed = |part: u8| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8;
     Color(color.0.map(mixed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::ink::at;
+
+    fn circle(points: usize) -> Vec<(Point, f64)> {
+        let angle = |number: usize| 0.01 * number as f64;
+        let place = |number| {
+            at(
+                50.0 * libm::cos(angle(number)),
+                50.0 * libm::sin(angle(number)),
+            )
+        };
+        (0..points).map(|number| (place(number), 0.0)).collect()
+    }
+
+    #[test]
+    fn a_path_is_drawn_over_itself_once() {
+        assert_eq!(fresh(circle(2000)), [circle(2000)]);
+        let pieces = fresh(circle(200_000));
+        let points: usize = pieces.iter().map(Vec::len).sum();
+        assert!(points < 20_000, "{points}");
+        // Nothing is missing of the first time around.
+        assert!(pieces[0].len() >= 600);
+    }
 }

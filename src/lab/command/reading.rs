@@ -2,16 +2,12 @@
 
 use super::write::map;
 use super::{Command, Force, Place, PushChoice};
-use crate::figure::Format;
 use crate::lab::numbers;
 use crate::scenario::keys::{self, Kind, Range};
 use crate::scenario::problem::nearest;
-use crate::scenario::screen::TRACES;
 use crate::scenario::{Problem, presets};
 use crate::work::expression::Expression;
 use crate::work::next_push::Toward;
-use std::num::NonZeroU64;
-use std::path::Path;
 use toml::{Table, Value};
 
 /// The largest number of repetitions by one command.
@@ -68,7 +64,7 @@ pub(super) fn number(range: Range, value: &Value) -> Result<f64, Vec<Problem>> {
     checked(Kind::Number(range), value).map(number_in)
 }
 
-fn line(value: &Value) -> Result<&str, Vec<Problem>> {
+pub(super) fn line(value: &Value) -> Result<&str, Vec<Problem>> {
     checked(Kind::Line, value).map(text_in)
 }
 
@@ -307,69 +303,33 @@ pub(super) fn wait(value: &Value) -> Read {
     }
 }
 
-fn flag(table: &Table, name: &str) -> Result<bool, Vec<Problem>> {
+pub(super) fn flag(table: &Table, name: &str) -> Result<bool, Vec<Problem>> {
     let read = |value: &Value| Ok(checked(Kind::Flag, value)?.as_bool());
     Ok(field(table, name, read)?.flatten().unwrap_or(false))
 }
 
 /// A whole number of `least` or more.
-fn whole(table: &Table, name: &str, least: i64) -> Result<Option<u64>, Vec<Problem>> {
+pub(super) fn whole(table: &Table, name: &str, least: i64) -> Result<Option<u64>, Vec<Problem>> {
     let read = |value: &Value| Ok(checked(Kind::Whole(least, i64::MAX), value)?.as_integer());
     let number = field(table, name, read)?.flatten();
     Ok(number.and_then(|number| u64::try_from(number).ok()))
 }
 
 /// The table that stands for a path alone.
-fn with_path(value: &Value) -> Value {
+pub(super) fn with_path(value: &Value) -> Value {
     match value {
         Value::String(_) => map([("path", value.clone())]),
         other => other.clone(),
     }
 }
 
-fn path(table: &Table, value: &Value) -> Result<String, Vec<Problem>> {
+pub(super) fn path(table: &Table, value: &Value) -> Result<String, Vec<Problem>> {
     match field(table, "path", |path| line(path).map(str::to_owned)) {
         Ok(Some(path)) => Ok(path),
         Ok(None) => missing("path", "is missing: the file"),
         Err(_) if value.is_str() => line(value).map(str::to_owned),
         Err(problems) => Err(problems),
     }
-}
-
-pub(super) fn export(value: &Value) -> Read {
-    let given = with_path(value);
-    let table = fields(&given, &["path", "every", "to_step", "force"])?;
-    let every = whole(table, "every", 1)?.and_then(NonZeroU64::new);
-    Ok(Command::Export {
-        path: path(table, value)?,
-        every: every.unwrap_or(NonZeroU64::MIN),
-        to_step: whole(table, "to_step", 1)?,
-        force: flag(table, "force")?,
-    })
-}
-
-pub(super) fn figure(value: &Value) -> Read {
-    let given = with_path(value);
-    let table = fields(&given, &["path", "kind", "exact", "to_step", "force"])?;
-    let kind = field(
-        table,
-        "kind",
-        |given| match crate::figure::kind::Kind::named(line(given)?) {
-            Ok(_) => line(given).map(str::to_owned),
-            Err(refusal) => wrong(given, refusal),
-        },
-    )?;
-    let path = path(table, value)?;
-    if let Err(refusal) = Format::of(Path::new(&path)) {
-        return wrong(value, refusal.to_string());
-    }
-    Ok(Command::Figure {
-        path,
-        kind: kind.unwrap_or_else(|| TRACES.to_owned()),
-        exact: flag(table, "exact")?,
-        to_step: whole(table, "to_step", 1)?,
-        force: flag(table, "force")?,
-    })
 }
 
 pub(super) fn save(value: &Value) -> Read {

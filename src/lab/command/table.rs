@@ -1,13 +1,14 @@
 //! The one table of commands: the name of each, its value, and what it does.
 
 use super::Command;
+use super::exporting::{export, figure};
 use super::looking::{
     bare, camera, cursor, detail, exact, fill, hide, look_at, magnify, next, phase, pin, point_at,
     show, since, speed, sum_to, window, zoom,
 };
 use super::reading::{
-    Read, chapter, count, export, figure, go_to, next_push, nudge, open, push, run_until, save,
-    set, step, told, wait,
+    Read, chapter, count, go_to, next_push, nudge, open, push, run_until, save, set, step, told,
+    wait,
 };
 use crate::scenario::Problem;
 use toml::Value;
@@ -64,7 +65,7 @@ pub static COMMANDS: &[Row] = &[
     row("chapter", "\"one line\"", "say this line; a recording (gyrolab cast) has a marker there", chapter),
     row("undo", "1", "take back so many of the things done last", |value| Ok(Command::Undo(count(value)?))),
     row("redo", "1", "bring so many of them again", |value| Ok(Command::Redo(count(value)?))),
-    row("export", "\"run.csv\", or { path = \"run.csv\", every = 10, force = true }", "write the run up to here, or to_step, as CSV; force replaces a file", export),
+    row("export", "\"run.csv\", or { path = \"run.csv\", every = 10, force = true }", "write the run up to here, or to_step, as CSV; force replaces a file; columns, from_s, to_s, points and excel are those of gyrolab run", export),
     row("figure", "\"run.pdf\", or { path = \"run.svg\", kind = \"above\", exact = true, force = true }", "draw the run up to here, or to_step; kind as in gyrolab figure, and the file's end says .svg, .pdf or .png", figure),
     row("save", "\"run.toml\", or { path = \"run.toml\", from_here = true, force = true }", "write the run up to here, or to_step, as a run file; from_here: the present state as a scenario", save),
     row("speed", "20 or \"top\"", "how fast the run is played, simulated seconds a second", speed),

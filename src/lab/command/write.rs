@@ -29,14 +29,12 @@ pub(super) fn written(command: &Command) -> (&'static str, Value) {
         Command::Redo(times) => ("redo", i64::from(*times).into()),
         Command::Export {
             path,
-            every,
+            layout,
             to_step,
             force,
         } => {
             let mut table = file_written(path, *to_step, *force);
-            if every.get() > 1 {
-                table.insert("every".to_owned(), large(every.get()));
-            }
+            table.extend(toml::Table::try_from(layout.file()).unwrap_or_default());
             ("export", short(table))
         }
         Command::Figure {

@@ -22,6 +22,9 @@ use theme::{Background, Theme};
 const LONGEST_SWEEP_S: f64 = 120.0;
 /// The panes of a bare screen, where none are chosen.
 const BARE: [Pane; 2] = [Pane::TRACES, Pane::FROM_ABOVE];
+/// Frames a second at most, where nothing is chosen, and those that the key goes through.
+pub const FPS: u32 = 15;
+const FRAME_RATES: [u32; 5] = [2, 5, 10, 15, 30];
 /// Degrees by which one press of an arrow turns the camera.
 const TURN_DEG: f64 = 10.0;
 
@@ -121,6 +124,9 @@ pub struct View {
     pub cursor: Option<u64>,
     /// Where the 3-D view is looked at from.
     pub camera: Camera,
+    /// Whether that direction was chosen by hand, a file or a command. One that was not is turned so that the axle is seen
+    /// aslant.
+    pub camera_is_chosen: bool,
     /// How much larger than the whole the round pictures are shown.
     pub zoom: Zoom,
     /// The panes that share the screen; if empty, as many as there is room for.
@@ -147,6 +153,8 @@ pub struct View {
     pub sheet: Option<Arc<Sheet>>,
     /// The first row of it that is shown; `None`: as its paragraph that is to be seen wants it.
     pub sheet_scrolled: Option<usize>,
+    /// Frames a second at most.
+    pub fps: u32,
     /// Whether the lab listens to the mouse; otherwise the terminal has it, to select text.
     pub mouse: bool,
     /// The panes that stand side by side on the screen, as it is now, while none fills it: from left to right, in the
@@ -169,6 +177,7 @@ impl View {
             magnified: 1.0,
             cursor: None,
             camera: Camera::default(),
+            camera_is_chosen: false,
             zoom: Zoom::default(),
             shown: Vec::new(),
             page: Page::default(),
@@ -182,6 +191,7 @@ impl View {
             beside: None,
             sheet: None,
             sheet_scrolled: None,
+            fps: FPS,
             mouse: true,
             side_by_side: panes.to_vec(),
         };
@@ -213,8 +223,14 @@ impl View {
             self.zoom = Zoom::of(zoom);
         }
         if let Some(camera) = file.camera {
-            self.camera = Camera::of(camera);
+            self.look_from(Camera::of(camera));
         }
+    }
+
+    /// Looks at the 3-D view from where `camera` is. The usual place is no choice.
+    pub fn look_from(&mut self, camera: Camera) {
+        self.camera_is_chosen = camera != Camera::default();
+        self.camera = camera;
     }
 
     /// The time that the traces show of the run of `scenario` while none is chosen by hand, s.
@@ -375,6 +391,13 @@ impl View {
         let mut camera = self.camera;
         camera.turn(yaw_deg, pitch_deg);
         camera
+    }
+
+    /// Changes to the next number of frames a second, the lowest after the highest; returns the message about it.
+    pub(super) fn next_frame_rate(&mut self) -> String {
+        let higher = FRAME_RATES.into_iter().find(|rate| *rate > self.fps);
+        self.fps = higher.unwrap_or(FRAME_RATES[0]);
+        format!("{} frames a second at most", self.fps)
     }
 
     /// Listens to the mouse, or leaves it to the terminal; returns the message about it.

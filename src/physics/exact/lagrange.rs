@@ -32,11 +32,12 @@
 //! Source: F. Klein and A. Sommerfeld, Ueber die Theorie des Kreisels, chapter VI; E. T. Whittaker, A Treatise on the
 //! Analytical Dynamics of Particles and Rigid Bodies, sections 71-72. The forms used here were derived afresh.
 
+use super::part::{Part, Sums};
 use super::phases;
-use super::theta::{Harmonics, Lattice, Parity, Wave, Zero};
+use super::theta::{Harmonics, Lattice, Parity, Zero};
 use super::turning::{Start, Turning};
+use crate::physics::trig::round;
 use crate::physics::workings::{Listener, Nobody};
-use core::f64::consts::TAU;
 use nalgebra::{Complex, Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 /// Closed-form motion of a heavy symmetric top about a fixed point, under a constant load on its axle.
@@ -58,16 +59,6 @@ pub struct LagrangeTop {
     alpha: Part,
     beta: Part,
     loaded: bool,
-}
-
-/// One Cayley-Klein parameter as a function of time.
-#[derive(Clone, Copy, Debug)]
-struct Part {
-    wave: Wave,
-    /// Value of the whole at the start divided by that of its sum.
-    amplitude: Complex<f64>,
-    /// Mean rotation with the body's extra spin, turns per second.
-    turns_per_s: f64,
 }
 
 impl LagrangeTop {
@@ -118,17 +109,36 @@ impl LagrangeTop {
 
     /// The same, with each phase told to `listener`.
     pub fn at_heard<L: Listener>(&self, t: f64, listener: &mut L) -> (Matrix3<f64>, Vector3<f64>) {
-        let (alpha, beta, spin) = self.parts_at(t);
+        let sums = self.sums_at(t);
+        let (alpha, beta) = sums.parameters();
         let norm2 = alpha.norm_sqr() + beta.norm_sqr();
         listener.hear(|| phases::parameters(t, [alpha, beta], norm2));
-        let level = spin * (2.0 * self.across / norm2);
-        let turn = self.vertical.as_ref() * Quaternion::new(alpha.re, beta.re, beta.im, alpha.im);
-        let orientation = rotation_matrix(&turn, 1.0 / norm2);
+        let (turn, orientation) = self.turned_by(alpha, beta, norm2);
         listener.hear(|| phases::orientation(&turn, &orientation));
+        let level = self.bracket(&sums) * (2.0 * self.across / norm2);
         let in_frame = Vector3::new(level.re, level.im, self.momentum_vertical);
         let momentum = self.vertical * in_frame;
         listener.hear(|| phases::momentum(&in_frame, &momentum));
         (orientation, momentum)
+    }
+
+    /// The orientation of [`at`](Self::at) without L, which takes half of the time.
+    pub fn orientation_at(&self, t: f64) -> Matrix3<f64> {
+        let (alpha, beta) = self.sums_at(t).parameters();
+        let norm2 = alpha.norm_sqr() + beta.norm_sqr();
+        self.turned_by(alpha, beta, norm2).1
+    }
+
+    /// The quaternion that alpha and beta make, as seen from the world, and its rotation matrix.
+    #[inline]
+    fn turned_by(
+        &self,
+        alpha: Complex<f64>,
+        beta: Complex<f64>,
+        norm2: f64,
+    ) -> (Quaternion<f64>, Matrix3<f64>) {
+        let turn = self.vertical.as_ref() * Quaternion::new(alpha.re, beta.re, beta.im, alpha.im);
+        (turn, rotation_matrix(&turn, 1.0 / norm2))
     }
 
     /// Time from one lowest tilt to the next, s. None where nothing returns: a free top, the separatrix, a body at rest.
@@ -150,10 +160,11 @@ impl LagrangeTop {
         (tilt(t.below_top, t.rise), tilt(t.reach, t.above_bottom))
     }
 
-    /// alpha, beta and alpha beta' - beta alpha' (of the body without extra spin), all short of one common real factor.
-    fn parts_at(&self, t: f64) -> (Complex<f64>, Complex<f64>, Complex<f64>) {
+    /// Both sums at `t` s after the start. Always inlined: what a caller does not use of them need not be stored.
+    #[inline(always)]
+    fn sums_at(&self, t: f64) -> Sums {
         let since = t + self.since_origin;
-        let cells = (since * self.lattice.per_period).round();
+        let cells = round(since * self.lattice.per_period);
         // A motion without a period has one cell, and its length must not enter: 0 * infinity is no number.
         let local = if cells == 0.0 {
             since
@@ -162,17 +173,22 @@ impl LagrangeTop {
         };
         let (a, b) = self.ordered(self.lattice.harmonics(local));
         let fraction = local * self.lattice.per_period;
-        let (turn_a, turn_b) = (
-            self.alpha.turned(t, fraction),
-            self.beta.turned(t, fraction),
-        );
-        let (value_a, value_b) = (self.alpha.wave.value(&a), self.beta.wave.value(&b));
+        Sums {
+            turns: [&self.alpha, &self.beta].map(|part| part.turned(t, fraction)),
+            values: [self.alpha.wave.value(&a), self.beta.wave.value(&b)],
+            harmonics: [a, b],
+        }
+    }
+
+    /// alpha beta' - beta alpha' (of the body without extra spin), short of the square of the common real factor.
+    fn bracket(&self, sums: &Sums) -> Complex<f64> {
+        let ([turn_a, turn_b], [value_a, value_b]) = (sums.turns, sums.values);
+        let [a, b] = &sums.harmonics;
         let (slope_a, slope_b) = (
-            self.alpha.wave.slope(&a, value_a),
-            self.beta.wave.slope(&b, value_b),
+            self.alpha.wave.slope(a, value_a),
+            self.beta.wave.slope(b, value_b),
         );
-        let spin = (turn_a * turn_b) * (value_a * slope_b - value_b * slope_a);
-        (turn_a * value_a, turn_b * value_b, spin)
+        (turn_a * turn_b) * (value_a * slope_b - value_b * slope_a)
     }
 
     /// Harmonics for alpha and beta: alpha can vanish at the bottom, beta at the top.
@@ -192,7 +208,8 @@ impl LagrangeTop {
         let (alpha, beta) = cayley_klein(start, turn);
         let (low, one) = (self.starts_low, Complex::new(1.0, 0.0));
         (self.alpha.amplitude, self.beta.amplitude) = (one, one);
-        let (sum_a, sum_b, bracket) = self.parts_at(0.0);
+        let sums = self.sums_at(0.0);
+        let ((sum_a, sum_b), bracket) = (sums.parameters(), self.bracket(&sums));
         let (odd, odd_sum, even, even_sum) = if low {
             (alpha, sum_a, beta, sum_b)
         } else {
@@ -214,23 +231,6 @@ impl LagrangeTop {
         } else {
             (even_amplitude, odd_amplitude)
         };
-    }
-}
-
-impl Part {
-    fn new(wave: Wave, extra_spin: f64) -> Self {
-        Self {
-            wave,
-            amplitude: Complex::new(1.0, 0.0),
-            turns_per_s: (wave.mean + extra_spin) / TAU,
-        }
-    }
-
-    /// Amplitude and rotation at `t` s after the start, `fraction` of a period from the nearest origin.
-    fn turned(&self, t: f64, fraction: f64) -> Complex<f64> {
-        let turns = self.turns_per_s * t;
-        let (sin, cos) = libm::sincos(TAU * (turns - turns.round()) + self.wave.lag * fraction);
-        self.amplitude * Complex::new(cos, sin)
     }
 }
 

@@ -8,6 +8,7 @@
 
 mod elliptic;
 mod lagrange;
+mod part;
 mod phases;
 mod scheme;
 mod taylor;
@@ -93,6 +94,15 @@ impl ExactMotion {
             time_s,
             orientation,
             momentum,
+        }
+    }
+
+    /// The orientation of [`at`](Self::at) alone, which the closed form has in half of the time.
+    #[inline]
+    pub fn orientation_at(&mut self, time_s: f64) -> Matrix3<f64> {
+        match &self.solution {
+            Solution::Closed(top) => top.orientation_at(time_s - self.begin_s),
+            Solution::Integrated(_) | Solution::None => self.at(time_s).orientation,
         }
     }
 

@@ -1,6 +1,7 @@
 //! The phases of a step of the report's scheme, with their numbers.
 
-use super::{LANES, Moments, Pair, Report, sums};
+use super::Report;
+use super::points::{Inertia, LANES, Moments, Pair};
 use crate::physics::rotation::AxisAngle;
 use crate::physics::workings::{Changes, Phase, Quantity, Table};
 use nalgebra::{Matrix3, Vector3};
@@ -39,14 +40,14 @@ impl Report {
         for (point, mass, [x, y, z], [_, _, _, xx, yy, zz, xy, xz, yz]) in self.each(&self.points) {
             table.add(point, [mass, x, y, z, xx, yy, zz, xy, xz, yz]);
         }
-        let sums = sums(&self.points);
+        let moments = Moments::of_all(&self.points);
         Phase::of(
             "inertia",
             "I = Σ m (|X|² E − X Xᵀ) = (Sxx + Syy + Szz) E − S, S = Σ m X Xᵀ",
             vec![
                 Quantity::new("X", "", table),
-                Quantity::new("S", "kg m²", sums.second_moment),
-                Quantity::new("I", "kg m²", self.inertia),
+                Quantity::new("S", "kg m²", moments.second()),
+                Quantity::new("I", "kg m²", self.inertia.matrix()),
             ],
         )
     }
@@ -106,7 +107,7 @@ impl Report {
 }
 
 pub(super) fn velocity_phase(
-    inertia: &Matrix3<f64>,
+    inertia: &Inertia,
     momentum: &Vector3<f64>,
     omega: &Vector3<f64>,
 ) -> Phase {
@@ -114,7 +115,7 @@ pub(super) fn velocity_phase(
         "angular velocity",
         "Ω = I⁻¹ L",
         vec![
-            Quantity::new("I", "kg m²", *inertia),
+            Quantity::new("I", "kg m²", inertia.matrix()),
             Quantity::new("L", "J s", *momentum),
             Quantity::new("Ω", "rad/s", *omega),
         ],

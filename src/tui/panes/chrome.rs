@@ -12,8 +12,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::{Clear, Widget};
 
-/// Columns without which a title is none.
-const LEAST_TITLE: usize = 8;
+/// A title of up to so many columns is written whole before scheme and time step have room.
+const LEAST_TITLE: usize = 32;
 /// What a screen says that has no room for everything.
 const CRAMPED: &str = "80x24 shows more";
 /// Remarks before what would mend the numbers: the turns in a step and the distance.
@@ -43,8 +43,9 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let room = left.width.saturating_sub(1) as usize;
     let details = [
         format!(" · {} scheme · dt {step} s", motion.scheme.name),
-        format!(" · {} scheme", motion.scheme.name),
-        format!(" · dt {step} s"),
+        format!(" · {} · dt {step} s", motion.scheme.name),
+        format!(" · {} scheme", motion.scheme.name), // the values have the time step too
+        format!(" · {}", motion.scheme.name),
         String::new(),
     ];
     let title = &lab.player().run().scenario().file.title;

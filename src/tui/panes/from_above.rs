@@ -5,7 +5,7 @@
 
 mod legend;
 
-use super::{PaneRow, Width, frame, write};
+use super::{PaneRow, Width, frame, round_title, write};
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, View};
 use crate::observe::ages::{Age, Ages};
@@ -17,6 +17,7 @@ use crate::observe::path::Path;
 use crate::observe::reading::Reading;
 use crate::observe::recording::Moment;
 use crate::run::Clock;
+use crate::tui::dashes::{self, on_and_off};
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::keymap::ZOOM_KEYS;
 use crate::tui::theme::Role;
@@ -26,16 +27,6 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 use std::f64::consts::TAU;
-
-/// Dots that are drawn of the exact motion and of the run before, and out of how many: without colours, dashes and
-/// dots tell them from the run.
-const DASH: (usize, usize) = (2, 4);
-const DOT: (usize, usize) = (1, 3);
-/// The run before where dots are as large as cells.
-const LARGE_DOT: (usize, usize) = (1, 2);
-
-/// The pinned run: long dashes.
-const LONG_DASH: (usize, usize) = (5, 7);
 
 /// Length of a push's line, of the radius shown: its direction is what there is to see.
 const ARROW: f64 = 0.35;
@@ -68,7 +59,7 @@ pub const ROW: PaneRow = PaneRow {
     title: "from above",
     width: Width::Round,
     rank: 1,
-    least: (27, 18),
+    least: (27, 17),
     draw: |lab, area, buf| {
         FromAbove {
             run: lab.player().run(),
@@ -100,10 +91,7 @@ impl Widget for FromAbove<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
         let zoom = self.view.zoom.above;
-        let title = match zoom == 1.0 {
-            true => ROW.title.to_owned(),
-            false => format!("{} ×{zoom}", ROW.title),
-        };
+        let title = round_title(ROW.title, zoom, self.reading, area.width);
         let inside = frame(&title, area, self.view.focus == ROW.id, theme, buf);
         if inside.height < 2 || inside.width == 0 {
             return;
@@ -176,11 +164,13 @@ impl FromAbove<'_> {
     }
 
     /// The moment that is shown: the present one, or that of the latest reading where the swings cover each other and the
-    /// eye cannot follow them anyway. They would have to be sent with every frame.
+    /// eye cannot follow them anyway. They would have to be sent with every frame. Where the scheme has broken down, it is
+    /// the last moment before.
     fn now(&self, across: f64) -> Moment {
         let scenario = self.run.scenario();
         let traced = scenario.body.mechanics.points()[scenario.trace].at;
         match self.reading {
+            Some(reading) if reading.last_whole.is_some() => Moment::new(&reading.state, &traced),
             Some(reading) if self.ages(across).are_crowded => {
                 let extremes = &reading.readouts.extremes;
                 let swing_deg = extremes.highest_tilt_deg - extremes.lowest_tilt_deg;
@@ -198,17 +188,13 @@ impl FromAbove<'_> {
         let mut dots = Dots::new(picture, self.view.marker);
         if let Some(ghost) = self.ghost {
             let before = ghost.path().dots().map(|(x, y)| plan.dot(x, y));
-            let dotted = match self.view.marker {
-                Marker::Braille => DOT,
-                _ => LARGE_DOT,
-            };
-            for (x, y) in on_and_off(before, dotted) {
+            for (x, y) in on_and_off(before, dashes::before(self.view.marker)) {
                 dots.set(x, y, Ink::Ghost);
             }
         }
         if let Some(pinned) = self.pinned {
             let kept = pinned.path().dots().map(|(x, y)| plan.dot(x, y));
-            for (x, y) in on_and_off(kept, LONG_DASH) {
+            for (x, y) in on_and_off(kept, dashes::PINNED) {
                 dots.set(x, y, Ink::Faint(Role::Pinned));
             }
         }
@@ -228,7 +214,7 @@ impl FromAbove<'_> {
         trail.draw(&mut dots);
         if let Some(overlay) = self.run.overlay() {
             let exact = overlay.path().dots().map(|(x, y)| plan.dot(x, y));
-            for (x, y) in on_and_off(exact, DASH) {
+            for (x, y) in on_and_off(exact, dashes::EXACT) {
                 dots.set(x, y, Ink::Faint(Role::Exact));
             }
         }
@@ -380,17 +366,4 @@ impl Plan {
         let row = inside(row, self.height) / self.dots.1;
         (column as u16, row as u16)
     }
-}
-
-/// The first `drawn` of every `out_of` dots of the screen that a path goes through one after the other.
-fn on_and_off(
-    path: impl Iterator<Item = (f64, f64)>,
-    (drawn, out_of): (usize, usize),
-) -> impl Iterator<Item = (f64, f64)> {
-    let (mut passed, mut last) = (0, None);
-    path.filter(move |&(x, y)| {
-        let dot = (x.floor(), y.floor());
-        passed += usize::from(last.replace(dot) != Some(dot));
-        passed % out_of < drawn
-    })
 }

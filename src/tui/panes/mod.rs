@@ -18,6 +18,7 @@ pub mod traces;
 use crate::lab::Lab;
 use crate::lab::view::Pane;
 use crate::lab::view::theme::Theme;
+use crate::observe::reading::Reading;
 use crate::scenario::screen;
 use crate::text::printable::printable;
 use crate::text::wrap::{columns, wrapped};
@@ -137,6 +138,26 @@ pub(super) fn frame(title: &str, area: Rect, focus: bool, theme: &Theme, buf: &m
     let inside = block.inner(area);
     block.render(area, buf);
     inside
+}
+
+/// The title of a round pane, which `width` columns have room for: `name` and how much larger than the whole it is shown,
+/// and which step it shows where the scheme has broken down since.
+pub(super) fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, width: u16) -> String {
+    let title = match zoom == 1.0 {
+        true => name.to_owned(),
+        false => format!("{name} ×{zoom}"),
+    };
+    let Some(step) = reading.and_then(|reading| reading.last_whole) else {
+        return title;
+    };
+    let forms = [
+        format!("{title} at step {step}: then the scheme broke down"),
+        format!("{title} at step {step}, then broken"),
+        format!("{title}, step {step}"),
+    ];
+    let room = width.saturating_sub(4) as usize;
+    let fitting = forms.iter().find(|form| columns(form) <= room);
+    fitting.unwrap_or(&forms[2]).clone()
 }
 
 /// As [`frame`], on top of whatever is there.

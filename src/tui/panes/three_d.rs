@@ -7,17 +7,19 @@ mod arrows;
 mod phase;
 mod room;
 mod shape;
+mod solids;
 mod wheel;
 
-use super::{PaneRow, Width, frame, write};
+use super::{PaneRow, Width, frame, round_title, write};
 use crate::lab::explained::Explained;
 use crate::lab::view::{Pane, View};
 use crate::observe::ages::Ages;
+use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
-use crate::observe::overlay::Overlay;
 use crate::observe::reading::Reading;
 use crate::physics::{State, loads, observables};
 use crate::text::wrap::columns;
+use crate::tui::dashes::{self, on_and_off};
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::keymap::ZOOM_KEYS;
 use crate::tui::scene::{Scene, Stroke, beside};
@@ -31,7 +33,7 @@ use shape::Shape;
 use std::f64::consts::TAU;
 
 /// Lengths of the arrows, of the scene's reach: their directions are what there is to see.
-const MOMENTUM: f64 = 1.1;
+const MOMENTUM: f64 = 1.2;
 const CHANGE: f64 = 0.35;
 /// Radius of the ground, and length of the vertical axis, of the same.
 const GROUND: f64 = 0.6;
@@ -48,13 +50,15 @@ pub const ROW: PaneRow = PaneRow {
     title: "3-D",
     width: Width::Round,
     rank: 3,
-    least: (40, 18),
+    least: (40, 17),
     draw: |lab, area, buf| {
         ThreeD {
             run: lab.player().run(),
             view: lab.view(),
             reading: Some(lab.player().reading()),
             explained: lab.player().explained(),
+            ghost: lab.player().ghost(),
+            pinned: lab.player().pinned(),
         }
         .render(area, buf);
     },
@@ -72,6 +76,10 @@ pub struct ThreeD<'a> {
     pub reading: Option<&'a Reading>,
     /// The time step that the step pane takes apart: the scene shows what its page is about.
     pub explained: Option<&'a Explained>,
+    /// The run before.
+    pub ghost: Option<&'a Ghost>,
+    /// The run that was pinned as the reference, unless it is the present one.
+    pub pinned: Option<&'a Ghost>,
 }
 
 /// A letter at a place.
@@ -81,10 +89,7 @@ impl Widget for ThreeD<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
         let zoom = self.view.zoom.three_d;
-        let title = match zoom == 1.0 {
-            true => ROW.title.to_owned(),
-            false => format!("{} ×{zoom}", ROW.title),
-        };
+        let title = round_title(ROW.title, zoom, self.reading, area.width);
         let inside = frame(&title, area, self.view.focus == ROW.id, theme, buf);
         if inside.height < 2 || inside.width == 0 {
             return;
@@ -99,6 +104,7 @@ impl Widget for ThreeD<'_> {
         let mut dots = Dots::new(picture, self.view.marker);
         let mut scene = Scene::new(&dots, self.view.camera, &subject.shown());
         let mut labels = subject.ground(&mut scene);
+        subject.other_runs(&mut scene, &mut dots);
         subject.path(&scene, &mut dots);
         subject.body(&mut scene);
         labels.extend(subject.phase(&mut scene));
@@ -143,6 +149,8 @@ impl Widget for ThreeD<'_> {
 /// What is drawn: the run at the time of the picture, with what several parts of it need.
 struct Subject<'a> {
     run: &'a LiveRun,
+    ghost: Option<&'a Ghost>,
+    pinned: Option<&'a Ghost>,
     view: &'a View,
     ages: Ages,
     state: &'a State,
@@ -170,6 +178,8 @@ impl<'a> Subject<'a> {
         let shape = Shape::of(run);
         Self {
             run,
+            ghost: pane.ghost,
+            pinned: pane.pinned,
             view: pane.view,
             ages: ages.unwrap_or(Ages::UNKNOWN),
             state,
@@ -216,14 +226,30 @@ impl<'a> Subject<'a> {
         let to_dot = |at: &Vector3<f64>| scene.dot(at);
         trail.follow(self.run.recording(), &ages, now, to_dot);
         trail.draw(dots);
-        for block in self
-            .run
-            .overlay()
-            .into_iter()
-            .flat_map(|overlay: &Overlay| overlay.recording().since(0.0))
-        {
-            let (x, y) = scene.dot(&block.end);
-            dots.set(x, y, Ink::Faint(Role::Exact));
+        if let Some(overlay) = self.run.overlay() {
+            let exact = overlay.recording().since(0.0);
+            for (x, y) in exact.map(|block| scene.dot(&block.end)) {
+                dots.set(x, y, Ink::Faint(Role::Exact));
+            }
+        }
+    }
+
+    /// The paths of the run before and of the pinned one, and a line from the pivot to where each is at this time.
+    fn other_runs(&self, scene: &mut Scene, dots: &mut Dots) {
+        let before = (Ink::Ghost, dashes::before(self.view.marker), 3);
+        let pinned = (Ink::Faint(Role::Pinned), dashes::PINNED, 2);
+        for (run, (ink, path, axle)) in [(self.ghost, before), (self.pinned, pinned)] {
+            let Some(recording) = run.map(Ghost::recording) else {
+                continue;
+            };
+            let places = recording.since(f64::NEG_INFINITY);
+            for (x, y) in on_and_off(places.map(|block| scene.dot(&block.end)), path) {
+                dots.set(x, y, ink);
+            }
+            let mut until_now = recording.between(self.state.time_s, self.state.time_s);
+            if let Some(now) = until_now.next() {
+                scene.line(&Vector3::zeros(), &now.end, Stroke::Dotted(axle), ink);
+            }
         }
     }
 }

@@ -37,6 +37,8 @@ const BESIDE_FROM: u16 = 48;
 const ALL: f64 = 0.999;
 /// What marks the strip that shows less time than the others.
 const ZOOM: &str = "zoom";
+/// What it says while that strip stands still, because its time would pass before anyone had seen it.
+const STILL: &str = "still";
 /// Columns of a strip's name beside it.
 const NAME: u16 = 5;
 
@@ -252,8 +254,11 @@ impl Traces<'_> {
             if area.height > 1 {
                 write(area, (0, 1), curve.unit(), quiet, buf);
             }
-            if area.height > 2 && self.is_detail(&group.strip) {
+            if area.height > 2 && is_detail {
                 write(area, (0, 2), ZOOM, quiet, buf);
+                if self.detail.is_snapshot && area.height > 3 {
+                    write(area, (0, 3), STILL, quiet, buf);
+                }
             }
             for (row, label) in axis::values(&scale, area.height as usize) {
                 let x = group.beside.saturating_sub(1 + label.len() as u16);
@@ -284,16 +289,13 @@ impl Traces<'_> {
                     let rest = room.saturating_sub(unit.len() + 2);
                     let range = scale.in_words_within(rest).unwrap_or_default();
                     let range = format!(" {range} {unit}");
-                    let zoom = if self.is_detail(&group.strip) {
-                        ZOOM
-                    } else {
-                        ""
+                    let zoom = match (is_detail, self.detail.is_snapshot) {
+                        (false, _) => [""; 3],
+                        (true, false) => [ZOOM; 3],
+                        (true, true) => ["zoom, stands still", "zoom, still", STILL],
                     };
-                    let zoom = if range.chars().count() + zoom.len() < room {
-                        zoom
-                    } else {
-                        ""
-                    };
+                    let fits = |zoom: &&str| range.chars().count() + zoom.len() < room;
+                    let zoom = zoom.into_iter().find(fits).unwrap_or_default();
                     (format!("{range} {zoom}"), quiet)
                 }
             };

@@ -63,6 +63,24 @@ fn number(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'sta
     value(rank, label, fixed(label, Some(number), digits), unit)
 }
 
+/// As [`number`], of a quantity of the size `size`: where decimals would leave nothing of that, with an exponent.
+fn sized(
+    rank: u8,
+    label: &'static str,
+    number: f64,
+    size: f64,
+    digits: usize,
+    unit: &'static str,
+) -> Row {
+    /// What is smaller than this part of the size is its rounding.
+    const ROUNDING: f64 = 1e-9;
+    let is_small = size > 0.0 && size < 0.1;
+    match is_small && number.abs() > ROUNDING * size {
+        true => value(rank, label, exponent(number, 3), unit),
+        false => self::number(rank, label, number, digits, unit),
+    }
+}
+
 /// A number of the scenario: with `digits` decimals where these are all it has, else with as many as stand beside its label.
 fn given(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'static str) -> Row {
     let usual = fixed(label, Some(number), digits);
@@ -99,6 +117,7 @@ pub(super) fn start_rows(scenario: &Scenario) -> Vec<Row> {
     let tilt = scenario.file.start.tilt_deg.unwrap_or(0.0);
     let momentum = scenario.file.start.momentum_Js;
     let [x, y, z] = momentum.unwrap_or(scenario.start.momentum.into());
+    let size = scenario.start.momentum.norm();
     let frame = match scenario.file.start.momentum_frame {
         Some(crate::scenario::file::Frame::Body) => "body",
         _ => "world",
@@ -106,7 +125,7 @@ pub(super) fn start_rows(scenario: &Scenario) -> Vec<Row> {
     vec![
         heading("start"),
         given(2, "tilt", tilt, 3, "deg"),
-        number(0, "|L|", scenario.start.momentum.norm(), 3, "J s"),
+        sized(0, "|L|", size, size, 3, "J s"),
         given(5, "Lx", x, 3, "J s"),
         given(5, "Ly", y, 3, "J s"),
         given(5, "Lz", z, 3, "J s"),
@@ -151,6 +170,8 @@ pub(super) fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
 
 pub(super) fn now_rows(reading: &Reading) -> Vec<Row> {
     let sample = &reading.readouts.sample;
+    let momentum = sample.momentum.norm();
+    let kinetic = 0.5 * sample.momentum.dot(&sample.angular_velocity);
     // What a scheme that has broken down leaves is no place and no energy of a body.
     let of_body = |number: f64| reading.readouts.health.is_a_rotation.then_some(number);
     let axis = |label, role, metres: f64| Row {
@@ -168,9 +189,12 @@ pub(super) fn now_rows(reading: &Reading) -> Vec<Row> {
     let predicted = reading.readouts.number("predicted_nutation_period_s");
     rows.insert(after_nutation, measured(1, PREDICTED, predicted, 5, "s"));
     rows.extend([
-        number(3, "|L|", sample.momentum.norm(), 3, "J s"),
-        number(4, "Lz", sample.momentum.z, 3, "J s"),
-        measured(4, "energy", of_body(sample.energy), 2, "J"),
+        sized(3, "|L|", momentum, momentum, 3, "J s"),
+        sized(4, "Lz", sample.momentum.z, momentum, 3, "J s"),
+        match of_body(sample.energy) {
+            Some(energy) => sized(4, "energy", energy, kinetic.max(energy.abs()), 2, "J"),
+            None => measured(4, "energy", None, 2, "J"),
+        },
     ]);
     rows
 }

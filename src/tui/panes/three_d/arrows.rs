@@ -11,7 +11,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 /// Lengths of the arrows, of the scene's reach: their directions are what there is to see.
-const OMEGA: f64 = 0.85;
+const OMEGA: f64 = 0.75;
 const WEIGHT: f64 = 0.35;
 const TORQUE: f64 = 0.5;
 const PUSH: f64 = 0.4;
@@ -165,6 +165,12 @@ impl Subject<'_> {
         ));
         if self.run.overlay().is_some() {
             words.push((["dots: exact motion", "dots: exact", ""], Role::Exact));
+        }
+        if self.pinned.is_some() {
+            words.push((["long dashes: pinned", "-- pinned", "--"], Role::Pinned));
+        }
+        if self.ghost.is_some() {
+            words.push((["dotted: other run", "dotted: other", ""], Role::Ghost));
         }
         words
     }

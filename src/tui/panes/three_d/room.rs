@@ -30,6 +30,12 @@ impl Subject<'_> {
                 circles.extend(sides.map(circle));
             }
         }
+        for other in [self.ghost, self.pinned].into_iter().flatten() {
+            if let Some(whole) = other.recording().whole() {
+                let z = whole.extent(Curve::Z);
+                circles.extend([z.min, z.max].map(|z| (other.path().radius(), z)));
+            }
+        }
         let momentum = self.state.momentum;
         if let Some(axis) = momentum.try_normalize(f64::MIN_POSITIVE) {
             let angle = libm::acos(axis.z.clamp(-1.0, 1.0)).to_degrees() / (3.0 * TILT_DEG);

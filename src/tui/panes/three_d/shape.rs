@@ -1,5 +1,6 @@
-//! The body as it is drawn: rim, axle and free points.
+//! The body as it is drawn: rim, axle, free points and solid parts.
 
+use super::solids::Solid;
 use crate::observe::live::LiveRun;
 use nalgebra::Vector3;
 
@@ -15,6 +16,8 @@ pub struct Shape {
     pub corners: Vec<(f64, f64)>,
     /// The free points that have a mass.
     pub free: Vec<Vector3<f64>>,
+    /// The solid parts.
+    pub solids: Vec<Solid>,
 }
 
 impl Shape {
@@ -24,7 +27,8 @@ impl Shape {
         let rim = scenario.file.body.rim.as_ref();
         let rim = rim.map(|rim| (rim.radius_m, rim.height_m, rim.points));
         let after = rim.map_or(0, |(_, _, points)| points);
-        let free: Vec<_> = points.iter().skip(after).take(MOST_FREE).collect();
+        let count = scenario.file.body.point.len().min(MOST_FREE);
+        let free: Vec<_> = points.iter().skip(after).take(count).collect();
         let traced = points[scenario.trace].at;
         let mut corners: Vec<_> = rim
             .iter()
@@ -33,6 +37,8 @@ impl Shape {
         let corner = |at: &Vector3<f64>| (at.xy().norm(), at.z);
         corners.extend(free.iter().map(|point| corner(&point.at)));
         corners.push(corner(&traced));
+        let solids = Solid::of(&scenario.body.parts);
+        corners.extend(solids.iter().flat_map(Solid::corners));
         let heights = || corners.iter().map(|(_, height)| *height);
         let axle = (heights().fold(0.0, f64::min), heights().fold(0.0, f64::max));
         let has_mass = free.iter().filter(|point| point.mass > 0.0);
@@ -42,6 +48,7 @@ impl Shape {
             axle,
             corners,
             free,
+            solids,
         }
     }
 

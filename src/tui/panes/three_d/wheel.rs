@@ -36,6 +36,7 @@ impl Subject<'_> {
                 Ink::Strong(Role::Text),
             );
         }
+        self.solids(scene);
         if let Some((radius, height, points)) = self.shape.rim {
             let middle = scene.depth(&(axle * height));
             let look = |depth: f64| match is_near(depth, middle, radius) {
@@ -75,6 +76,7 @@ impl Subject<'_> {
             let foot = axle * at.z;
             scene.line(&foot, &(state.orientation * at), stroke, ink);
         }
+        self.solids_before(state, scene);
     }
 
     /// The masses, the nearest last: a larger sign is nearer.

@@ -5,8 +5,8 @@ use crate::observe::scale::Scale;
 use crate::observe::strip::Column;
 use crate::tui::dots::{Dots, Ink};
 
-/// A band of fewer dots than this from edge to edge is drawn as a line of that thickness.
-const THINNEST_BAND: usize = 4;
+/// A band whose edges are nearer to one another than this, in dots, has no room for a gap: it is drawn as a thick line.
+const THINNEST_BAND: usize = 2;
 /// A mean nearer to an edge than this, in dots, is not drawn.
 const CLEAR_OF_EDGE: usize = 2;
 

@@ -1,0 +1,133 @@
+//! By how much the axle's tilt swings, as the steps show it: the greatest tilt less the least since the forces last changed.
+//!
+//! Where the steps follow the swing, the row nearest to a turning point is off it by what a parabola through it and its
+//! neighbours says; that is stated as the uncertainty, and not added to the value. Where they do not (fewer than six rows a
+//! swing: a strobed run) the rows are phases of the swing in no order. How much the second half of them has added to the
+//! swing of the first then tells how much is still unseen.
+
+use super::extremes::{NEAR, height};
+use super::turns::Measured;
+use crate::physics::observables::tilt_of;
+use crate::run::Step;
+use nalgebra::Vector3;
+
+/// With fewer turning points there has been no whole swing.
+const LEAST_TURNS: u64 = 3;
+
+/// More than one turning point in so many rows: the run is strobed.
+const STROBED: u64 = 3;
+
+/// What the parabola does not see, in units of its second difference squared over the swing: with it the uncertainty covers
+/// swings of six rows.
+const BEYOND_PARABOLA: f64 = 0.05;
+
+/// Rounding of a tilt, degrees.
+const ROUNDING_DEG: f64 = 1e-12;
+
+/// Follows the tilt; to be shown every step since the forces last changed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TiltSwing {
+    rows: u64,
+    turns: u64,
+    /// The axle at the last two rows, and its [height].
+    last: [(Vector3<f64>, f64); 2],
+    lowest: Extreme,
+    highest: Extreme,
+    /// The lowest and the highest turning point among the rows.
+    turned: [Option<Turned>; 2],
+    /// The swing at the last two numbers of rows that were powers of two, degrees.
+    earlier: [f64; 2],
+}
+
+/// A tilt, degrees, and the [height] there.
+type Extreme = (f64, f64);
+
+/// A turning point, at the row nearest to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Turned {
+    row: Extreme,
+    /// By how much the parabola through it and its neighbours reaches beyond the row, degrees.
+    beyond: f64,
+    /// The second difference of the three, without its sign, degrees.
+    bend: f64,
+}
+
+impl TiltSwing {
+    pub fn new(step: &Step) -> Self {
+        let row = (step.after().axle(), height(step));
+        let tilt = (tilt_of(&row.0), row.1);
+        Self {
+            rows: 1,
+            turns: 0,
+            last: [row; 2],
+            lowest: tilt,
+            highest: tilt,
+            turned: [None; 2],
+            earlier: [0.0; 2],
+        }
+    }
+
+    #[inline]
+    pub fn follow(&mut self, step: &Step) {
+        let row = (step.after().axle(), height(step));
+        let [before, at] = self.last;
+        // The height falls as the tilt grows.
+        let is_top = at.1 < before.1 && at.1 <= row.1;
+        if is_top || (at.1 > before.1 && at.1 >= row.1) {
+            self.turn(is_top, [before, at, row]);
+        }
+        self.last = [at, row];
+        self.rows += 1;
+        // As for the extremes of the whole run: an arc tangent only where there may be a new one.
+        if row.1 >= self.lowest.1 - NEAR || row.1 <= self.highest.1 + NEAR {
+            let tilt = step.tilt_deg();
+            self.lowest = (self.lowest.0.min(tilt), self.lowest.1.max(row.1));
+            self.highest = (self.highest.0.max(tilt), self.highest.1.min(row.1));
+        }
+        if self.rows.is_power_of_two() {
+            self.earlier = [self.earlier[1], self.highest.0 - self.lowest.0];
+        }
+    }
+
+    /// Takes in three rows one after the other, of which the middle one is a turning point.
+    fn turn(&mut self, is_top: bool, rows: [(Vector3<f64>, f64); 3]) {
+        self.turns += 1;
+        let sign = if is_top { 1.0 } else { -1.0 };
+        let record = &mut self.turned[usize::from(is_top)];
+        let may_be_higher = |there: Extreme| sign * rows[1].1 <= sign * there.1 + NEAR;
+        if !record.is_none_or(|there| may_be_higher(there.row)) {
+            return;
+        }
+        let [before, at, after] = rows.map(|(axle, _)| tilt_of(&axle));
+        if record.is_none_or(|there| sign * at > sign * there.row.0) {
+            let bend = (sign * (2.0 * at - before - after)).max(f64::MIN_POSITIVE);
+            let beyond = ((before - after).powi(2) / (8.0 * bend)).min(bend);
+            let row = (at, rows[1].1);
+            *record = Some(Turned { row, beyond, bend });
+        }
+    }
+
+    /// The swing so far, degrees; `None` before it was seen whole.
+    pub fn measured(&self) -> Option<Measured> {
+        let [Some(bottom), Some(top)] = self.turned else {
+            return None;
+        };
+        let swing = self.highest.0 - self.lowest.0;
+        // The start of the run may be a turning point too, and lie beyond those between two rows.
+        let above = top.row.0 + top.beyond - self.highest.0;
+        let below = self.lowest.0 - (bottom.row.0 - bottom.beyond);
+        let bends = top.bend.powi(2) + bottom.bend.powi(2);
+        let unseen = match self.turns * STROBED > self.rows {
+            true => swing - self.earlier[0] + 20.0 * swing / (self.rows as f64).powi(2),
+            false if swing > 0.0 => {
+                above.max(0.0) + below.max(0.0) + BEYOND_PARABOLA * bends / swing
+            }
+            false => 0.0,
+        };
+        (self.turns >= LEAST_TURNS).then_some(Measured {
+            value: swing,
+            uncertainty: unseen + ROUNDING_DEG,
+            nutations: self.turns / 2,
+        })
+    }
+}

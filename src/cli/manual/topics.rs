@@ -1,0 +1,64 @@
+//! The topics of the manual, plain text. What the program has in a table stands in a topic as the name of that table in
+//! braces.
+
+use crate::cli::info;
+use crate::export::columns::COLUMNS;
+use crate::export::points::POINT_COLUMNS;
+use std::fmt;
+
+/// Name, and text.
+const TOPICS: &[(&str, &str)] = &[
+    ("class", include_str!("../topics/class.txt")),
+    ("csv", include_str!("../topics/csv.txt")),
+    ("lab", include_str!("../topics/lab.txt")),
+    ("numbers", include_str!("../topics/numbers.txt")),
+    ("scenario", include_str!("../topics/scenario.txt")),
+    ("schemes", include_str!("../topics/schemes.txt")),
+    ("sweep", include_str!("../topics/sweep.txt")),
+];
+
+/// The names of the topics.
+pub(super) fn names() -> impl Iterator<Item = &'static str> + Clone {
+    TOPICS.iter().map(|(name, _)| *name)
+}
+
+/// The text of the topic `name`, if there is one.
+pub(super) fn text(name: &str) -> Result<Option<String>, fmt::Error> {
+    let Some((_, text)) = TOPICS.iter().find(|(topic, _)| *topic == name) else {
+        return Ok(None);
+    };
+    let mut text = (*text).to_owned();
+    for (place, table) in TABLES {
+        if text.contains(place) {
+            text = text.replace(place, table()?.trim_end());
+        }
+    }
+    Ok(Some(text))
+}
+
+/// The name of a table in a topic, and what is written in its place.
+type Table = (&'static str, fn() -> Result<String, fmt::Error>);
+
+const TABLES: [Table; 5] = [
+    ("{COLUMNS}", || {
+        Ok(list(
+            COLUMNS.iter().map(|column| (column.name, column.about)),
+        ))
+    }),
+    ("{COLUMNS OF POINTS}", || {
+        Ok(list(
+            POINT_COLUMNS
+                .iter()
+                .map(|column| (column.name, column.about)),
+        ))
+    }),
+    ("{KEYS}", info::key_list),
+    ("{READOUTS}", info::readout_list),
+    ("{SCHEMES}", info::scheme_list),
+];
+
+/// Two columns of text.
+fn list(rows: impl Iterator<Item = (&'static str, &'static str)>) -> String {
+    rows.map(|(name, about)| format!("  {name:<14} {about}\n"))
+        .collect()
+}

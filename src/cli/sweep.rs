@@ -1,0 +1,233 @@
+//! `gyrolab sweep`: a grid of runs, a row each.
+
+use super::args::SweepArgs;
+use super::progress::{self, Interruption, Meter};
+use super::scenario::change;
+use super::{INTERRUPTED, print, tell};
+use crate::scenario::presets::{self, PRESETS};
+use crate::scenario::problem::nearest;
+use crate::scenario::{Document, Problem, Problems};
+use crate::study::sweep::in_order::in_order;
+use crate::study::sweep::join::join;
+use crate::study::sweep::part::{Opened, PartError, PartFile};
+use crate::study::sweep::shipped::{self, SWEEPS};
+use crate::study::sweep::{Sweep, SweepFile, axis};
+use crate::text::printable::{Shown, printable_lines};
+use std::fmt::Write as _;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::ExitCode;
+
+pub(super) fn sweep(args: &SweepArgs) -> anyhow::Result<ExitCode> {
+    match (&args.scenario, &args.output) {
+        (Some(name), Some(output)) => run(&sweep_of(name, args)?, output, args.force),
+        (None, Some(output)) if !args.join.is_empty() => {
+            let rows = join(&args.join, output, args.force)?;
+            tell(format_args!(
+                "gyrolab: {} in {}",
+                plural(rows, "row"),
+                Shown(output)
+            ));
+            Ok(ExitCode::SUCCESS)
+        }
+        _ => print(&list()?),
+    }
+}
+
+/// The shipped sweeps.
+fn list() -> anyhow::Result<String> {
+    let mut text = String::new();
+    for shipped in SWEEPS {
+        let sweep = Sweep::open(&document(shipped.name)?)?;
+        writeln!(text, "{}: {}", shipped.name, sweep.title())?;
+        for line in sweep.about().unwrap_or_default().lines() {
+            writeln!(text, "    {line}")?;
+        }
+        text.push('\n');
+    }
+    text.push_str(
+        "gyrolab sweep NAME -o FILE.csv runs one; gyrolab presets NAME prints it as TOML.\n",
+    );
+    Ok(text)
+}
+
+/// What `name` names: a shipped sweep, or what a run may be made of.
+fn document(name: &str) -> Result<Document, Problems> {
+    match shipped::find(name) {
+        Some(sweep) => Document::parse(&format!("presets/sweeps/{name}.toml"), sweep.text),
+        None if is_neither(name) => {
+            let sweeps = SWEEPS.iter().map(|sweep| sweep.name);
+            let near = nearest(name, sweeps.chain(PRESETS.iter().map(|preset| preset.name)));
+            let rule = format!(
+                "no sweep and no preset of that name: {near} (a file's name holds a / or ends in .toml or .csv)"
+            );
+            Err(Problems::one(name, Problem::at("", rule)))
+        }
+        None => Document::open(name),
+    }
+}
+
+fn is_neither(name: &str) -> bool {
+    !name.contains(['/', '.']) && presets::find(name).is_none()
+}
+
+/// The sweep that the command line means.
+fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
+    let mut document = document(name)?;
+    let (mut file, base) = match document.is_sweep() {
+        true => {
+            let file = SweepFile::read(&document)?;
+            let base = Sweep::base(&file, &document, |base| change(base, &args.changes))?;
+            (file, base)
+        }
+        false => {
+            change(&mut document, &args.changes)?;
+            let base = document.scenario()?;
+            (SweepFile::from_nothing(), base)
+        }
+    };
+    let from_file = file.vary.len();
+    for argument in &args.vary {
+        let vary = axis::parse(argument).map_err(|rule| axis::refused(argument, rule))?;
+        let same = file.vary[..from_file].iter_mut();
+        match same.into_iter().find(|other| other.key == vary.key) {
+            Some(same) => *same = vary,
+            None => file.vary.push(vary),
+        }
+    }
+    if !args.measure.is_empty() {
+        file.measure = Some(args.measure.clone());
+    }
+    if let Some(shard) = args.shard {
+        file.shard = Some(shard.to_string());
+    }
+    Sweep::new(file, &base, &|problems| document.placed(problems))
+}
+
+/// Makes the file whole, or as much of it as there is time for.
+fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCode> {
+    let interruption = progress::interruption()?;
+    let mut part = match PartFile::open(output, sweep, may_replace)? {
+        Opened::Whole => {
+            let rows = plural(sweep.rows(), "row");
+            tell(format_args!(
+                "gyrolab: {} is whole, {rows} of this very sweep",
+                Shown(output)
+            ));
+            return Ok(ExitCode::SUCCESS);
+        }
+        Opened::Part(part) => part,
+    };
+    let begin = part.rows();
+    if begin > 0 {
+        let (there, all) = (part.path(), sweep.rows());
+        tell(format_args!(
+            "gyrolab: going on behind {begin} of {all} rows in {}",
+            Shown(there)
+        ));
+    }
+    let mut failures = Failures::default();
+    let mut failed = None;
+    add_rows(sweep, &mut part, &interruption, &mut failures, &mut failed);
+    let (rows, all) = (part.rows(), sweep.rows());
+    let kept = format!(
+        "{rows} of {} are in {}: the same command goes on behind them",
+        plural(all, "row"),
+        Shown(part.path())
+    );
+    failures.tell();
+    if let Some(error) = failed {
+        tell(format_args!("gyrolab: {kept}"));
+        return Err(error.into());
+    }
+    if rows < all {
+        tell(format_args!("gyrolab: {kept}"));
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    part.keep()?;
+    tell(format_args!(
+        "gyrolab: {} in {}",
+        plural(rows, "row"),
+        Shown(output)
+    ));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Computes the rows that are not there yet and adds them to `part`.
+fn add_rows(
+    sweep: &Sweep,
+    part: &mut PartFile,
+    interruption: &Interruption,
+    failures: &mut Failures,
+    failed: &mut Option<PartError>,
+) {
+    let (begin, all) = (part.rows(), sweep.rows());
+    let mut meter = Meter::counting("row");
+    let row = |row: u64, goes_on: &dyn Fn() -> bool| {
+        sweep.row(row, &|| goes_on() && !interruption.has_come())
+    };
+    in_order(begin..all, row, |rows| {
+        let mut lines = String::new();
+        let first = part.rows();
+        let count = rows.len() as u64;
+        for (index, row) in (first..).zip(rows) {
+            lines += &row.line;
+            if let Some(why) = row.failure {
+                failures.add(|| sweep.point_in_words(index), &why);
+            }
+        }
+        if let Err(error) = part.add(&lines, count) {
+            *failed = Some(error);
+            return ControlFlow::Break(());
+        }
+        // The rows of an earlier command say nothing about the time that the others take.
+        meter.show(part.rows() - begin, all - begin);
+        match interruption.has_come() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    });
+    meter.clear();
+}
+
+/// The points that failed, counted, and the first of them with their reasons.
+#[derive(Debug, Default)]
+struct Failures {
+    count: u64,
+    told: Vec<String>,
+}
+
+impl Failures {
+    const MOST: usize = 8;
+
+    fn add(&mut self, point: impl FnOnce() -> String, why: &str) {
+        self.count += 1;
+        if self.told.len() < Self::MOST {
+            self.told.push(format!("{}: {why}", point()));
+        }
+    }
+
+    fn tell(&self) {
+        if self.count == 0 {
+            return;
+        }
+        let points = plural(self.count, "point");
+        tell(format_args!(
+            "gyrolab: {points} failed, and their rows hold no readouts:"
+        ));
+        for line in &self.told {
+            tell(format_args!("  {}", printable_lines(line)));
+        }
+        match self.count - self.told.len() as u64 {
+            0 => {}
+            more => tell(format_args!("  and {more} more")),
+        }
+    }
+}
+
+fn plural(count: u64, what: &str) -> String {
+    match count {
+        1 => format!("1 {what}"),
+        _ => format!("{count} {what}s"),
+    }
+}

@@ -1,0 +1,102 @@
+//! A folder of output that appears only once all its files are complete.
+
+use super::destination::{DestinationError, folder_of};
+use std::fs;
+use std::io;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// A folder that is being written, under a temporary name beside the place that it will have.
+#[derive(Debug)]
+pub struct Folder {
+    temporary: TempDir,
+    path: PathBuf,
+    replace: bool,
+}
+
+impl Folder {
+    /// Begins a folder that will be at `path`. One that is there already must be empty, unless `replace` is true: then its
+    /// files of the same names are replaced, and its others stay.
+    ///
+    /// # Errors
+    /// When something other than a folder is at `path`, when it holds files and `replace` is false, or when the system
+    /// reports an error.
+    pub fn begin(path: &Path, replace: bool) -> Result<Self, DestinationError> {
+        let path = without_slash(path);
+        let refused = |error| refused(&path, error);
+        let in_folder = folder_of(&path);
+        if !in_folder.is_dir() {
+            return Err(DestinationError::NoFolder {
+                path: path.clone(),
+                folder: in_folder.to_owned(),
+            });
+        }
+        may_be_written(&path, replace)?;
+        let temporary = tempfile::Builder::new()
+            .prefix(".gyrolab-")
+            .permissions(fs::Permissions::from_mode(0o777)) // before the umask
+            .tempdir_in(in_folder)
+            .map_err(refused)?;
+        Ok(Self {
+            temporary,
+            path,
+            replace,
+        })
+    }
+
+    /// Where its files are written now.
+    pub fn path(&self) -> &Path {
+        self.temporary.path()
+    }
+
+    /// Gives it its final name: the files written to it are complete.
+    ///
+    /// # Errors
+    /// When files have come to be there meanwhile that may not be replaced, or when the system reports an error.
+    pub fn keep(self) -> Result<(), DestinationError> {
+        let refused = |error| refused(&self.path, error);
+        may_be_written(&self.path, self.replace)?;
+        if fs::rename(self.temporary.path(), &self.path).is_ok() {
+            let _ = self.temporary.keep(); // its old name is gone already
+            return Ok(());
+        }
+        // There are files: each new one takes the place of that of its name.
+        fs::create_dir_all(&self.path).map_err(refused)?;
+        for file in fs::read_dir(self.temporary.path()).map_err(refused)? {
+            let file = file.map_err(refused)?;
+            let place = self.path.join(file.file_name());
+            fs::rename(file.path(), place).map_err(refused)?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether a folder may be written at `path`.
+fn may_be_written(path: &Path, replace: bool) -> Result<(), DestinationError> {
+    let there = match fs::metadata(path) {
+        Ok(there) => there,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(error) => return Err(refused(path, error)),
+    };
+    if !there.is_dir() {
+        return Err(DestinationError::NotAFolder(path.to_owned()));
+    }
+    let mut files = fs::read_dir(path).map_err(|error| refused(path, error))?;
+    match files.next() {
+        Some(_) if !replace => Err(DestinationError::FolderInUse(path.to_owned())),
+        _ => Ok(()),
+    }
+}
+
+fn refused(path: &Path, error: io::Error) -> DestinationError {
+    DestinationError::Refused {
+        path: path.to_owned(),
+        error,
+    }
+}
+
+/// `path` without slashes at its end, so that its parent is the folder that it is in.
+fn without_slash(path: &Path) -> PathBuf {
+    path.components().collect()
+}

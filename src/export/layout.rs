@@ -1,0 +1,244 @@
+//! Which rows and columns of a run its CSV has, and how the numbers in it are written.
+//!
+//! Whatever is not the default stands above the run file in the CSV's header, as TOML in TOML's comments, such as
+//! `# # every = 10`: the CSV runs again as any other, and can be recomputed as it was written.
+
+use super::columns::{COLUMNS, Column};
+use super::csv::commented;
+use super::points::{POINT_COLUMNS, PointColumn};
+use crate::run::{Clock, Step};
+use crate::scenario::Scenario;
+use crate::scenario::problem::nearest;
+use crate::text::number::shortest;
+use crate::text::printable::printable;
+use serde::{Deserialize, Serialize};
+use std::num::NonZeroU64;
+
+/// A layout as it is asked for, and as it stands in a header: nothing in it has been checked.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LayoutFile {
+    /// 10 writes rows 0, 10, 20 and so on, and the last.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub every: Option<NonZeroU64>,
+    /// The time of the first row, s; earlier ones are left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_s: Option<f64>,
+    /// The time of the last row, s; later ones are left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to_s: Option<f64>,
+    /// The names of the columns, in their order.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub columns: Option<Vec<String>>,
+    /// Whether there is a row for each point of the body.
+    #[serde(skip_serializing_if = "is_false")]
+    #[serde(default)]
+    pub points: bool,
+    /// Whether it is written for a spreadsheet program that has the decimal comma.
+    #[serde(skip_serializing_if = "is_false")]
+    #[serde(default)]
+    pub excel: bool,
+}
+
+/// Which rows and columns a CSV has, and how its numbers are written. The default is every row and every column.
+#[derive(Clone, Debug, Default)]
+pub struct Layout {
+    file: LayoutFile,
+    shape: Shape,
+}
+
+/// What a row of the CSV is.
+#[derive(Clone, Debug, Default)]
+pub(super) enum Shape {
+    /// A step, with every column.
+    #[default]
+    Whole,
+    /// A step, with these columns.
+    Columns(Vec<&'static Column>),
+    /// A point at a step, with these columns.
+    Points(Vec<&'static PointColumn>),
+}
+
+/// Why there is no such layout.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{key}: {rule}")]
+pub struct LayoutError {
+    /// The key, as in [`LayoutFile`].
+    pub key: &'static str,
+    /// What is wrong, and what to do.
+    pub rule: String,
+}
+
+fn is_false(flag: &bool) -> bool {
+    !flag
+}
+
+impl LayoutFile {
+    /// The layout, checked.
+    ///
+    /// # Errors
+    /// When a column does not exist or is named twice, or when no time can lie between the two ends.
+    pub fn check(mut self) -> Result<Layout, LayoutError> {
+        self.every.take_if(|every| every.get() == 1);
+        // No run is longer, and TOML has no larger number.
+        let most = NonZeroU64::new(i64::MAX as u64).unwrap_or(NonZeroU64::MAX);
+        self.every = self.every.map(|every| every.min(most));
+        for (key, bound) in [("from_s", self.from_s), ("to_s", self.to_s)] {
+            if let Some(seconds) = bound.filter(|seconds| !seconds.is_finite() || *seconds < 0.0) {
+                let rule = format!("{seconds} must be a time in seconds, 0 or more");
+                return Err(LayoutError { key, rule });
+            }
+        }
+        if let (Some(from_s), Some(to_s)) = (self.from_s, self.to_s)
+            && from_s > to_s
+        {
+            let [from_s, to_s] = [from_s, to_s].map(shortest);
+            let rule = format!("{to_s} s is before the first row's time, {from_s} s");
+            return Err(LayoutError { key: "to_s", rule });
+        }
+        let shape = match (&self.columns, self.points) {
+            (None, false) => Shape::Whole,
+            (None, true) => Shape::Points(POINT_COLUMNS.iter().collect()),
+            (Some(names), false) => {
+                let known = COLUMNS.iter().map(|column| column.name);
+                Shape::Columns(chosen(names, &known, Column::find)?)
+            }
+            (Some(names), true) => {
+                let known = POINT_COLUMNS.iter().map(|column| column.name);
+                Shape::Points(chosen(names, &known, PointColumn::find)?)
+            }
+        };
+        Ok(Layout { file: self, shape })
+    }
+}
+
+/// The columns that `names` name.
+fn chosen<C>(
+    names: &[String],
+    known: &(impl Iterator<Item = &'static str> + Clone),
+    find: impl Fn(&str) -> Option<&'static C>,
+) -> Result<Vec<&'static C>, LayoutError> {
+    let wrong = |rule: String| LayoutError {
+        key: "columns",
+        rule,
+    };
+    if names.is_empty() {
+        return Err(wrong("must name a column".to_owned()));
+    }
+    let column = |(index, name): (usize, &String)| {
+        if names[..index].contains(name) {
+            return Err(wrong(format!("{} is named twice", printable(name))));
+        }
+        find(name).ok_or_else(|| {
+            let near = nearest(name, known.clone());
+            wrong(format!("no column named {}: {near}", printable(name)))
+        })
+    };
+    names.iter().enumerate().map(column).collect()
+}
+
+impl PartialEq for Layout {
+    fn eq(&self, other: &Self) -> bool {
+        self.file == other.file
+    }
+}
+
+impl Layout {
+    /// Every `every`-th row, and the last, with every column.
+    pub fn every(every: NonZeroU64) -> Self {
+        let file = LayoutFile {
+            every: Some(every),
+            ..LayoutFile::default()
+        };
+        file.check().unwrap_or_default() // only columns and times can be refused
+    }
+
+    /// The layout in words that can be checked again.
+    pub fn file(&self) -> &LayoutFile {
+        &self.file
+    }
+
+    /// How many steps lie between two rows.
+    pub fn steps_between(&self) -> u64 {
+        self.file.every.map_or(1, NonZeroU64::get)
+    }
+
+    /// Whether there is a row for each point of the body.
+    pub fn is_of_points(&self) -> bool {
+        self.file.points
+    }
+
+    /// Whether numbers have a decimal comma, and fields are parted by semicolons.
+    pub fn has_decimal_comma(&self) -> bool {
+        self.file.excel
+    }
+
+    /// What stands between two fields.
+    pub fn delimiter(&self) -> char {
+        if self.file.excel { ';' } else { ',' }
+    }
+
+    pub(super) fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// The names in the header line.
+    pub fn names(&self) -> Vec<&'static str> {
+        match &self.shape {
+            Shape::Whole => COLUMNS.iter().map(|column| column.name).collect(),
+            Shape::Columns(columns) => columns.iter().map(|column| column.name).collect(),
+            Shape::Points(columns) => columns.iter().map(|column| column.name).collect(),
+        }
+    }
+
+    /// Whether `step` has a row, the run's last step being `last`. Cutting leaves rows out of those that there are without
+    /// it: the steps 0, every, twice every and so on, and the last. A time within a billionth of a time step of an end, or
+    /// within the rounding of times, lies on it.
+    pub fn has_row(&self, step: &Step, last: u64) -> bool {
+        let number = step.number();
+        let is_counted = number.is_multiple_of(self.steps_between()) || number == last;
+        is_counted && self.has_time(step)
+    }
+
+    /// Whether the first row would come after the end of the run of `scenario`.
+    pub fn begins_after(&self, scenario: &Scenario) -> bool {
+        let end_s = Clock::end_s(scenario);
+        let slack_s = 1e-9 * scenario.motion.time_step_s + 4.0 * f64::EPSILON * end_s;
+        self.file
+            .from_s
+            .is_some_and(|from_s| from_s > end_s + slack_s)
+    }
+
+    /// Whether the time of `step` lies between the two ends.
+    pub(super) fn has_time(&self, step: &Step) -> bool {
+        let LayoutFile { from_s, to_s, .. } = self.file;
+        if from_s.is_none() && to_s.is_none() {
+            return true;
+        }
+        let time_s = step.time_s();
+        let slack_s = 1e-9 * step.motion().time_step_s + 4.0 * f64::EPSILON * time_s;
+        from_s.is_none_or(|from_s| time_s >= from_s - slack_s)
+            && to_s.is_none_or(|to_s| time_s <= to_s + slack_s)
+    }
+
+    /// The lines above the run file in the header; none of the default.
+    pub fn comments(&self) -> String {
+        // A checked layout holds nothing that TOML cannot write.
+        let text = toml::to_string(&self.file).unwrap_or_default();
+        commented(&commented(&text))
+    }
+
+    /// The layout that stands above the run file in the header of a CSV, whose lines have lost their `# `.
+    ///
+    /// # Errors
+    /// When a line above the run file is none of a layout, or asks for something that does not exist.
+    pub fn read(header: &str) -> Result<Self, LayoutError> {
+        let comments = header.lines().map_while(|line| line.strip_prefix('#'));
+        let text: String = comments.flat_map(|line| [line, "\n"]).collect();
+        let file: LayoutFile = toml::from_str(&text).map_err(|error| LayoutError {
+            key: "the lines above the run file",
+            rule: error.message().to_owned(),
+        })?;
+        file.check()
+    }
+}

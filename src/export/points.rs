@@ -1,0 +1,127 @@
+//! The columns of a CSV of all points: one row for each point of the body at each step.
+
+use super::columns::{
+    Cell,
+    Value::{Number, Whole},
+};
+use crate::physics::PointMass;
+use crate::run::Sample;
+use crate::scenario::Scenario;
+use nalgebra::Vector3;
+
+/// A column of the CSV of all points.
+#[derive(Debug)]
+pub struct PointColumn {
+    /// Name with its unit, as in the header line.
+    pub name: &'static str,
+    /// What it holds, in one line.
+    pub about: &'static str,
+    cell: for<'a> fn(&PlacedPoint<'a>) -> Cell<'a>,
+}
+
+/// A point of the body under the name that it has in the CSV.
+#[derive(Clone, Debug)]
+pub(super) struct NamedPoint {
+    name: String,
+    mass: PointMass,
+}
+
+/// A point of the body as it stands and moves at one step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlacedPoint<'a> {
+    point: &'a NamedPoint,
+    sample: &'a Sample,
+    position: Vector3<f64>,
+    velocity: Vector3<f64>,
+}
+
+/// Every column of the CSV of all points, in its order.
+pub const POINT_COLUMNS: &[PointColumn] = &[
+    column("step", "number of the time step", |p| {
+        Cell::Number(Whole(p.sample.step))
+    }),
+    column("t_s", "time", |p| number(p.sample.time_s)),
+    column(
+        "point",
+        "name of the point; rim.0 is the rim's first",
+        |p| Cell::Text(&p.point.name),
+    ),
+    column("mass_kg", "mass of the point", |p| {
+        number(p.point.mass.mass)
+    }),
+    column("x_m", "the point, world frame", |p| number(p.position.x)),
+    column("y_m", "the point, world frame", |p| number(p.position.y)),
+    column("z_m", "the point, world frame", |p| number(p.position.z)),
+    column("vx_m_per_s", "velocity of the point, world frame", |p| {
+        number(p.velocity.x)
+    }),
+    column("vy_m_per_s", "velocity of the point, world frame", |p| {
+        number(p.velocity.y)
+    }),
+    column("vz_m_per_s", "velocity of the point, world frame", |p| {
+        number(p.velocity.z)
+    }),
+    column(
+        "segment",
+        "edits of time step, scheme or gravity before this step",
+        |p| Cell::Number(Whole(p.sample.segment)),
+    ),
+];
+
+const fn column(
+    name: &'static str,
+    about: &'static str,
+    cell: for<'a> fn(&PlacedPoint<'a>) -> Cell<'a>,
+) -> PointColumn {
+    PointColumn { name, about, cell }
+}
+
+fn number<'a>(number: f64) -> Cell<'a> {
+    Cell::Number(Number(number))
+}
+
+impl PointColumn {
+    /// The column of that name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        POINT_COLUMNS.iter().find(|column| column.name == name)
+    }
+
+    pub(super) fn cell<'a>(&self, point: &PlacedPoint<'a>) -> Cell<'a> {
+        (self.cell)(point)
+    }
+}
+
+impl NamedPoint {
+    /// The points of `scenario`'s body in its order: the rim's as `rim.0`, `rim.1` and so on, every other by its name.
+    pub(super) fn all_of(scenario: &Scenario) -> Vec<Self> {
+        let body = &scenario.body;
+        let points = body.mechanics.points();
+        let mut named: Vec<_> = points
+            .iter()
+            .enumerate()
+            .map(|(index, mass)| Self {
+                name: format!("rim.{index}"),
+                mass: *mass,
+            })
+            .collect();
+        for name in body.names() {
+            if let Some(point) = body.point(name).and_then(|index| named.get_mut(index)) {
+                point.name = name.to_owned();
+            }
+        }
+        named
+    }
+}
+
+impl<'a> PlacedPoint<'a> {
+    /// `point` where the body stands as `sample` says; its velocity is ω x r.
+    pub(super) fn new(point: &'a NamedPoint, sample: &'a Sample) -> Self {
+        let position = sample.orientation * point.mass.at;
+        Self {
+            point,
+            sample,
+            position,
+            velocity: sample.angular_velocity.cross(&position),
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! Solid parts as lines: what of a part is seen in a picture.
+
+use crate::physics::part::{Part, Shape};
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+
+/// Parts of a circle.
+const PARTS: usize = 48;
+/// Lines along a round solid, from end to end.
+const SIDES: usize = 4;
+
+/// One line of a part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// The points that it goes through, body frame, m; at least two.
+    pub points: Vec<Vector3<f64>>,
+    /// Whether it is the one line that tells a round part from itself turned about its axis.
+    pub is_mark: bool,
+}
+
+/// The lines of `part`. Of a part that is given by its moments those of the thin ellipsoid that has them.
+pub fn lines(part: &Part) -> Vec<Line> {
+    let mut lines = own_lines(part);
+    for line in &mut lines {
+        for point in &mut line.points {
+            *point = part.centre + part.directions * *point;
+        }
+    }
+    lines
+}
+
+/// The lines of a solid in its own frame.
+fn own_lines(part: &Part) -> Vec<Line> {
+    match part.shape {
+        Shape::Ring { radius } => vec![circle(radius, 0.0), mark(0.0, radius, 0.0)],
+        Shape::Cylinder { radius, length } => {
+            let mut lines = round([(radius, -0.5 * length), (radius, 0.5 * length)]);
+            lines.push(mark(0.0, radius, 0.5 * length));
+            lines
+        }
+        Shape::Tube {
+            inner,
+            outer,
+            length,
+        } => {
+            let mut lines = round([(outer, -0.5 * length), (outer, 0.5 * length)]);
+            lines.push(circle(inner, 0.5 * length));
+            lines.push(mark(inner, outer, 0.5 * length));
+            lines
+        }
+        Shape::Rod { length } => vec![straight([
+            Vector3::new(0.0, 0.0, -0.5 * length),
+            Vector3::new(0.0, 0.0, 0.5 * length),
+        ])],
+        Shape::Ball { radius } | Shape::Shell { radius } => ellipsoid([radius; 3]),
+        Shape::Cone { radius, length } => {
+            let base = 0.25 * length;
+            let mut lines = round([(0.0, base - length), (radius, base)]);
+            lines.push(mark(0.0, radius, base));
+            lines
+        }
+        Shape::Block { size } => block(&size),
+        Shape::Moments(_) => ellipsoid(part.distances),
+    }
+}
+
+/// The equator and two meridians.
+fn ellipsoid([x, y, z]: [f64; 3]) -> Vec<Line> {
+    let round = circle(1.0, 0.0);
+    let turned = |turn: &dyn Fn(&Vector3<f64>) -> Vector3<f64>| Line {
+        points: round.points.iter().map(turn).collect(),
+        is_mark: false,
+    };
+    vec![
+        turned(&|at| Vector3::new(x * at.x, y * at.y, 0.0)),
+        turned(&|at| Vector3::new(x * at.x, 0.0, z * at.y)),
+        turned(&|at| Vector3::new(0.0, y * at.x, z * at.y)),
+    ]
+}
+
+/// A round solid between two circles, radius and height of each; of a flat one the circle alone, and none of radius 0.
+fn round(ends: [(f64, f64); 2]) -> Vec<Line> {
+    let [(lower, bottom), (upper, top)] = ends;
+    let is_flat = bottom == top;
+    let circles = ends.into_iter().skip(usize::from(is_flat));
+    let circles = circles.filter(|(radius, _)| *radius > 0.0);
+    let mut lines: Vec<_> = circles.map(|(radius, z)| circle(radius, z)).collect();
+    if !is_flat {
+        let side = |side: usize| {
+            let (sin, cos) = libm::sincos(TAU * side as f64 / SIDES as f64);
+            straight([
+                Vector3::new(lower * cos, lower * sin, bottom),
+                Vector3::new(upper * cos, upper * sin, top),
+            ])
+        };
+        lines.extend((0..SIDES).map(side));
+    }
+    lines
+}
+
+fn circle(radius: f64, z: f64) -> Line {
+    let point = |part: usize| {
+        let (sin, cos) = libm::sincos(TAU * (part % PARTS) as f64 / PARTS as f64);
+        Vector3::new(radius * cos, radius * sin, z)
+    };
+    Line {
+        points: (0..=PARTS).map(point).collect(),
+        is_mark: false,
+    }
+}
+
+fn mark(inner: f64, outer: f64, z: f64) -> Line {
+    Line {
+        is_mark: true,
+        ..straight([Vector3::new(inner, 0.0, z), Vector3::new(outer, 0.0, z)])
+    }
+}
+
+fn straight(ends: [Vector3<f64>; 2]) -> Line {
+    Line {
+        points: ends.to_vec(),
+        is_mark: false,
+    }
+}
+
+/// The edges of a block; a thin one has the four of its middle.
+fn block(size: &Vector3<f64>) -> Vec<Line> {
+    let half = 0.5 * size;
+    let level = |z: f64| Line {
+        points: [
+            (1.0, 1.0),
+            (-1.0, 1.0),
+            (-1.0, -1.0),
+            (1.0, -1.0),
+            (1.0, 1.0),
+        ]
+        .map(|(x, y)| Vector3::new(x * half.x, y * half.y, z))
+        .to_vec(),
+        is_mark: false,
+    };
+    if half.z == 0.0 {
+        return vec![level(0.0)];
+    }
+    let (bottom, top) = (level(-half.z), level(half.z));
+    let edges = bottom.points.iter().zip(&top.points).take(4);
+    let edges: Vec<_> = edges.map(|(low, high)| straight([*low, *high])).collect();
+    [vec![bottom, top], edges].concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn part(shape: Shape) -> Part {
+        let centre = Vector3::new(0.1, 0.2, 0.3);
+        Part::new(shape, 2.0, centre, &Vector3::new(1.0, 2.0, -2.0)).unwrap()
+    }
+
+    /// How far the lines of a solid reach along its own x, y and axis, from the least to the greatest.
+    fn extents(shape: Shape) -> [(f64, f64); 3] {
+        let part = part(shape);
+        let lines = lines(&part);
+        let own = lines.iter().flat_map(|line| &line.points);
+        let own: Vec<_> = own
+            .map(|at| part.directions.tr_mul(&(at - part.centre)))
+            .collect();
+        [0, 1, 2].map(|i| {
+            let along = || own.iter().map(|at| at[i]);
+            (
+                along().fold(f64::INFINITY, f64::min),
+                along().fold(f64::NEG_INFINITY, f64::max),
+            )
+        })
+    }
+
+    #[test]
+    fn lines_reach_as_far_as_the_solid() {
+        let (radius, length) = (0.5, 0.8);
+        let cases = [
+            (Shape::Ring { radius }, [0.5, 0.5, 0.0]),
+            (Shape::Cylinder { radius, length }, [0.5, 0.5, 0.4]),
+            (
+                Shape::Tube {
+                    inner: 0.2,
+                    outer: 0.5,
+                    length,
+                },
+                [0.5, 0.5, 0.4],
+            ),
+            (Shape::Rod { length }, [0.0, 0.0, 0.4]),
+            (Shape::Ball { radius }, [0.5; 3]),
+            (
+                Shape::Block {
+                    size: Vector3::new(0.2, 0.4, 0.6),
+                },
+                [0.1, 0.2, 0.3],
+            ),
+        ];
+        for (shape, half) in cases {
+            for ((least, most), half) in extents(shape).into_iter().zip(half) {
+                assert!(
+                    (most - half).abs() < 1e-15 && (least + half).abs() < 1e-15,
+                    "{shape:?}"
+                );
+            }
+        }
+        // The apex of a cone is against its axis, three quarters of its length from the centre.
+        let [_, _, along] = extents(Shape::Cone { radius, length });
+        assert!((along.0 + 0.6).abs() < 1e-15 && (along.1 - 0.2).abs() < 1e-15);
+    }
+
+    #[test]
+    fn moments_are_seen_as_the_thin_ellipsoid_that_has_them() {
+        // Of a shell of radius R they are 2 R²/3, three times.
+        let seen = extents(Shape::Moments(Vector3::repeat(2.0 / 3.0 * 0.25)));
+        assert!(seen.iter().all(|(_, most)| (most - 0.5).abs() < 1e-15));
+        // A + B = C: a disk.
+        let flat = extents(Shape::Moments(Vector3::new(1.0, 2.0, 3.0)));
+        assert!(flat[2].0.abs() < 1e-15 && flat[2].1.abs() < 1e-15);
+        assert!(flat[0].1 > 1.0 && flat[1].1 > 1.0);
+    }
+
+    #[test]
+    fn a_disk_is_one_circle_and_its_mark() {
+        let disk = lines(&part(Shape::Cylinder {
+            radius: 1.0,
+            length: 0.0,
+        }));
+        assert_eq!(disk.len(), 2);
+        assert!(disk[1].is_mark);
+    }
+}

@@ -1,0 +1,287 @@
+//! Solid parts of a body, each replaced by six points of the same mass, centre and inertia.
+//!
+//! A rigid part of mass m, centre c and principal moments A, B, C about its centre moves as six points of m/6 at
+//! c ± a e1, c ± b e2, c ± c3 e3 do (they are *equimomental* to it), where
+//!
+//! a² = 3 (B + C − A)/(2 m), b² = 3 (A + C − B)/(2 m), c3² = 3 (A + B − C)/(2 m).
+//!
+//! So every scheme goes on visiting points. Source: E. J. Routh, *The Elementary Part of a Treatise on the Dynamics of a
+//! System of Rigid Bodies*, chapter 1, "equimomental bodies". The moments are those of the tables in Goldstein and in
+//! Landau and Lifshitz, *Mechanics*, section 32.
+
+use super::PointMass;
+use nalgebra::{Matrix3, Vector3};
+
+/// A sum of two moments may be below the third by this part of the largest: it is the rounding of flat bodies, for which the
+/// two are equal.
+const ROUNDING: f64 = 1e-12;
+
+/// The points that stand for a part: its centre, without mass, and the six.
+pub const POINTS: usize = 7;
+
+/// A solid, in its own frame: its axis is z, its centre of mass the origin. Lengths in m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// A thin ring across the axis.
+    Ring {
+        /// Its radius.
+        radius: f64,
+    },
+    /// A cylinder about the axis; a disk where its length is 0.
+    Cylinder {
+        /// Its radius.
+        radius: f64,
+        /// Along the axis.
+        length: f64,
+    },
+    /// A thick-walled tube about the axis.
+    Tube {
+        /// Radius of the hole.
+        inner: f64,
+        /// Radius of the outside.
+        outer: f64,
+        /// Along the axis.
+        length: f64,
+    },
+    /// A thin rod along the axis.
+    Rod {
+        /// Its length.
+        length: f64,
+    },
+    /// A solid ball.
+    Ball {
+        /// Its radius.
+        radius: f64,
+    },
+    /// A thin hollow ball.
+    Shell {
+        /// Its radius.
+        radius: f64,
+    },
+    /// A solid cone, its apex against the axis, three quarters of its length from the centre of mass.
+    Cone {
+        /// Radius of its base.
+        radius: f64,
+        /// From the base to the apex.
+        length: f64,
+    },
+    /// A box.
+    Block {
+        /// Its sides along x, y and the axis.
+        size: Vector3<f64>,
+    },
+    /// No solid in particular: moments divided by the mass, m², across (x), across (y), about the axis.
+    Moments(Vector3<f64>),
+}
+
+impl Shape {
+    /// The principal moments about the centre divided by the mass, m²: about x, about y, about the axis.
+    pub fn moments_per_mass(&self) -> Vector3<f64> {
+        let symmetric = |along: f64, across: f64| Vector3::new(across, across, along);
+        match *self {
+            Self::Ring { radius } => {
+                let along = radius * radius;
+                symmetric(along, along / 2.0)
+            }
+            Self::Cylinder { radius, length } => {
+                let along = radius * radius / 2.0;
+                symmetric(along, along / 2.0 + length * length / 12.0)
+            }
+            Self::Tube {
+                inner,
+                outer,
+                length,
+            } => {
+                let along = (inner * inner + outer * outer) / 2.0;
+                symmetric(along, along / 2.0 + length * length / 12.0)
+            }
+            Self::Rod { length } => symmetric(0.0, length * length / 12.0),
+            Self::Ball { radius } => Vector3::repeat(radius * radius * 2.0 / 5.0),
+            Self::Shell { radius } => Vector3::repeat(radius * radius * 2.0 / 3.0),
+            Self::Cone { radius, length } => symmetric(
+                radius * radius * 3.0 / 10.0,
+                3.0 * (4.0 * radius * radius + length * length) / 80.0,
+            ),
+            Self::Block { size } => {
+                let [a, b, h] = [size.x * size.x, size.y * size.y, size.z * size.z];
+                Vector3::new(b + h, a + h, a + b) / 12.0
+            }
+            Self::Moments(moments) => moments,
+        }
+    }
+}
+
+/// Why there is no part of some moments.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum PartError {
+    /// One moment is above the sum of the two others.
+    #[error("{0}: no body of real masses has these moments")]
+    Unreal(&'static str),
+    /// Mass or dimensions are so large or small that the moments leave the range of floating-point numbers.
+    #[error("its moments leave the range of numbers: use masses and dimensions nearer to 1")]
+    OutOfRange,
+}
+
+/// Distances of the six points from the centre for the moments A, B, C divided by the mass, m.
+///
+/// # Errors
+/// Where one of A, B, C is above the sum of the two others, or not finite.
+fn distances(moments: &Vector3<f64>) -> Result<[f64; 3], PartError> {
+    let [a, b, c] = (*moments).into();
+    if !(a + b + c).is_finite() {
+        return Err(PartError::OutOfRange);
+    }
+    let rounding = ROUNDING * moments.amax();
+    let distance = |sum: f64, third: f64, rule: &'static str| match sum - third {
+        difference if difference < -rounding => Err(PartError::Unreal(rule)),
+        difference => Ok((1.5 * difference.max(0.0)).sqrt()),
+    };
+    Ok([
+        distance(b + c, a, "B + C is below A")?,
+        distance(a + c, b, "A + C is below B")?,
+        distance(a + b, c, "A + B is below C")?,
+    ])
+}
+
+/// A part in its place in the upright body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// What it is.
+    pub shape: Shape,
+    /// Its mass, kg.
+    pub mass: f64,
+    /// Its centre of mass, body frame, m.
+    pub centre: Vector3<f64>,
+    /// Its own directions x, y and axis as columns, body frame.
+    pub directions: Matrix3<f64>,
+    /// Distances of the six points from the centre along its own x, y and axis, m. They are the half axes of the thin
+    /// ellipsoid (the shell between two similar ones) that has the same moments.
+    pub distances: [f64; 3],
+}
+
+impl Part {
+    /// The part of this shape and `mass` (kg), which is above 0, whose centre is at `centre` (body frame, m) and whose axis
+    /// has the direction `axis`, which is not zero.
+    ///
+    /// # Errors
+    /// Where no body of real masses has its moments, or they are no finite numbers.
+    pub fn new(
+        shape: Shape,
+        mass: f64,
+        centre: Vector3<f64>,
+        axis: &Vector3<f64>,
+    ) -> Result<Self, PartError> {
+        Ok(Self {
+            shape,
+            mass,
+            centre,
+            directions: turn_to(axis),
+            distances: distances(&shape.moments_per_mass())?,
+        })
+    }
+
+    /// The principal moments about the centre: about its own x, y and axis, kg m².
+    pub fn moments(&self) -> Vector3<f64> {
+        self.mass * self.shape.moments_per_mass()
+    }
+
+    /// The points that stand for it, body frame: the centre, without mass, and then on each of its own directions x, y and
+    /// axis the one before and the one behind the centre.
+    pub fn points(&self) -> [PointMass; POINTS] {
+        let mass = self.mass / 6.0;
+        let [x, y, z] = [0, 1, 2].map(|i| self.directions.column(i) * self.distances[i]);
+        let point = |off: Vector3<f64>| PointMass {
+            at: self.centre + off,
+            mass,
+        };
+        let centre = PointMass {
+            at: self.centre,
+            mass: 0.0,
+        };
+        [
+            centre,
+            point(x),
+            point(-x),
+            point(y),
+            point(-y),
+            point(z),
+            point(-z),
+        ]
+    }
+}
+
+/// The shortest turn that carries +z to the direction of `axis`; half a turn about x where that is −z.
+fn turn_to(axis: &Vector3<f64>) -> Matrix3<f64> {
+    let axis = (axis / axis.amax()).normalize(); // its square may leave the range of numbers
+    let across = libm::hypot(axis.x, axis.y);
+    if across == 0.0 {
+        let sign = 1.0_f64.copysign(axis.z);
+        return Matrix3::from_diagonal(&Vector3::new(1.0, sign, sign));
+    }
+    // About (−uy, ux, 0), by the angle whose cosine is axis.z.
+    let (ux, uy, bend) = (axis.x / across, axis.y / across, 1.0 - axis.z);
+    Matrix3::new(
+        1.0 - ux * ux * bend,
+        -ux * uy * bend,
+        axis.x,
+        -ux * uy * bend,
+        1.0 - uy * uy * bend,
+        axis.y,
+        -axis.x,
+        -axis.y,
+        axis.z,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn part(shape: Shape, axis: [f64; 3]) -> Part {
+        Part::new(shape, 2.0, Vector3::zeros(), &Vector3::from(axis)).unwrap()
+    }
+
+    #[test]
+    fn directions_are_carried_by_the_shortest_turn() {
+        let turn = |axis: [f64; 3]| part(Shape::Ring { radius: 1.0 }, axis).directions;
+        assert_eq!(turn([0.0, 0.0, 3.0]), Matrix3::identity());
+        let half = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
+        assert_eq!(turn([0.0, 0.0, -1e-300]), half);
+        // A quarter turn about +y.
+        let quarter = Matrix3::new(0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0);
+        assert_eq!(turn([5.0, 0.0, 0.0]), quarter);
+        for axis in [
+            [1e-9, 2e-9, -1.0],
+            [1e200, -1e200, 1e200],
+            [0.1, -0.7, -0.2],
+        ] {
+            let turn = turn(axis);
+            assert!((turn.transpose() * turn - Matrix3::identity()).amax() < 1e-15);
+            assert!((turn.determinant() - 1.0).abs() < 1e-15);
+            let along = Vector3::from(axis) / Vector3::from(axis).amax();
+            assert!(turn.column(2).cross(&along).amax() < 1e-15);
+            // What lies across both +z and the axis stays where it is.
+            let still = Vector3::new(-along.y, along.x, 0.0).normalize();
+            assert!((turn * still - still).amax() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn moments_that_no_masses_have_are_refused() {
+        let refusal = |moments: [f64; 3]| {
+            let told = distances(&Vector3::from(moments)).unwrap_err().to_string();
+            told.split_once(':').unwrap().0.to_owned()
+        };
+        assert_eq!(refusal([1.0, 1.0, 2.001]), "A + B is below C");
+        assert_eq!(refusal([3.0, 1.0, 1.0]), "B + C is below A");
+        assert_eq!(refusal([1.0, 3.0, 1.0]), "A + C is below B");
+        assert_eq!(refusal([1.0, 1.0, 2.0 + 4e-12]), "A + B is below C");
+        // Rounding counts as flat.
+        let flat = distances(&Vector3::new(0.1, 0.2, 0.1 + 0.2 + 2e-16)).unwrap();
+        assert_eq!(flat[2], 0.0);
+        assert!(distances(&Vector3::new(1.0, 1.0, 2.0 + 1e-12)).is_ok());
+        assert!(distances(&Vector3::zeros()).is_ok());
+        let infinite = Vector3::new(1.0, f64::INFINITY, f64::INFINITY);
+        assert_eq!(distances(&infinite), Err(PartError::OutOfRange));
+    }
+}

@@ -1,0 +1,148 @@
+//! Files as they are read: the whole of a scenario, or the head of a CSV, which holds the run file.
+
+use super::problem::Problem;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::Path;
+
+/// The longest file that is read as a scenario, bytes: 100 000 points take about 8 MB.
+pub(super) const LONGEST: u64 = 16 << 20;
+
+/// How the line of names begins in the CSV of a run with every column.
+const EVERY_COLUMN: &[u8] = b"step,t_s,";
+
+/// How the line begins that tells the version, in the head of every CSV that gyrolab writes.
+const VERSION: &[u8] = b"# gyrolab = ";
+
+/// Some programs put it before the first line of a file.
+const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
+
+/// The beginning of a file: the lines that begin with `#`, and the one after them, which names the columns of a CSV.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Head {
+    bytes: Vec<u8>,
+    /// Where the line of names begins.
+    names: usize,
+}
+
+impl Head {
+    /// Reads the head of a file from its beginning; of a longer one no more than the length of a scenario.
+    ///
+    /// # Errors
+    /// When the system reports an error.
+    pub fn read(reader: &mut impl BufRead) -> io::Result<Self> {
+        let mut reader = reader.take(LONGEST + 1);
+        let (mut bytes, mut names) = (Vec::new(), 0);
+        loop {
+            reader.read_until(b'\n', &mut bytes)?;
+            if !without_mark(&bytes[names..]).starts_with(b"#") {
+                return Ok(Self { bytes, names });
+            }
+            names = bytes.len();
+        }
+    }
+
+    /// Every byte of it.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// The line that names the columns of a CSV, without its end.
+    pub fn names(&self) -> &[u8] {
+        without_mark(&self.bytes[self.names..]).trim_ascii_end()
+    }
+
+    /// Whether it is the head of a CSV that gyrolab wrote. Nothing in TOML is a line of names without a value.
+    pub fn is_of_csv(&self) -> bool {
+        let is_of_name = |byte: &u8| byte.is_ascii_alphanumeric() || b"_.,;\"".contains(byte);
+        let names = self.names();
+        let tells_version = || {
+            let mut lines = self.comments().split(|&byte| byte == b'\n');
+            lines.any(|line| line.starts_with(VERSION))
+        };
+        names.starts_with(EVERY_COLUMN)
+            || !names.is_empty() && names.iter().all(is_of_name) && tells_version()
+    }
+
+    /// The lines that begin with `#`, without a byte order mark.
+    fn comments(&self) -> &[u8] {
+        without_mark(&self.bytes[..self.names])
+    }
+
+    /// The lines above the line of names without their `# `: the run file of a CSV.
+    ///
+    /// # Errors
+    /// When there is none, or it is not text.
+    pub fn run_file(&self) -> Result<String, Problem> {
+        if self.comments().is_empty() {
+            let rule =
+                "is a CSV with no run file in its header, the \"# \" lines that gyrolab writes";
+            return Err(Problem::at("", rule));
+        }
+        let lines = utf8(self.comments().to_vec())?;
+        let stripped = |line: &str| {
+            let line = line.trim_start_matches('\u{feff}');
+            let line = line.strip_prefix('#').unwrap_or(line);
+            line.strip_prefix(' ').unwrap_or(line).to_owned()
+        };
+        Ok(lines.split_inclusive('\n').map(stripped).collect())
+    }
+}
+
+fn without_mark(line: &[u8]) -> &[u8] {
+    line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line)
+}
+
+/// The text of a scenario, or the run file in the header of a CSV, of which no more is read.
+pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
+    let whole = |rule: String| Problem::at("", rule);
+    let cannot = |error: io::Error| whole(format!("cannot be read: {error}"));
+    if path.is_dir() {
+        return Err(whole("is a folder: name a file in it".to_owned()));
+    }
+    let mut reader = BufReader::new(File::open(path).map_err(cannot)?.take(LONGEST + 1));
+    let head = Head::read(&mut reader).map_err(cannot)?;
+    if head.is_of_csv() {
+        return head.run_file();
+    }
+    if path.extension().is_some_and(|extension| extension == "csv") {
+        let names = String::from_utf8_lossy(EVERY_COLUMN);
+        return Err(whole(format!(
+            "is not the CSV of a run: no line \"{names}...\" below a run file"
+        )));
+    }
+    let mut text = head.bytes;
+    let length = std::fs::metadata(path).map_or(0, |file| file.len());
+    if length <= LONGEST {
+        reader.read_to_end(&mut text).map_err(cannot)?; // of a FIFO no more than the limit
+    }
+    if length > LONGEST || text.len() as u64 > LONGEST {
+        let how_long = match length > LONGEST {
+            true => format!("{length} bytes long, longer"),
+            false => "longer".to_owned(),
+        };
+        let most = LONGEST >> 20;
+        return Err(whole(format!(
+            "is {how_long} than {most} MiB ({LONGEST} bytes), the most that a scenario or run file may have"
+        )));
+    }
+    utf8(text)
+}
+
+pub(super) fn short_enough(text: Vec<u8>) -> Result<String, Problem> {
+    if text.len() as u64 > LONGEST {
+        let rule = format!("is longer than {LONGEST} bytes, the most that is read");
+        return Err(Problem::at("", rule));
+    }
+    utf8(text)
+}
+
+fn utf8(bytes: Vec<u8>) -> Result<String, Problem> {
+    String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = good.iter().filter(|&&byte| byte == b'\n').count() + 1;
+        let mut problem = Problem::at("", "is not text in UTF-8: save the file in that encoding");
+        problem.place = Some(format!("line {line}"));
+        problem
+    })
+}

@@ -1,0 +1,113 @@
+//! A part that is to have another shape, or a direction that its file does not give: its table gets the dimensions that the
+//! new value asks for, as near to the old ones as there are.
+
+use super::dotted::find;
+use super::file::PartFile;
+use super::solids::{self, has_dimension};
+use super::start::vector;
+use crate::physics::part::Shape;
+use nalgebra::Vector3;
+use toml::{Table, Value};
+
+/// Prepares the file's `table` for a new `value` at `key`, which may belong to a part.
+pub(super) fn prepare(table: &mut Table, key: &str, value: &Value) {
+    let mut names = key.split('.').skip(2);
+    let (Some(index), Some(name)) = (names.next(), names.next()) else {
+        return;
+    };
+    let at = format!("body.part.{index}");
+    let (true, Some(Value::Table(written))) = (key.starts_with(&at), find(table, &at)) else {
+        return;
+    };
+    let told = match (name, value.as_str()) {
+        ("axis", _) if names.next().is_some() && !written.contains_key("axis") => {
+            vec![("axis", vector(&Vector3::z()))]
+        }
+        ("shape", Some(shape)) => {
+            let old: Result<PartFile, _> = written.clone().try_into();
+            old.map_or(Vec::new(), |old| dimensions(&old, shape))
+        }
+        _ => return,
+    };
+    let part = table.get_mut("body").and_then(|body| body.get_mut("part"));
+    let part = index
+        .parse::<usize>()
+        .ok()
+        .and_then(|index| part?.get_mut(index));
+    let Some(Value::Table(part)) = part else {
+        return;
+    };
+    if name == "shape" && !told.is_empty() {
+        part.retain(|key, _| !is_dimension(key));
+    }
+    part.extend(
+        told.into_iter()
+            .map(|(name, value)| (name.to_owned(), value)),
+    );
+}
+
+/// The dimensions of any shape, in the order of the table of keys.
+const DIMENSIONS: [&str; 6] = [
+    "radius_m",
+    "inner_radius_m",
+    "outer_radius_m",
+    "length_m",
+    "size_m",
+    "moments_kg_m2",
+];
+
+fn is_dimension(key: &str) -> bool {
+    DIMENSIONS.contains(&key)
+}
+
+/// The dimensions that a part of the shape `shape` has in the place of `old`; none where there is no such shape, or no such
+/// part.
+fn dimensions(old: &PartFile, shape: &str) -> Vec<(&'static str, Value)> {
+    let Ok(part) = solids::part(old) else {
+        return Vec::new();
+    };
+    let size = size(&part.shape);
+    let (radius, length) = (0.5 * size.x.max(size.y), size.z);
+    let hole = match part.shape {
+        Shape::Tube { inner, .. } => inner,
+        _ => 0.5 * radius,
+    };
+    // A rod or a cone without length is nothing.
+    let length = match (length > 0.0, shape) {
+        (false, "rod" | "cone") => 2.0 * radius,
+        _ => length,
+    };
+    let values = [
+        radius.into(),
+        hole.into(),
+        radius.into(),
+        length.into(),
+        vector(&size),
+        vector(&part.moments()),
+    ];
+    let all = DIMENSIONS.into_iter().zip(values);
+    all.filter(|(name, _)| has_dimension(shape, name)).collect()
+}
+
+/// How long a solid is along its x, its y and its axis, m.
+fn size(shape: &Shape) -> Vector3<f64> {
+    let round = |radius: f64, length: f64| Vector3::new(2.0 * radius, 2.0 * radius, length);
+    match *shape {
+        Shape::Ring { radius } => round(radius, 0.0),
+        Shape::Cylinder { radius, length } | Shape::Cone { radius, length } => {
+            round(radius, length)
+        }
+        Shape::Tube { outer, length, .. } => round(outer, length),
+        Shape::Rod { length } => round(0.5 * length, length),
+        Shape::Ball { radius } | Shape::Shell { radius } => round(radius, 2.0 * radius),
+        Shape::Block { size } => size,
+        Shape::Moments(moments) => block_of(&moments),
+    }
+}
+
+/// The sides of the block that has these moments divided by the mass, m.
+fn block_of(moments: &Vector3<f64>) -> Vector3<f64> {
+    let [a, b, c] = (*moments).into();
+    let side = |twice: f64| (6.0 * twice.max(0.0)).sqrt();
+    Vector3::new(side(b + c - a), side(a + c - b), side(a + b - c))
+}

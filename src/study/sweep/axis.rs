@@ -1,0 +1,266 @@
+//! A key that varies, and its values.
+
+use super::file::VaryFile;
+use crate::scenario::document::toml_or_text;
+use crate::scenario::keys::{self, Kind};
+use crate::scenario::{Problem, Problems};
+use crate::text::number::rounded;
+use crate::text::printable::is_steering;
+use toml::Value;
+
+/// A key that varies, and its values in their order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// The dotted key.
+    pub key: String,
+    /// Its values, at least one.
+    pub values: Vec<Value>,
+}
+
+/// The most values of one key.
+const MOST: u64 = 10_000_000;
+
+/// Digits of a value between two ends: one less than rounding spoils.
+const DIGITS: usize = 15;
+
+impl Axis {
+    /// The axis that `vary` asks for.
+    ///
+    /// # Errors
+    /// A key that there is not, values that it cannot have, a range without end or count; `place` is where it stands.
+    pub(super) fn new(vary: &VaryFile, place: &str) -> Result<Self, Vec<Problem>> {
+        let at = |name: &str| keys::join(place, name);
+        let kind = kind(&vary.key).map_err(|rule| {
+            let key = Value::String(vary.key.clone());
+            vec![Problem::with_value(at("key"), &key, rule)]
+        })?;
+        let values = match (&vary.values, vary.from, vary.to, vary.count) {
+            (Some(values), None, None, None) => values.clone(),
+            (None, Some(from), Some(to), Some(count)) => {
+                range(from, to, count).map_err(|rule| vec![Problem::at(place, rule)])?
+            }
+            _ => {
+                let rule = "must hold either values = [...], or from, to and count";
+                return Err(vec![Problem::at(place, rule)]);
+            }
+        };
+        if values.is_empty() {
+            return Err(vec![Problem::at(
+                at("values"),
+                "must hold at least one value",
+            )]);
+        }
+        let values: Vec<_> = values
+            .into_iter()
+            .map(|value| as_kind(kind, value))
+            .collect();
+        let problems: Vec<_> = values
+            .iter()
+            .filter_map(|value| {
+                let rule = fits(kind, value).err()?;
+                Some(Problem::with_value(vary.key.clone(), value, rule))
+            })
+            .collect();
+        match problems.is_empty() {
+            true => Ok(Self {
+                key: vary.key.clone(),
+                values,
+            }),
+            false => Err(problems),
+        }
+    }
+}
+
+/// What a value of the dotted `key` may be.
+fn kind(key: &str) -> Result<Kind, String> {
+    if ["gyrolab", "expected", "edit"].contains(&key.split('.').next().unwrap_or_default()) {
+        return Err("is no part of the set-up, and cannot vary".to_owned());
+    }
+    keys::find(key).map(|(_, kind)| kind)
+}
+
+/// Whether `value` may stand at a key of this kind. (Whether the scenario takes it shows at its point.)
+fn fits(kind: Kind, value: &Value) -> Result<(), String> {
+    kind.check(value)?;
+    match value
+        .as_str()
+        .is_some_and(|text| text.contains(is_steering))
+    {
+        true => Err("must be one line, without control characters".to_owned()),
+        false => Ok(()),
+    }
+}
+
+/// `count` values from `from` to `to`, both among them, evenly spaced, without the last digits that only rounding makes.
+fn range(from: f64, to: f64, count: u64) -> Result<Vec<Value>, String> {
+    if !(from.is_finite() && to.is_finite() && (to - from).is_finite()) {
+        return Err("must have finite ends".to_owned());
+    }
+    match count {
+        1 if from == to => Ok(vec![Value::Float(from)]),
+        0 | 1 => Err("must have a count of 2 or more: both ends are among the values".to_owned()),
+        _ if from == to => Err("has two ends that are the same".to_owned()),
+        count if count > MOST => Err(format!("has {count} values: at most {MOST} are allowed")),
+        count => {
+            let last = count - 1;
+            let value = |index: u64| match index {
+                0 => from,
+                index if index == last => to,
+                index => rounded(from + (to - from) * (index as f64 / last as f64), DIGITS),
+            };
+            Ok((0..count).map(|index| Value::Float(value(index))).collect())
+        }
+    }
+}
+
+/// A whole number where a number is wanted as that number, and a number without decimals where a whole one is.
+fn as_kind(kind: Kind, value: Value) -> Value {
+    const EXACT: f64 = 9e15;
+    match (kind, &value) {
+        (Kind::Number(_), Value::Integer(whole)) => Value::Float(*whole as f64),
+        (Kind::Whole(..) | Kind::WholeOr(..), Value::Float(number))
+            if number.fract() == 0.0 && number.abs() < EXACT =>
+        {
+            Value::Integer(*number as i64)
+        }
+        _ => value,
+    }
+}
+
+/// What `--vary` is given: `KEY=A..B:N` or `KEY=V1,V2,...`.
+///
+/// # Errors
+/// When there is no `=`, or a range is not whole.
+pub fn parse(argument: &str) -> Result<VaryFile, String> {
+    let Some((key, text)) = argument.split_once('=') else {
+        return Err(
+            "must be KEY=A..B:N, or KEY=V1,V2,..., such as motion.time_step_s=0.01..0.1:10"
+                .to_owned(),
+        );
+    };
+    let (key, text) = (key.trim().to_owned(), text.trim());
+    let is_number = matches!(kind(&key), Ok(Kind::Number(_) | Kind::Whole(..)));
+    if let Some((from, rest)) = text.split_once("..").filter(|_| is_number) {
+        let whole = rest.split_once(':').and_then(|(to, count)| {
+            let number = |text: &str| text.trim().parse::<f64>().ok();
+            Some((number(from)?, number(to)?, count.trim().parse().ok()?))
+        });
+        let Some((from, to, count)) = whole else {
+            return Err(
+                "must be A..B:N: two numbers and how many values, both ends among them".to_owned(),
+            );
+        };
+        return Ok(VaryFile {
+            key,
+            values: None,
+            from: Some(from),
+            to: Some(to),
+            count: Some(count),
+        });
+    }
+    Ok(VaryFile {
+        key,
+        values: Some(listed(text)?),
+        from: None,
+        to: None,
+        count: None,
+    })
+}
+
+/// The values between the commas of `text` that stand in no brackets and no quotes: each TOML, or else text.
+fn listed(text: &str) -> Result<Vec<Value>, String> {
+    let (mut depth, mut quote, mut begin) = (0_i64, None, 0);
+    let mut parts = Vec::new();
+    for (at, c) in text.char_indices() {
+        match (quote, c) {
+            (Some(open), _) => quote = (c != open).then_some(open),
+            (None, '"' | '\'') => quote = Some(c),
+            (None, '[' | '{') => depth += 1,
+            (None, ']' | '}') => depth -= 1,
+            (None, ',') if depth == 0 => {
+                parts.push(&text[begin..at]);
+                begin = at + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(&text[begin..]);
+    let value = |part: &&str| match (part.trim(), toml_or_text(part.trim())) {
+        ("", _) => Err("has an empty place between its commas".to_owned()),
+        (_, (_, Some(mistake))) => Err(mistake),
+        (_, (value, None)) => Ok(value),
+    };
+    parts.iter().map(value).collect()
+}
+
+/// Whether the dotted keys `one` and `other` write into the same value.
+pub(super) fn overlap(one: &str, other: &str) -> bool {
+    use crate::scenario::dotted::is_in;
+    is_in(one, other) || is_in(other, one)
+}
+
+/// A refusal of the `--vary` argument.
+pub fn refused(argument: &str, rule: String) -> Problems {
+    use crate::text::printable::brief;
+    let mut problem = Problem::at("", rule);
+    problem.place = Some(format!("--vary {}", brief(argument, 80)));
+    Problems::one("", problem)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axis(argument: &str) -> Result<Vec<String>, String> {
+        let axis = parse(argument).and_then(|vary| {
+            Axis::new(&vary, "vary.0").map_err(|problems| problems[0].to_string())
+        })?;
+        Ok(axis.values.iter().map(ToString::to_string).collect())
+    }
+
+    #[test]
+    fn both_ends_are_among_the_values_and_no_digit_is_made_by_rounding() {
+        let values = axis("motion.time_step_s=0.01..0.1:10").unwrap();
+        assert_eq!(values[..4], ["0.01", "0.02", "0.03", "0.04"]);
+        assert_eq!((values.len(), values[9].as_str()), (10, "0.1"));
+        assert_eq!(
+            axis("motion.gravity_m_per_s2=1..-1:3").unwrap(),
+            ["1.0", "0.0", "-1.0"]
+        );
+        assert_eq!(axis("body.rim.points=4..12:3").unwrap(), ["4", "8", "12"]);
+    }
+
+    #[test]
+    fn values_are_toml_or_else_text() {
+        assert_eq!(
+            axis("motion.scheme=report,rk4").unwrap(),
+            ["\"report\"", "\"rk4\""]
+        );
+        assert_eq!(axis("motion.time_step_s=1, 0.5").unwrap(), ["1.0", "0.5"]);
+        let forces = axis("push.0.force_N=[0,0,-50],[0, 0, 50]").unwrap();
+        assert_eq!(forces, ["[0, 0, -50]", "[0, 0, 50]"]);
+        assert_eq!(axis("title=\"a,b\",c").unwrap(), ["\"a,b\"", "\"c\""]);
+    }
+
+    #[test]
+    fn what_cannot_be_meant_is_refused() {
+        for (wrong, rule) in [
+            ("motion.time_step_s", "KEY=A..B:N"),
+            ("motion.time_step=1,2", "did you mean motion.time_step_s?"),
+            ("motion.time_step_s=0.1..0.2", "A..B:N"),
+            ("motion.time_step_s=0.1..0.2:1", "both ends"),
+            ("motion.time_step_s=0.1..0.1:5", "the same"),
+            ("motion.time_step_s=0.1..nan:5", "finite"),
+            ("motion.time_step_s=0..0.2:3", "greater than zero"),
+            ("motion.time_step_s=0.1,,0.2", "empty place"),
+            ("motion.scheme=report,rk5", "did you mean rk4?"),
+            ("body.rim.points=4..12:4", "whole number"),
+            ("push.0.force_N=[0,0", "no TOML"),
+            ("gyrolab=1", "cannot vary"),
+            ("push=1", "unknown key"),
+        ] {
+            let told = axis(wrong).unwrap_err();
+            assert!(told.contains(rule), "{wrong}: {told}");
+        }
+    }
+}

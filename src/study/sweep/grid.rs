@@ -1,0 +1,347 @@
+//! A checked sweep: its points in their order, the scenario of each, and its row.
+
+use super::axis::Axis;
+use super::checks::{axes, measured};
+use super::file::{Base, SweepFile};
+use super::row::{Row, line, readouts};
+use super::shard::Shard;
+use crate::analysis::readouts::{Readout, Value as Readable};
+use crate::export::csv::commented;
+use crate::run::Clock;
+use crate::run::resample::resampled;
+use crate::scenario::document::Document;
+use crate::scenario::dotted::find;
+use crate::scenario::file::ScenarioFile;
+use crate::scenario::keys::join;
+use crate::scenario::rescale::{MOST_STEPS, accumulates};
+use crate::scenario::{Problem, Problems, Scenario};
+use crate::text::number::{decimal, shortest};
+use std::path::Path;
+use toml::Value;
+
+/// The key that, as it varies, leaves the seconds of a run as they are and not its steps.
+const TIME_STEP: &str = "motion.time_step_s";
+
+/// The most points of one sweep.
+const MOST_POINTS: u64 = 1_000_000_000;
+
+/// A grid of runs whose keys, values and readouts have been checked.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// As it stands in the header of its CSV.
+    file: SweepFile,
+    /// What every run begins from.
+    base: Document,
+    axes: Vec<Axis>,
+    measure: Vec<&'static Readout>,
+    shard: Shard,
+    points: u64,
+}
+
+impl Sweep {
+    /// The sweep that `document` tells, a sweep file or the header of a sweep's CSV.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn open(document: &Document) -> Result<Self, Problems> {
+        let file = SweepFile::read(document)?;
+        let base = Self::base(&file, document, |_| Ok(()))?;
+        Self::new(file, &base, &|problems| document.placed(problems))
+    }
+
+    /// The sweep `file` from `base` on, whatever `file` says of its scenario; `placed` knows where things stand.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn new(
+        file: SweepFile,
+        base: &Scenario,
+        placed: &dyn Fn(Vec<Problem>) -> Problems,
+    ) -> Result<Self, Problems> {
+        let mut problems = Vec::new();
+        let axes = axes(&file.vary, &mut problems);
+        let measure = measured(file.measure.as_deref(), &axes, &mut problems);
+        let shard = match file.shard.as_deref().map(str::parse) {
+            None => Shard::WHOLE,
+            Some(Ok(shard)) => shard,
+            Some(Err(rule)) => {
+                problems.push(Problem::at("shard", rule));
+                Shard::WHOLE
+            }
+        };
+        let counts = axes.iter().map(|axis| axis.values.len() as u64);
+        let points = counts.fold(1, u64::saturating_mul);
+        if points > MOST_POINTS {
+            let rule = format!("is a grid of {points} points: at most {MOST_POINTS} are allowed");
+            problems.push(Problem::at("vary", rule));
+        }
+        if !problems.is_empty() {
+            return Err(placed(problems));
+        }
+        let base_file = ScenarioFile {
+            gyrolab: None,
+            // They are about the scenario as it stands alone, and about a screen.
+            expected: Vec::new(),
+            view: None,
+            ..base.file.clone()
+        };
+        let document = Document::from_file("", &base_file)?;
+        let sweep = Self {
+            file: SweepFile {
+                scenario: Base::Checked(Box::new(base_file.clone())),
+                gyrolab: Some(env!("CARGO_PKG_VERSION").to_owned()),
+                title: Some(file.title.unwrap_or_else(|| base_file.title.clone())),
+                shard: (shard != Shard::WHOLE).then(|| shard.to_string()),
+                measure: Some(
+                    measure
+                        .iter()
+                        .map(|readout| readout.name.to_owned())
+                        .collect(),
+                ),
+                vary: file.vary,
+                ..file
+            },
+            base: document,
+            axes,
+            measure,
+            shard,
+            points,
+        };
+        match sweep.keys_lead_somewhere() {
+            Ok(()) => Ok(sweep),
+            Err(problem) => Err(placed(vec![problem])),
+        }
+    }
+
+    /// The scenario that `file`, which stands in `document`, begins from, with what `change` changes in it.
+    ///
+    /// # Errors
+    /// When there is none of that name, or it or the change is wrong.
+    pub fn base(
+        file: &SweepFile,
+        document: &Document,
+        change: impl FnOnce(&mut Document) -> Result<(), Problems>,
+    ) -> Result<Scenario, Problems> {
+        let (mut base, is_inside) = match &file.scenario {
+            Base::Name(name) if is_file(name) => {
+                let folder = Path::new(document.origin()).parent();
+                let path = folder.unwrap_or(Path::new("")).join(name);
+                (Document::read(&path)?, false)
+            }
+            Base::Name(name) => (Document::open(name)?, false),
+            Base::Written(table) => (Document::from_table(document.origin(), table.clone()), true),
+            Base::Checked(file) => (Document::from_file(document.origin(), file)?, true),
+        };
+        change(&mut base)?;
+        base.scenario().map_err(|problems| match is_inside {
+            true => inside(problems, document),
+            false => problems,
+        })
+    }
+
+    /// The same sweep with this shard of its points.
+    #[must_use]
+    pub fn with_shard(mut self, shard: Shard) -> Self {
+        self.file.shard = (shard != Shard::WHOLE).then(|| shard.to_string());
+        self.shard = shard;
+        self
+    }
+
+    /// Whether every key has a place in the scenario: the key of a push that is not there, say, has none.
+    fn keys_lead_somewhere(&self) -> Result<(), Problem> {
+        let mut document = self.base.clone();
+        for axis in &self.axes {
+            let names: Vec<_> = axis.key.split('.').collect();
+            let number = names.iter().position(|name| name.parse::<usize>().is_ok());
+            let entry = number.map(|at| names[..=at].join("."));
+            if let Some(entry) = entry.filter(|entry| find(self.base.table(), entry).is_none()) {
+                let rule = format!("leads nowhere: the scenario has no {entry}");
+                return Err(Problem::at(axis.key.clone(), rule));
+            }
+            document.set_value(&axis.key, axis.values[0].clone())?;
+        }
+        Ok(())
+    }
+
+    /// What it is called.
+    pub fn title(&self) -> &str {
+        self.file.title.as_deref().unwrap_or_default()
+    }
+
+    /// What it shows, in a paragraph.
+    pub fn about(&self) -> Option<&str> {
+        self.file.about.as_deref()
+    }
+
+    /// The keys that vary, the last fastest.
+    pub fn axes(&self) -> &[Axis] {
+        &self.axes
+    }
+
+    /// The readouts, in the order of their columns.
+    pub fn measure(&self) -> &[&'static Readout] {
+        &self.measure
+    }
+
+    /// Which of its points are its rows.
+    pub fn shard(&self) -> Shard {
+        self.shard
+    }
+
+    /// How many rows it has: those of its shard.
+    pub fn rows(&self) -> u64 {
+        self.shard.points(self.points)
+    }
+
+    /// The number of points of the whole grid.
+    pub fn points(&self) -> u64 {
+        self.points
+    }
+
+    /// The sweep file in `# ` lines, as its CSV begins.
+    pub fn file_lines(&self) -> String {
+        commented(&self.file.to_toml())
+    }
+
+    /// The sweep file in `# ` lines, and the line of the columns' names.
+    pub fn header(&self) -> String {
+        let keys = self.axes.iter().map(|axis| axis.key.as_str());
+        let names: Vec<_> = keys
+            .chain(self.measure.iter().map(|readout| readout.name))
+            .collect();
+        self.file_lines() + &line(&names)
+    }
+
+    /// The values of the point behind the `row`-th row, from 0, one of each axis.
+    pub fn values(&self, row: u64) -> Vec<&Value> {
+        let mut rest = self.shard.point(row);
+        let mut values: Vec<_> = self
+            .axes
+            .iter()
+            .rev()
+            .map(|axis| {
+                let count = axis.values.len() as u64;
+                let value = &axis.values[(rest % count) as usize];
+                rest /= count;
+                value
+            })
+            .collect();
+        values.reverse();
+        values
+    }
+
+    /// The beginning of the `row`-th row, from 0: its varied values, up to the comma before the first readout.
+    pub fn row_begins(&self, row: u64) -> String {
+        let mut begin = line(&self.labels(row));
+        begin.truncate(begin.trim_end_matches('\n').len());
+        begin + ","
+    }
+
+    fn labels(&self, row: u64) -> Vec<String> {
+        self.values(row).into_iter().map(label).collect()
+    }
+
+    /// The point behind the `row`-th row in words: `motion.time_step_s = 0.1, motion.scheme = "rk4"`.
+    pub fn point_in_words(&self, row: u64) -> String {
+        let values = self.axes.iter().zip(self.values(row));
+        let pairs = values.map(|(axis, value)| format!("{} = {}", axis.key, in_words(value)));
+        pairs.collect::<Vec<_>>().join(", ")
+    }
+
+    /// The scenario of the `row`-th row, from 0.
+    ///
+    /// # Errors
+    /// Why there is none: the rule that its values break together.
+    pub fn scenario(&self, row: u64) -> Result<Scenario, String> {
+        let mut document = self.base.clone();
+        let mut time_step_s = None;
+        for (axis, value) in self.axes.iter().zip(self.values(row)) {
+            match axis.key == TIME_STEP {
+                true => time_step_s = value.as_float(),
+                false => document
+                    .set_value(&axis.key, value.clone())
+                    .map_err(|problem| problem.to_string())?,
+            }
+        }
+        let scenario = document
+            .scenario()
+            .map_err(|problems| problems.in_one_line())?;
+        match time_step_s {
+            Some(time_step_s) => at_time_step(&scenario, time_step_s),
+            None => Ok(scenario),
+        }
+    }
+
+    /// The `row`-th row, from 0; `None` where `go_on` said no on the way.
+    pub fn row(&self, row: u64, go_on: &dyn Fn() -> bool) -> Option<Row> {
+        let found = self
+            .scenario(row)
+            .and_then(|scenario| readouts(scenario, &self.measure, go_on));
+        let (cells, failure) = match found {
+            Ok(cells) => (cells?, None),
+            Err(why) => (vec![Readable::Nothing; self.measure.len()], Some(why)),
+        };
+        let line = line(&(self.labels(row), cells));
+        Some(Row { line, failure })
+    }
+}
+
+/// Whether SCENARIO names a file, and no preset.
+fn is_file(name: &str) -> bool {
+    name.contains('/') || name.contains(".toml") || name.contains(".csv")
+}
+
+/// The `problems` of the table `[scenario]` of `document`, with their lines there.
+fn inside(problems: Problems, document: &Document) -> Problems {
+    if problems.list.iter().any(|problem| problem.place.is_some()) {
+        return problems; // they are those of an option
+    }
+    let whole = |problem: Problem| Problem {
+        key: join("scenario", &problem.key),
+        ..problem
+    };
+    let list: Vec<_> = problems.list.into_iter().map(whole).collect();
+    document.placed(list)
+}
+
+/// A varied value as TOML has it, but for large numbers without their zeros.
+fn in_words(value: &Value) -> String {
+    match value {
+        Value::Float(_) => label(value),
+        other => other.to_string(),
+    }
+}
+
+/// A varied value as it stands in its column.
+fn label(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        // As the readouts' numbers are written.
+        Value::Float(number) => line(&[number]).trim_end().to_owned(),
+        other => other.to_string(),
+    }
+}
+
+/// `scenario` at another time step, s, with its length and its pushes held in seconds.
+fn at_time_step(scenario: &Scenario, time_step_s: f64) -> Result<Scenario, String> {
+    let duration_s = Clock::end_s(scenario);
+    if accumulates(scenario) && time_step_s != scenario.motion.time_step_s {
+        return Err(
+            "a push accumulates step by step: at another time step it is another force".to_owned(),
+        );
+    }
+    if time_step_s > duration_s * (1.0 + 1e-9) {
+        return Err(format!(
+            "{TIME_STEP} ({}) must not be longer than the whole run, {} s",
+            shortest(time_step_s),
+            decimal(duration_s)
+        ));
+    }
+    if duration_s / time_step_s > MOST_STEPS {
+        return Err(format!(
+            "{TIME_STEP} ({}) would be more than {MOST_STEPS:e} steps",
+            shortest(time_step_s)
+        ));
+    }
+    Ok(resampled(scenario, time_step_s, scenario.motion.scheme))
+}

@@ -1,0 +1,170 @@
+//! Work on all cores whose results are taken in order.
+
+use rayon::ThreadPoolBuilder;
+use std::collections::BTreeMap;
+use std::ops::{ControlFlow, Range};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Condvar, Mutex, PoisonError};
+
+/// How far the work may be ahead of the first result that is not there yet.
+const AHEAD: u64 = 1 << 14;
+
+/// Computes `of` for all of `range` on all cores, and gives the results to `take` in the order of the range, as many at once
+/// as are there. It ends where `take` breaks, or where `of`, which is told whether to go on, gives nothing.
+///
+/// Each core takes the next piece of work as soon as it has done with the last.
+pub fn in_order<T: Send>(
+    range: Range<u64>,
+    of: impl Fn(u64, &dyn Fn() -> bool) -> Option<T> + Sync,
+    mut take: impl FnMut(Vec<T>) -> ControlFlow<()>,
+) {
+    // Not rayon's own threads, without which it would panic.
+    let Ok(pool) = ThreadPoolBuilder::new().build() else {
+        for index in range {
+            let result = of(index, &|| true);
+            if result.is_none_or(|result| take(vec![result]).is_break()) {
+                return;
+            }
+        }
+        return;
+    };
+    let queue = Queue {
+        next: AtomicU64::new(range.start),
+        end: range.end,
+        taken: Mutex::new(range.start),
+        moved: Condvar::new(),
+        stops: AtomicBool::new(false),
+    };
+    let (sender, receiver) = channel();
+    pool.in_place_scope(|scope| {
+        for _ in 0..pool.current_num_threads() {
+            let (sender, queue, of) = (sender.clone(), &queue, &of);
+            scope.spawn(move |_| queue.work(&sender, of));
+        }
+        drop(sender); // so that the receiver ends with the last worker
+        queue.collect(range.start, &receiver, &mut take);
+        queue.stop();
+    });
+}
+
+/// What the workers share.
+struct Queue {
+    next: AtomicU64,
+    end: u64,
+    /// All results below this one have been taken.
+    taken: Mutex<u64>,
+    moved: Condvar,
+    stops: AtomicBool,
+}
+
+impl Queue {
+    fn work<T>(
+        &self,
+        results: &Sender<(u64, Option<T>)>,
+        of: &impl Fn(u64, &dyn Fn() -> bool) -> Option<T>,
+    ) {
+        let go_on = || !self.stops.load(Ordering::Relaxed);
+        loop {
+            let index = self.next.fetch_add(1, Ordering::Relaxed);
+            if index >= self.end || !self.wait_for(index) {
+                return;
+            }
+            let result = of(index, &go_on);
+            let is_last = result.is_none();
+            if results.send((index, result)).is_err() || is_last {
+                return;
+            }
+        }
+    }
+
+    /// Waits until `index` is not too far ahead; false where the work has stopped.
+    fn wait_for(&self, index: u64) -> bool {
+        let taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_ahead = |taken: &mut u64| {
+            index >= taken.saturating_add(AHEAD) && !self.stops.load(Ordering::Relaxed)
+        };
+        let waited = self.moved.wait_while(taken, is_ahead);
+        drop(waited.unwrap_or_else(PoisonError::into_inner));
+        !self.stops.load(Ordering::Relaxed)
+    }
+
+    /// Gives the results to `take` in order, until all are there or one is missing for good.
+    fn collect<T>(
+        &self,
+        begin: u64,
+        results: &Receiver<(u64, Option<T>)>,
+        take: &mut impl FnMut(Vec<T>) -> ControlFlow<()>,
+    ) {
+        let mut waiting = BTreeMap::new();
+        let mut next = begin;
+        while let Ok(first) = results.recv() {
+            for (index, result) in std::iter::once(first).chain(results.try_iter()) {
+                match result {
+                    Some(result) => drop(waiting.insert(index, result)),
+                    None => self.stop(),
+                }
+            }
+            let mut ready = Vec::new();
+            while let Some(result) = waiting.remove(&next) {
+                ready.push(result);
+                next += 1;
+            }
+            if !ready.is_empty() && take(ready).is_break() {
+                return;
+            }
+            *self.taken.lock().unwrap_or_else(PoisonError::into_inner) = next;
+            self.moved.notify_all();
+        }
+    }
+
+    fn stop(&self) {
+        // Under the lock, so that no worker misses it between its look and its sleep.
+        let taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
+        self.stops.store(true, Ordering::Relaxed);
+        drop(taken);
+        self.moved.notify_all();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_come_in_order_and_each_once() {
+        let mut seen = Vec::new();
+        in_order(
+            3..40_000,
+            |index, _| Some(index * index),
+            |results| {
+                seen.extend(results);
+                ControlFlow::Continue(())
+            },
+        );
+        assert!(seen.into_iter().eq((3..40_000).map(|index| index * index)));
+    }
+
+    #[test]
+    fn it_ends_where_the_taker_or_the_work_does() {
+        let mut seen = 0;
+        let stop_taking = |results: Vec<u64>| {
+            seen += results.len();
+            ControlFlow::Break(())
+        };
+        in_order(0..1_000_000_000, |index, _| Some(index), stop_taking);
+        assert!(seen > 0);
+        let mut seen = Vec::new();
+        let take = |results: Vec<u64>| {
+            seen.extend(results);
+            ControlFlow::Continue(())
+        };
+        in_order(
+            0..1_000_000,
+            |index, _| (index < 1000).then_some(index),
+            take,
+        );
+        assert!(seen.into_iter().eq(0..1000));
+        in_order(5..5, |index, _| Some(index), |_| unreachable!());
+    }
+}

@@ -1,0 +1,27 @@
+//! Sweeps: a grid of runs, of which every one becomes a row.
+//!
+//! A [`SweepFile`](file::SweepFile) is the TOML: a scenario, the keys that vary, the readouts. Checked it is a [`Sweep`],
+//! which knows its points and computes the row of any of them. [`in_order`] does so on all cores, [`part`] keeps the rows
+//! of a sweep that is not whole yet, [`join`] makes one CSV of the shards, [`shipped`] are the sweeps of the program.
+//!
+//! A row depends on the sweep and on its own point alone: threads, shards and interruptions change no byte of it.
+
+pub mod axis;
+mod checks;
+pub mod difference;
+pub mod file;
+mod grid;
+pub mod in_order;
+pub mod join;
+pub mod part;
+pub mod recompute;
+mod row;
+pub mod shard;
+pub mod shipped;
+mod there;
+
+pub use axis::Axis;
+pub use file::SweepFile;
+pub use grid::Sweep;
+pub use row::Row;
+pub use shard::Shard;

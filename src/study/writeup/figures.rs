@@ -1,0 +1,103 @@
+//! The figures of a write-up.
+
+use crate::analysis::Readouts;
+use crate::analysis::cost::is_affordable;
+use crate::figure::Scene;
+use crate::figure::kind::Kind;
+use crate::figure::of_runs::{self, Request, Run};
+use crate::run::Clock;
+use crate::scenario::Scenario;
+use crate::scenario::screen::{ABOVE, THREE_D, TRACES};
+use crate::text::number::{rounded, shortest};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// A figure of a write-up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawing {
+    /// The name of its files, without their endings.
+    pub name: &'static str,
+    /// What is to be seen.
+    pub caption: String,
+    /// The page.
+    pub scene: Scene,
+}
+
+/// The width of a column, pt.
+const WIDTH_PT: f64 = 86.0 * 72.0 / 25.4;
+/// A run of more swings than this has a figure of its first few of its own.
+const MANY_SWINGS: f64 = 15.0;
+/// So many swings are in that one.
+const FEW_SWINGS: f64 = 8.0;
+
+/// The figures of the run of `scenario`, whose `readouts` were read at its end, with the exact motion where it is to be had
+/// in reasonable time. `watch` is told the step reached and the last one, and says whether to go on; `None` where it said no.
+///
+/// # Errors
+/// When no step of the run can be drawn.
+pub fn figures(
+    scenario: &Arc<Scenario>,
+    readouts: &Readouts,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Vec<Drawing>>, String> {
+    let runs = [Run {
+        scenario: Arc::clone(scenario),
+        named: scenario.file.title.clone(),
+    }];
+    let exact = is_affordable(scenario);
+    let beside = if exact {
+        ", the exact motion dashed"
+    } else {
+        ""
+    };
+    let mut wanted = vec![
+        (
+            TRACES,
+            Kind::traces(),
+            None,
+            format!("x, y and z of the traced point over time{beside}"),
+        ),
+        (
+            ABOVE,
+            Kind::Above,
+            None,
+            format!("Path of the traced point from above{beside}"),
+        ),
+        (
+            THREE_D,
+            Kind::ThreeD,
+            None,
+            format!("Path of the traced point in space{beside}"),
+        ),
+    ];
+    if let Some(to_s) = few_swings_s(scenario, readouts) {
+        let caption = format!("Tilt in the first {} s{beside}", shortest(to_s));
+        wanted.insert(1, ("swings", Kind::named("tilt_deg")?, Some(to_s), caption));
+    }
+    let mut drawings = Vec::with_capacity(wanted.len());
+    for (name, kind, to_s, caption) in wanted {
+        let request = Request {
+            kind,
+            from_s: 0.0,
+            to_s,
+            exact,
+            width_pt: WIDTH_PT,
+        };
+        let Some(figure) = of_runs::figure(&runs, &request, &mut watch)? else {
+            return Ok(None);
+        };
+        drawings.push(Drawing {
+            name,
+            caption,
+            scene: figure.scene,
+        });
+    }
+    Ok(Some(drawings))
+}
+
+/// Where the run has many swings, the time that a few of them take, s.
+fn few_swings_s(scenario: &Scenario, readouts: &Readouts) -> Option<f64> {
+    let swing_s = readouts.swing_s()?;
+    let is_long = Clock::end_s(scenario) > MANY_SWINGS * swing_s;
+    is_long.then(|| rounded(FEW_SWINGS * swing_s, 2))
+}

@@ -1,0 +1,129 @@
+//! A run as a write-up: a folder with the run file, the CSV, figures, the measured numbers beside theory, and a page that
+//! says what was run, whether to believe it, and how to make it again.
+//!
+//! The same run gives the same bytes each time: what the machine's clock says is left out.
+
+pub mod figures;
+mod languages;
+mod latex;
+mod page;
+mod quantities;
+
+use crate::analysis::Readouts;
+use crate::analysis::readouts::{READOUTS, Source};
+use crate::export::columns::COLUMNS;
+use crate::figure::{self, Format, Unwritable};
+use crate::run::NotFinite;
+use crate::scenario::Scenario;
+pub use figures::Drawing;
+pub use languages::Lines;
+pub use quantities::Quantity;
+use serde_json::{Map, Value};
+use std::sync::Arc;
+
+/// The run's rows.
+pub const CSV: &str = "run.csv";
+/// The scenario with its edits, from which the rows are computed.
+pub const RUN_FILE: &str = "run.toml";
+/// The first page.
+pub const PAGE: &str = "README.md";
+/// The measured numbers beside theory, for LaTeX.
+pub const LATEX: &str = "readouts.tex";
+/// Every readout.
+pub const READOUTS_FILE: &str = "readouts.json";
+
+/// What a write-up is made of.
+#[derive(Clone, Debug)]
+pub struct Writeup {
+    /// The run.
+    pub scenario: Arc<Scenario>,
+    /// What was read off it.
+    pub readouts: Readouts,
+    /// Why it ended before its last step, where it did.
+    pub broken: Option<NotFinite>,
+    /// The measured numbers beside theory.
+    pub quantities: Vec<Quantity>,
+    /// The figures, in the order in which the page shows them.
+    pub drawings: Vec<Drawing>,
+}
+
+impl Writeup {
+    /// The write-up of the run of `scenario`, whose `readouts` were read at its end; `broken` is why that was not its
+    /// last step.
+    pub fn new(
+        scenario: Arc<Scenario>,
+        readouts: Readouts,
+        broken: Option<NotFinite>,
+        drawings: Vec<Drawing>,
+    ) -> Self {
+        Self {
+            broken,
+            quantities: quantities::quantities(&readouts),
+            scenario,
+            readouts,
+            drawings,
+        }
+    }
+
+    /// All files but the CSV, each with its name and its bytes.
+    ///
+    /// # Errors
+    /// When a figure is too large for its form.
+    pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Unwritable> {
+        let page = page::page(self).unwrap_or_default(); // a String takes what is written to it
+        let caption = &self.readouts.title;
+        let texts = [
+            (RUN_FILE, self.scenario.to_toml()),
+            (READOUTS_FILE, self.readouts_json()),
+            (LATEX, latex::table(&self.quantities, caption)),
+            (PAGE, page),
+        ];
+        let mut files: Vec<_> = texts
+            .into_iter()
+            .map(|(name, text)| (name.to_owned(), text.into_bytes()))
+            .collect();
+        for drawing in &self.drawings {
+            for (ending, format) in [("svg", Format::Svg), ("pdf", Format::Pdf)] {
+                let bytes = figure::write(&drawing.scene, format)?;
+                files.push((format!("{}.{ending}", drawing.name), bytes));
+            }
+        }
+        Ok(files)
+    }
+
+    /// Lines that read the CSV.
+    pub fn languages(&self) -> [Lines; 4] {
+        let header = self.scenario.to_toml().lines().count();
+        let column = |name| {
+            1 + COLUMNS
+                .iter()
+                .take_while(|column| column.name != name)
+                .count()
+        };
+        languages::lines(CSV, header, column("t_s"), column("z_m"))
+    }
+
+    /// The readouts but for those of the clock, one object.
+    fn readouts_json(&self) -> String {
+        let lasting = READOUTS
+            .iter()
+            .filter(|readout| readout.source != Source::Clock);
+        let object: Map<_, _> = lasting
+            .map(|readout| {
+                let value = serde_json::to_value(readout.of(&self.readouts));
+                (readout.name.to_owned(), value.unwrap_or(Value::Null))
+            })
+            .collect();
+        format!("{:#}\n", Value::Object(object))
+    }
+
+    /// The name of the point with that index.
+    fn name_of(&self, point: usize) -> String {
+        let body = &self.scenario.body;
+        let name = body
+            .names()
+            .into_iter()
+            .find(|name| body.point(name) == Some(point));
+        name.map_or_else(|| format!("number {point}"), str::to_owned)
+    }
+}

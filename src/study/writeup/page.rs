@@ -1,0 +1,275 @@
+//! The first page of a write-up, `README.md`: what was run, what came out, whether to believe it, how to make it again.
+
+use super::languages::Lines;
+use super::quantities::Quantity;
+use super::{CSV, Drawing, RUN_FILE, Writeup};
+use crate::export::summary::steps_in_words;
+use crate::physics::{SchemeInfo, SymmetricTop};
+use crate::scenario::{Push, Window};
+use crate::text::number::{NONE, fixed, shortest, significant};
+use std::fmt::{self, Write};
+
+/// A longer run file is not printed on the page.
+const MOST_LINES: usize = 120;
+/// More pushes or edits than these are counted, not listed.
+const MOST_LISTED: usize = 12;
+
+/// The whole page as Markdown.
+///
+/// # Errors
+/// None: a `String` takes what is written to it.
+pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
+    let mut page = String::new();
+    let readouts = &writeup.readouts;
+    writeln!(page, "# {}\n", escaped(&readouts.title))?;
+    let file = &writeup.scenario.file;
+    for text in file.about.iter().chain(&file.source) {
+        writeln!(page, "{}\n", escaped(text))?;
+    }
+    writeln!(page, "## What was run\n")?;
+    write_setup(&mut page, writeup)?;
+    writeln!(page, "\n## Are the numbers to be believed?\n")?;
+    if let Some(broken) = &writeup.broken {
+        writeln!(page, "{}.\n", escaped(&sentence(&broken.to_string())))?;
+    }
+    writeln!(
+        page,
+        "{}\n",
+        escaped(&readouts.health.sentence(readouts.advice.as_ref()))
+    )?;
+    writeln!(page, "## Measured beside theory\n")?;
+    write_quantities(&mut page, &writeup.quantities)?;
+    writeln!(page, "\n## Figures\n")?;
+    write_drawings(&mut page, &writeup.drawings)?;
+    writeln!(page, "## How to make it again\n")?;
+    write_again(&mut page)?;
+    writeln!(page, "## How to read the CSV\n")?;
+    write_languages(&mut page, &writeup.languages())?;
+    writeln!(page, "## How to cite\n")?;
+    write_citation(&mut page)?;
+    write_run_file(&mut page, &writeup.scenario.to_toml())?;
+    Ok(page)
+}
+
+fn write_setup(page: &mut String, writeup: &Writeup) -> fmt::Result {
+    let scenario = &writeup.scenario;
+    let body = &scenario.body.mechanics;
+    let mut row = |name: &str, text: &str| writeln!(page, "| {name} | {} |", escaped(text));
+    row("", "")?;
+    row("---", "---")?;
+    let masses = body.points().iter().filter(|point| point.mass > 0.0);
+    let centre = body.first_moment().norm() / body.mass();
+    row(
+        "body",
+        &format!(
+            "{} point masses, {} kg together; centre of mass {} m from the pivot",
+            masses.count(),
+            significant(body.mass(), 6),
+            significant(centre, 6)
+        ),
+    )?;
+    match SymmetricTop::of(body) {
+        Some(top) => row(
+            "moments of inertia about the pivot",
+            &format!(
+                "I1 = {} kg m^2 across the axle, I3 = {} kg m^2 about it, kappa = I3/I1 = {}",
+                significant(top.across, 6),
+                significant(top.along, 6),
+                significant(top.kappa(), 6)
+            ),
+        )?,
+        None => row(
+            "moments of inertia",
+            "lopsided: not symmetric about the axle",
+        )?,
+    }
+    let top = body.points()[scenario.trace].at.norm();
+    let name = scenario.file.trace.as_deref().unwrap_or("top");
+    row(
+        "traced point",
+        &format!("{name}, {} m from the pivot", significant(top, 6)),
+    )?;
+    let tilt_deg = scenario.start.axle().z.clamp(-1.0, 1.0);
+    let tilt_deg = libm::acos(tilt_deg).to_degrees();
+    let [x, y, z] = [0, 1, 2].map(|axis| significant(scenario.start.momentum[axis], 9));
+    row(
+        "start",
+        &format!(
+            "axle tilted by {} degrees, L = ({x}, {y}, {z}) J s in the world frame",
+            fixed(tilt_deg, 4)
+        ),
+    )?;
+    let gravity = shortest(scenario.motion.gravity);
+    row("gravity", &format!("{gravity} m/s^2"))?;
+    let SchemeInfo { name, about, .. } = scenario.motion.scheme;
+    row("scheme", &format!("{name}: {about}"))?;
+    let steps = steps_in_words(scenario, writeup.readouts.sample.step);
+    row("time steps", &steps)?;
+    for push in scenario.pushes.iter().take(MOST_LISTED) {
+        row("push", &push_in_words(push, &writeup.name_of(push.point)))?;
+    }
+    if scenario.pushes.len() > MOST_LISTED {
+        row("push", &format!("{} in all", scenario.pushes.len()))?;
+    }
+    for edit in scenario.file.edit.iter().take(MOST_LISTED) {
+        let set = edit
+            .set
+            .iter()
+            .map(|(key, value)| format!("{key} = {value}"));
+        let set: Vec<_> = set.collect();
+        row(&format!("edit at step {}", edit.step), &set.join(", "))?;
+    }
+    match scenario.file.edit.len() {
+        count if count > MOST_LISTED => row("edits", &format!("{count} in all")),
+        _ => Ok(()),
+    }
+}
+
+fn push_in_words(push: &Push, point: &str) -> String {
+    let [x, y, z] = [0, 1, 2].map(|axis| shortest(push.force[axis]));
+    let when = match push.window {
+        Window::Steps { first, count: 1 } => format!("on time step {first}"),
+        Window::Steps { first, count } => {
+            format!("on {count} time steps from step {first} on")
+        }
+        Window::Time { from_s, for_s } => {
+            format!("from {} s on for {} s", shortest(from_s), shortest(for_s))
+        }
+    };
+    let grows = match push.accumulates {
+        true => ", added anew on each of them and kept to the end",
+        false => "",
+    };
+    format!("({x}, {y}, {z}) N on the point {point} {when}{grows}")
+}
+
+fn write_quantities(page: &mut String, quantities: &[Quantity]) -> fmt::Result {
+    if quantities.is_empty() {
+        return writeln!(
+            page,
+            "The run is too short for that: nothing could be measured on it."
+        );
+    }
+    writeln!(page, "| what | measured | theory | apart | unit |")?;
+    writeln!(page, "| --- | --- | --- | --- | --- |")?;
+    for quantity in quantities {
+        writeln!(
+            page,
+            "| {} (`{}`) | {} | {} | {} | {} |",
+            escaped(quantity.readout.meaning),
+            quantity.readout.name,
+            quantity.measured_text(),
+            quantity.predicted_text(),
+            quantity.apart_text(),
+            quantity.readout.unit
+        )?;
+    }
+    writeln!(
+        page,
+        "\nDigits in parentheses are one standard error, in units of the last digits: 0.886033(24) is 0.886033 ± 0.000024. \
+         \"Apart\" is how many of them lie between the measured number and theory. The least and \
+         the greatest values are those of the whole run. Theory is that of the exact motion under the forces at the end of \
+         the run; the standard error is that of reading the number off this run, and does not hold what the time step has done to it. \
+         {NONE}: there is no such number, or none that can be stated. The same table for LaTeX is in `{}`, every readout in \
+         `{}`.",
+        super::LATEX,
+        super::READOUTS_FILE
+    )
+}
+
+fn write_drawings(page: &mut String, drawings: &[Drawing]) -> fmt::Result {
+    if drawings.is_empty() {
+        return writeln!(page, "None.\n");
+    }
+    for drawing in drawings {
+        writeln!(
+            page,
+            "![{0}]({1}.svg)\n\n{0}: `{1}.pdf` and `{1}.svg`.\n",
+            drawing.caption, drawing.name
+        )?;
+    }
+    Ok(())
+}
+
+fn write_again(page: &mut String) -> fmt::Result {
+    writeln!(
+        page,
+        "In this folder, with gyrolab {version}:\n\n\
+         ```sh\n\
+         gyrolab verify {CSV}               # computes the rows anew and says whether they are the same\n\
+         gyrolab run {RUN_FILE} -o again.csv   # the same bytes as {CSV}\n\
+         gyrolab writeup {RUN_FILE} -o again   # this folder\n\
+         gyrolab {RUN_FILE}                    # the run, live in the terminal\n\
+         ```\n",
+        version = env!("CARGO_PKG_VERSION")
+    )
+}
+
+fn write_languages(page: &mut String, languages: &[Lines]) -> fmt::Result {
+    for Lines {
+        language,
+        tag,
+        code,
+    } in languages
+    {
+        writeln!(page, "{language}:\n\n```{tag}\n{code}```\n")?;
+    }
+    Ok(())
+}
+
+fn write_citation(page: &mut String) -> fmt::Result {
+    let (version, (year, authors)) = (env!("CARGO_PKG_VERSION"), copyright());
+    writeln!(
+        page,
+        "{authors}, *gyrolab*, version {version} ({year}): {}.\n\n\
+         ```bibtex\n\
+         @software{{gyrolab,\n  title = {{gyrolab}},\n  author = {{{{{authors}}}}},\n  version = {{{version}}},\n  year = {{{year}}}\n}}\n\
+         ```\n",
+        env!("CARGO_PKG_DESCRIPTION")
+    )
+}
+
+/// The year and the authors, from the licence.
+fn copyright() -> (&'static str, &'static str) {
+    const MARK: &str = "Copyright (c) ";
+    let licence = include_str!("../../../LICENSE");
+    let line = licence.lines().find_map(|line| line.strip_prefix(MARK));
+    line.and_then(|line| line.split_once(' '))
+        .unwrap_or_default()
+}
+
+fn write_run_file(page: &mut String, run_file: &str) -> fmt::Result {
+    writeln!(page, "## The run file\n")?;
+    match run_file.lines().count() {
+        lines if lines > MOST_LINES => {
+            writeln!(page, "`{RUN_FILE}`, {lines} lines.")
+        }
+        _ => writeln!(
+            page,
+            "`{RUN_FILE}`:\n\n```toml\n{}\n```",
+            run_file.trim_end()
+        ),
+    }
+}
+
+/// `text` with a capital letter at its beginning.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(char::to_uppercase);
+    first.into_iter().flatten().chain(letters).collect()
+}
+
+/// `text` so that Markdown shows it as it stands, in a table too.
+fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' => out.push(' '),
+            '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '#' | '|' | '~' | '&' => {
+                out.extend(['\\', c]);
+            }
+            c => out.push(c),
+        }
+    }
+    out
+}

@@ -1,0 +1,79 @@
+//! The measured numbers of a run beside those of theory.
+
+use crate::analysis::Readouts;
+use crate::analysis::readouts::{READOUTS, Readout};
+use crate::text::number::{NONE, Uncertain, fixed, short, uncertain};
+
+/// A measured number, with what theory says of it.
+#[derive(Clone, Debug)]
+pub struct Quantity {
+    /// The readout that was measured.
+    pub readout: &'static Readout,
+    /// Its value in the readout's unit, where there is one.
+    pub measured: Option<f64>,
+    /// One standard error of it; `None` where the table of readouts has none for it.
+    pub uncertainty: Option<f64>,
+    /// What theory says, in the same unit.
+    pub predicted: Option<f64>,
+}
+
+/// Digits after the point of a number that has no uncertainty.
+const DECIMALS: usize = 6;
+
+/// Every measured number of the table of readouts that `readouts` has a value of, or theory.
+pub fn quantities(readouts: &Readouts) -> Vec<Quantity> {
+    let measured = READOUTS
+        .iter()
+        .filter(|readout| readout.name.starts_with("measured_") && !readout.is_uncertainty());
+    let quantities = measured.map(|readout| {
+        let number = |readout: Option<&Readout>| readout.and_then(|it| it.of(readouts).number());
+        Quantity {
+            readout,
+            measured: number(Some(readout)),
+            uncertainty: number(readout.uncertainty()),
+            predicted: number(readout.predicted()),
+        }
+    });
+    quantities
+        .filter(|it| it.measured.is_some() || it.predicted.is_some())
+        .collect()
+}
+
+impl Quantity {
+    /// The measured number with its uncertainty, where it has one.
+    pub fn stated(&self) -> Option<Uncertain> {
+        uncertain(self.measured?, self.uncertainty?)
+    }
+
+    /// The measured number as text: `0.886033(24)`, or with six decimals where it has no uncertainty.
+    pub fn measured_text(&self) -> String {
+        match (self.stated(), self.measured) {
+            (Some(stated), _) => stated.to_string(),
+            (None, measured) => number_or_none(measured),
+        }
+    }
+
+    /// What theory says, as text, to the last digit of the measured number.
+    pub fn predicted_text(&self) -> String {
+        match (self.stated(), self.predicted) {
+            (Some(stated), Some(predicted)) => stated.to_the_same_digit(predicted),
+            (_, predicted) => number_or_none(predicted),
+        }
+    }
+
+    /// By how many standard errors it is off theory, as text: `+1.2`.
+    pub fn apart_text(&self) -> String {
+        match (self.measured, self.uncertainty, self.predicted) {
+            (Some(measured), Some(error), Some(predicted)) if error > 0.0 => {
+                let apart = (measured - predicted) / error;
+                let sign = if apart < 0.0 { '-' } else { '+' };
+                format!("{sign}{}", short(apart.abs()))
+            }
+            _ => NONE.to_owned(),
+        }
+    }
+}
+
+fn number_or_none(number: Option<f64>) -> String {
+    number.map_or(NONE.to_owned(), |number| fixed(number, DECIMALS))
+}

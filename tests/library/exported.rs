@@ -1,0 +1,441 @@
+//! The rows and columns of a CSV, and whether one is still what its header says.
+
+use crate::support::scenarios::preset;
+use gyrolab::analysis::compare;
+use gyrolab::export::columns::COLUMNS;
+use gyrolab::export::csv::commented;
+use gyrolab::export::layout::LayoutFile;
+use gyrolab::export::{CsvWriter, Layout, stream};
+use gyrolab::physics::SchemeInfo;
+use gyrolab::run::Simulation;
+use gyrolab::scenario::{Document, Scenario};
+use gyrolab::study::verify::{Unverified, Verified, What, verify};
+use proptest::prelude::*;
+use std::ops::ControlFlow;
+use std::sync::{Arc, LazyLock};
+
+fn csv(scenario: &Scenario, file: LayoutFile) -> Vec<u8> {
+    let scenario = Arc::new(scenario.clone());
+    let layout = file.check().unwrap();
+    let mut csv = CsvWriter::with_layout(Vec::new(), &scenario, layout).unwrap();
+    let mut run = Simulation::new(Arc::clone(&scenario));
+    let go_on = |_: &stream::Progress| ControlFlow::Continue(());
+    stream::play(&mut run, scenario.steps, Some(&mut csv), |_| {}, go_on).unwrap();
+    csv.finish().unwrap()
+}
+
+fn whole() -> LayoutFile {
+    LayoutFile::default()
+}
+
+fn verified(bytes: &[u8]) -> Result<Verified, Unverified> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    std::fs::write(&path, bytes).unwrap();
+    verify(&path, |_, _| ControlFlow::Continue(()))
+}
+
+#[track_caller]
+fn difference(bytes: &[u8]) -> gyrolab::study::verify::Difference {
+    verified(bytes).unwrap().difference.expect("it is the same")
+}
+
+#[track_caller]
+fn refused(bytes: &[u8]) -> String {
+    verified(bytes).expect_err("it was verified").to_string()
+}
+
+/// The rows of a CSV, the line of names first.
+fn rows(bytes: &[u8]) -> Vec<String> {
+    let text = std::str::from_utf8(bytes).unwrap();
+    let lines = text.trim_start_matches('\u{feff}').lines();
+    let rows = lines.filter(|line| !line.starts_with('#'));
+    rows.map(str::to_owned).collect()
+}
+
+/// A run with a push, and edits of push, scheme and time step.
+fn edited() -> Scenario {
+    let text = preset("wobble-push", &["motion.steps=120"]).to_toml()
+        + "[[edit]]\nstep = 40\nset = { \"motion.time_step_s\" = 0.05 }\n\
+           [[edit]]\nstep = 60\nset = { \"motion.scheme\" = \"strang\", \"push.0.force_N\" = [0, 5, 0] }\n";
+    Document::parse("edited.toml", &text)
+        .unwrap()
+        .scenario()
+        .unwrap()
+}
+
+fn names(names: &[&str]) -> Option<Vec<String>> {
+    Some(names.iter().map(|name| (*name).to_owned()).collect())
+}
+
+#[test]
+fn a_cut_csv_has_the_lines_of_the_whole_one() {
+    let scenario = preset("method-2", &["motion.steps=100"]);
+    let all = rows(&csv(&scenario, whole()));
+    let cut = |every: u64, from_s, to_s| {
+        let every = every.try_into().ok();
+        let file = LayoutFile {
+            every,
+            from_s,
+            to_s,
+            ..whole()
+        };
+        rows(&csv(&scenario, file))[1..].to_vec()
+    };
+    let wanted = |steps: &[usize]| steps.iter().map(|&step| all[step + 1].clone()).collect();
+    let of = |steps: &[usize]| -> Vec<String> { wanted(steps) };
+    assert_eq!(
+        cut(1, Some(0.3), Some(0.5)),
+        of(&[3, 4, 5]),
+        "0.3 s is 3 x 0.1 s"
+    );
+    assert_eq!(cut(30, None, None), of(&[0, 30, 60, 90, 100]));
+    assert_eq!(cut(30, Some(0.1), None), of(&[30, 60, 90, 100]));
+    assert_eq!(cut(30, None, Some(9.9)), of(&[0, 30, 60, 90]));
+    assert_eq!(cut(30, Some(9.5), None), of(&[100]));
+    assert_eq!(cut(1, Some(10.0), Some(20.0)), of(&[100]));
+}
+
+#[test]
+fn chosen_columns_are_those_of_the_whole_csv() {
+    let scenario = edited();
+    let whole_rows = rows(&csv(&scenario, whole()));
+    let chosen = ["energy_J", "step", "z_m", "segment"];
+    let file = LayoutFile {
+        columns: names(&chosen),
+        ..whole()
+    };
+    let place = |name: &str| COLUMNS.iter().position(|column| column.name == name);
+    let places: Vec<_> = chosen.map(|name| place(name).unwrap()).to_vec();
+    for (part, row) in rows(&csv(&scenario, file)).iter().zip(&whole_rows) {
+        let fields: Vec<_> = row.split(',').collect();
+        let wanted: Vec<_> = places.iter().map(|&place| fields[place]).collect();
+        assert_eq!(*part, wanted.join(","));
+    }
+    let comma = LayoutFile {
+        excel: true,
+        ..whole()
+    };
+    let bytes = csv(&scenario, comma);
+    assert!(bytes.starts_with("\u{feff}# # excel = true\n".as_bytes()));
+    for (comma, point) in rows(&bytes).iter().zip(&whole_rows) {
+        assert_eq!(comma.replace(',', ".").replace(';', ","), *point);
+    }
+}
+
+#[test]
+fn every_point_has_a_row() {
+    let scenario = preset("method-2", &["motion.steps=3"]);
+    let whole_rows = rows(&csv(&scenario, whole()));
+    let file = LayoutFile {
+        points: true,
+        ..whole()
+    };
+    let points = rows(&csv(&scenario, file));
+    let count = scenario.body.mechanics.points().len();
+    assert_eq!(points.len(), 1 + 4 * count);
+    assert!(points[1].starts_with("0,0.0,rim.0,0.5,"), "{}", points[1]);
+    let top = points.iter().filter(|row| row.contains(",top,"));
+    for (top, row) in top.zip(&whole_rows[1..]) {
+        let (top, row): (Vec<_>, Vec<_>) = (top.split(',').collect(), row.split(',').collect());
+        assert_eq!(top[4..7], row[2..5]);
+        // Its velocity is w x r.
+        let number = |text: &str| text.parse::<f64>().unwrap();
+        let [r, w] = [2, 8].map(|at| [0, 1, 2].map(|k| number(row[at + k])));
+        let velocity = [
+            w[1] * r[2] - w[2] * r[1],
+            w[2] * r[0] - w[0] * r[2],
+            w[0] * r[1] - w[1] * r[0],
+        ];
+        assert_eq!([7, 8, 9].map(|at| number(top[at])), velocity);
+    }
+}
+
+#[test]
+fn what_is_asked_for_stands_above_the_run_file_and_is_read_again() {
+    let file = LayoutFile {
+        every: 10.try_into().ok(),
+        from_s: Some(1.0),
+        columns: names(&["t_s", "z_m"]),
+        ..whole()
+    };
+    let scenario = edited();
+    let bytes = csv(&scenario, file.clone());
+    let run_file = commented(&scenario.to_toml());
+    let header = format!(
+        "# # every = 10\n# # from_s = 1.0\n# # columns = [\"t_s\", \"z_m\"]\n{run_file}t_s,z_m\n"
+    );
+    assert!(bytes.starts_with(header.as_bytes()));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    std::fs::write(&path, &bytes).unwrap();
+    let again = Document::read(&path).unwrap().scenario().unwrap();
+    assert_eq!(again.to_toml(), scenario.to_toml(), "it runs again");
+    let layout = Layout::read(&header.replace("\n# ", "\n")[2..]).unwrap();
+    assert_eq!(*layout.file(), file);
+    let plain = csv(&scenario, whole());
+    assert!(plain.starts_with(format!("{run_file}step,t_s,").as_bytes()));
+}
+
+#[test]
+fn a_layout_that_cannot_be_is_refused_with_what_to_do() {
+    let error = |file: LayoutFile| file.check().unwrap_err().to_string();
+    let columns = |list: &[&str], points| LayoutFile {
+        columns: names(list),
+        points,
+        ..whole()
+    };
+    for (file, words) in [
+        (
+            columns(&["t_s", "z"], false),
+            "no column named z: did you mean z_m?",
+        ),
+        (
+            columns(&["tilt_deg"], true),
+            "no column named tilt_deg: there is step, ",
+        ),
+        (columns(&["z_m", "z_m"], false), "z_m is named twice"),
+        (columns(&[], false), "must name a column"),
+    ] {
+        assert!(error(file).contains(words), "{words}");
+    }
+    let cut = |from_s, to_s| LayoutFile {
+        from_s,
+        to_s,
+        ..whole()
+    };
+    assert!(error(cut(Some(5.0), Some(4.0))).starts_with("to_s: 4 s is before"));
+    assert!(error(cut(Some(f64::NAN), None)).starts_with("from_s: "));
+    assert!(error(cut(None, Some(-1.0))).starts_with("to_s: "));
+}
+
+#[test]
+fn an_export_of_every_kind_is_the_same() {
+    let edited = edited();
+    let cut = LayoutFile {
+        every: 7.try_into().ok(),
+        from_s: Some(0.5),
+        to_s: Some(4.0),
+        ..whole()
+    };
+    let points = LayoutFile {
+        points: true,
+        excel: true,
+        columns: names(&["point", "z_m", "step"]),
+        ..whole()
+    };
+    for file in [whole(), cut, points] {
+        let bytes = csv(&edited, file);
+        let result = verified(&bytes).unwrap();
+        assert_eq!(result.difference, None);
+        assert_eq!(result.rows, rows(&bytes).len() as u64 - 1);
+        assert!(result.verdict.starts_with("Do not believe this run"));
+        assert_eq!((result.written_by, result.not_finite), (None, None));
+    }
+    let good = preset("steady-slow", &["motion.steps=50"]);
+    let verdict = verified(&csv(&good, whole())).unwrap().verdict;
+    assert!(verdict.starts_with("The numbers hold"), "{verdict}");
+}
+
+static GOOD: LazyLock<Vec<u8>> = LazyLock::new(|| csv(&edited(), whole()));
+
+/// Where the rows begin.
+fn first_row(bytes: &[u8]) -> usize {
+    let text = std::str::from_utf8(bytes).unwrap();
+    text.find("step,t_s").unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn one_changed_digit_in_a_row_is_found(place in any::<prop::sample::Index>(), by in 1..10u8) {
+        let mut bytes = GOOD.clone();
+        let begin = first_row(&bytes);
+        let digits: Vec<usize> = (begin..bytes.len()).filter(|&at| bytes[at].is_ascii_digit()).collect();
+        let at = digits[place.index(digits.len())];
+        bytes[at] = b'0' + (bytes[at] - b'0' + by) % 10;
+        let line = bytes[..at].iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;
+        prop_assert_eq!(difference(&bytes).line, line);
+    }
+
+    #[test]
+    fn a_file_that_is_cut_off_is_not_the_same(place in any::<prop::sample::Index>()) {
+        let begin = first_row(&GOOD);
+        let end = begin + place.index(GOOD.len() - begin);
+        let result = verified(&GOOD[..end]);
+        prop_assert!(result.map_or(true, |result| result.difference.is_some()), "{end}");
+    }
+}
+
+#[test]
+fn lines_that_are_not_the_runs_are_found() {
+    let text = String::from_utf8(GOOD.clone()).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let names = lines
+        .iter()
+        .position(|line| line.starts_with("step,"))
+        .unwrap();
+    let at = names + 30; // the row of step 29
+    let joined = |lines: &[&str]| (lines.join("\n") + "\n").into_bytes();
+    let mut twice = lines.clone();
+    twice.insert(at, lines[at]);
+    let found = difference(&joined(&twice));
+    assert_eq!(found.line, at as u64 + 2);
+    assert!(
+        found
+            .to_string()
+            .contains("the row of step 30: step is 29, computed 30"),
+        "{found}"
+    );
+    let mut lost = lines.clone();
+    lost.remove(at);
+    assert_eq!(difference(&joined(&lost)).line, at as u64 + 1);
+    let mut longer = lines.clone();
+    longer.push("121,1,2");
+    assert!(matches!(
+        difference(&joined(&longer)).what,
+        What::Extra { .. }
+    ));
+    assert!(matches!(
+        difference(&joined(&lines[..at])).what,
+        What::Missing { .. }
+    ));
+    let uneven = text.replace(lines[at], &format!("{},7", lines[at]));
+    assert!(matches!(
+        difference(uneven.as_bytes()).what,
+        What::Line { .. }
+    ));
+    let unended = difference(text.trim_end().as_bytes());
+    assert_eq!(unended.what, What::Unended);
+    assert_eq!(unended.line, lines.len() as u64);
+}
+
+#[test]
+fn what_other_programs_do_to_a_file_is_told() {
+    let text = String::from_utf8(GOOD.clone()).unwrap();
+    let dos = difference(text.replace('\n', "\r\n").as_bytes());
+    assert_eq!(dos.what, What::LineEnds);
+    assert!(dos.to_string().contains("CR LF from line 1 on"), "{dos}");
+    let marked = format!("\u{feff}{text}");
+    assert_eq!(verified(marked.as_bytes()).unwrap().difference, None);
+    let late = text.replace("\n40,", "\n\u{feff}40,");
+    difference(late.as_bytes());
+}
+
+#[test]
+fn an_edited_header_is_found_by_what_it_changes() {
+    let text = String::from_utf8(GOOD.clone()).unwrap();
+    for (old, new) in [
+        ("radius_m = 0.8", "radius_m = 0.81"),
+        ("steps = 120", "steps = 121"),
+        ("steps = 120", "steps = 119"),
+        ("step = 40", "step = 41"),
+        ("time_step_s = 0.1", "time_step_s = 0.10"), // not as gyrolab writes it
+        ("# title", "# # every = 2\n# title"),       // below the run file's first line: a comment
+    ] {
+        assert!(text.contains(old), "{old}");
+        let result = verified(text.replacen(old, new, 1).as_bytes()).unwrap();
+        assert!(result.difference.is_some(), "{old}: {new}");
+    }
+    let thinned = format!("# # every = 2\n{text}");
+    assert!(
+        difference(thinned.as_bytes())
+            .to_string()
+            .contains("step is 1, computed 2")
+    );
+    let other = text.replacen("gyrolab = \"", "gyrolab = \"9.", 1);
+    let result = verified(other.as_bytes()).unwrap();
+    assert_eq!(result.difference, None);
+    let own = env!("CARGO_PKG_VERSION");
+    assert_eq!(result.written_by, Some(format!("9.{own}")));
+}
+
+#[test]
+fn what_cannot_be_computed_again_is_refused_with_the_reason() {
+    let text = String::from_utf8(GOOD.clone()).unwrap();
+    let body = &text[first_row(text.as_bytes())..];
+    for (bytes, words) in [
+        ("", "is empty"),
+        ("hello\n", "is no CSV that gyrolab wrote"),
+        ("a,b\n1,2\n", "is no CSV that gyrolab wrote"),
+        ("# title = 'x'\n", "ends in its header"),
+        (body, "with no run file in its header"),
+        (
+            &text.replace("# [motion]", "# [moton]"),
+            "unknown key: did you mean motion?",
+        ),
+        (&text.replace("# title = ", "# title = = "), "title"),
+        (&format!("# # evry = 3\n{text}"), "unknown field `evry`"),
+        (
+            &format!("# # columns = [\"z\"]\n{text}"),
+            "no column named z: did you mean z_m?",
+        ),
+    ] {
+        let said = refused(bytes.as_bytes());
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    let missing = verify("nowhere/a.csv".as_ref(), |_, _| ControlFlow::Continue(()));
+    assert!(missing.unwrap_err().to_string().contains("cannot be read"));
+}
+
+#[test]
+fn a_run_that_ends_early_is_verified_up_to_there() {
+    let sets = [
+        "motion.scheme=rk4",
+        "motion.time_step_s=5",
+        "motion.steps=400",
+    ];
+    let scenario = preset("method-2", &sets);
+    let mut run = Simulation::new(Arc::new(scenario.clone()));
+    let end = run.step_to(400).expect_err("it breaks down");
+    let result = verified(&csv(&scenario, whole())).unwrap();
+    assert_eq!(result.difference, None);
+    assert_eq!(result.not_finite, Some(end));
+    assert_eq!(result.rows, end.step);
+}
+
+#[test]
+fn who_stops_it_is_obeyed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    std::fs::write(&path, &*GOOD).unwrap();
+    let scenario = preset("method-2", &["motion.steps=20000"]);
+    std::fs::write(
+        &path,
+        csv(
+            &scenario,
+            LayoutFile {
+                every: 5000.try_into().ok(),
+                ..whole()
+            },
+        ),
+    )
+    .unwrap();
+    let stopped = verify(&path, |_, _| ControlFlow::Break(()));
+    assert!(matches!(stopped, Err(Unverified::Stopped)));
+}
+
+#[test]
+fn the_errors_of_a_comparison_are_computed_again() {
+    let scenario = preset("cusps", &["motion.steps=200"]);
+    let schemes = ["report", "rk4"].map(|name| SchemeInfo::find(name).unwrap());
+    let go_on = |_, _| ControlFlow::Continue(());
+    let table = compare::compare(&scenario, &schemes, &[0.002, 0.001], go_on).unwrap();
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in &table {
+        writer.serialize(row).unwrap();
+    }
+    let text = String::from_utf8(writer.into_inner().unwrap()).unwrap();
+    let good = commented(&scenario.to_toml()) + &text;
+    let result = verified(good.as_bytes()).unwrap();
+    assert_eq!((result.rows, result.difference), (4, None));
+    let error = format!("{:?}", table[2].error_m.unwrap());
+    let wrong = good.replacen(&error, &format!("{error}1"), 1);
+    let found = difference(wrong.as_bytes()).to_string();
+    assert!(found.contains("rk4 0.002: error_m is "), "{found}");
+    let lost: String = good.trim_end().rsplit_once('\n').unwrap().0.to_owned() + "\n";
+    difference(lost.as_bytes());
+    let unknown = good.replace("\nrk4,", "\nrk5,");
+    assert!(refused(unknown.as_bytes()).contains("names no scheme"));
+}

@@ -1,0 +1,489 @@
+//! Bodies of solid parts: their inertia against Steiner's theorem, what stays symmetric, what is refused and in which words,
+//! and how they are listed and changed.
+
+use crate::support::scenarios::{parse, read};
+use crate::support::stage::{SMALL, Stage};
+use gyrolab::physics::SymmetricTop;
+use gyrolab::physics::exact::{ExactMotion, Kind};
+use gyrolab::run::Simulation;
+use gyrolab::scenario::file::ScenarioFile;
+use gyrolab::scenario::{Document, Scenario};
+use gyrolab::work::Parameter;
+use gyrolab::work::parameters::{changed, parameters, table_of};
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use proptest::prelude::*;
+use std::sync::Arc;
+use toml::Value;
+
+/// A scenario of these parts; `top` is a point of no mass on the axle.
+fn text(parts: &str) -> String {
+    format!(
+        "title = 'x'\n[[body.point]]\nname = 'top'\nat_m = [0, 0, 1.5]\n{parts}\n[start]\nspin_rpm = 300\n[motion]\ntime_step_s = 0.01\nsteps = 100\n"
+    )
+}
+
+fn part(shape: &str, dimensions: &str) -> String {
+    format!(
+        "[[body.part]]\nshape = '{shape}'\nname = '{shape}'\nmass_kg = 2\nat_m = [0, 0, 0.5]\n{dimensions}\n"
+    )
+}
+
+/// What is refused, without the file's name.
+fn refusal(parts: &str) -> String {
+    read(&text(parts)).unwrap_err().to_string()
+}
+
+/// Every shape, its dimensions made of three lengths, and its moments for a mass of 1 kg, each written out as the books have
+/// it: across, across, about the axis.
+type Solid = (&'static str, String, [f64; 3]);
+
+fn solids([a, b, h]: [f64; 3]) -> Vec<Solid> {
+    let ring = a * a;
+    let round = |along: f64, across: f64| [across, across, along];
+    let [inner, outer] = [a.min(b), a.max(b)];
+    let both = inner.powi(2) + outer.powi(2);
+    let radius = format!("radius_m = {a:?}");
+    let long = format!("{radius}\nlength_m = {h:?}");
+    vec![
+        ("ring", radius.clone(), round(ring, ring / 2.0)),
+        ("cylinder", radius.clone(), round(ring / 2.0, ring / 4.0)),
+        (
+            "cylinder",
+            long.clone(),
+            round(ring / 2.0, (3.0 * ring + h * h) / 12.0),
+        ),
+        (
+            "tube",
+            format!("inner_radius_m = {inner:?}\nouter_radius_m = {outer:?}\nlength_m = {h:?}"),
+            round(both / 2.0, (3.0 * both + h * h) / 12.0),
+        ),
+        ("rod", format!("length_m = {h:?}"), round(0.0, h * h / 12.0)),
+        ("ball", radius.clone(), [0.4 * ring; 3]),
+        ("shell", radius, [2.0 * ring / 3.0; 3]),
+        (
+            "cone",
+            long,
+            round(0.3 * ring, 3.0 * (4.0 * ring + h * h) / 80.0),
+        ),
+        (
+            "block",
+            format!("size_m = [{a:?}, {b:?}, {h:?}]"),
+            [
+                (b * b + h * h) / 12.0,
+                (a * a + h * h) / 12.0,
+                (a * a + b * b) / 12.0,
+            ],
+        ),
+    ]
+}
+
+fn any_length() -> impl Strategy<Value = f64> {
+    0.01..2.0_f64
+}
+
+fn any_vector() -> impl Strategy<Value = [f64; 3]> {
+    [-2.0..2.0_f64, -2.0..2.0, -2.0..2.0]
+}
+
+/// Inertia about the pivot of a part by Steiner's theorem, kg m².
+fn steiner(mass: f64, moments: [f64; 3], at: [f64; 3], axis: [f64; 3]) -> Matrix3<f64> {
+    let (at, axis) = (Vector3::from(at), Vector3::from(axis));
+    let turn = Rotation3::rotation_between(&Vector3::z(), &axis).unwrap();
+    let own = Matrix3::from_diagonal(&(mass * Vector3::from(moments)));
+    let offset = Matrix3::identity() * at.norm_squared() - at * at.transpose();
+    turn.matrix() * own * turn.matrix().transpose() + mass * offset
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn the_inertia_is_that_of_steiners_theorem(
+        parts in prop::collection::vec(
+            (0..9_usize, [any_length(), any_length(), any_length()], any_vector(), any_vector(), 0.01..50.0_f64),
+            1..6,
+        )
+    ) {
+        let mut body = String::new();
+        let (mut inertia, mut mass_sum, mut first) = (Matrix3::zeros(), 0.0, Vector3::zeros());
+        let mut size = 0.0;
+        for (index, (which, lengths, at, axis, mass)) in parts.into_iter().enumerate() {
+            prop_assume!(Vector3::from(axis).norm() > 0.1);
+            let (shape, dimensions, moments) = solids(lengths).swap_remove(which);
+            body += &format!(
+                "[[body.part]]\nshape = '{shape}'\nname = 'p{index}'\nmass_kg = {mass:?}\nat_m = {at:?}\naxis = {axis:?}\n{dimensions}\n"
+            );
+            inertia += steiner(mass, moments, at, axis);
+            size += mass * (Vector3::from(at).norm_squared() + Vector3::from(moments).amax());
+            mass_sum += mass;
+            first += mass * Vector3::from(at);
+        }
+        let Ok(scenario) = read(&text(&body)) else {
+            // A rod that points to the pivot, and nothing else.
+            prop_assume!(false);
+            return Ok(());
+        };
+        let mechanics = &scenario.body.mechanics;
+        let off = (mechanics.inertia() - inertia).amax() / size;
+        prop_assert!(off < 1e-14, "{off:e}");
+        prop_assert!((mechanics.mass() - mass_sum).abs() < 1e-14 * mass_sum);
+        prop_assert!((mechanics.first_moment() - first).amax() < 1e-14 * size.max(first.amax()));
+    }
+
+    #[test]
+    fn a_symmetric_part_along_the_axle_leaves_the_body_symmetric(
+        which in 0..8_usize, lengths in [any_length(), any_length(), any_length()], height in -2.0..2.0_f64, down: bool
+    ) {
+        let (shape, dimensions, _) = solids(lengths).swap_remove(which);
+        let axis = if down { "axis = [0, 0, -3]" } else { "" };
+        let body = format!(
+            "[body.rim]\npoints = 4\nradius_m = 0.1\nheight_m = 0\npoint_mass_kg = 0.1\n[[body.part]]\nshape = '{shape}'\nname = 'part'\nmass_kg = 2\nat_m = [0, 0, {height:?}]\n{axis}\n{dimensions}\n"
+        );
+        let scenario = parse(&text(&body));
+        let mechanics = &scenario.body.mechanics;
+        let inertia = mechanics.inertia();
+        let uneven = [inertia[(0, 0)] - inertia[(1, 1)], inertia[(0, 1)], inertia[(0, 2)], inertia[(1, 2)]];
+        for uneven in uneven {
+            prop_assert!(uneven.abs() <= 1e-12 * inertia.amax(), "{inertia}");
+        }
+        prop_assert!(SymmetricTop::of(mechanics).is_some());
+        let loads = Simulation::new(Arc::new(scenario.clone())).loads().clone();
+        let exact = ExactMotion::new(mechanics, &loads, &scenario.start);
+        prop_assert_eq!(exact.kind(), Kind::Closed);
+    }
+}
+
+#[test]
+fn six_points_of_a_sixth_of_the_mass_stand_for_a_part() {
+    let scenario = parse(&text(&part("ball", "radius_m = 1")));
+    let points = scenario.body.mechanics.points();
+    assert_eq!(scenario.body.points_before_parts(), 1);
+    // Behind the point: the centre, which has no mass, and the six.
+    assert_eq!(points.len(), 8);
+    assert_eq!((points[1].mass, points[1].at.z), (0.0, 0.5));
+    assert!(points[2..].iter().all(|point| point.mass == 2.0 / 6.0));
+    // A ball's six lie at sqrt(3/5) of its radius.
+    let far = |point: &gyrolab::physics::PointMass| (point.at - points[1].at).norm();
+    assert!(
+        points[2..]
+            .iter()
+            .all(|point| (far(point) - 0.6_f64.sqrt()).abs() < 1e-15)
+    );
+}
+
+#[test]
+fn points_stand_before_parts_and_keep_their_places() {
+    let rim = "[body.rim]\npoints = 3\nradius_m = 1\nheight_m = 0\npoint_mass_kg = 1\n";
+    let without = parse(&text(rim));
+    let with = parse(&text(&format!("{rim}{}", part("ring", "radius_m = 0.2"))));
+    let count = without.body.mechanics.points().len();
+    assert_eq!(
+        with.body.mechanics.points()[..count],
+        *without.body.mechanics.points()
+    );
+    assert_eq!(with.body.names(), ["top", "ring"]);
+}
+
+#[test]
+fn the_centre_of_a_part_is_pushed_and_traced_by_its_name() {
+    let traced = text(&part("ball", "radius_m = 1"))
+        .replace("title = 'x'", "title = 'x'\ntrace = 'ball'")
+        + "[[push]]\npoint = 'ball'\nforce_N = [1, 0, 0]\nfor_s = 1\n";
+    let scenario = parse(&traced);
+    assert_eq!(scenario.arm_m(), 0.5);
+    assert_eq!(scenario.pushes.first().unwrap().point, scenario.trace);
+    let other = traced.replace("point = 'ball'", "point = 'bal'");
+    let refused = read(&other).unwrap_err().to_string();
+    assert!(
+        refused.contains("push.0.point (\"bal\") is no point of this body: did you mean ball?"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn every_refusal_says_where_which_key_which_value_and_which_rule() {
+    let cases = [
+        (
+            part("ring", ""),
+            "x.toml:5: body.part.0.radius_m: is missing: a part of shape ring has radius_m",
+        ),
+        (
+            part("tube", "outer_radius_m = 1\nlength_m = 1"),
+            "body.part.0.inner_radius_m: is missing: a part of shape tube has inner_radius_m, outer_radius_m, length_m",
+        ),
+        (
+            part("ball", "radius_m = 1\nlength_m = 2"),
+            "x.toml:11: body.part.0.length_m (2.0) does not go with shape ball, which has radius_m: leave it out",
+        ),
+        (
+            part("ring", "radius_m = 1\nmoments_kg_m2 = [1, 1, 1]"),
+            "body.part.0.moments_kg_m2 ([1.0, 1.0, 1.0]) does not go with shape ring",
+        ),
+        (
+            part("cylinder", "radius_m = 0"),
+            "x.toml:10: body.part.0.radius_m (0) must be greater than zero",
+        ),
+        (
+            part("cylinder", "radius_m = nan"),
+            "body.part.0.radius_m (nan) must be a finite number",
+        ),
+        (
+            part("cylinder", "radius_m = 1\nlength_m = -1"),
+            "body.part.0.length_m (-1) must not be negative",
+        ),
+        (
+            part("rod", "length_m = 0"),
+            "body.part.0.length_m (0.0) must be greater than zero",
+        ),
+        (
+            part(
+                "tube",
+                "inner_radius_m = 2\nouter_radius_m = 1\nlength_m = 1",
+            ),
+            "body.part.0.inner_radius_m (2.0) must not be greater than outer_radius_m, 1",
+        ),
+        (
+            part("block", "size_m = [1, -1, 1]"),
+            "body.part.0.size_m ([1.0, -1.0, 1.0]) must hold no negative number",
+        ),
+        (
+            part("block", "size_m = [1, 1]"),
+            "body.part.0.size_m ([1, 1]) must be three numbers, not 2",
+        ),
+        (
+            part("moments", "moments_kg_m2 = [1, 1, 2.1]"),
+            "x.toml:10: body.part.0.moments_kg_m2 ([1.0, 1.0, 2.1]) cannot be: A + B is below C: no body of real masses has these moments",
+        ),
+        (
+            part("ring", "radius_m = 1\naxis = [0, 0, 0]"),
+            "x.toml:11: body.part.0.axis ([0.0, 0.0, 0.0]) must not be of length 0: it is a direction",
+        ),
+        (
+            part("sphere", "radius_m = 1"),
+            "body.part.0.shape (\"sphere\") must be one of ring, cylinder, tube, rod, ball, shell, cone, block, moments",
+        ),
+        (
+            part("ring", "radius_m = 1\nheight = 1"),
+            "body.part.0.height: unknown key",
+        ),
+        (
+            part("ring", "radius_m = 1").replace("mass_kg = 2", "mass_kg = 0"),
+            "body.part.0.mass_kg (0) must be greater than zero",
+        ),
+        (
+            part("ring", "radius_m = 1").replace("mass_kg = 2\n", ""),
+            "body.part.0.mass_kg: is missing (its mass, kg)",
+        ),
+        (
+            part("ring", "radius_m = 1").replace("name = 'ring'", "name = 'top'"),
+            "x.toml:7: body.part.0.name (\"top\") is the name of a point, or of another part, too: each needs its own",
+        ),
+        (
+            part("ring", "radius_m = 1").repeat(2),
+            "x.toml:13: body.part.1.name (\"ring\") is the name of a point, or of another part, too: each needs its own",
+        ),
+        (
+            part("ring", "radius_m = 1").replace("[[body.part]]", "[body.part]"),
+            "must be an array of tables: write [[body.part]]",
+        ),
+        (part("rod", "length_m = 1"), "singular inertia"),
+        (
+            part("ring", "radius_m = 1e200"),
+            "x.toml:5: body.part.0: its moments leave the range of numbers: use masses and dimensions nearer to 1",
+        ),
+    ];
+    for (parts, wanted) in cases {
+        let told = refusal(&parts);
+        assert!(told.contains(wanted), "{parts}\n{told}\n{wanted}");
+    }
+}
+
+#[test]
+fn flat_moments_are_taken_with_their_rounding() {
+    let flat = part("moments", "moments_kg_m2 = [0.1, 0.2, 0.30000000000000004]");
+    assert!(read(&text(&flat)).is_ok());
+    let beyond = part("moments", "moments_kg_m2 = [0.1, 0.2, 0.300000000001]");
+    assert!(refusal(&beyond).contains("A + B is below C"));
+}
+
+#[test]
+fn a_part_counts_as_six_points() {
+    let many = |rim: usize| {
+        let rim =
+            format!("[body.rim]\npoints = {rim}\nradius_m = 1\nheight_m = 0\npoint_mass_kg = 1\n");
+        text(&(rim + &part("ring", "radius_m = 1")))
+    };
+    assert!(read(&many(99_993)).is_ok());
+    let refused = read(&many(99_994)).unwrap_err().to_string();
+    assert!(
+        refused.contains("body: has 100001 points, six for each part; at most 100000 are allowed"),
+        "{refused}"
+    );
+}
+
+/// A disk on a rod, and a block on the axle.
+fn three() -> Scenario {
+    parse(&text(
+        &(part("cylinder", "radius_m = 0.3")
+            + &part("rod", "length_m = 1")
+            + &part("block", "size_m = [0.1, 0.1, 0.2]")),
+    ))
+}
+
+fn listed(scenario: &Scenario) -> Vec<Parameter> {
+    parameters(&table_of(&scenario.file), scenario)
+}
+
+#[test]
+fn each_value_of_a_part_is_listed_and_a_dimension_that_it_has_not_is_none() {
+    let list = listed(&three());
+    let of = |group: &str| -> Vec<(String, String)> {
+        let rows = list.iter().filter(|row| row.group == group);
+        rows.map(|row| (row.label.clone(), row.shown())).collect()
+    };
+    let told = |rows: &[(&str, &str)]| -> Vec<(String, String)> {
+        rows.iter()
+            .map(|(label, value)| ((*label).to_owned(), (*value).to_owned()))
+            .collect()
+    };
+    let place = [
+        ("mass", "2"),
+        ("x", "0"),
+        ("y", "0"),
+        ("z", "0.5"),
+        ("axis x", "0"),
+        ("axis y", "0"),
+        ("axis z", "1"),
+    ];
+    let with = |shape: &'static str, dimensions: &[(&'static str, &'static str)]| {
+        told(&[&[("shape", shape), ("name", shape)], &place[..], dimensions].concat())
+    };
+    assert_eq!(
+        of("part cylinder"),
+        with("cylinder", &[("radius", "0.3"), ("length", "0")])
+    );
+    assert_eq!(of("part rod"), with("rod", &[("length", "1")]));
+    assert_eq!(
+        of("part block"),
+        with(
+            "block",
+            &[("size x", "0.1"), ("size y", "0.1"), ("size z", "0.2")]
+        )
+    );
+    let traced = list.iter().find(|row| row.key == "trace").unwrap();
+    assert_eq!(traced.choices, ["top", "cylinder", "rod", "block"]);
+}
+
+fn refused(file: &ScenarioFile, key: &str, value: impl Into<Value>) -> String {
+    changed(file, key, value.into()).unwrap_err().in_one_line()
+}
+
+#[test]
+fn each_value_of_a_part_can_be_changed_or_says_why_not() {
+    let scenario = three();
+    let file = &scenario.file;
+    let wider = changed(file, "body.part.0.radius_m", Value::Float(0.6)).unwrap();
+    // The disk's share of I3 is m R²/2, the block's m (a² + b²)/12.
+    let along = wider.body.mechanics.inertia()[(2, 2)];
+    assert!(
+        (along - (0.36 + 2.0 * 0.02 / 12.0)).abs() < 1e-15,
+        "{along}"
+    );
+    let higher = changed(file, "body.part.2.at_m.2", Value::Float(2.0)).unwrap();
+    assert_eq!(higher.file.body.part[2].at_m, [0.0, 0.0, 2.0]);
+    let thicker = changed(file, "body.part.0.length_m", Value::Float(0.1)).unwrap();
+    assert_eq!(thicker.file.body.part[0].length_m, Some(0.1));
+    let leaning = changed(file, "body.part.0.axis.0", Value::Float(1.0)).unwrap();
+    assert_eq!(leaning.file.body.part[0].axis, Some([1.0, 0.0, 1.0]));
+    assert_eq!(
+        refused(file, "body.part.0.radius_m", -1.0),
+        "body.part.0.radius_m (-1.0) must be greater than zero"
+    );
+    assert!(refused(file, "body.part.1.name", "top").contains("is the name of a point"));
+}
+
+#[test]
+fn a_part_takes_every_other_shape_as_large_as_it_was() {
+    let shapes: Vec<_> = solids([0.3, 0.4, 0.5]);
+    for (shape, dimensions, _) in &shapes {
+        let scenario = parse(&text(
+            &(part(shape, dimensions)
+                + &part("ring", "radius_m = 1").replace("'ring'\nmass", "'r'\nmass")),
+        ));
+        for (other, ..) in &shapes {
+            let turned = changed(&scenario.file, "body.part.0.shape", Value::from(*other));
+            let turned = turned.unwrap_or_else(|problems| panic!("{shape} to {other}: {problems}"));
+            assert_eq!(turned.file.body.part[0].shape, *other);
+        }
+        // Given by its moments it is the same body.
+        let moments = changed(&scenario.file, "body.part.0.shape", Value::from("moments")).unwrap();
+        let off = moments.body.mechanics.inertia() - scenario.body.mechanics.inertia();
+        assert!(off.amax() < 1e-14, "{shape}: {off}");
+        assert!(moments.file.body.part[0].moments_kg_m2.is_some());
+    }
+    let told = refused(&three().file, "body.part.0.shape", "egg");
+    assert!(told.contains("must be one of ring, cylinder"), "{told}");
+}
+
+#[test]
+fn dotted_keys_set_a_part_from_the_command_line() {
+    let mut document = Document::parse("x.toml", &text(&part("ring", "radius_m = 1"))).unwrap();
+    document.set("body.part.0.radius_m=0.5").unwrap();
+    document
+        .set("body.part.1={shape='ball',name='bob',mass_kg=1,at_m=[0,0,1],radius_m=0.1}")
+        .unwrap();
+    let scenario = document.scenario().unwrap();
+    assert_eq!(scenario.body.parts.len(), 2);
+    assert!((scenario.body.mechanics.inertia()[(2, 2)] - (0.5 + 0.004)).abs() < 1e-15);
+    document.set("body.part.1.axis.0=1").unwrap();
+    document.set("body.part.1.shape=cone").unwrap();
+    let changed = document.scenario().unwrap().file;
+    assert_eq!(changed.body.part[1].axis, Some([1.0, 0.0, 1.0]));
+    assert_eq!(changed.body.part[1].length_m, Some(0.2));
+    document.set("body.part.0.radius_m=0").unwrap();
+    let told = document.scenario().unwrap_err().to_string();
+    assert!(
+        told.contains(
+            "--set body.part.0.radius_m=0: body.part.0.radius_m (0) must be greater than zero"
+        ),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_run_file_of_parts_is_read_back_as_it_was() {
+    let scenario = three();
+    let again = parse(&scenario.to_toml());
+    assert_eq!(again.to_toml(), scenario.to_toml());
+    assert_eq!(again.body.mechanics, scenario.body.mechanics);
+}
+
+#[test]
+fn solids_are_seen_as_what_they_are() {
+    let filled = |preset: &str, set: &[&str], seconds: f64| {
+        let mut stage = Stage::open(preset, set, SMALL);
+        stage.wait(seconds).press("d").picture()
+    };
+    insta::assert_snapshot!("wing_nut_3d", filled("wing-nut", &[], 0.6));
+    // A cone that stands on its apex, and a rod beside it.
+    let cone = [
+        "body.part.0={shape='cone',name='cone',mass_kg=1,at_m=[0,0,0.6],radius_m=0.3,length_m=0.8}",
+        "body.part.1={shape='rod',name='rod',mass_kg=0.1,at_m=[0.6,0,0.6],axis=[1,0,0],length_m=0.4}",
+    ];
+    insta::assert_snapshot!("cone_and_rod_3d", filled("sleeping", &cone, 0.6));
+}
+
+#[test]
+fn a_part_is_edited_in_the_pane_of_values() {
+    let mut stage = Stage::open("wing-nut", &[], SMALL);
+    stage.commands("pause = true").press("e/outer\n");
+    stage.shows("outer radius, m 0.008").press("0.009\n");
+    stage.shows("outer radius 9e-3 m");
+    let nut = &stage.lab.player().run().scenario().file.body.part[0];
+    assert_eq!(nut.outer_radius_m, Some(0.009));
+    // What is refused says why and changes nothing.
+    stage.press("\n").press("0.001\n");
+    stage.shows("must not be greater than outer_radius_m");
+    let nut = &stage.lab.player().run().scenario().file.body.part[0];
+    assert_eq!(nut.outer_radius_m, Some(0.009));
+}

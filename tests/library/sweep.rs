@@ -1,0 +1,150 @@
+//! Sweeps in the library: those that are shipped, and the rows computed again.
+
+use gyrolab::scenario::Document;
+use gyrolab::study::sweep::recompute::{Verdict, verify};
+use gyrolab::study::sweep::shipped::{self, SWEEPS};
+use gyrolab::study::sweep::{Shard, Sweep};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+fn shipped(name: &str) -> Sweep {
+    let text = shipped::find(name).unwrap().text;
+    Sweep::open(&Document::parse(name, text).unwrap()).unwrap()
+}
+
+fn parsed(text: &str) -> Sweep {
+    Sweep::open(&Document::parse("sweep.toml", text).unwrap()).unwrap()
+}
+
+const SMALL: &str = "scenario = \"cusps\"\nmeasure = [\"z_m\", \"path\"]\n\
+    [[vary]]\nkey = \"motion.steps\"\nvalues = [1, 20, 3]\n\
+    [[vary]]\nkey = \"start.momentum_Js.2\"\nfrom = 10\nto = 60\ncount = 2\n";
+
+fn csv(sweep: &Sweep) -> String {
+    let row = |row| sweep.row(row, &|| true).unwrap().line;
+    let rows: String = (0..sweep.rows()).map(row).collect();
+    sweep.header() + &rows
+}
+
+#[test]
+fn the_table_of_sweeps_is_the_folder() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/sweeps");
+    let files: BTreeSet<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    let names = SWEEPS.iter().map(|sweep| format!("{}.toml", sweep.name));
+    assert_eq!(files, names.collect());
+    for sweep in SWEEPS {
+        let about = shipped(sweep.name).about().unwrap_or_default().to_owned();
+        assert!(
+            about.len() > 100 && about.lines().all(|line| line.len() <= 80),
+            "{}",
+            sweep.name
+        );
+    }
+}
+
+/// The claims that the files make, each at a few of their points.
+#[test]
+fn the_shipped_sweeps_show_what_they_say() {
+    let cells = |sweep: &Sweep, row: u64| -> Vec<f64> {
+        let row = sweep.row(row, &|| true).unwrap();
+        assert_eq!(row.failure, None);
+        let cells = row.line.trim_end().split(',');
+        cells.map(|cell| cell.parse().unwrap_or(f64::NAN)).collect()
+    };
+    let wobble = shipped("wobble-over-time-step");
+    assert_eq!(wobble.rows(), 219);
+    // 0.1 s is 4.97 turns a step, 0.0905 s is 4.50: a tooth, and the gap before it.
+    let [tooth, gap] = [198, 179].map(|row| cells(&wobble, row));
+    assert!((tooth[0] - 0.1).abs() < 1e-12 && (gap[0] - 0.0905).abs() < 1e-12);
+    assert!((tooth[1] - 4.974).abs() < 1e-2 && (gap[1] - 4.501).abs() < 1e-2);
+    assert!(tooth[4] > 10.0 * gap[4], "{tooth:?} {gap:?}");
+    assert!((tooth[3] / tooth[4] - 1.0).abs() < 0.03, "{tooth:?}");
+
+    let momentum = shipped("precession-over-momentum");
+    let [slow, fast] = [0, momentum.rows() - 1].map(|row| cells(&momentum, row));
+    for row in [&slow, &fast] {
+        assert!(
+            (row[1] - row[3]).abs() <= 4.0 * row[2] + 1e-6 * row[3],
+            "{row:?}"
+        );
+    }
+    assert!(
+        (slow[3] / slow[4] - 1.0).abs() > 0.05,
+        "a slow top is no fast one: {slow:?}"
+    );
+    assert!((fast[3] / fast[4] - 1.0).abs() < 0.01, "{fast:?}");
+
+    let tilt = shipped("precession-over-tilt");
+    let rate = |row| cells(&tilt, row)[2];
+    // Tilts of 15 and 75 degrees, by the report's scheme and by the exact motion.
+    let [report, exact] = [[2, 14], [19, 31]].map(|[low, high]| rate(low) / rate(high) - 1.0);
+    assert!((exact / 5e-5 - 1.0).abs() < 0.3, "{exact}");
+    assert!(report < -5e-3, "{report}");
+}
+
+#[test]
+fn shards_are_the_rows_of_the_whole() {
+    let whole = parsed(SMALL);
+    let rows: Vec<_> = (0..6)
+        .map(|row| whole.row(row, &|| true).unwrap().line)
+        .collect();
+    for number in 1..=4 {
+        let shard: Shard = format!("{number}/4").parse().unwrap();
+        let part = whole.clone().with_shard(shard);
+        assert!(part.header().contains(&format!("shard = \"{number}/4\"")));
+        for row in 0..part.rows() {
+            let there = &rows[shard.point(row) as usize];
+            assert_eq!(part.row(row, &|| true).unwrap().line, *there);
+            assert!(there.starts_with(&part.row_begins(row)));
+        }
+    }
+}
+
+#[test]
+fn verification_finds_one_changed_digit() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("small.csv");
+    let good = csv(&parsed(SMALL));
+    let verified = |text: &str| {
+        fs::write(&path, text).unwrap();
+        verify(&path, &|| true, |_, _| {}).unwrap()
+    };
+    let same = verified(&good);
+    assert_eq!((same.rows, same.verdict), (6, Verdict::Same));
+    assert_eq!(same.version.as_deref(), Some(env!("CARGO_PKG_VERSION")));
+    let last_digit = good.trim_end().rfind(|c: char| c.is_ascii_digit()).unwrap();
+    let mut wrong = good.clone().into_bytes();
+    wrong[last_digit] = if wrong[last_digit] == b'5' {
+        b'6'
+    } else {
+        b'5'
+    };
+    let wrong = String::from_utf8(wrong).unwrap();
+    let Verdict::Differs(found) = verified(&wrong).verdict else {
+        panic!("not found")
+    };
+    assert_eq!(found.row, 6);
+    assert_eq!(found.line as usize, wrong.lines().count());
+    assert_eq!(found.point, "motion.steps = 3, start.momentum_Js.2 = 60.0");
+    assert_eq!(found.there.as_deref(), wrong.lines().last());
+    assert_eq!(found.here.as_deref(), good.lines().last());
+    let end = good.trim_end().rfind('\n').unwrap();
+    let Verdict::Differs(found) = verified(&good[..=end]).verdict else {
+        panic!("not found")
+    };
+    assert_eq!((found.row, found.there), (6, None));
+    let longer = format!("{good}x\n");
+    let Verdict::Differs(found) = verified(&longer).verdict else {
+        panic!("not found")
+    };
+    assert_eq!((found.row, found.here), (7, None));
+    fs::write(&path, &good).unwrap();
+    let stopped = verify(&path, &|| false, |_, _| {}).unwrap();
+    assert_eq!(stopped.verdict, Verdict::Stopped);
+    fs::write(&path, good.replace("z_m,path", "path,z_m")).unwrap();
+    assert!(verify(&path, &|| true, |_, _| {}).is_err());
+}

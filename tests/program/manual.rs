@@ -1,0 +1,172 @@
+//! The manual's pages, and completion in the shells that are there.
+
+use crate::support::ground::{GYROLAB, Ground, done, failed, stdout};
+use std::path::Path;
+use std::process::Command;
+
+#[test]
+fn every_command_has_a_page_with_examples() {
+    let ground = Ground::new();
+    let help = done(ground.run(&["--help"]));
+    let commands = stdout(&help).split("Commands:\n").nth(1).unwrap();
+    let commands = commands.split("\n\n").next().unwrap().lines();
+    let commands = commands.filter_map(|line| line.strip_prefix("  "));
+    let commands: Vec<_> = commands
+        .filter(|line| !line.starts_with(' '))
+        .filter_map(|line| line.split(' ').next())
+        .filter(|name| *name != "help")
+        .collect();
+    assert!(commands.contains(&"verify"), "{commands:?}");
+    done(ground.run(&["man", "--all", "-o", "man1"]));
+    for command in &commands {
+        let page = ground.read(&format!("man1/gyrolab-{command}.1"));
+        assert!(page.starts_with(&format!(".TH gyrolab\\-{command} 1 ")));
+        for section in [".SH SYNOPSIS", ".SH \"EXIT STATUS\""] {
+            assert!(page.contains(section), "{command}: {section}");
+        }
+        let help = done(ground.run(&[command, "--help"]));
+        assert!(stdout(&help).contains("Examples:\n"), "{command}");
+    }
+    let whole = ground.read("man1/gyrolab.1");
+    assert_eq!(whole, stdout(&done(ground.run(&["man"]))));
+    for section in ["ENVIRONMENT", "FILES", "EXIT STATUS", "KEYS IN THE LAB"] {
+        assert!(whole.contains(&format!(".SH \"{section}\"")), "{section}");
+    }
+    let again = ground.run(&["man", "--all", "-o", "man1"]);
+    failed(&again, &["man1/gyrolab.1 exists; --force replaces it"]);
+    done(ground.run(&["man", "--all", "-o", "man1", "--force"]));
+    failed(&ground.run(&["man", "verfy"]), &["did you mean verify?"]);
+}
+
+/// The checkers of manual pages find nothing, where they are installed.
+#[test]
+fn checkers_of_manual_pages_find_nothing() {
+    let ground = Ground::new();
+    done(ground.run(&["man", "--all", "-o", "man1"]));
+    for checker in ["mandoc -Tlint -W warning", "man -l --warnings"] {
+        let program = checker.split(' ').next().unwrap();
+        if Command::new(program).arg("--version").output().is_err() {
+            continue;
+        }
+        let script = format!(
+            "for page in man1/*.1; do {checker} \"$page\" 2>&1 >/dev/null; done; \
+             [ {program} = man ] || for page in man1/*.1; do {checker} \"$page\" 2>&1; done"
+        );
+        let output = ground.shell(&script);
+        assert_eq!(stdout(&output), "", "{checker}");
+    }
+}
+
+#[test]
+fn the_topics_hold_the_tables_of_the_program() {
+    let ground = Ground::new();
+    for (topic, words) in [
+        ("scenario", "motion.time_step_s (required)"),
+        ("csv", "wz_rad_per_s   angular velocity"),
+        ("csv", "vx_m_per_s "),
+        ("schemes", "srkn11b"),
+        ("numbers", "measured_precession_rad_per_s (rad/s)"),
+        ("lab", "Take a step apart"),
+    ] {
+        let page = done(ground.run(&["man", topic]));
+        assert!(stdout(&page).contains(words), "{topic}: {words}");
+        assert!(
+            !stdout(&page).contains('{') || topic == "scenario",
+            "{topic}"
+        );
+    }
+}
+
+/// Every environment variable that the sources read stands in the manual.
+#[test]
+fn the_manual_names_every_environment_variable() {
+    let manual = done(Ground::new().run(&["man"]));
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut folders = vec![source];
+    let mut found = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).unwrap_or_default();
+            for call in ["env::var(\"", "var_os(\"", "variable(\""] {
+                for (at, _) in text.match_indices(call) {
+                    let name = text[at + call.len()..].split('"').next().unwrap();
+                    let place = format!("\\fB\\&{name}\\fR");
+                    assert!(stdout(&manual).contains(&place), "{name}: {path:?}");
+                    found += 1;
+                }
+            }
+        }
+    }
+    assert!(found >= 4, "{found}");
+}
+
+/// What bash completes `line` to, its words parted as bash parts them.
+fn in_bash(ground: &Ground, line: &str) -> String {
+    let words = line.replace('=', " = ");
+    let script = format!(
+        "gyrolab() {{ \"$G\" \"$@\"; }}; compopt() {{ :; }}; . ./completion.bash; \
+         set -- {words}; COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); COMP_TYPE=9; \
+         _gyrolab gyrolab \"${{@: -1}}\"; printf '%s ' \"${{COMPREPLY[@]}}\""
+    );
+    let output = Command::new("bash")
+        .args(["-c", &script])
+        .env("G", GYROLAB)
+        .current_dir(ground.path())
+        .output()
+        .unwrap();
+    stdout(&output).trim_end().to_owned()
+}
+
+#[test]
+fn bash_completes_presets_files_keys_values_and_names() {
+    if Command::new("bash").arg("--version").output().is_err() {
+        return;
+    }
+    let ground = Ground::new();
+    let script = done(ground.run(&["completions", "bash"]));
+    ground.write("completion.bash", stdout(&script));
+    ground.write("mine.toml", "");
+    ground.write("mine.txt", "");
+    for (line, wanted) in [
+        ("gyrolab run cus", "cusps"),
+        ("gyrolab run mine", "mine.toml"),
+        ("gyrolab run cusps --set motion.sch", "motion.scheme="),
+        ("gyrolab run cusps --set motion.scheme=sr", "srkn11b"),
+        ("gyrolab run cusps --set view.bare=", "true false"),
+        ("gyrolab run cusps --columns t_s,energ", "t_s,energy_J"),
+        ("gyrolab run cusps --scheme rk", "rk4"),
+        ("gyrolab lesson kap", "kappa-and-the-scheme"),
+        ("gyrolab man num", "numbers"),
+        ("gyrolab ver", "verify"),
+    ] {
+        assert_eq!(in_bash(&ground, line), wanted, "{line}");
+    }
+}
+
+#[test]
+fn zsh_and_fish_complete_keys() {
+    let ground = Ground::new();
+    for shell in ["zsh", "fish"] {
+        let script = done(ground.run(&["completions", shell]));
+        ground.write(&format!("completion.{shell}"), stdout(&script));
+        if Command::new(shell).arg("--version").output().is_err() {
+            continue;
+        }
+        done(ground.shell(&format!("{shell} -n completion.{shell}")));
+    }
+    // What the scripts ask, and what they are told.
+    let ask = |shell: &str, index: &str| {
+        let mut command = ground.command(&["--", "gyrolab", "run", "cusps", "--set", "motion.sch"]);
+        command
+            .env("GYROLAB_COMPLETE", shell)
+            .env("_CLAP_COMPLETE_INDEX", index);
+        stdout(&done(command.output().unwrap())).to_owned()
+    };
+    assert!(ask("zsh", "4").starts_with("motion.scheme=:"));
+    assert!(ask("fish", "4").starts_with("motion.scheme=\t"));
+}

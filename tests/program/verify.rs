@@ -1,0 +1,136 @@
+//! `gyrolab run` with chosen rows and columns, and `gyrolab verify`.
+
+use crate::support::ground::{Ground, code, done, failed, stderr, stdout};
+
+#[test]
+fn exports_of_every_kind_are_verified() {
+    let ground = Ground::new();
+    for (name, options) in [
+        ("whole.csv", ""),
+        ("part.csv", "--every 7 --from 1 --to 3.5 --columns t_s,z_m"),
+        ("points.csv", "--points --every 10"),
+        ("excel.csv", "--excel --scheme strang"),
+    ] {
+        let run = format!("$G run wobble-push --steps 40 {options} -o {name}");
+        done(ground.shell(&run));
+    }
+    done(ground.run(&["compare", "cusps", "--duration", "0.1", "-o", "errors.csv"]));
+    let output = done(ground.shell("$G verify *.csv"));
+    let told = stdout(&output);
+    for words in [
+        "whole.csv: the same: all 41 rows, computed again\n    Do not believe this run: ",
+        "part.csv: the same: all 4 rows",
+        "excel.csv: the same: all 41 rows",
+        "errors.csv: the same: all 16 rows",
+        "ns_per_step and wall_s are times by the clock",
+    ] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    let excel = ground.read("excel.csv");
+    assert!(excel.starts_with("\u{feff}# # excel = true\n# gyrolab = "));
+    assert!(excel.contains("\n40;4,0;"));
+    // Each of them runs again.
+    for name in ["part.csv", "points.csv", "excel.csv"] {
+        done(ground.run(&["run", name, "-o", "again.csv", "--force"]));
+        done(ground.run(&["verify", "again.csv"]));
+    }
+    let whole = ground.read("whole.csv");
+    done(ground.run(&["run", "part.csv", "-o", "again.csv", "--force"]));
+    assert_eq!(ground.read("again.csv"), whole);
+}
+
+#[test]
+fn what_differs_is_told_with_exit_code_1() {
+    let ground = Ground::new();
+    done(ground.run(&["run", "method-2", "--steps", "40", "-o", "a.csv"]));
+    let good = ground.read("a.csv");
+    ground.write("a.csv", &good.replace("\n12,1.2", "\n12,1.3"));
+    ground.write("b.csv", "nothing\n");
+    ground.write("c.csv", &good);
+    let output = ground.run(&["verify", "a.csv", "b.csv", "c.csv", "d.csv"]);
+    assert_eq!(code(&output), 1);
+    let told = stdout(&output);
+    assert!(told.contains(", the row of step 12: t_s is 1.3"), "{told}");
+    assert!(told.contains("c.csv: the same"), "{told}");
+    let said = stderr(&output);
+    for words in [
+        "b.csv: is no CSV that gyrolab wrote",
+        "d.csv: cannot be read",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
+    assert_eq!(code(&ground.run(&["verify"])), 2);
+    assert_eq!(code(&ground.run(&["verify", "/"])), 1);
+}
+
+#[test]
+fn ctrl_c_ends_a_verification() {
+    let ground = Ground::new();
+    done(ground.shell("$G run method-2 --steps 2 -o - > short.csv"));
+    let long = ground
+        .read("short.csv")
+        .replace("# steps = 2\n", "# steps = 2000000000\n");
+    ground.write("long.csv", &long);
+    let output = ground.shell("timeout --preserve-status -s INT 2 $G verify long.csv");
+    assert_eq!((code(&output), stdout(&output)), (130, ""));
+}
+
+#[test]
+fn rows_and_columns_that_cannot_be_are_refused() {
+    let ground = Ground::new();
+    let refused = |options: &str, exit: i32, words: &str| {
+        let output = ground.shell(&format!("$G run method-2 {options}"));
+        assert_eq!(code(&output), exit, "{options}");
+        assert!(stderr(&output).contains(words), "{}", stderr(&output));
+    };
+    refused(
+        "--columns z,t_s -o x.csv",
+        2,
+        "--columns: no column named z: did you mean z_m?",
+    );
+    refused(
+        "--from 5 --to 4 -o x.csv",
+        2,
+        "--to: 4 s is before the first row's time, 5 s",
+    );
+    refused("--from -1 -o x.csv", 2, "must be a time in seconds");
+    refused("--columns z_m", 2, "--output <FILE>");
+    refused(
+        "--from 500 -o x.csv",
+        1,
+        "no row is left by --from: the run ends at 230 s",
+    );
+    refused(
+        "--from 5.01 --to 5.02 -o x.csv",
+        1,
+        "no row lies between --from and --to",
+    );
+    assert!(!ground.file("x.csv").exists());
+}
+
+#[test]
+fn a_comparison_is_given_as_json() {
+    let ground = Ground::new();
+    let args = [
+        "compare",
+        "steady-slow",
+        "--duration",
+        "0.2",
+        "--schemes",
+        "report,exact",
+        "--json",
+    ];
+    let output = done(ground.run(&args));
+    let table: serde_json::Value = serde_json::from_str(stdout(&output)).unwrap();
+    assert_eq!(table["energy_drift_unit"], "M g |c|");
+    let rows = table["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 8);
+    assert!(rows[1]["order"].is_number() && rows[0]["order"].is_null());
+    assert!(rows.iter().all(|row| row["error_m"].is_number()));
+    assert_eq!(
+        code(&ground.run(&["compare", "cusps", "--json", "-o", "-"])),
+        2
+    );
+    let unwritable = ground.run(&["compare", "cusps", "--json", "-o", "no/where.csv"]);
+    failed(&unwritable, &["there is no folder no"]);
+}

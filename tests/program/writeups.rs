@@ -1,0 +1,170 @@
+//! `gyrolab writeup`: what is in the folder, that the same run gives the same bytes, and that no file is lost.
+
+use crate::support::ground::{Ground, code, done, failed, names};
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Every file of the folder with its bytes, in the order of the names.
+fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let read = |name: String| {
+        let bytes = fs::read(folder.join(&name)).unwrap();
+        (name, bytes)
+    };
+    names(folder).into_iter().map(read).collect()
+}
+
+fn row_of(page: &str, readout: &str) -> Vec<String> {
+    let marked = format!("`{readout}`");
+    let line = page.lines().find(|line| line.contains(&marked)).unwrap();
+    let cells = line.split('|').map(|cell| cell.trim().to_owned());
+    cells.collect()
+}
+
+#[test]
+fn the_folder_says_what_was_run_and_makes_it_again() {
+    let lab = Ground::new();
+    let set = "push.0.force_N=[0,0,-50]";
+    done(lab.run(&[
+        "writeup",
+        "wobble-push",
+        "--set",
+        set,
+        "--steps",
+        "700",
+        "-o",
+        "w",
+    ]));
+    done(lab.run(&["writeup", "w/run.toml", "-o", "again"]));
+    assert_eq!(
+        contents(&lab.file("w")),
+        contents(&lab.file("again")),
+        "the run file of a write-up makes the same write-up"
+    );
+    done(lab.run(&["run", "w/run.toml", "-o", "run.csv"]));
+    assert_eq!(lab.read("w/run.csv"), lab.read("run.csv"));
+    let page = lab.read("w/README.md");
+    for name in ["traces", "swings", "above", "3d"] {
+        assert!(page.contains(&format!("]({name}.svg)")), "{name}: {page}");
+        let svg = lab.read(&format!("w/{name}.svg"));
+        assert!(svg.contains("width=\"86mm\""), "{name}: {svg:.300}");
+        let pdf = fs::read(lab.file("w").join(name).with_extension("pdf")).unwrap();
+        assert!(pdf.starts_with(b"%PDF-"), "{name}");
+    }
+    for words in [
+        "# The wobble push",
+        "(0, 0, -50) N on the point top on 200 time steps from step 1 on",
+        "700 of 0.1 s",
+        "Do not believe this run",
+    ] {
+        assert!(page.contains(words), "{words}: {page}");
+    }
+    // The lines for other programs count the lines above the rows.
+    let csv = lab.read("run.csv");
+    let header = csv.lines().take_while(|line| line.starts_with('#')).count();
+    assert!(page.contains(&format!("skiprows={header})")), "{page}");
+    assert!(
+        page.contains(&format!("\",\", {}, 0)", header + 1)),
+        "{page}"
+    );
+}
+
+#[test]
+fn the_numbers_of_the_page_are_those_of_the_summary() {
+    let lab = Ground::new();
+    done(lab.run(&["writeup", "cusps", "-o", "w"]));
+    let page = lab.read("w/README.md");
+    let json = done(lab.run(&["run", "cusps", "--json"]));
+    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let number = |name: &str| json[name].as_f64().unwrap();
+    let row = row_of(&page, "measured_precession_rad_per_s");
+    let (digits, error) = row[2].split_once('(').unwrap();
+    let decimals = digits.split_once('.').unwrap().1.len();
+    let measured = number("measured_precession_rad_per_s");
+    assert_eq!(digits, format!("{measured:.decimals$}"));
+    let error: f64 = error.trim_end_matches(')').parse().unwrap();
+    assert!((10.0..100.0).contains(&error), "two digits: {row:?}");
+    let stated = error * 0.1_f64.powi(decimals as i32);
+    let sigma = number("measured_precession_uncertainty_rad_per_s");
+    assert!((stated / sigma - 1.0).abs() < 0.05, "{stated} for {sigma}");
+    let predicted = number("predicted_precession_rad_per_s");
+    assert_eq!(row[3], format!("{predicted:.decimals$}"));
+    let apart: f64 = row[4].parse().unwrap();
+    assert!((apart - (measured - predicted) / sigma).abs() < 0.01 * apart.abs() + 0.01);
+    // What the clock says differs each time: it is not in the folder.
+    let readouts: serde_json::Value = serde_json::from_str(&lab.read("w/readouts.json")).unwrap();
+    assert_eq!(readouts["measured_precession_rad_per_s"], measured);
+    assert!(readouts.get("wall_s").is_none() && json.get("wall_s").is_some());
+    let latex = lab.read("w/readouts.tex");
+    assert!(latex.contains(&format!("${}$", row[2])), "{latex}");
+}
+
+#[test]
+fn a_folder_in_use_is_left_alone_unless_forced() {
+    let lab = Ground::new();
+    let args = ["writeup", "method-1", "--steps", "20", "-o", "w"];
+    fs::create_dir(lab.file("w")).unwrap();
+    done(lab.run(&args)); // an empty one may be used
+    lab.write("w/README.md", "mine");
+    lab.write("w/notes.txt", "mine too");
+    failed(&lab.run(&args), &["w holds files", "--force"]);
+    assert_eq!(lab.read("w/README.md"), "mine");
+    let forced = [&args[..], &["--force"]].concat();
+    done(lab.run(&forced));
+    assert!(lab.read("w/README.md").starts_with("# Method 1"));
+    assert_eq!(lab.read("w/notes.txt"), "mine too");
+    assert_eq!(lab.files(), ["w"], "no temporary folder is left");
+}
+
+#[test]
+fn what_cannot_be_written_is_refused_with_its_reason() {
+    let lab = Ground::new();
+    let write_to = |folder: &str| lab.run(&["writeup", "method-1", "--steps", "20", "-o", folder]);
+    lab.write("file", "");
+    failed(&write_to("file"), &["file is not a folder"]);
+    failed(&write_to("none/w"), &["there is no folder none"]);
+    failed(&lab.run(&["writeup", "nonsense", "-o", "w"]), &["nonsense"]);
+    fs::create_dir(lab.file("closed")).unwrap();
+    let mode = |mode| fs::set_permissions(lab.file("closed"), fs::Permissions::from_mode(mode));
+    mode(0o500).unwrap();
+    let output = write_to("closed/w");
+    mode(0o700).unwrap();
+    // The superuser may write everywhere.
+    if code(&output) != 0 {
+        failed(&output, &["cannot write closed/w", "ermission"]);
+    }
+    assert_eq!(lab.files(), ["closed", "file"]);
+}
+
+#[test]
+fn a_signal_leaves_no_folder() {
+    let lab = Ground::new();
+    let long = ["writeup", "method-2", "--steps", "100000000", "-o", "w"];
+    let mut running = lab.command(&long).spawn().unwrap();
+    let begin = Instant::now();
+    while lab.files().is_empty() {
+        assert!(begin.elapsed() < Duration::from_secs(60), "it never began");
+        thread::sleep(Duration::from_millis(5));
+    }
+    let pid = rustix::process::Pid::from_child(&running);
+    rustix::process::kill_process(pid, rustix::process::Signal::TERM).unwrap();
+    assert_eq!(running.wait().unwrap().code(), Some(130));
+    assert_eq!(lab.files(), [""; 0]);
+}
+
+#[test]
+fn a_run_that_breaks_down_is_written_up_to_there() {
+    let lab = Ground::new();
+    let push = "push.0={point=\"top\", force_N=[1e300,0,0], first_step=25, steps=1}";
+    let output = lab.run(&["writeup", "method-2", "--set", push, "-o", "w"]);
+    failed(&output, &["no longer finite at step 25"]);
+    let csv = lab.read("w/run.csv");
+    assert!(csv.lines().last().unwrap().starts_with("24,"), "{csv}");
+    let page = lab.read("w/README.md");
+    assert!(
+        page.contains("The numbers are no longer finite at step 25"),
+        "{page}"
+    );
+}
