@@ -230,6 +230,7 @@ fn every_row_of_the_table_is_written_under_its_name() {
         undo = 1
         redo = 1
         export = 'run.csv'
+        figure = 'run.svg'
         save = 'run.toml'
         speed = 'top'
         look_at = 'the dip'

@@ -416,7 +416,7 @@ fn a_run_that_breaks_is_drawn_up_to_there() {
     let figure = drawn(&[run("method-2", &[push])], &request("traces"));
     let broke = figure.broke.unwrap();
     assert!(broke.contains("no longer finite at step 25"), "{broke}");
-    says(&figure.scene, &["x (m)", "2"]);
+    says(&figure.scene, &["x (m)", "2.0"]);
     // Where it breaks before the stretch that is asked for, there is no picture.
     let late = Request {
         from_s: 10.0,
