@@ -126,19 +126,27 @@ impl Grid {
                 .unwrap_or(false)
     }
 
-    /// All outlines, with the ink to their right.
+    /// All outlines, with the ink to their right. Each runs to the right somewhere, along the upper side of an inked cell. The
+    /// uppermost row is empty.
     fn outlines(&self) -> Path {
         let mut path = Path::default();
         let mut is_done = vec![false; self.is_inked.len()];
-        for index in 0..self.is_inked.len() {
-            let (x, y) = (
-                (index % self.columns) as isize,
-                (index / self.columns) as isize,
-            );
-            if is_done[index] || !self.begins(x, y) {
+        let rows = || self.is_inked.chunks(self.columns);
+        let beginnings = rows()
+            .zip(rows().skip(1))
+            .enumerate()
+            .flat_map(|(above, pair)| {
+                let (upper, lower) = pair;
+                let begins = move |column: &usize| lower[*column] && !upper[*column];
+                (0..lower.len())
+                    .filter(begins)
+                    .map(move |column| (column, above + 1))
+            });
+        for (column, row) in beginnings {
+            if is_done[row * self.columns + column] {
                 continue;
             }
-            let outline = self.outline((x, y), &mut is_done);
+            let outline = self.outline((column as isize, row as isize), &mut is_done);
             if outline.len() <= SMALLEST {
                 continue;
             }
@@ -152,11 +160,6 @@ impl Grid {
             path.0.push(Segment::Close);
         }
         path
-    }
-
-    /// Whether an outline runs to the right along the upper side of this cell; each outline does so somewhere.
-    fn begins(&self, x: isize, y: isize) -> bool {
-        self.at(x, y) && !self.at(x, y - 1)
     }
 
     /// The middles of the sides of cells along one outline, the first once more at its end. The sides where it runs to the
