@@ -3,8 +3,6 @@
 //! The ink is put into a grid of square cells, the boundary of the inked cells is followed, and its steps are made straight
 //! again. The grid is finer than the dots of a printer, and what it cannot tell apart is one area.
 
-use std::collections::HashSet;
-
 use super::scene::{Path, Point, Segment};
 use super::thin::simplified;
 
@@ -26,13 +24,10 @@ pub fn area(lines: &[Vec<Point>], width_pt: f64) -> Path {
         let Some(mut grid) = Grid::around(lines, width_pt, cell_pt) else {
             continue;
         };
-        let mut inked = HashSet::new();
         for pair in lines.iter().flat_map(|line| line.windows(2)) {
-            // A path that covers itself goes the same way many times over.
-            if inked.insert(grid.cells_of(pair)) {
-                grid.ink(pair[0], pair[1], 0.5 * width_pt / cell_pt);
-            }
+            grid.trace(pair[0], pair[1]);
         }
+        grid.widen(0.5 * width_pt / cell_pt);
         area = grid.outlines();
         if area.0.len() <= MANY {
             break;
@@ -71,37 +66,51 @@ impl Grid {
         })
     }
 
-    /// The cells in which a straight line begins and ends; it is the same line there and back.
-    fn cells_of(&self, pair: &[Point]) -> [[i32; 2]; 2] {
-        let cell = |p: &Point| {
-            [p.x - self.origin.x, p.y - self.origin.y].map(|n| libm::floor(n / self.cell_pt) as i32)
-        };
-        let (from, to) = (cell(&pair[0]), cell(&pair[1]));
-        [from.min(to), from.max(to)]
+    /// Inks a cell in each column of a straight line that is more level than steep, else in each row.
+    fn trace(&mut self, from: Point, to: Point) {
+        // The middle of the first cell is at 0.5: what is cut off is the fraction.
+        let x = (from.x - self.origin.x) / self.cell_pt;
+        let y = (from.y - self.origin.y) / self.cell_pt;
+        let (dx, dy) = (
+            (to.x - from.x) / self.cell_pt,
+            (to.y - from.y) / self.cell_pt,
+        );
+        if !(x + y + dx + dy).is_finite() {
+            return;
+        }
+        let steps = libm::ceil(dx.abs().max(dy.abs())).max(1.0);
+        let (dx, dy) = (dx / steps, dy / steps);
+        for step in 0..=steps as u32 {
+            let step = f64::from(step);
+            let (column, row) = ((x + step * dx) as usize, (y + step * dy) as usize);
+            if let Some(cell) = self.is_inked.get_mut(row * self.columns + column) {
+                *cell = true;
+            }
+        }
     }
 
-    /// Inks the cells whose middle is at most `radius` (in cells) from the straight line between two places on the page.
-    fn ink(&mut self, from: Point, to: Point, radius: f64) {
-        let to_cells = |p: Point| {
-            let x = (p.x - self.origin.x) / self.cell_pt - 0.5;
-            (x, (p.y - self.origin.y) / self.cell_pt - 0.5)
-        };
-        let (mut upper, mut lower) = (to_cells(from), to_cells(to));
-        if upper.1 > lower.1 {
-            std::mem::swap(&mut upper, &mut lower);
-        }
-        let first = libm::ceil(upper.1 - radius).max(0.0) as usize;
-        let last = libm::floor(lower.1 + radius).max(0.0) as usize;
-        for row in first..=last {
-            let (left, right) = across(upper, lower, radius, row as f64);
-            if left > right {
-                continue;
-            }
-            let (begin, end) = (libm::ceil(left).max(0.0) as usize, libm::floor(right) + 1.0);
-            let end = (end.max(0.0) as usize).min(self.columns);
-            let row = row * self.columns;
-            if let Some(cells) = self.is_inked.get_mut(row + begin..row + end) {
-                cells.fill(true);
+    /// Inks all cells whose middle is at most `radius` (in cells) from that of an inked one.
+    fn widen(&mut self, radius: f64) {
+        let blank = vec![false; self.is_inked.len()];
+        let traced = std::mem::replace(&mut self.is_inked, blank);
+        let reach = libm::floor(radius) as usize;
+        let half = |down: usize| (radius * radius - (down * down) as f64).max(0.0).sqrt() as usize;
+        let halves: Vec<usize> = (0..=reach).map(half).collect();
+        for (row, cells) in traced.chunks(self.columns).enumerate() {
+            let mut column = 0;
+            for run in cells.chunk_by(|a, b| a == b) {
+                let end = column + run.len();
+                if run[0] {
+                    for other in row.saturating_sub(reach)..=row + reach {
+                        let half = halves[other.abs_diff(row)];
+                        let begin = other * self.columns + column.saturating_sub(half);
+                        let end = other * self.columns + (end + half).min(self.columns);
+                        if let Some(cells) = self.is_inked.get_mut(begin..end) {
+                            cells.fill(true);
+                        }
+                    }
+                }
+                column = end;
             }
         }
     }
@@ -117,19 +126,27 @@ impl Grid {
                 .unwrap_or(false)
     }
 
-    /// All outlines, with the ink to their right.
+    /// All outlines, with the ink to their right. Each runs to the right somewhere, along the upper side of an inked cell. The
+    /// uppermost row is empty.
     fn outlines(&self) -> Path {
         let mut path = Path::default();
         let mut is_done = vec![false; self.is_inked.len()];
-        for index in 0..self.is_inked.len() {
-            let (x, y) = (
-                (index % self.columns) as isize,
-                (index / self.columns) as isize,
-            );
-            if is_done[index] || !self.begins(x, y) {
+        let rows = || self.is_inked.chunks(self.columns);
+        let beginnings = rows()
+            .zip(rows().skip(1))
+            .enumerate()
+            .flat_map(|(above, pair)| {
+                let (upper, lower) = pair;
+                let begins = move |column: &usize| lower[*column] && !upper[*column];
+                (0..lower.len())
+                    .filter(begins)
+                    .map(move |column| (column, above + 1))
+            });
+        for (column, row) in beginnings {
+            if is_done[row * self.columns + column] {
                 continue;
             }
-            let outline = self.outline((x, y), &mut is_done);
+            let outline = self.outline((column as isize, row as isize), &mut is_done);
             if outline.len() <= SMALLEST {
                 continue;
             }
@@ -143,11 +160,6 @@ impl Grid {
             path.0.push(Segment::Close);
         }
         path
-    }
-
-    /// Whether an outline runs to the right along the upper side of this cell; each outline does so somewhere.
-    fn begins(&self, x: isize, y: isize) -> bool {
-        self.at(x, y) && !self.at(x, y - 1)
     }
 
     /// The middles of the sides of cells along one outline, the first once more at its end. The sides where it runs to the
@@ -182,39 +194,6 @@ impl Grid {
             }
         }
     }
-}
-
-/// From where to where a row of cells crosses the places at most `radius` from a straight line. They are convex: what one
-/// row crosses is in one piece, that of the two circles about the ends and of the band between.
-fn across(upper: (f64, f64), lower: (f64, f64), radius: f64, row: f64) -> (f64, f64) {
-    let (dx, dy) = (lower.0 - upper.0, lower.1 - upper.1);
-    let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
-    let mut reach = |from: f64, to: f64| {
-        left = left.min(from);
-        right = right.max(to);
-    };
-    for (x, y) in [upper, lower] {
-        let square = radius * radius - (row - y) * (row - y);
-        if square >= 0.0 {
-            let half = square.sqrt();
-            reach(x - half, x + half);
-        }
-    }
-    let length = (dx * dx + dy * dy).sqrt();
-    if length > 0.0 {
-        // The two long sides of the band, each a straight line from beside one end to beside the other.
-        for side in [-radius, radius] {
-            let (aside, down) = (side * dy / length, -side * dx / length);
-            let share = (row - upper.1 - down) / dy;
-            if dy > 0.0 && (0.0..=1.0).contains(&share) {
-                let x = upper.0 + aside + share * dx;
-                reach(x, x);
-            } else if dy == 0.0 && (row - upper.1).abs() <= radius {
-                reach(upper.0.min(lower.0), upper.0.max(lower.0));
-            }
-        }
-    }
-    (left, right)
 }
 
 fn range(numbers: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
@@ -277,7 +256,7 @@ mod tests {
             let area = area(&lines, width);
             for (x, y) in tries {
                 let beyond = distance(&lines, x, y) - 0.5 * width;
-                // The diagonal of a cell, and what the smoothing takes.
+                // The diagonal of a cell, half of it on the line and half at the edge, and what the smoothing takes.
                 if beyond.abs() > CELLS_PT[0] * (1.42 + SMOOTH) {
                     prop_assert_eq!(winding(&area, x, y), i32::from(beyond < 0.0), "{} {}: {}", x, y, beyond);
                 }

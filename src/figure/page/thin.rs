@@ -7,8 +7,8 @@ use super::scene::{Path, Point};
 const TOLERANCE: f64 = 0.02;
 /// Points that are thinned together; the first and the last of them stay. It bounds the time that a hostile line takes.
 const TOGETHER: usize = 512;
-/// From so many points on, the area that a line covers is looked at: a file of 200 kB.
-const MANY: usize = 25_000;
+/// From so many points on, the area that a line covers is looked at: a file of 40 kB.
+const MANY: usize = 5_000;
 
 /// A line as it is put on the page.
 #[derive(Clone, Debug, PartialEq)]
