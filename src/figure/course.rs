@@ -197,6 +197,9 @@ pub fn exact(
     for number in 0..=count {
         let time_s = begin_s + (end_s - begin_s) * (number as f64 / count as f64);
         let state = truth.state_at(time_s);
+        if !state.is_finite() {
+            break; // what comes after it is no number either
+        }
         azimuth.follow(&state.axle());
         let sample = sample(scenario, &state, &azimuth, truth.loads().gravity);
         recorder.take(time_s, &sample.position, || sample);
