@@ -1,7 +1,7 @@
 //! Whether a figure would be solid black, and which stretch of time would not.
 
 use super::chart::Chart;
-use super::layout::Layout;
+use super::chart::layout::Layout;
 use super::of_runs::{Drawn, Request};
 use crate::text::ladder;
 use crate::text::number::{shortest, significant};

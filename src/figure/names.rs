@@ -1,8 +1,8 @@
 //! What runs are called beside each other: by what differs.
 
-use super::ink::LABEL_PT;
-use super::letters;
 use super::of_runs::Run;
+use super::page::ink::LABEL_PT;
+use super::page::letters;
 use crate::text::number::significant;
 
 /// What of a run may differ from the others.
@@ -45,7 +45,7 @@ pub(super) fn names(runs: &[Run], among_others: bool, room_pt: f64) -> Vec<Strin
         } else {
             ", "
         };
-        let rest = room_pt - super::ink::width(&format!("{comma}{step}"), LABEL_PT);
+        let rest = room_pt - super::page::ink::width(&format!("{comma}{step}"), LABEL_PT);
         let words = letters::shortened(&words.join(", "), LABEL_PT, rest);
         format!("{words}{comma}{step}")
     };

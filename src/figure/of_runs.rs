@@ -1,14 +1,14 @@
 //! Figures of runs: their curves over time, their paths from above and in space.
 
+use super::chart::legend::longest_name;
 use super::chart::{Axis, Chart, Panel, Series, Style};
 use super::course::{self, Course, Wanted};
 use super::dense;
 use super::kind::Kind;
-use super::legend::longest_name;
-use super::letters;
 use super::names::names;
+use super::page::letters;
+use super::page::scene::Scene;
 use super::quantity;
-use super::scene::Scene;
 use super::space;
 use crate::export::columns::Column;
 use crate::run::Truth;
@@ -196,7 +196,7 @@ fn truths(runs: &[Run], room_pt: f64) -> Vec<(&Run, String)> {
         1 => "exact".to_owned(),
         _ => {
             let title = format!("{}, exact", run.scenario.file.title);
-            letters::shortened(&title, super::ink::LABEL_PT, room_pt)
+            letters::shortened(&title, super::page::ink::LABEL_PT, room_pt)
         }
     };
     distinct.iter().map(|run| (*run, name(run))).collect()

@@ -1,8 +1,8 @@
 //! What is written along the axis of a quantity: symbol and unit of a column, a readout or a key of a scenario.
 
 use super::chart::Axis;
-use super::letters;
-use super::ticks::with_minus;
+use super::chart::ticks::with_minus;
+use super::page::letters;
 use crate::analysis::readouts;
 
 /// The ends of names, and the units that they stand for.

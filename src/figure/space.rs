@@ -6,14 +6,14 @@
 mod path;
 
 use super::chart::Axis;
-use super::curve;
-use super::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
-use super::layout::EDGE;
-use super::legend::Legend;
+use super::chart::curve;
+use super::chart::layout::EDGE;
+use super::chart::legend::Legend;
+use super::chart::ticks::{Tick, Ticks};
 use super::of_runs::{Drawn, Run};
+use super::page::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
+use super::page::scene::{Color, Pen, Point, Scene};
 use super::quantity;
-use super::scene::{Color, Pen, Point, Scene};
-use super::ticks::{Tick, Ticks};
 use crate::observe::camera::Camera;
 use nalgebra::Vector3;
 

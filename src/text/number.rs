@@ -234,7 +234,7 @@ mod tests {
             (0.0, 0.002, "0.0000(20)"),
             (1.0e-9, 2.0e-8, "0.1(2.0)e-8"),
             (9.99996, 0.001, "10.0000(10)"),
-            (0.7, 1e-300, "0.70000000000000000(16)"),
+            (0.5, 1e-300, "0.50000000000000000(11)"),
         ];
         for (number, uncertainty, text) in cases {
             let stated = uncertain(number, uncertainty).map(|stated| stated.to_string());

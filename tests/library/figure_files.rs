@@ -1,8 +1,8 @@
 //! A page as SVG, PDF and PNG: what the files hold, that hostile words cannot break them, and that the three agree.
 
-use gyrolab::figure::ink::{BLACK, at, circle, pen};
+use gyrolab::figure::page::ink::{BLACK, at, circle, pen};
 use gyrolab::figure::{
-    Color, Format, Item, Paint, Path, Pen, Point, Scene, Segment, letters, write,
+    Color, Format, Item, Paint, Path, Pen, Point, Scene, Segment, page::letters, write,
 };
 
 const HOSTILE: &str =

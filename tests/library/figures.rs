@@ -557,7 +557,7 @@ proptest! {
         slope in prop::option::of(value()),
     ) {
         let series = (0..names.0).map(|index| Series {
-            name: gyrolab::figure::letters::shortened(&names.1, 7.0, gyrolab::figure::legend::longest_name(width_mm * 72.0 / 25.4) - 6.0) + &index.to_string(),
+            name: gyrolab::figure::page::letters::shortened(&names.1, 7.0, gyrolab::figure::chart::legend::longest_name(width_mm * 72.0 / 25.4) - 6.0) + &index.to_string(),
             points: points.clone(),
             errors: errors.iter().map(|error| error.abs()).collect(),
             style: if index % 2 == 0 { Style::curve(index) } else { Style::marked_line(index) },

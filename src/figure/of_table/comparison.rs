@@ -1,11 +1,13 @@
 //! Errors of schemes over their time steps, with their slopes.
 
 use super::{grouped, numbers};
+use crate::figure::chart::legend::longest_name;
+use crate::figure::chart::ticks;
 use crate::figure::chart::{Axis, Panel, Series, Style};
-use crate::figure::ink::{self, LABEL_PT};
-use crate::figure::legend::longest_name;
+use crate::figure::page::ink::{self, LABEL_PT};
+use crate::figure::page::letters;
+use crate::figure::quantity;
 use crate::figure::table::Table;
-use crate::figure::{letters, quantity, ticks};
 use crate::text::number::significant;
 
 /// The axis of the time step, and a panel for each column.

@@ -1,11 +1,12 @@
 //! Readouts over what was varied: points that were measured, on the line that was predicted.
 
 use super::{Rows, grouped, numbers};
+use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::{Axis, Panel, Series, Style};
-use crate::figure::ink::LABEL_PT;
-use crate::figure::legend::longest_name;
+use crate::figure::page::ink::LABEL_PT;
+use crate::figure::page::letters;
+use crate::figure::quantity;
 use crate::figure::table::Table;
-use crate::figure::{letters, quantity};
 
 const MEASURED: &str = "measured_";
 const PREDICTED: &str = "predicted_";

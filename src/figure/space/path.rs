@@ -1,10 +1,10 @@
 //! The paths in the box: what is near is wide and dark.
 
 use super::{Space, round};
-use crate::figure::axis::Scale;
-use crate::figure::curve;
+use crate::figure::chart::axis::Scale;
+use crate::figure::chart::curve;
 use crate::figure::of_runs::Drawn;
-use crate::figure::scene::{Color, Pen, Point, Scene};
+use crate::figure::page::scene::{Color, Pen, Point, Scene};
 use nalgebra::Vector3;
 use std::collections::HashSet;
 
@@ -119,7 +119,7 @@ fn paler(color: Color, white: f64) -> Color {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::ink::at;
+    use crate::figure::page::ink::at;
 
     fn circle(points: usize) -> Vec<(Point, f64)> {
         let angle = |number: usize| 0.01 * number as f64;

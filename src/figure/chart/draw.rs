@@ -1,11 +1,11 @@
 //! A chart drawn on its page.
 
-use super::chart::{Chart, Panel, Series};
-use super::ink::{self, BLACK, LABEL_PT, MARK_PT, at, circle, grey, pen};
 use super::layout::{EDGE, GAP, Layout, Placed};
 use super::legend::Legend;
-use super::scene::Scene;
 use super::slope;
+use super::{Chart, Panel, Series};
+use crate::figure::page::ink::{self, BLACK, LABEL_PT, MARK_PT, at, circle, grey, pen};
+use crate::figure::page::scene::Scene;
 
 /// Width of axes, ticks and error bars, pt.
 const FRAME_PT: f64 = 0.5;

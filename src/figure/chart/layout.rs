@@ -1,9 +1,9 @@
 //! Where the parts of a chart stand on the page. Every label is measured, so that none is cut and none overlaps another.
 
 use super::axis::{Scale, widest};
-use super::chart::{Axis, Chart, Panel};
-use super::ink::{self, Frame, LABEL_PT, TITLE_PT};
 use super::ticks::Ticks;
+use super::{Axis, Chart, Panel};
+use crate::figure::page::ink::{self, Frame, LABEL_PT, TITLE_PT};
 
 /// Between anything and the edge of the page, pt.
 pub const EDGE: f64 = 2.0;

@@ -1,8 +1,19 @@
 //! What a figure with axes shows, before anything of it has a place: panels one above the other over one axis.
+//!
+//! [`axis`] and [`ticks`] say what stands at an axis, [`layout`] gives the parts their places, and [`draw`] puts them on a
+//! page: [`curve`] the curves, [`legend`] their names, [`slope`] the triangle beside a power law.
 
-use super::ink::{BLACK, Mark, grey};
-use super::scene::{Color, Pen};
-use super::ticks::{Ticks, power_of_ten};
+pub mod axis;
+pub mod curve;
+pub mod draw;
+pub mod layout;
+pub mod legend;
+pub mod slope;
+pub mod ticks;
+
+use crate::figure::page::ink::{BLACK, Mark, grey};
+use crate::figure::page::scene::{Color, Pen};
+use ticks::{Ticks, power_of_ten};
 
 /// A figure with axes.
 #[derive(Clone, Debug, PartialEq)]

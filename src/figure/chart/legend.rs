@@ -1,9 +1,9 @@
 //! Which line is what: in a corner of the panel where nothing is drawn, or above the panels.
 
-use super::chart::{Chart, Style};
-use super::ink::{self, Frame, LABEL_PT, WHITE, at};
 use super::layout::{EDGE, Layout};
-use super::scene::{Path, Pen, Point, Scene};
+use super::{Chart, Style};
+use crate::figure::page::ink::{self, Frame, LABEL_PT, WHITE, at};
+use crate::figure::page::scene::{Path, Pen, Point, Scene};
 
 /// Length of the line of an entry, and its distance from the name, pt.
 const KEY: f64 = 17.0;

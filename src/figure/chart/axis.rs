@@ -1,8 +1,8 @@
 //! An axis in its place: where a value stands on the page, and the ticks that have room there.
 
-use super::chart::Axis;
-use super::ink::{self, LABEL_PT};
+use super::Axis;
 use super::ticks::{Tick, Ticks};
+use crate::figure::page::ink::{self, LABEL_PT};
 
 /// Least distance of two labels beside each other, and of two above each other, pt.
 const BESIDE: f64 = 6.0;

@@ -1,9 +1,9 @@
 //! The triangle that shows a slope between two logarithmic axes.
 
-use super::chart::Panel;
-use super::ink::{self, Frame, LABEL_PT, at, grey, pen};
+use super::Panel;
 use super::layout::Placed;
-use super::scene::{Path, Point, Scene};
+use crate::figure::page::ink::{self, Frame, LABEL_PT, at, grey, pen};
+use crate::figure::page::scene::{Path, Point, Scene};
 use crate::text::number::significant;
 
 /// Lengths of the triangle that are tried, of the panel's width.

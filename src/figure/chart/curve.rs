@@ -1,11 +1,11 @@
 //! The line of a series on the page, without the points that nobody could see.
 
-use super::chart::Series;
-use super::clip::clipped;
-use super::ink::{Frame, at};
+use super::Series;
 use super::layout::Placed;
-use super::scene::{Path, Pen, Point, Scene};
-use super::thin::{Thinned, plane_curve, simplified};
+use crate::figure::page::clip::clipped;
+use crate::figure::page::ink::{Frame, at};
+use crate::figure::page::scene::{Path, Pen, Point, Scene};
+use crate::figure::page::thin::{Thinned, plane_curve, simplified};
 
 /// Width of a column of which only first, lowest, highest and last point are drawn, pt. It is well below the width of a line,
 /// and below a dot at 300 dpi.
