@@ -74,6 +74,18 @@ fn the_scenario_is_good_and_its_mistakes_are_told_as_shown() {
     assert_eq!(shown, format!("$ gyrolab check my.toml\n{told}"));
 }
 
+#[test]
+fn the_demonstration_is_recorded_to_its_end() {
+    let ground = Ground::new();
+    let demo = include_str!("../../presets/commands/demo.toml");
+    ground.write("demo.toml", demo);
+    let recorded = ground.run(&["cast", "demo.toml", "-o", "demo.cast"]);
+    assert!(recorded.status.success(), "{}", said(&recorded.stderr));
+    let cast = ground.read("demo.cast");
+    let markers = cast.lines().filter(|line| line.contains("\"m\", ")).count();
+    assert_eq!(markers, demo.matches("chapter = ").count());
+}
+
 /// The picture at the README's head is what its command draws, to the byte.
 #[test]
 fn the_picture_is_what_its_command_draws() {
