@@ -1,6 +1,6 @@
 //! Sweeps: a grid of runs, of which every one becomes a row.
 //!
-//! A [`SweepFile`](file::SweepFile) is the TOML: a scenario, the keys that vary, the readouts. Checked it is a [`Sweep`],
+//! A [`SweepFile`] is the TOML: a scenario, the keys that vary, the readouts. Checked it is a [`Sweep`],
 //! which knows its points and computes the row of any of them. [`in_order`] does so on all cores, [`part`] keeps the rows
 //! of a sweep that is not whole yet, [`join`] makes one CSV of the shards, [`shipped`] are the sweeps of the program.
 //!
