@@ -1,14 +1,16 @@
 //! The command line, as clap reads it.
 
+use super::cast::CastArgs;
 use super::layout::LayoutArgs;
 use super::manual::ManArgs;
+use super::sweep::SweepArgs;
 use super::verify::VerifyArgs;
+use super::writeup::WriteupArgs;
 mod figure;
 
 pub(super) use figure::FigureArgs;
 
 use crate::physics::scheme;
-use crate::study::sweep::Shard;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroU64;
@@ -278,23 +280,6 @@ pub(super) struct RunArgs {
 }
 
 #[derive(Debug, Args)]
-pub(super) struct WriteupArgs {
-    #[command(flatten)]
-    pub(super) scenario: ScenarioArgs,
-
-    /// The folder: a new or an empty one
-    #[arg(short, long, value_name = "FOLDER")]
-    pub(super) output: PathBuf,
-
-    #[command(flatten)]
-    pub(super) length: LengthArgs,
-
-    /// Write into a folder that holds files, and replace those of the same names
-    #[arg(long)]
-    pub(super) force: bool,
-}
-
-#[derive(Debug, Args)]
 pub(super) struct LessonArgs {
     /// A shipped lesson's name, or a file (.md) [without it: the list of the lessons]
     pub(super) name: Option<String>,
@@ -360,79 +345,6 @@ pub(super) struct CompareArgs {
     pub(super) force: bool,
 }
 
-#[derive(Debug, Args)]
-#[command(after_help = CASTS)]
-pub(super) struct CastArgs {
-    /// The file of commands: [[do]] tables, or - for stdin; gyrolab man lists them
-    #[arg(value_name = "FILE")]
-    pub(super) commands: PathBuf,
-
-    /// Write the recording to this file (asciicast v3), or to stdout for -
-    #[arg(short, long, value_name = "FILE.cast")]
-    pub(super) output: PathBuf,
-
-    /// Columns and lines of the lab
-    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "100x30", value_parser = size)]
-    pub(super) size: (u16, u16),
-
-    /// The recording's title
-    #[arg(long, value_name = "TITLE")]
-    pub(super) title: Option<String>,
-
-    /// Replace the file if it exists
-    #[arg(long)]
-    pub(super) force: bool,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct SweepArgs {
-    /// A shipped sweep's or preset's name, or a file (.toml or .csv): a sweep file, a sweep's CSV, or what run takes
-    /// [without it: the list of the shipped sweeps]
-    #[arg(requires = "output")]
-    pub(super) scenario: Option<String>,
-
-    #[command(flatten)]
-    pub(super) changes: Changes,
-
-    /// Vary a key over N values from A to B, both among them, or over the values V1, V2 and so on; may be repeated, the
-    /// last runs fastest
-    #[arg(long, value_name = "KEY=A..B:N|V1,V2", requires = "scenario")]
-    pub(super) vary: Vec<String>,
-
-    /// The readouts to write, of those that gyrolab readouts lists [default: those of the sweep file, or every number]
-    #[arg(
-        long,
-        value_name = "READOUT,...",
-        value_delimiter = ',',
-        requires = "scenario"
-    )]
-    pub(super) measure: Vec<String>,
-
-    /// Only every N-th point, the K-th first: one of N parts that --join puts together
-    #[arg(long, value_name = "K/N", requires = "scenario")]
-    pub(super) shard: Option<Shard>,
-
-    /// Join these CSVs, which are all shards of one sweep, into one
-    #[arg(long, value_name = "PART.csv", num_args = 1.., requires = "output", conflicts_with_all = ["scenario", "set", "time_step", "scheme"])]
-    pub(super) join: Vec<PathBuf>,
-
-    /// Write the CSV to this file; until it is whole the rows are in FILE.part, and the same command goes on there
-    #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
-
-    /// Replace what another sweep has left under these names
-    #[arg(long, requires = "output")]
-    pub(super) force: bool,
-}
-
-const CASTS: &str = "\
-Time passes at run, run_until and wait_s; a recording ends with the last command, so that one of wait_s at its end shows
-the last picture for so long. chapter makes a marker. The same commands give the same bytes, on every machine.
-
-Examples:
-  gyrolab cast demo.toml -o demo.cast && asciinema play demo.cast
-  gyrolab cast demo.toml --size 80x24 --title 'A push' -o push.cast";
-
 pub(super) fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
     text.parse()
         .map_err(|_| "must be a whole number, 1 or more".to_owned())
@@ -475,7 +387,7 @@ fn positive(text: &str) -> Result<f64, String> {
 /// The largest picture, columns and lines.
 const LARGEST: u16 = 1000;
 
-fn size(text: &str) -> Result<(u16, u16), String> {
+pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
     let number = |text: &str| {
         text.parse()
             .ok()

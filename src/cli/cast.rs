@@ -3,7 +3,7 @@
 //! The lab's own clock tells the time: it goes on by the same step from picture to picture, however long the computer needs
 //! for one. Neither settings nor the environment are read, so that a file of commands has one recording.
 
-use super::args::{CastArgs, Changes, Markers};
+use super::args::{Changes, Markers, size};
 use super::progress::{self, Interruption};
 use super::workbench::{DEFAULT, lab};
 use super::{INTERRUPTED, tell};
@@ -14,8 +14,10 @@ use crate::lab::view::theme::{Background, Theme};
 use crate::text::printable::{Shown, printable};
 use crate::tui::recorder::Recorder;
 use anyhow::{Context, bail, ensure};
+use clap::Args;
 use serde_json::{Value, json};
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::thread;
 use std::time::Duration;
@@ -26,6 +28,38 @@ const FRAME: Duration = Duration::from_millis(50);
 const LONGEST: Duration = Duration::from_secs(3600);
 /// How often to look whether an export is complete: the recording's clock stands still meanwhile.
 const LOOK: Duration = Duration::from_millis(2);
+
+#[derive(Debug, Args)]
+#[command(after_help = CASTS)]
+pub(super) struct CastArgs {
+    /// The file of commands: [[do]] tables, or - for stdin; gyrolab man lists them
+    #[arg(value_name = "FILE")]
+    pub(super) commands: PathBuf,
+
+    /// Write the recording to this file (asciicast v3), or to stdout for -
+    #[arg(short, long, value_name = "FILE.cast")]
+    pub(super) output: PathBuf,
+
+    /// Columns and lines of the lab
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "100x30", value_parser = size)]
+    pub(super) size: (u16, u16),
+
+    /// The recording's title
+    #[arg(long, value_name = "TITLE")]
+    pub(super) title: Option<String>,
+
+    /// Replace the file if it exists
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+const CASTS: &str = "\
+Time passes at run, run_until and wait_s; a recording ends with the last command, so that one of wait_s at its end shows
+the last picture for so long. chapter makes a marker. The same commands give the same bytes, on every machine.
+
+Examples:
+  gyrolab cast demo.toml -o demo.cast && asciinema play demo.cast
+  gyrolab cast demo.toml --size 80x24 --title 'A push' -o push.cast";
 
 pub(super) fn cast(args: &CastArgs) -> anyhow::Result<ExitCode> {
     let commands = command::open(&args.commands)?;

@@ -18,7 +18,6 @@ use anyhow::{Context, bail};
 use clap::error::ErrorKind;
 use std::collections::HashSet;
 use std::io::Write;
-use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -48,10 +47,7 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .show(taken, total);
-        match interruption.has_come() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
+        interruption.go_on()
     });
     meter.lock().unwrap_or_else(PoisonError::into_inner).clear();
     let Some(rows) = rows else {

@@ -17,7 +17,6 @@ use anyhow::{Context, bail};
 use clap::CommandFactory;
 use clap::error::ErrorKind;
 use std::io::Write;
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -180,10 +179,7 @@ fn drawn(
     let mut meter = Meter::new();
     let figure = of_runs::figure(runs, &request, |step, of| {
         meter.show(step, of);
-        match interruption.has_come() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
+        interruption.go_on()
     });
     meter.clear();
     figure.map_err(anyhow::Error::msg)

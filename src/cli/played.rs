@@ -10,7 +10,6 @@ use crate::lab::view::theme::{Background, Theme};
 use crate::scenario::{Problem, Problems};
 use crate::teach::{Lesson, play};
 use std::io::Write;
-use std::ops::ControlFlow;
 use std::process::ExitCode;
 
 /// A new lab, of which nothing but the pictures will be seen.
@@ -34,10 +33,7 @@ pub(super) fn watched<T>(
     let mut meter = Meter::new();
     let done = what(&mut |step, of| {
         meter.show(step, of);
-        match interruption.has_come() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
+        interruption.go_on()
     });
     meter.clear();
     done

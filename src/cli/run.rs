@@ -16,7 +16,6 @@ use anyhow::{Context, bail};
 use clap::error::ErrorKind;
 use std::cell::RefCell;
 use std::io::{self, Write};
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -151,10 +150,7 @@ fn play<W: Write>(
     let ended = stream::play(simulation, steps, output, each, |progress| {
         monitor.borrow_mut().catch_up();
         meter.show(progress.step, progress.steps);
-        match interruption.has_come() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
+        interruption.go_on()
     });
     meter.clear();
     ended

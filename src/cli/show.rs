@@ -57,10 +57,7 @@ pub(super) fn print_picture(wanted: Picture<'_>) -> anyhow::Result<ExitCode> {
         None => lab.player().run().scenario().steps,
     };
     let (_, interruption) = progress::open(None, false)?;
-    let go_on = |_, _| match interruption.has_come() {
-        true => ControlFlow::Break(()),
-        false => ControlFlow::Continue(()),
-    };
+    let go_on = |_, _| interruption.go_on();
     let ended = go_to(&mut lab, wanted.at.unwrap_or(end), go_on);
     let mut done = Ok(());
     if let (Ok(()), Some(commands)) = (&ended, commands) {

@@ -1,6 +1,6 @@
 //! `gyrolab sweep`: a grid of runs, a row each.
 
-use super::args::SweepArgs;
+use super::args::Changes;
 use super::progress::{self, Interruption, Meter};
 use super::scenario::change;
 use super::{INTERRUPTED, print, tell};
@@ -11,12 +11,54 @@ use crate::study::sweep::in_order::in_order;
 use crate::study::sweep::join::join;
 use crate::study::sweep::part::{Opened, PartError, PartFile};
 use crate::study::sweep::shipped::{self, SWEEPS};
-use crate::study::sweep::{Sweep, SweepFile, axis};
+use crate::study::sweep::{Shard, Sweep, SweepFile, axis};
 use crate::text::printable::{Shown, printable_lines};
+use clap::Args;
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+pub(super) struct SweepArgs {
+    /// A shipped sweep's or preset's name, or a file (.toml or .csv): a sweep file, a sweep's CSV, or what run takes
+    /// [without it: the list of the shipped sweeps]
+    #[arg(requires = "output")]
+    pub(super) scenario: Option<String>,
+
+    #[command(flatten)]
+    pub(super) changes: Changes,
+
+    /// Vary a key over N values from A to B, both among them, or over the values V1, V2 and so on; may be repeated, the
+    /// last runs fastest
+    #[arg(long, value_name = "KEY=A..B:N|V1,V2", requires = "scenario")]
+    pub(super) vary: Vec<String>,
+
+    /// The readouts to write, of those that gyrolab readouts lists [default: those of the sweep file, or every number]
+    #[arg(
+        long,
+        value_name = "READOUT,...",
+        value_delimiter = ',',
+        requires = "scenario"
+    )]
+    pub(super) measure: Vec<String>,
+
+    /// Only every N-th point, the K-th first: one of N parts that --join puts together
+    #[arg(long, value_name = "K/N", requires = "scenario")]
+    pub(super) shard: Option<Shard>,
+
+    /// Join these CSVs, which are all shards of one sweep, into one
+    #[arg(long, value_name = "PART.csv", num_args = 1.., requires = "output", conflicts_with_all = ["scenario", "set", "time_step", "scheme"])]
+    pub(super) join: Vec<PathBuf>,
+
+    /// Write the CSV to this file; until it is whole the rows are in FILE.part, and the same command goes on there
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+
+    /// Replace what another sweep has left under these names
+    #[arg(long, requires = "output")]
+    pub(super) force: bool,
+}
 
 pub(super) fn sweep(args: &SweepArgs) -> anyhow::Result<ExitCode> {
     match (&args.scenario, &args.output) {
@@ -182,10 +224,7 @@ fn add_rows(
         }
         // The rows of an earlier command say nothing about the time that the others take.
         meter.show(part.rows() - begin, all - begin);
-        match interruption.has_come() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
+        interruption.go_on()
     });
     meter.clear();
 }

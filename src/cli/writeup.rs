@@ -1,6 +1,6 @@
 //! `gyrolab writeup`: a run as a folder of files for a write-up.
 
-use super::args::WriteupArgs;
+use super::args::{LengthArgs, ScenarioArgs};
 use super::progress::{self, Meter};
 use super::run::played;
 use super::scenario::scenario_of;
@@ -11,9 +11,28 @@ use crate::study::writeup::figures::figures;
 use crate::study::writeup::{CSV, Writeup};
 use crate::text::printable::Shown;
 use anyhow::Context;
+use clap::Args;
 use std::fs::{self, File};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
+
+#[derive(Debug, Args)]
+pub(super) struct WriteupArgs {
+    #[command(flatten)]
+    pub(super) scenario: ScenarioArgs,
+
+    /// The folder: a new or an empty one
+    #[arg(short, long, value_name = "FOLDER")]
+    pub(super) output: PathBuf,
+
+    #[command(flatten)]
+    pub(super) length: LengthArgs,
+
+    /// Write into a folder that holds files, and replace those of the same names
+    #[arg(long)]
+    pub(super) force: bool,
+}
 
 pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let scenario = Arc::new(scenario_of(&args.scenario, &args.length)?);
