@@ -51,7 +51,6 @@ pub use script::Script;
 pub use values::Values;
 pub use work::Work;
 
-use crate::observe::camera::Camera;
 use crate::observe::playback::Halt;
 use crate::run::NotFinite;
 use crate::scenario::{Scenario, presets};
@@ -330,8 +329,7 @@ impl Lab {
         let is_still = !playback.is_running() || playback.step_number() == 0;
         if is_still && !self.view.camera_is_chosen {
             let axle = self.player.reading().state.axle();
-            // From the usual direction each time: the same step has the same picture, whatever was seen before.
-            self.view.camera = Camera::default().aside_of(&axle);
+            self.view.camera = self.view.camera.aside_of(&axle);
         }
     }
 

@@ -222,8 +222,11 @@ impl View {
         if let Some(zoom) = file.zoom {
             self.zoom = Zoom::of(zoom);
         }
-        if let Some(camera) = file.camera {
-            self.look_from(Camera::of(camera));
+        match file.camera {
+            Some(camera) => self.look_from(Camera::of(camera)),
+            // Another run is not seen from where the last one happened to be seen well.
+            None if !self.camera_is_chosen => self.camera = Camera::default(),
+            None => {}
         }
     }
 
