@@ -69,6 +69,9 @@ fn told(file: &Path, result: &Verified) -> String {
         line(format!("its run ends early: {end}"));
     }
     match result.kind {
+        Kind::Run if result.difference.is_some() => {
+            line(format!("of the run in its header: {}", result.verdict));
+        }
         Kind::Run => line(result.verdict.clone()),
         Kind::Sweep { failures: 0 } => {}
         Kind::Sweep { failures } => line(format!("runs that failed, and have empty rows: {failures}")),

@@ -9,7 +9,7 @@ use ratatui::layout::Rect;
 /// The layer of a dot. Layers differ not in colour alone: see [`Marker::strong`] and [`Marker::faint`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
-    /// The run's own motion. It hides the layers under it, except for the exact motion in cells that it fills.
+    /// The run's own motion. It hides the layers under it, except for the exact motion.
     Strong(Role),
     /// The exact motion, axes, and the previous sweep.
     Faint(Role),
@@ -159,6 +159,10 @@ impl Dots {
                     if strong == full && faint != 0 && cell.faint_role == Role::Exact =>
                 {
                     (self.marker.faint(faint), cell.faint_role)
+                }
+                // Between the swings of the run the exact motion stays visible as dots beside its own.
+                (strong, faint, ..) if cell.faint_role == Role::Exact => {
+                    (self.marker.strong(strong | faint), cell.strong_role)
                 }
                 (strong, ..) => (self.marker.strong(strong), cell.strong_role),
             };

@@ -75,6 +75,17 @@ fn the_scenario_is_good_and_its_mistakes_are_told_as_shown() {
 }
 
 #[test]
+fn the_picture_of_the_lab_begins_as_shown() {
+    let shown = block("text", "gyrolab show ");
+    let (command, picture) = shown.split_once('\n').unwrap();
+    let args: Vec<_> = command.split_whitespace().skip(2).collect();
+    let ground = Ground::new();
+    let lab = said(&ground.run(&args).stdout);
+    let (picture, _) = picture.split_once("  ...").unwrap();
+    assert!(lab.starts_with(picture), "{lab}");
+}
+
+#[test]
 fn the_demonstration_is_recorded_to_its_end() {
     let ground = Ground::new();
     let demo = include_str!("../../presets/commands/demo.toml");

@@ -1,7 +1,7 @@
 //! The measured numbers of a run beside those of theory.
 
 use crate::analysis::Readouts;
-use crate::analysis::readouts::{READOUTS, Readout};
+use crate::analysis::readouts::{READOUTS, Readout, Source};
 use crate::text::number::{NONE, Uncertain, fixed, short, uncertain};
 
 /// A measured number, with what theory says of it.
@@ -27,11 +27,14 @@ pub fn quantities(readouts: &Readouts) -> Vec<Quantity> {
         .filter(|readout| readout.name.starts_with("measured_") && !readout.is_uncertainty());
     let quantities = measured.map(|readout| {
         let number = |readout: Option<&Readout>| readout.and_then(|it| it.of(readouts).number());
+        // Of the swing that the report's scheme makes there is a formula, which is no theory of the exact motion.
+        let predicted = readout.predicted().filter(|it| it.source == Source::Theory);
+        let uncertainty = readout.uncertainty().filter(|_| predicted.is_some());
         Quantity {
             readout,
             measured: number(Some(readout)),
-            uncertainty: number(readout.uncertainty()),
-            predicted: number(readout.predicted()),
+            uncertainty: number(uncertainty),
+            predicted: number(predicted),
         }
     });
     quantities
