@@ -60,6 +60,11 @@ impl Player {
         has_come
     }
 
+    /// Whether a search for what would mend the numbers is under way.
+    pub fn is_seeking_advice(&self) -> bool {
+        self.advisor.is_some() && self.advice().is_none()
+    }
+
     /// What would mend doubtful numbers, in words, with the key that does it; `None` where nothing is known to, or where it
     /// cannot be done to this run.
     pub fn offer(&self) -> Option<String> {

@@ -47,6 +47,9 @@ impl Lab {
             Action::Undo => one(Command::Undo(times.unsigned_abs())),
             Action::Redo => one(Command::Redo(times.unsigned_abs())),
             Action::Push => one(Command::Push(PushChoice::default())),
+            Action::TakeAdvice if self.player.is_seeking_advice() => {
+                Err("what mends the numbers is being sought: press a again in a moment".to_owned())
+            }
             Action::TakeAdvice if self.player.offer().is_none() => Err(
                 "nothing is advised: the line about the numbers says when a mends them".to_owned(),
             ),

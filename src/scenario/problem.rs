@@ -152,7 +152,9 @@ impl fmt::Display for Problems {
                     write!(f, "{newline}{}:{line}: {bare}", printable(&self.origin))?;
                 }
                 // What is wrong with an option is none of a preset's file, which the user has not named.
-                None if self.is_about_option(problem) => write!(f, "{newline}{problem}")?,
+                None if self.origin.is_empty() || self.is_about_option(problem) => {
+                    write!(f, "{newline}{problem}")?;
+                }
                 None => write!(f, "{newline}{}: {problem}", printable(&self.origin))?,
             }
         }
