@@ -1,6 +1,7 @@
 //! Files as accidents leave them: whatever is cut out of a scenario, swapped, or put in, it is refused in printable
 //! words or it runs, and never does the program panic.
 
+use gyrolab::analysis::cost;
 use gyrolab::export::COLUMNS;
 use gyrolab::physics::scheme;
 use gyrolab::run::{Sample, Simulation};
@@ -209,9 +210,20 @@ fn load(text: &str) -> Result<Scenario, Problems> {
     Document::parse("mangled.toml", text).and_then(|document| document.scenario())
 }
 
-/// The samples of the first steps, up to the last one whose numbers are finite.
+/// The samples of the first steps, up to the last one whose numbers are finite; of a motion that is integrated through many
+/// turns in a step, only as many as can be had within seconds.
 fn first_samples(scenario: Scenario, steps: u64) -> Vec<Sample> {
+    let rad_per_step = cost::integration_rad(&scenario) / scenario.steps as f64;
+    let affordable = (cost::AFFORDABLE_RAD / rad_per_step) as u64;
+    let edited = scenario.edits.iter().map(|edit| edit.motion);
+    let mut motions = std::iter::once(scenario.motion).chain(edited);
+    let is_integrated = motions.any(|motion| motion.scheme.name == "exact");
     let end = scenario.steps.min(steps);
+    let end = if is_integrated {
+        end.min(affordable)
+    } else {
+        end
+    };
     let mut simulation = Simulation::new(Arc::new(scenario));
     let mut samples = vec![simulation.sample()];
     while simulation.step_number() < end && simulation.step().is_ok() {
