@@ -1,9 +1,12 @@
 //! How a run is shown: which panes, which of them has the focus, how much time the traces show, and which dots and
 //! colours. `tui` draws accordingly. No number of a run depends on it.
 //!
-//! [`markers`] lists the kinds of dots, [`theme`] the choice of colours, [`step`] the pages of the step pane.
+//! [`pane`] names the parts of the screen, [`focus`] moves between them; [`markers`] lists the kinds of dots, [`theme`] the
+//! choice of colours, [`step`] the pages of the step pane.
 
+mod focus;
 pub mod markers;
+pub mod pane;
 pub mod step;
 pub mod theme;
 
@@ -11,9 +14,10 @@ use super::action::Direction;
 use super::sheet::Sheet;
 use crate::observe::camera::{Camera, Zoom};
 use crate::run::Clock;
-use crate::scenario::screen::{self, PANES};
 use crate::scenario::{Scenario, keys};
 use markers::Marker;
+use pane::EARLIER_IDS;
+pub use pane::{Pane, Part};
 use std::sync::Arc;
 use step::Page;
 use theme::{Background, Theme};
@@ -27,77 +31,6 @@ pub const FPS: u32 = 15;
 const FRAME_RATES: [u32; 5] = [2, 5, 10, 15, 30];
 /// Degrees by which one press of an arrow turns the camera.
 const TURN_DEG: f64 = 10.0;
-
-/// A pane, by its id: the word for it in commands, in `[view]` and in sessions. `tui` has the table of all panes. The
-/// constants here are the panes that the lab itself needs to know.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pane(&'static str);
-
-/// Ids of panes in sessions of earlier versions, and the present ids.
-const EARLIER_IDS: [(&str, &str); 2] = [("from-above", "above"), ("three-d", "3d")];
-
-/// A part of the screen that can be hidden.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// A pane.
-    Pane(Pane),
-    /// The line about the numbers' health.
-    Health,
-    /// The numbers that theory predicts.
-    Predicted,
-    /// The line that says what there is to see.
-    LookAt,
-}
-
-impl Pane {
-    /// x, y, z and tilt over time.
-    pub const TRACES: Self = Self(screen::TRACES);
-    /// The path from above.
-    pub const FROM_ABOVE: Self = Self(screen::ABOVE);
-    /// The scene in space.
-    pub const THREE_D: Self = Self(screen::THREE_D);
-    /// The scenario's values and the readouts.
-    pub const PARAMETERS: Self = Self("parameters");
-    /// One time step, phase by phase. It is shown where it is asked for.
-    pub const STEP: Self = Self("step");
-
-    /// The page of a lesson. It is shown as long as there is one.
-    pub const LESSON: Self = Self("lesson");
-
-    /// The pane of this id.
-    pub const fn new(id: &'static str) -> Self {
-        Self(id)
-    }
-
-    /// Its name in files, commands and sessions.
-    pub const fn id(self) -> &'static str {
-        self.0
-    }
-
-    /// The pane of that name in files and commands.
-    pub fn named(id: &str) -> Option<Self> {
-        PANES.into_iter().find(|pane| *pane == id).map(Self)
-    }
-}
-
-impl Part {
-    /// Its name in files and commands.
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::Pane(pane) => pane.id(),
-            Self::Health => "health",
-            Self::Predicted => "predicted",
-            Self::LookAt => "look_at",
-        }
-    }
-
-    /// The part of that name.
-    pub fn named(id: &str) -> Option<Self> {
-        let others = [Self::Health, Self::Predicted, Self::LookAt];
-        let other = others.into_iter().find(|part| part.id() == id);
-        other.or_else(|| Pane::named(id).map(Self::Pane))
-    }
-}
 
 /// Options of the view.
 #[derive(Clone, Debug, PartialEq)]
@@ -283,12 +216,6 @@ impl View {
         self.panes.iter().copied().find(|pane| pane.id() == id)
     }
 
-    /// Fills the screen with `pane` and moves the focus there; with `None` shows all panes again.
-    pub fn fill(&mut self, pane: Option<Pane>) {
-        self.filled = pane.is_some();
-        self.focus = pane.unwrap_or(self.focus);
-    }
-
     /// Twice the time that the traces show (`wider`), or half of it, s; `None` if less than two time steps of
     /// `time_step_s` (s) would remain.
     pub fn zoomed(&self, wider: bool, time_step_s: f64) -> Option<f64> {
@@ -298,88 +225,6 @@ impl View {
             self.window_s / 2.0
         };
         (window_s >= 2.0 * time_step_s && window_s.is_finite()).then_some(window_s)
-    }
-
-    /// Whether `pane` fills the screen.
-    pub fn is_filled_by(&self, pane: Pane) -> bool {
-        self.filled && self.focus == pane
-    }
-
-    /// The panes that can have the focus: those side by side on the screen, or every pane that may be shown where the
-    /// screen holds one or two at a time.
-    fn focusable(&self) -> Vec<Pane> {
-        let may_have_it = |pane: &Pane| self.may_show(*pane) || self.is_filled_by(*pane);
-        let among = |panes: &[Pane]| panes.iter().copied().filter(may_have_it).collect();
-        if !self.filled && self.side_by_side.len() > 2 {
-            // A pane that was hidden since the screen was last fitted is still in this list.
-            let mut panes: Vec<_> = among(&self.side_by_side);
-            if !panes.is_empty() {
-                // A page that has just been opened is not in the list yet.
-                if self.may_show(Pane::LESSON) && !panes.contains(&Pane::LESSON) {
-                    panes.insert(0, Pane::LESSON);
-                }
-                return panes;
-            }
-        }
-        among(self.panes)
-    }
-
-    /// Moves the focus to the next pane that can have it, or to the one before; after the last comes the first.
-    pub fn shift_focus(&mut self, forward: bool) {
-        let panes = self.focusable();
-        let (count, here) = (
-            panes.len(),
-            panes.iter().position(|&pane| pane == self.focus),
-        );
-        let next = match (here, forward) {
-            (Some(here), true) => (here + 1) % count,
-            (Some(here), false) => (here + count - 1) % count,
-            (None, _) => 0,
-        };
-        self.focus = panes.get(next).copied().unwrap_or(self.focus);
-    }
-
-    /// Moves the focus to `pane`, which fills the screen if it is not on it.
-    pub fn turn_to(&mut self, pane: Pane) {
-        self.filled = self.is_filled_by(pane) || !self.focusable().contains(&pane);
-        self.focus = pane;
-    }
-
-    /// Moves the focus from the parameters to the first other pane that can have it; returns whether it did.
-    pub fn leave_parameters(&mut self) -> bool {
-        let mut others = self.focusable().into_iter();
-        let other = others.find(|&pane| pane != Pane::PARAMETERS);
-        let (true, Some(other)) = (self.focus == Pane::PARAMETERS, other) else {
-            return false;
-        };
-        self.turn_to(other);
-        true
-    }
-
-    /// Moves the focus to the first pane that can have it, if the one in focus no longer can.
-    pub fn keep_focus(&mut self) {
-        self.keep_focus_among(&self.focusable());
-        if self.focus != Pane::LESSON && !self.filled {
-            self.beside = Some(self.focus);
-        }
-    }
-
-    fn keep_focus_among(&mut self, panes: &[Pane]) {
-        if !panes.contains(&self.focus) {
-            self.focus = panes.first().copied().unwrap_or(Pane::TRACES);
-        }
-    }
-
-    /// Fills the screen with the 3-D view, or shows all panes again if it fills the screen already.
-    pub fn toggle_three_d(&mut self) {
-        let first = match self.may_show(Pane::LESSON) {
-            true => Pane::LESSON,
-            false => Pane::TRACES,
-        };
-        (self.focus, self.filled) = match self.is_filled_by(Pane::THREE_D) {
-            true => (first, false),
-            false => (Pane::THREE_D, true),
-        };
     }
 
     /// The camera after an arrow key was pressed `times` times; each press turns it by 10 degrees.
@@ -452,59 +297,4 @@ fn first_window_s(scenario: &Scenario) -> f64 {
     whole
         .min(LONGEST_SWEEP_S * speed)
         .max(2.0 * scenario.motion.time_step_s)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scenario::Document;
-
-    static ALL: [Pane; 4] = [
-        Pane::TRACES,
-        Pane::FROM_ABOVE,
-        Pane::THREE_D,
-        Pane::PARAMETERS,
-    ];
-
-    fn view() -> View {
-        let scenario = Document::open("method-2").unwrap().scenario().unwrap();
-        let theme = Theme {
-            colour: false,
-            background: Background::Dark,
-        };
-        View::new(&scenario, Marker::Braille, theme, &ALL)
-    }
-
-    #[test]
-    fn the_focus_goes_through_the_panes_on_the_screen_and_no_others() {
-        let mut view = view();
-        view.side_by_side = vec![Pane::TRACES, Pane::FROM_ABOVE, Pane::PARAMETERS];
-        let mut seen = Vec::new();
-        for _ in 0..4 {
-            seen.push(view.focus.id());
-            view.shift_focus(true);
-        }
-        assert_eq!(seen, ["traces", "above", "parameters", "traces"]);
-        view.hidden = vec![Part::Pane(Pane::FROM_ABOVE)];
-        view.keep_focus();
-        assert_eq!(view.focus, Pane::TRACES, "the one in focus is hidden");
-        view.shift_focus(false);
-        assert_eq!(view.focus, Pane::PARAMETERS);
-        // On a screen for one or two panes the focus reaches all of them.
-        view.side_by_side = vec![Pane::TRACES];
-        view.shift_focus(false);
-        assert_eq!(view.focus, Pane::THREE_D);
-    }
-
-    #[test]
-    fn a_pane_that_is_not_on_the_screen_fills_it_when_it_gets_the_focus() {
-        let mut view = view();
-        view.side_by_side = vec![Pane::TRACES, Pane::FROM_ABOVE, Pane::PARAMETERS];
-        view.turn_to(Pane::PARAMETERS);
-        assert!(!view.filled);
-        view.turn_to(Pane::THREE_D);
-        assert!(view.is_filled_by(Pane::THREE_D));
-        view.toggle_three_d();
-        assert_eq!((view.focus, view.filled), (Pane::TRACES, false));
-    }
 }

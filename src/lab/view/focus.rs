@@ -1,0 +1,151 @@
+//! Which pane has the focus, and whether it fills the screen.
+
+use super::{Pane, View};
+
+impl View {
+    /// Fills the screen with `pane` and moves the focus there; with `None` shows all panes again.
+    pub fn fill(&mut self, pane: Option<Pane>) {
+        self.filled = pane.is_some();
+        self.focus = pane.unwrap_or(self.focus);
+    }
+
+    /// Whether `pane` fills the screen.
+    pub fn is_filled_by(&self, pane: Pane) -> bool {
+        self.filled && self.focus == pane
+    }
+
+    /// The panes that can have the focus: those side by side on the screen, or every pane that may be shown where the
+    /// screen holds one or two at a time.
+    fn focusable(&self) -> Vec<Pane> {
+        let may_have_it = |pane: &Pane| self.may_show(*pane) || self.is_filled_by(*pane);
+        let among = |panes: &[Pane]| panes.iter().copied().filter(may_have_it).collect();
+        if !self.filled && self.side_by_side.len() > 2 {
+            // A pane that was hidden since the screen was last fitted is still in this list.
+            let mut panes: Vec<_> = among(&self.side_by_side);
+            if !panes.is_empty() {
+                // A page that has just been opened is not in the list yet.
+                if self.may_show(Pane::LESSON) && !panes.contains(&Pane::LESSON) {
+                    panes.insert(0, Pane::LESSON);
+                }
+                return panes;
+            }
+        }
+        among(self.panes)
+    }
+
+    /// Moves the focus to the next pane that can have it, or to the one before; after the last comes the first.
+    pub fn shift_focus(&mut self, forward: bool) {
+        let panes = self.focusable();
+        let (count, here) = (
+            panes.len(),
+            panes.iter().position(|&pane| pane == self.focus),
+        );
+        let next = match (here, forward) {
+            (Some(here), true) => (here + 1) % count,
+            (Some(here), false) => (here + count - 1) % count,
+            (None, _) => 0,
+        };
+        self.focus = panes.get(next).copied().unwrap_or(self.focus);
+    }
+
+    /// Moves the focus to `pane`, which fills the screen if it is not on it.
+    pub fn turn_to(&mut self, pane: Pane) {
+        self.filled = self.is_filled_by(pane) || !self.focusable().contains(&pane);
+        self.focus = pane;
+    }
+
+    /// Moves the focus from the parameters to the first other pane that can have it; returns whether it did.
+    pub fn leave_parameters(&mut self) -> bool {
+        let mut others = self.focusable().into_iter();
+        let other = others.find(|&pane| pane != Pane::PARAMETERS);
+        let (true, Some(other)) = (self.focus == Pane::PARAMETERS, other) else {
+            return false;
+        };
+        self.turn_to(other);
+        true
+    }
+
+    /// Moves the focus to the first pane that can have it, if the one in focus no longer can.
+    pub fn keep_focus(&mut self) {
+        self.keep_focus_among(&self.focusable());
+        if self.focus != Pane::LESSON && !self.filled {
+            self.beside = Some(self.focus);
+        }
+    }
+
+    pub(super) fn keep_focus_among(&mut self, panes: &[Pane]) {
+        if !panes.contains(&self.focus) {
+            self.focus = panes.first().copied().unwrap_or(Pane::TRACES);
+        }
+    }
+
+    /// Fills the screen with the 3-D view, or shows all panes again if it fills the screen already.
+    pub fn toggle_three_d(&mut self) {
+        let first = match self.may_show(Pane::LESSON) {
+            true => Pane::LESSON,
+            false => Pane::TRACES,
+        };
+        (self.focus, self.filled) = match self.is_filled_by(Pane::THREE_D) {
+            true => (first, false),
+            false => (Pane::THREE_D, true),
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::view::Part;
+    use crate::lab::view::markers::Marker;
+    use crate::lab::view::theme::{Background, Theme};
+    use crate::scenario::Document;
+
+    static ALL: [Pane; 4] = [
+        Pane::TRACES,
+        Pane::FROM_ABOVE,
+        Pane::THREE_D,
+        Pane::PARAMETERS,
+    ];
+
+    fn view() -> View {
+        let scenario = Document::open("method-2").unwrap().scenario().unwrap();
+        let theme = Theme {
+            colour: false,
+            background: Background::Dark,
+        };
+        View::new(&scenario, Marker::Braille, theme, &ALL)
+    }
+
+    #[test]
+    fn the_focus_goes_through_the_panes_on_the_screen_and_no_others() {
+        let mut view = view();
+        view.side_by_side = vec![Pane::TRACES, Pane::FROM_ABOVE, Pane::PARAMETERS];
+        let mut seen = Vec::new();
+        for _ in 0..4 {
+            seen.push(view.focus.id());
+            view.shift_focus(true);
+        }
+        assert_eq!(seen, ["traces", "above", "parameters", "traces"]);
+        view.hidden = vec![Part::Pane(Pane::FROM_ABOVE)];
+        view.keep_focus();
+        assert_eq!(view.focus, Pane::TRACES, "the one in focus is hidden");
+        view.shift_focus(false);
+        assert_eq!(view.focus, Pane::PARAMETERS);
+        // On a screen for one or two panes the focus reaches all of them.
+        view.side_by_side = vec![Pane::TRACES];
+        view.shift_focus(false);
+        assert_eq!(view.focus, Pane::THREE_D);
+    }
+
+    #[test]
+    fn a_pane_that_is_not_on_the_screen_fills_it_when_it_gets_the_focus() {
+        let mut view = view();
+        view.side_by_side = vec![Pane::TRACES, Pane::FROM_ABOVE, Pane::PARAMETERS];
+        view.turn_to(Pane::PARAMETERS);
+        assert!(!view.filled);
+        view.turn_to(Pane::THREE_D);
+        assert!(view.is_filled_by(Pane::THREE_D));
+        view.toggle_three_d();
+        assert_eq!((view.focus, view.filled), (Pane::TRACES, false));
+    }
+}

@@ -1,0 +1,74 @@
+//! The panes and the other parts of the screen, by the names that commands, `[view]` and sessions have for them.
+
+use crate::scenario::screen::{self, PANES};
+
+/// A pane, by its id: the word for it in commands, in `[view]` and in sessions. `tui` has the table of all panes. The
+/// constants here are the panes that the lab itself needs to know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pane(&'static str);
+
+/// Ids of panes in sessions of earlier versions, and the present ids.
+pub(super) const EARLIER_IDS: [(&str, &str); 2] = [("from-above", "above"), ("three-d", "3d")];
+
+/// A part of the screen that can be hidden.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// A pane.
+    Pane(Pane),
+    /// The line about the numbers' health.
+    Health,
+    /// The numbers that theory predicts.
+    Predicted,
+    /// The line that says what there is to see.
+    LookAt,
+}
+
+impl Pane {
+    /// x, y, z and tilt over time.
+    pub const TRACES: Self = Self(screen::TRACES);
+    /// The path from above.
+    pub const FROM_ABOVE: Self = Self(screen::ABOVE);
+    /// The scene in space.
+    pub const THREE_D: Self = Self(screen::THREE_D);
+    /// The scenario's values and the readouts.
+    pub const PARAMETERS: Self = Self("parameters");
+    /// One time step, phase by phase. It is shown where it is asked for.
+    pub const STEP: Self = Self("step");
+
+    /// The page of a lesson. It is shown as long as there is one.
+    pub const LESSON: Self = Self("lesson");
+
+    /// The pane of this id.
+    pub const fn new(id: &'static str) -> Self {
+        Self(id)
+    }
+
+    /// Its name in files, commands and sessions.
+    pub const fn id(self) -> &'static str {
+        self.0
+    }
+
+    /// The pane of that name in files and commands.
+    pub fn named(id: &str) -> Option<Self> {
+        PANES.into_iter().find(|pane| *pane == id).map(Self)
+    }
+}
+
+impl Part {
+    /// Its name in files and commands.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Pane(pane) => pane.id(),
+            Self::Health => "health",
+            Self::Predicted => "predicted",
+            Self::LookAt => "look_at",
+        }
+    }
+
+    /// The part of that name.
+    pub fn named(id: &str) -> Option<Self> {
+        let others = [Self::Health, Self::Predicted, Self::LookAt];
+        let other = others.into_iter().find(|part| part.id() == id);
+        other.or_else(|| Pane::named(id).map(Self::Pane))
+    }
+}
