@@ -85,7 +85,8 @@ impl Monitor {
         self.unheld.clear();
     }
 
-    /// As [`follow`](Self::follow), without holding the step against the exact motion: for a reader of what is measured and of the extremes alone.
+    /// As [`follow`](Self::follow), without holding the step against the exact motion: for a reader of what is measured
+    /// and of the extremes alone.
     #[inline]
     pub fn measure(&mut self, step: &Step) {
         self.extremes.follow(step);

@@ -1,15 +1,12 @@
 //! The command line, as clap reads it.
 
 use super::cast::CastArgs;
+use super::figure::FigureArgs;
 use super::layout::LayoutArgs;
 use super::manual::ManArgs;
 use super::sweep::SweepArgs;
 use super::verify::VerifyArgs;
 use super::writeup::WriteupArgs;
-mod figure;
-
-pub(super) use figure::FigureArgs;
-
 use crate::physics::scheme;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -377,7 +374,7 @@ fn setting(text: &str) -> Result<String, String> {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(super) fn positive(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
         _ => Err("must be a number greater than zero".to_owned()),

@@ -30,7 +30,7 @@ const LONGEST: Duration = Duration::from_secs(3600);
 const LOOK: Duration = Duration::from_millis(2);
 
 #[derive(Debug, Args)]
-#[command(after_help = CASTS)]
+#[command(after_help = WHAT_PASSES)]
 pub(super) struct CastArgs {
     /// The file of commands: [[do]] tables, or - for stdin; gyrolab man lists them
     #[arg(value_name = "FILE")]
@@ -53,13 +53,9 @@ pub(super) struct CastArgs {
     pub(super) force: bool,
 }
 
-const CASTS: &str = "\
-Time passes at run, run_until and wait_s; a recording ends with the last command, so that one of wait_s at its end shows
-the last picture for so long. chapter makes a marker. The same commands give the same bytes, on every machine.
-
-Examples:
-  gyrolab cast demo.toml -o demo.cast && asciinema play demo.cast
-  gyrolab cast demo.toml --size 80x24 --title 'A push' -o push.cast";
+const WHAT_PASSES: &str = "\
+Time passes at run, run_until and wait_s; a recording ends with the last command, so that one of wait_s at its end \
+shows the last picture for so long. chapter makes a marker. The same commands give the same bytes, on every machine.";
 
 pub(super) fn cast(args: &CastArgs) -> anyhow::Result<ExitCode> {
     let commands = command::open(&args.commands)?;

@@ -28,10 +28,16 @@ const EXAMPLES: &[(&str, &str)] = &[
     ),
     (
         "figure",
-        "  gyrolab figure method-2 -o method-2.svg                  x, y, z over time
-  gyrolab figure method-2 --kind 3d -o path.pdf
-  gyrolab figure wobble-push --exact --from 0 --to 60 -o wobble.png
-  gyrolab figure errors.csv -o errors.pdf                  the table of gyrolab compare -o",
+        "  gyrolab figure wobble-push -o wobble.pdf                        x, y and z over time
+  gyrolab figure cusps --kind 3d -o cusps.svg
+  gyrolab figure method-2 --kind tilt_deg --exact -o tilt.pdf     beside the exact motion
+  gyrolab figure method-2 --schemes report,rk4 --kind z_m --to 20 -o schemes.png
+  gyrolab compare cusps -o error.csv && gyrolab figure error.csv -o error.pdf",
+    ),
+    (
+        "cast",
+        "  gyrolab cast demo.toml -o demo.cast && asciinema play demo.cast
+  gyrolab cast demo.toml --size 80x24 --title 'A push' -o push.cast",
     ),
     (
         "writeup",
@@ -94,13 +100,14 @@ pub(super) fn of(name: &str) -> Option<&'static str> {
     found.map(|(_, examples)| *examples)
 }
 
-/// `command` with their examples below the help of its commands; one that has its own keeps them.
+/// `command` with their examples below the help of its commands, and below what a command says there itself.
 pub(super) fn with_examples(command: Command) -> Command {
-    command.mut_subcommands(|sub| match (sub.get_after_help(), of(sub.get_name())) {
-        (None, Some(examples)) => {
-            let text = format!("Examples:\n{examples}");
-            sub.after_help(text)
-        }
-        _ => sub,
+    command.mut_subcommands(|sub| {
+        let Some(examples) = of(sub.get_name()) else {
+            return sub;
+        };
+        let own = sub.get_after_help().map(|own| format!("{own}\n\n"));
+        let text = format!("{}Examples:\n{examples}", own.unwrap_or_default());
+        sub.after_help(text)
     })
 }

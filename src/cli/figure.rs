@@ -1,28 +1,94 @@
 //! `gyrolab figure`: runs, or a table of runs, drawn on paper.
 
-use super::args::{Cli, FigureArgs, ScenarioArgs};
+use super::args::{Changes, LengthArgs, ScenarioArgs, positive};
+use super::layout::time;
 use super::progress::{self, Interruption, Meter};
 use super::scenario::scenario_of;
-use super::{INTERRUPTED, complain, tell};
+use super::{INTERRUPTED, complain, refuse, tell};
 use crate::analysis::cost::is_affordable;
 use crate::export::Destination;
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Figure, Request, Run};
 use crate::figure::table::Table;
-use crate::figure::{self, Format, of_table};
+use crate::figure::{self, Format, PT_PER_MM, of_table};
+use crate::physics::scheme;
 use crate::scenario::Problems;
 use crate::text::number::shortest;
 use crate::text::printable::{Shown, printable};
 use anyhow::{Context, bail};
-use clap::CommandFactory;
+use clap::Args;
+use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Points of a millimetre on paper.
-const PT_A_MM: f64 = 72.0 / 25.4;
+#[derive(Debug, Args)]
+pub(super) struct FigureArgs {
+    /// Presets' names, or files (.toml or .csv): what gyrolab run takes, or the CSV of compare or of a sweep
+    #[arg(required = true, value_name = "RUN")]
+    runs: Vec<String>,
+
+    /// Write the figure to this file; its name's end says in which form: .svg, .pdf or .png (600 dpi)
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+
+    /// What to draw: traces (x, y, z over time), above, 3d, or columns of the CSV over time with commas between them
+    /// [default: traces]
+    #[arg(long, value_name = "KIND")]
+    kind: Option<String>,
+
+    /// Begin at this time of the run, s
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = time)]
+    from: Option<f64>,
+
+    /// End at this time of the run, s
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
+    to: Option<f64>,
+
+    /// Draw the exact motion beside it, dashed
+    #[arg(long)]
+    exact: bool,
+
+    /// Width of the page: 86mm for a column, 178mm for a page
+    #[arg(long, value_name = "MM", default_value = "86mm", value_parser = width)]
+    width: f64,
+
+    /// Draw the run by each of these schemes
+    #[arg(long, value_name = "A,B", value_delimiter = ',', conflicts_with = "scheme", value_parser = PossibleValuesParser::new(scheme::names()))]
+    schemes: Vec<String>,
+
+    #[command(flatten)]
+    changes: Changes,
+
+    #[command(flatten)]
+    length: LengthArgs,
+
+    /// Replace an existing file
+    #[arg(long)]
+    force: bool,
+}
+
+/// The narrowest and the widest page, mm.
+const WIDTHS_MM: (f64, f64) = (30.0, 1000.0);
+
+/// A width in mm: 86mm, 8.6cm or 86.
+fn width(text: &str) -> Result<f64, String> {
+    let (number, unit) = match (text.strip_suffix("mm"), text.strip_suffix("cm")) {
+        (Some(number), _) => (number, 1.0),
+        (_, Some(number)) => (number, 10.0),
+        _ => (text, 1.0),
+    };
+    let width_mm = number.trim().parse().map(|number: f64| number * unit);
+    let (least, most) = WIDTHS_MM;
+    match width_mm {
+        Ok(width_mm) if (least..=most).contains(&width_mm) => Ok(width_mm),
+        _ => Err(format!(
+            "must be a width such as 86mm, from {least}mm to {most}mm"
+        )),
+    }
+}
 
 pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     let format = Format::of(&args.output)?;
@@ -42,7 +108,7 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     for warning in &figure.warnings {
         tell(format_args!("gyrolab: {warning}"));
     }
-    let mm = |pt: f64| (pt / PT_A_MM).round();
+    let mm = |pt: f64| (pt / PT_PER_MM).round();
     tell(format_args!(
         "gyrolab: {} mm x {} mm in {}",
         mm(figure.scene.width_pt),
@@ -103,16 +169,9 @@ fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
 
 /// Refuses `--kind` as clap refuses a value.
 fn no_kind(args: &FigureArgs, refusal: &str) -> ! {
-    let kind = args.kind.as_deref().unwrap_or_default();
-    let kind = printable(kind);
-    let mut command = Cli::command();
-    command.build();
+    let kind = printable(args.kind.as_deref().unwrap_or_default());
     let message = format!("invalid value '{kind}' for '--kind <KIND>': {refusal}");
-    match command.find_subcommand_mut("figure") {
-        Some(figure) => figure.error(ErrorKind::ValueValidation, message),
-        None => command.error(ErrorKind::ValueValidation, message),
-    }
-    .exit()
+    refuse("figure", ErrorKind::ValueValidation, &message)
 }
 
 /// Every run that is named, by every scheme that is.
@@ -160,7 +219,7 @@ fn drawn(
                 .flat_map(|kind| kind.split(','))
                 .map(str::trim);
             let columns: Vec<_> = columns.collect();
-            let chart = of_table::chart(table, &columns, args.width * PT_A_MM);
+            let chart = of_table::chart(table, &columns, args.width * PT_PER_MM);
             let chart = chart.map_err(|refusal| anyhow::anyhow!("{}: {refusal}", args.runs[0]))?;
             return Ok(Some(Figure {
                 scene: chart.scene(),
@@ -174,7 +233,7 @@ fn drawn(
         from_s: args.from.unwrap_or(0.0),
         to_s: args.to,
         exact: args.exact,
-        width_pt: args.width * PT_A_MM,
+        width_pt: args.width * PT_PER_MM,
     };
     let mut meter = Meter::new();
     let figure = of_runs::figure(runs, &request, |step, of| {

@@ -44,7 +44,8 @@ pub(super) struct LayoutArgs {
 
 const ROWS: &str = "Rows and columns of the CSV";
 
-fn time(text: &str) -> Result<f64, String> {
+/// A time from the beginning of the run on, s.
+pub(super) fn time(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) if seconds >= 0.0 && f64::is_finite(seconds) => Ok(seconds),
         _ => Err("must be a time in seconds, 0 or more".to_owned()),

@@ -132,7 +132,7 @@ fn deep_inside(ink: &[bool], columns: usize) -> usize {
 fn proposal(begin_s: f64, window_s: f64, request: &Request, what: &str) -> String {
     let window_s = ladder::at_or_below(window_s);
     let to_s = significant(begin_s + window_s, 9);
-    let width_mm = (request.width_pt * 25.4 / 72.0).round();
+    let width_mm = (request.width_pt / super::PT_PER_MM).round();
     format!(
         "on {width_mm} mm {what} cover the paper: the figure is solid black; --from {} --to {to_s} shows a part of it",
         shortest(begin_s)

@@ -21,7 +21,9 @@ pub mod quantity;
 mod space;
 pub mod table;
 
+/// Points (1/72 inch) of a millimetre.
+pub const PT_PER_MM: f64 = 72.0 / 25.4;
 /// Width of a column of a journal's page, 86 mm, pt.
-pub const COLUMN_PT: f64 = 86.0 * 72.0 / 25.4;
+pub const COLUMN_PT: f64 = 86.0 * PT_PER_MM;
 
 pub use page::{Color, Format, Item, Paint, Path, Pen, Point, Scene, Segment, Unwritable, write};

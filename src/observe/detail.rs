@@ -1,8 +1,8 @@
 //! The window of time in which the fast motion is drawn swing by swing, while the others show the slow motion.
 //!
-//! It is about ten swings of the tilt long and begins where the tilt is greatest; where only x swings, it is chosen by x. While the run is played so fast that
-//! the window would pass before anyone had seen it, it stands still, and is taken anew now and then: of a motion that
-//! repeats itself it then shows the same picture.
+//! It is about ten swings of the tilt long and begins where the tilt is greatest; where only x swings, it is chosen by x.
+//! While the run is played so fast that the window would pass before anyone had seen it, it stands still, and is taken
+//! anew now and then: of a motion that repeats itself it then shows the same picture.
 
 use super::live::LiveRun;
 use super::recording::{Curve, Recording};

@@ -1,10 +1,10 @@
 //! The mechanics: a rigid body of point masses that turns about a fixed pivot.
 //!
-//! [`body`] says what turns ([`part`]: the points that stand for a solid), [`state`] how it stands and moves, [`loads`] what pulls at it, [`stepping`] how a time
-//! step is taken (one file per scheme, [`scheme`] their table), [`workings`] what is computed on its way, and
-//! [`observables`] what is read off a state. Nothing here knows where the numbers come from or who looks at them, and
-//! nothing here depends on the processor or on the C library: sine, cosine and arc tangent are compiled in, sums have a
-//! fixed order, and no multiply-add is fused.
+//! [`body`] says what turns ([`part`]: the points that stand for a solid), [`state`] how it stands and moves, [`loads`]
+//! what pulls at it, [`stepping`] how a time step is taken (one file per scheme, [`scheme`] their table), [`workings`]
+//! what is computed on its way, and [`observables`] what is read off a state. Nothing here knows where the numbers come
+//! from or who looks at them, and nothing here depends on the processor or on the C library: sine, cosine and arc tangent
+//! are compiled in, sums have a fixed order, and no multiply-add is fused.
 
 pub mod body;
 pub mod exact;

@@ -1,9 +1,9 @@
 //! Scenarios: from a TOML file, or a run's own CSV, to numbers that have been checked.
 //!
 //! A [`Document`] is the text with its `--set` overrides; [`keys`] is the one table of every key a file may hold;
-//! [`file`](mod@file) is the file's shape as serde reads and writes it; `parts`, `solids`, `start` and `edits` make checked numbers
-//! of its tables, and `checks` a [`Scenario`] of those. What is refused comes back as [`Problems`], each with place, key,
-//! value and rule.
+//! [`file`](mod@file) is the file's shape as serde reads and writes it; `parts`, `solids`, `start` and `edits` make
+//! checked numbers of its tables, and `checks` a [`Scenario`] of those. What is refused comes back as [`Problems`], each
+//! with place, key, value and rule.
 
 mod checks;
 pub mod document;

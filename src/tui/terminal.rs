@@ -2,8 +2,8 @@
 //!
 //! Before it gives the terminal back it runs the hooks of [`at_exit`].
 //!
-//! Only this module and the recorder use crossterm, which draws; [`keyboard`] reads what is typed. Nothing here waits for an answer from the
-//! terminal: on a slow line or in a bare pty there may be none.
+//! Only this module and the recorder use crossterm, which draws; [`keyboard`] reads what is typed. Nothing here waits for
+//! an answer from the terminal: on a slow line or in a bare pty there may be none.
 
 use crate::storage::at_exit::{self, Release};
 use crate::tui::counted::Counted;

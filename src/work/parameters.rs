@@ -22,8 +22,8 @@ pub struct Parameter {
     pub key: String,
     /// Its row in the table of keys; a component of a vector has the vector's row.
     pub spec: &'static Key,
-    /// Heading under which it is listed: `scenario`, `body`, `point top`, `part wheel`, `start`, `motion`, `push 0`, `view`. Pushes
-    /// and points without a name are numbered from 0, as in their keys.
+    /// Heading under which it is listed: `scenario`, `body`, `point top`, `part wheel`, `start`, `motion`, `push 0`,
+    /// `view`. Pushes and points without a name are numbered from 0, as in their keys.
     pub group: String,
     /// Short name of at most 12 characters.
     pub label: String,

@@ -9,7 +9,7 @@ use crate::figure::page::thin::{Thinned, plane_curve, simplified};
 
 /// Width of a column of which only first, lowest, highest and last point are drawn, pt. It is well below the width of a line,
 /// and below a dot at 300 dpi.
-const COLUMN_PT: f64 = 0.2;
+const THINNED_PT: f64 = 0.2;
 /// Swings of a dashed line that are lower than this are drawn as their middle, pt: they would take up its dashes.
 const FLAT_PT: f64 = 0.4;
 /// How far a dashed line may leave its points, as a share of its width.
@@ -80,7 +80,7 @@ fn thinned(points: &[Point], flat_pt: f64) -> Vec<Point> {
     if points.len() < 8 {
         return points.to_vec();
     }
-    let column = |point: &Point| (point.x / COLUMN_PT).floor();
+    let column = |point: &Point| (point.x / THINNED_PT).floor();
     let mut kept = Vec::new();
     for column in points.chunk_by(|a, b| column(a) == column(b)) {
         let by_height = |a: &&Point, b: &&Point| a.y.total_cmp(&b.y);
@@ -119,9 +119,9 @@ mod tests {
             let step = width / values.len() as f64;
             let points: Vec<_> = values.iter().enumerate().map(|(i, &y)| at(i as f64 * step, y)).collect();
             let kept = thinned(&points, 0.0);
-            let columns = (width / COLUMN_PT) as usize + 2;
+            let columns = (width / THINNED_PT) as usize + 2;
             prop_assert!(kept.len() <= 4 * columns);
-            for column in points.chunk_by(|a, b| (a.x / COLUMN_PT).floor() == (b.x / COLUMN_PT).floor()) {
+            for column in points.chunk_by(|a, b| (a.x / THINNED_PT).floor() == (b.x / THINNED_PT).floor()) {
                 for wanted in [f64::min, f64::max] {
                     let extreme = column.iter().map(|p| p.y).reduce(wanted).unwrap();
                     let there = kept.iter().any(|p| p.y == extreme && column.iter().any(|c| c.x == p.x));

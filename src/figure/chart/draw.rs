@@ -3,6 +3,7 @@
 use super::layout::{EDGE, GAP, Layout, Placed};
 use super::legend::Legend;
 use super::slope;
+use super::ticks::Ticks;
 use super::{Chart, Panel, Series};
 use crate::figure::page::ink::{self, BLACK, LABEL_PT, MARK_PT, at, circle, grey, pen};
 use crate::figure::page::scene::Scene;
@@ -144,32 +145,20 @@ fn draw_frame(placed: &Placed, layout: &Layout, scene: &mut Scene) {
         scene.line([at(x, top), at(x, top + length)], FRAME_PT, BLACK);
     };
     let x = |value: f64| placed.x.place(value);
-    layout
-        .ticks
-        .major
-        .iter()
-        .for_each(|tick| upright(x(tick.at), TICK));
-    layout
-        .ticks
-        .minor
-        .iter()
-        .for_each(|&at| upright(x(at), MINOR_TICK));
+    each_tick(&layout.ticks, |value, length| upright(x(value), length));
     let mut level = |y: f64, length: f64| {
         let (left, right) = (frame.left, frame.right);
         scene.line([at(left, y), at(left + length, y)], FRAME_PT, BLACK);
         scene.line([at(right, y), at(right - length, y)], FRAME_PT, BLACK);
     };
     let y = |value: f64| placed.y.place(value);
-    placed
-        .ticks
-        .major
-        .iter()
-        .for_each(|tick| level(y(tick.at), TICK));
-    placed
-        .ticks
-        .minor
-        .iter()
-        .for_each(|&at| level(y(at), MINOR_TICK));
+    each_tick(&placed.ticks, |value, length| level(y(value), length));
+}
+
+/// Gives the value and the length on paper (pt) of each of `ticks` to `draw`.
+fn each_tick(ticks: &Ticks, mut draw: impl FnMut(f64, f64)) {
+    ticks.major.iter().for_each(|tick| draw(tick.at, TICK));
+    ticks.minor.iter().for_each(|&at| draw(at, MINOR_TICK));
 }
 
 /// The marks of a series with their error bars.

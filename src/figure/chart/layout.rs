@@ -3,6 +3,7 @@
 use super::axis::{Scale, widest};
 use super::ticks::Ticks;
 use super::{Axis, Chart, Panel};
+use crate::figure::COLUMN_PT;
 use crate::figure::page::ink::{self, Frame, LABEL_PT, TITLE_PT};
 
 /// Between anything and the edge of the page, pt.
@@ -16,9 +17,7 @@ const TITLE_BELOW: f64 = 4.5;
 const PANEL_GAP: f64 = 2.5;
 /// The smallest letters of a title that is too long for its axis, pt.
 const LEAST_TITLE_PT: f64 = 5.5;
-/// The page of 86 mm, for which the heights below are meant, pt.
-const COLUMN_PT: f64 = 243.78;
-/// Height of one panel alone, of each of two, of each of more, pt.
+/// On a page as wide as a column: height of one panel alone, of each of two, of each of more, pt.
 const HEIGHTS: [f64; 3] = [140.0, 88.0, 66.0];
 
 /// Many decades need a higher panel.

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
+use crate::figure::PT_PER_MM;
 use crate::text::printable::printable;
 
-const MM_PER_PT: f64 = 25.4 / 72.0;
 /// How much farther a sharp corner may reach than half the line's width: what SVG takes if nothing is said.
 pub const MITER_LIMIT: f64 = 4.0;
 
@@ -17,8 +17,8 @@ pub fn written(scene: &Scene) -> String {
         &mut out,
         format_args!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" role=\"img\">\n",
-            number(width * MM_PER_PT),
-            number(height * MM_PER_PT),
+            number(width / PT_PER_MM),
+            number(height / PT_PER_MM),
             number(width),
             number(height)
         ),

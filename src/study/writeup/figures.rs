@@ -2,9 +2,9 @@
 
 use crate::analysis::Readouts;
 use crate::analysis::cost::is_affordable;
-use crate::figure::Scene;
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Request, Run};
+use crate::figure::{COLUMN_PT, Scene};
 use crate::run::Clock;
 use crate::scenario::Scenario;
 use crate::scenario::screen::{ABOVE, THREE_D, TRACES};
@@ -23,8 +23,6 @@ pub struct Drawing {
     pub scene: Scene,
 }
 
-/// The width of a column, pt.
-const WIDTH_PT: f64 = 86.0 * 72.0 / 25.4;
 /// A run of more swings than this has a figure of its first few of its own.
 const MANY_SWINGS: f64 = 15.0;
 /// So many swings are in that one.
@@ -81,7 +79,7 @@ pub fn figures(
             from_s: 0.0,
             to_s,
             exact,
-            width_pt: WIDTH_PT,
+            width_pt: COLUMN_PT,
         };
         let Some(figure) = of_runs::figure(&runs, &request, &mut watch)? else {
             return Ok(None);
