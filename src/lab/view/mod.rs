@@ -1,7 +1,7 @@
 //! How a run is shown: which panes, which of them has the focus, how much time the traces show, and which dots and
 //! colours. `tui` draws accordingly. No number of a run depends on it.
 //!
-//! [`pane`] names the parts of the screen, [`focus`] moves between them; [`markers`] lists the kinds of dots, [`theme`] the
+//! [`pane`] names the parts of the screen, `focus` moves between them; [`markers`] lists the kinds of dots, [`theme`] the
 //! choice of colours, [`step`] the pages of the step pane.
 
 mod focus;
