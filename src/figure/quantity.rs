@@ -4,27 +4,8 @@ use super::chart::Axis;
 use super::chart::ticks::with_minus;
 use super::page::letters;
 use crate::analysis::readouts;
+use crate::text::unit::Unit;
 
-/// The ends of names, and the units that they stand for.
-const UNITS: [(&str, &str); 17] = [
-    ("_uncertainty_rad_per_s", "rad/s"),
-    ("_rad_per_s", "rad/s"),
-    ("_m_per_s2", "m/s2"),
-    ("_kg_m2", "kg m2"),
-    ("_Nms2", "N m s2"),
-    ("_Nms", "N m s"),
-    ("_Nm", "N m"),
-    ("_Js", "J s"),
-    ("_deg", "deg"),
-    ("_rpm", "rpm"),
-    ("_rad", "rad"),
-    ("_kg", "kg"),
-    ("_s", "s"),
-    ("_m", "m"),
-    ("_N", "N"),
-    ("_J", "J"),
-    ("_ns", "ns"),
-];
 /// The parts of a vector, by the numbers that keys give them.
 const PARTS: [(&str, &str); 3] = [("0", "*x*"), ("1", "*y*"), ("2", "*z*")];
 /// Columns whose readout has another name.
@@ -66,9 +47,8 @@ pub fn words(name: &str) -> (String, &'static str) {
         if let Some((_, letter)) = PARTS.iter().find(|(number, _)| *number == part) {
             return (*letter).to_owned();
         }
-        let end = UNITS.iter().find(|(end, _)| part.ends_with(end));
-        let (bare, of_part) = match end {
-            Some((end, unit)) => (&part[..part.len() - end.len()], *unit),
+        let (bare, of_part) = match Unit::of(part) {
+            Some(unit) => (&part[..part.len() - unit.end.len()], unit.name),
             None => (part, ""),
         };
         if !of_part.is_empty() {
