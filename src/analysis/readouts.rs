@@ -32,6 +32,8 @@ pub struct Readouts {
     pub spin: f64,
     /// The rate of the spin about the axle, rad/s; of the rotor alone where the scenario names one.
     pub spin_rad_per_s: f64,
+    /// Whether a rotor spins in a frame that does not.
+    pub has_rotor: bool,
     /// I3/I1 of a symmetric body.
     pub kappa: Option<f64>,
     /// How it stands.
@@ -75,6 +77,7 @@ impl Readouts {
             sample: step.sample(),
             spin: state.momentum.dot(&state.axle()),
             spin_rad_per_s: step.scenario().spin_rad_per_s(state),
+            has_rotor: step.scenario().rotor.is_some(),
             kappa: SymmetricTop::of(&step.scenario().body.mechanics).map(|top| top.kappa()),
             health: *health,
             advice: advice.copied(),
@@ -457,7 +460,10 @@ readouts! {
     "measured_nutation_period_s", "s", Measured, "mean time between two turning points of the tilt", |r| value(r.nutation), "*T*_{n}";
     "measured_nutation_uncertainty_s", "s", Measured, "one standard error of it", |r| uncertainty(r.nutation);
     "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what is measured is strobed", |r| r.nutation_is_resolved();
+    "predicted_precession_period_s", "s", Theory, "time of one turn of the mean precession of the exact motion about +z", |r| r.theory_about_z().and_then(|theory| theory.precession_period_s()), "*T*_{p}";
+    "predicted_body_cone_period_s", "s", Theory, "free symmetric body: time in which the instantaneous axis goes once round the axle, seen from the body, (I1/|I3 - I1|) 2 pi/omega3; null under a load, without spin, for I3 = I1, and where only a rotor spins", |r| r.theory.filter(|_| !r.has_rotor).and_then(|theory| theory.body_cone_period_s), "*T*_{c}";
     "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation), "*ω*_{n}";
+    "fast_top_nutation_rpm", "rpm", Theory, "the same in revolutions a minute", |r| r.theory.map(|theory| start::rpm(theory.fast_top_nutation)), "*ω*_{n}";
     "L_axle_Js", "J s", State, "L along the axle", |r| r.spin, "*L*_{3}";
     "spin_rpm", "rpm", State, "rate of the spin about the axle: omega along it, or, where start.rotor names a part, L along it over that part's moment", |r| start::rpm(r.spin_rad_per_s), "*ω*_{3}";
     "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps", |r| r.theory_about_z().map(|theory| theory.sleeping_limit);

@@ -30,6 +30,9 @@ pub struct Theory {
     pub precession: Option<f64>,
     /// The fast top's nutation L3/I1, rad/s.
     pub fast_top_nutation: f64,
+    /// The period in which the instantaneous axis goes round the figure axis as seen from the body, s: (I1/|I3 - I1|) 2π/ω3;
+    /// `None` where the body is not free, does not spin, or has no such motion because I3 = I1.
+    pub body_cone_period_s: Option<f64>,
     /// Nutation period of this very motion, s; `None` where nothing returns.
     pub nutation_period_s: Option<f64>,
     /// Least and greatest tilt of this very motion, degrees.
@@ -152,6 +155,7 @@ impl Theory {
             fast_precession: fast,
             precession: (!is_through_vertical).then(|| motion.mean_precession()),
             fast_top_nutation: spin / top.across,
+            body_cone_period_s: body_cone_period_s(top, spin, size).filter(|_| spins),
             nutation_period_s: motion.nutation_period(),
             tilt_range_deg,
             sleeping_limit: 2.0 * (top.across * size).sqrt(),
@@ -162,6 +166,24 @@ impl Theory {
             },
         }
     }
+
+    /// The time of one turn of the mean precession, s; `None` where there is none, or it does not turn.
+    pub fn precession_period_s(&self) -> Option<f64> {
+        let rate = self.precession?.abs();
+        Some(2.0 * PI / rate).filter(|period_s| period_s.is_finite())
+    }
+}
+
+/// The period of the body cone of `top` with L3 = `spin`, J s; `None` where the moment `load`, N m, of the forces is more than
+/// rounding, or the moments of inertia are the same but for that.
+fn body_cone_period_s(top: &SymmetricTop, spin: f64, load: f64) -> Option<f64> {
+    // By this share of itself a load changes the period, in the order of its size.
+    let is_free = load * top.across <= SAME_DIRECTION * spin * spin;
+    let difference = (top.along - top.across).abs();
+    let differs = difference > SAME_DIRECTION * top.across;
+    (is_free && differs)
+        .then(|| top.across / difference * 2.0 * PI * (top.along / spin).abs())
+        .filter(|period_s| period_s.is_finite())
 }
 
 fn path((low, high): (f64, f64), cusp: Option<f64>) -> Path {
