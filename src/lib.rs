@@ -15,6 +15,7 @@
 //! - [`analysis`]: how reliable a run's numbers are: theory, measurement, health, comparisons.
 //! - [`observe`]: a run that is being watched: its playback, its earlier steps, and the data of its pictures.
 //! - [`export`]: output of the program: columns, CSV, summaries, and the files they are written to.
+//! - [`measured`]: data that somebody has measured, read from a CSV, and what a run says of the same quantities.
 //! - [`figure`]: pictures of runs on paper: SVG, PDF and PNG.
 //! - [`study`]: what many runs say, and what a run that was exported is worth: sweeps, verification, write-ups.
 //! - [`storage`]: what the lab keeps on the disk: sessions, exports in the background, the folder it is confined to.
@@ -34,6 +35,7 @@ pub mod cli;
 pub mod export;
 pub mod figure;
 pub mod lab;
+pub mod measured;
 pub mod observe;
 pub mod physics;
 pub mod run;

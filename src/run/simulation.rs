@@ -1,5 +1,7 @@
 //! The one road forward in time.
 
+mod between;
+
 use super::pushes::{self, Counting, Stretch};
 use super::step::{Derived, EnergyAccount};
 use super::{Clock, EnergyScale, Sample, Step};

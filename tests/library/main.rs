@@ -22,6 +22,7 @@ mod lessons;
 mod lessons_taken;
 mod limits;
 mod mangled;
+mod measured;
 mod messages;
 mod mouse;
 mod parameters;

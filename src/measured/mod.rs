@@ -1,0 +1,135 @@
+//! Measured data: a CSV file that somebody wrote at the bench, read and checked, and what a run says of the same quantities.
+//!
+//! There are two kinds. A [`Series`] has the time in a column `t_s`, and beside it quantities that a run has at every
+//! step ([`quantity`]). A [`Table`] has a run in every row: columns named by keys of the scenario set it, columns named by
+//! readouts were measured on it. The uncertainty of a column stands in a column of its own, named as readouts name
+//! theirs: `tilt_uncertainty_deg` of `tilt_deg`.
+//!
+//! [`open`] reads a file, or data that come with the program ([`shipped`]); `cells` takes it apart, `names` says what its
+//! columns are, `numbers` what stands in them. [`of_run`] reads a run at the times of a series, and [`residual`] holds what was
+//! measured against it: everything that shows or fits measured data takes its residuals from there.
+
+mod cells;
+mod names;
+mod numbers;
+pub mod of_run;
+pub mod quantity;
+mod reading;
+pub mod residual;
+pub mod shipped;
+
+pub use of_run::{Reader, at_times};
+pub use quantity::Quantity;
+pub use reading::{open, read};
+pub use residual::{Residual, residuals};
+
+use crate::analysis::readouts::Readout;
+use toml::Value;
+
+/// A file of measured data.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// The file, as the user named it.
+    pub origin: String,
+    /// Its comments before the columns' names, without their marks: where the data come from.
+    pub about: String,
+    /// The data.
+    pub data: Data,
+}
+
+/// The data of a file.
+#[derive(Clone, Debug)]
+pub enum Data {
+    /// One run, measured at several times.
+    Series(Series),
+    /// Several runs.
+    Table(Table),
+}
+
+/// Quantities of one run over its time.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// The time of each row, s: not negative, and none before the row above.
+    pub times_s: Vec<f64>,
+    /// The line of each row.
+    pub lines: Vec<u64>,
+    /// A curve for each column, in the order of the file.
+    pub curves: Vec<Curve>,
+}
+
+/// A quantity measured over time.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// What was measured; its [`readout`](Quantity::readout) has name, unit and symbol.
+    pub quantity: &'static Quantity,
+    /// The values, by rows; rows without one have no point.
+    pub points: Vec<Point>,
+}
+
+/// Runs, and what was measured on each.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// The columns that set the scenario, in the order of the file.
+    pub settings: Vec<Setting>,
+    /// The columns that were measured, in the order of the file.
+    pub readouts: Vec<Column>,
+    /// The line of each row.
+    pub lines: Vec<u64>,
+}
+
+/// A key of the scenario that a table's rows set.
+#[derive(Clone, Debug)]
+pub struct Setting {
+    /// The dotted key.
+    pub key: String,
+    /// Its value in each row; `None` where the scenario's own stands.
+    pub values: Vec<Option<Value>>,
+    /// One standard uncertainty of the value in each row, where it is stated; in the value's unit.
+    pub sigmas: Vec<Option<f64>>,
+}
+
+/// A readout that was measured on the runs of a table.
+#[derive(Clone, Debug)]
+pub struct Column {
+    /// Which.
+    pub readout: &'static Readout,
+    /// The values, by rows; rows without one have no point.
+    pub points: Vec<Point>,
+}
+
+/// A measured value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Its row, from 0: the index of the time, or of the settings.
+    pub row: usize,
+    /// The value, in the unit of its column.
+    pub value: f64,
+    /// One standard uncertainty of it, above 0, where it is stated.
+    pub sigma: Option<f64>,
+}
+
+impl Measured {
+    /// How many values were measured.
+    pub fn count(&self) -> usize {
+        match &self.data {
+            Data::Series(series) => series.curves.iter().map(|curve| curve.points.len()).sum(),
+            Data::Table(table) => table
+                .readouts
+                .iter()
+                .map(|column| column.points.len())
+                .sum(),
+        }
+    }
+}
+
+impl Setting {
+    /// The values as numbers; `None` where one of them is no number or not there.
+    pub fn numbers(&self) -> Option<Vec<f64>> {
+        let number = |value: &Option<Value>| match value.as_ref()? {
+            Value::Float(number) => Some(*number),
+            Value::Integer(whole) => Some(*whole as f64),
+            _ => None,
+        };
+        self.values.iter().map(number).collect()
+    }
+}

@@ -1,0 +1,299 @@
+//! What the columns of a file are: the time, quantities, keys of the scenario, readouts, and uncertainties of these.
+
+use super::cells::{Cells, at_line};
+use super::quantity::{self, COUNTS, Quantity, TIME};
+use crate::analysis::readouts::{self, Readout, Source};
+use crate::scenario::Problem;
+use crate::scenario::keys::{self, Kind};
+use crate::scenario::problem::nearest;
+use crate::text::number::significant;
+use crate::text::unit::{Unit, with_word};
+
+/// In the name of a column that is the uncertainty of another.
+const UNCERTAINTY: &str = "uncertainty";
+
+/// What a column holds.
+#[derive(Clone, Debug)]
+pub(super) enum Is {
+    /// The time, s.
+    Time,
+    /// A number of the run's steps or edits, which says nothing of the motion.
+    Count,
+    /// A quantity at the time of its row.
+    Quantity(&'static Quantity),
+    /// What the scenario has in the run of its row.
+    Key(Kind),
+    /// A readout of the run of its row.
+    Readout(&'static Readout),
+}
+
+impl Is {
+    /// Whether a column may hold its uncertainty.
+    fn may_be_off(&self) -> bool {
+        match self {
+            Self::Quantity(_) | Self::Readout(_) => true,
+            Self::Key(kind) => matches!(kind, Kind::Number(_)),
+            Self::Time | Self::Count => false,
+        }
+    }
+}
+
+/// A column and what it holds.
+#[derive(Clone, Debug)]
+pub(super) struct Named {
+    /// Its place among the columns.
+    pub place: usize,
+    pub name: String,
+    pub is: Is,
+    /// The place of the column of its uncertainty.
+    pub uncertainty: Option<usize>,
+}
+
+/// The columns of `cells`, without those that count.
+///
+/// # Errors
+/// Every name that is none, or that cannot stand beside the others.
+pub(super) fn named(cells: &Cells) -> Result<Vec<Named>, Vec<Problem>> {
+    let mut problems = Vec::new();
+    let names = &cells.names;
+    for (place, name) in names.iter().enumerate() {
+        if names[..place].contains(name) {
+            problems.push(Problem::at(
+                shown(name, place),
+                "names two columns: leave one of them out",
+            ));
+        }
+    }
+    let is_series = names.iter().any(|name| name == TIME);
+    let values = names
+        .iter()
+        .enumerate()
+        .filter(|(_, name)| !is_uncertainty(name));
+    let mut columns = Vec::new();
+    for (place, name) in values {
+        let is = match is_series {
+            true => of_series(name),
+            false => of_table(name),
+        };
+        let uncertainty = with_word(name, UNCERTAINTY);
+        match is {
+            Ok(is) => columns.push(Named {
+                place,
+                name: name.clone(),
+                uncertainty: names
+                    .iter()
+                    .position(|other| *other == uncertainty && is.may_be_off()),
+                is,
+            }),
+            Err(rule) => problems.push(Problem::at(shown(name, place), rule)),
+        }
+    }
+    problems.extend(uncertainties_alone(names, &columns));
+    if problems.is_empty() {
+        problems.extend(kind_is_whole(&columns, is_series));
+    }
+    columns.retain(|column| !matches!(column.is, Is::Count));
+    let place = |problem| at_line(cells.line_of_names, problem);
+    match problems.is_empty() {
+        true => Ok(columns),
+        false => Err(problems.into_iter().map(place).collect()),
+    }
+}
+
+/// A column's name as it is told; of one without a name its number.
+fn shown(name: &str, place: usize) -> String {
+    match name {
+        "" => format!("column {}", place + 1),
+        name => name.to_owned(),
+    }
+}
+
+fn is_uncertainty(name: &str) -> bool {
+    name.split(['_', '.']).any(|word| word == UNCERTAINTY)
+}
+
+/// What the column `name` of a time series holds.
+fn of_series(name: &str) -> Result<Is, String> {
+    if name == TIME {
+        return Ok(Is::Time);
+    }
+    if COUNTS.contains(&name) {
+        return Ok(Is::Count);
+    }
+    if let Some(quantity) = Quantity::find(name) {
+        return Ok(Is::Quantity(quantity));
+    }
+    if keys::find(name).is_ok() {
+        return Err(format!(
+            "is a key of the scenario: beside {TIME} stands what was measured on one run; set the key in the scenario, or by --set"
+        ));
+    }
+    if readouts::find(name).is_some() {
+        return Err(format!(
+            "is a number of a whole run, not of one time: a table of such has no column {TIME}, and a run in every row"
+        ));
+    }
+    Err(unknown(name, quantity::names()))
+}
+
+/// What the column `name` of a table of runs holds.
+fn of_table(name: &str) -> Result<Is, String> {
+    if let Some(readout) = readouts::find(name) {
+        return match readout {
+            _ if COUNTS.contains(&name) || name == "steps" => Ok(Is::Count),
+            _ if readout.is_text => Err("is a text of the run, and cannot be measured".to_owned()),
+            readout if readout.source == Source::Clock => {
+                Err("is told by the clock, and says nothing of the motion".to_owned())
+            }
+            readout if readout.source == Source::Scenario => {
+                Err("follows from the scenario alone: nothing is measured by it".to_owned())
+            }
+            readout => Ok(Is::Readout(readout)),
+        };
+    }
+    let first = name.split('.').next().unwrap_or_default();
+    if [
+        "gyrolab", "title", "about", "source", "expected", "edit", "view",
+    ]
+    .contains(&first)
+    {
+        return Err("is a key that no number of a run depends on".to_owned());
+    }
+    match keys::find(name) {
+        Ok((_, kind)) => Ok(Is::Key(kind)),
+        Err(rule) if name.contains('.') => Err(wrong_unit(name, keys_like(name)).unwrap_or(rule)),
+        Err(_) => Err(unknown(name, readouts::names().chain([TIME]))),
+    }
+}
+
+/// The paths of keys, with the places in arrays that `name` has.
+fn keys_like(name: &str) -> impl Iterator<Item = &str> + Clone {
+    // A key's name is compared by its last word alone: the tables above it are the same.
+    let table = name.rsplit_once('.').map_or("", |(table, _)| table);
+    let of_table = move |path: &'static str| {
+        let (above, _) = path.rsplit_once('.')?;
+        let is_same = above.split('.').count() == table.split('.').count()
+            && above
+                .split('.')
+                .zip(table.split('.'))
+                .all(|(one, other)| one == other || one == "*" && other.parse::<usize>().is_ok());
+        is_same.then_some(path)
+    };
+    keys::KEYS.iter().filter_map(move |key| of_table(key.path))
+}
+
+/// Why `name` is none of `known`, and which is meant.
+fn unknown<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+    if name.is_empty() {
+        return "has no name: name it, or leave the column out".to_owned();
+    }
+    if let Some(told) = wrong_unit(name, known.clone()) {
+        return told;
+    }
+    let is_time = ["t", "time", "zeit"].contains(&stem(name).to_lowercase().as_str());
+    match is_time {
+        true => format!("is no column that gyrolab knows: did you mean {TIME}?"),
+        false => format!("is no column that gyrolab knows: {}", nearest(name, known)),
+    }
+}
+
+/// `name` without its unit.
+fn stem(name: &str) -> &str {
+    let end = Unit::anybodys(name).map_or("", |unit| unit.end);
+    &name[..name.len() - end.len()]
+}
+
+/// Which unit is wanted where `name` is one of `known` but for that.
+fn wrong_unit<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
+    let last = |name: &'a str| name.rsplit('.').next().unwrap_or(name);
+    let own = name.rsplit('.').next().unwrap_or(name);
+    let found = Unit::anybodys(own)?;
+    let mut meant = known.filter_map(|known| {
+        let unit = Unit::of(last(known))?;
+        let is_same = stem(last(known)) == stem(own) && unit != found;
+        is_same.then_some((last(known), unit, found.times(unit)?))
+    });
+    let (meant, unit, times) = meant.next()?;
+    let table = &name[..name.len() - own.len()];
+    let factor = match times {
+        1.0 => "as it is".to_owned(),
+        times => format!("multiplied by {}", significant(times, 7)),
+    };
+    Some(format!(
+        "is in {}, and is wanted in {}: name the column {table}{meant}, its values {factor}",
+        found.name, unit.name
+    ))
+}
+
+/// The columns of uncertainties that belong to no column.
+fn uncertainties_alone(names: &[String], columns: &[Named]) -> Vec<Problem> {
+    let owned = |place: &usize| {
+        columns
+            .iter()
+            .any(|column| column.uncertainty == Some(*place))
+    };
+    let wanted: Vec<String> = columns
+        .iter()
+        .filter(|column| column.uncertainty.is_none() && column.is.may_be_off())
+        .map(|column| with_word(&column.name, UNCERTAINTY))
+        .collect();
+    let mut alone = Vec::new();
+    for (place, name) in names.iter().enumerate() {
+        if !is_uncertainty(name) || owned(&place) {
+            continue;
+        }
+        let own = own_of(name);
+        let wrong = wrong_unit(name, wanted.iter().map(String::as_str));
+        let is_there = columns.iter().any(|column| column.name == own);
+        let is_known = Quantity::find(&own).is_some()
+            || readouts::find(&own).is_some()
+            || keys::find(&own).is_ok();
+        let rule = match wrong {
+            Some(wrong) => wrong,
+            None if is_known && !is_there => {
+                format!("is the uncertainty of a column {own}, which the file does not have")
+            }
+            None if is_there => match with_word(&own, UNCERTAINTY) {
+                right if right != *name => {
+                    format!("is the uncertainty of no column: did you mean {right}?")
+                }
+                _ if own == TIME => format!(
+                    "is not taken: make what was measured the more uncertain, by its change in that time ({TIME} is without error)"
+                ),
+                _ => format!("is the uncertainty of {own}, which is no number that could be off"),
+            },
+            None => {
+                let near = nearest(name, wanted.iter().map(String::as_str));
+                format!("is the uncertainty of no column: {near}")
+            }
+        };
+        alone.push(Problem::at(name.clone(), rule));
+    }
+    alone
+}
+
+/// The name of the column whose uncertainty `name` is.
+fn own_of(name: &str) -> String {
+    name.replacen(&format!("_{UNCERTAINTY}"), "", 1)
+}
+
+/// Why the columns make neither a time series nor a table of runs.
+fn kind_is_whole(columns: &[Named], is_series: bool) -> Option<Problem> {
+    let has = |is: fn(&Is) -> bool| columns.iter().any(|column| is(&column.is));
+    if is_series {
+        let rule = format!(
+            "has no column that a run has too: beside {TIME} one is needed, such as tilt_deg, azimuth_deg, x_m or spin_rpm"
+        );
+        return (!has(|is| matches!(is, Is::Quantity(_)))).then(|| Problem::at("", rule));
+    }
+    let rule = match (has(|is| matches!(is, Is::Key(_))), has(|is| matches!(is, Is::Readout(_)))) {
+        (true, true) => return None,
+        (true, false) => {
+            "has no column that was measured: beside the keys of the scenario a table of runs needs a readout (gyrolab readouts lists them)".to_owned()
+        }
+        (false, _) => format!(
+            "is neither a time series, which has a column {TIME}, nor a table of runs, which has a column named by a key of the scenario, such as start.spin_rpm"
+        ),
+    };
+    Some(Problem::at("", rule))
+}

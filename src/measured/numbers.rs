@@ -1,0 +1,217 @@
+//! The numbers in the cells of a file, and the rules that they obey.
+
+use super::cells::{Cells, at_line};
+use super::names::{Is, Named};
+use super::{Column, Curve, Point, Series, Setting, Table};
+use crate::scenario::Problem;
+use crate::scenario::document::toml_or_text;
+use crate::scenario::keys::Kind;
+use crate::scenario::problem::Found;
+use crate::text::number::shortest;
+use crate::text::printable::brief;
+use toml::Value;
+
+/// Reads cells, and takes down what is wrong with them.
+pub(super) struct Numbers<'a> {
+    cells: &'a Cells,
+    pub found: Found,
+    /// The decimal signs that the file has used so far.
+    uses_points: bool,
+    uses_commas: bool,
+}
+
+impl<'a> Numbers<'a> {
+    pub fn of(cells: &'a Cells) -> Self {
+        Self {
+            cells,
+            found: Found::default(),
+            uses_points: false,
+            uses_commas: false,
+        }
+    }
+
+    fn lines(&self) -> Vec<u64> {
+        self.cells.rows.iter().map(|(line, _)| *line).collect()
+    }
+
+    /// The time series of these columns.
+    pub fn series(&mut self, columns: &[Named]) -> Series {
+        let time = columns.iter().find(|column| matches!(column.is, Is::Time));
+        let times_s = time.map_or_else(Vec::new, |column| self.times(column));
+        let curves = columns.iter().filter_map(|column| match column.is {
+            Is::Quantity(quantity) => Some(Curve {
+                quantity,
+                points: self.points(column),
+            }),
+            _ => None,
+        });
+        Series {
+            curves: curves.collect(),
+            times_s,
+            lines: self.lines(),
+        }
+    }
+
+    /// The table of runs of these columns.
+    pub fn table(&mut self, columns: &[Named]) -> Table {
+        let (mut settings, mut readouts) = (Vec::new(), Vec::new());
+        for column in columns {
+            match column.is {
+                Is::Key(kind) => settings.push(self.setting(column, kind)),
+                Is::Readout(readout) => readouts.push(Column {
+                    readout,
+                    points: self.points(column),
+                }),
+                Is::Time | Is::Count | Is::Quantity(_) => {}
+            }
+        }
+        Table {
+            settings,
+            readouts,
+            lines: self.lines(),
+        }
+    }
+
+    /// The times of a series, s.
+    fn times(&mut self, column: &Named) -> Vec<f64> {
+        let mut times_s: Vec<f64> = Vec::with_capacity(self.cells.rows.len());
+        let mut before: Option<(u64, f64)> = None;
+        for (line, texts) in &self.cells.rows {
+            let text = &texts[column.place];
+            let time_s = match self.number(*line, &column.name, text) {
+                None if text.is_empty() => {
+                    self.refuse(
+                        *line,
+                        &column.name,
+                        "",
+                        "is missing: every row needs its time",
+                    );
+                    f64::NAN
+                }
+                None => f64::NAN,
+                Some(time_s) if time_s < 0.0 => {
+                    let rule =
+                        "must not be negative: a run begins at t = 0; count the time from there";
+                    self.refuse(*line, &column.name, text, rule);
+                    time_s
+                }
+                Some(time_s) => time_s,
+            };
+            if let Some((above, earlier)) = before.filter(|(_, earlier)| time_s < *earlier) {
+                let rule = format!(
+                    "is before the time {} in line {above}: sort the rows by time, and put another run's into a file of their own",
+                    shortest(earlier)
+                );
+                self.refuse(*line, &column.name, text, rule);
+            }
+            if time_s.is_finite() {
+                before = Some((*line, time_s));
+            }
+            times_s.push(time_s);
+        }
+        times_s
+    }
+
+    /// The values of a measured column, with their uncertainties.
+    fn points(&mut self, column: &Named) -> Vec<Point> {
+        let cells = self.cells;
+        let mut points = Vec::new();
+        for (row, (line, texts)) in cells.rows.iter().enumerate() {
+            let value = self.number(*line, &column.name, &texts[column.place]);
+            let sigma = self.sigma(*line, column, texts);
+            if let Some(value) = value {
+                points.push(Point { row, value, sigma });
+            }
+        }
+        points
+    }
+
+    /// The values of a key of the scenario.
+    fn setting(&mut self, column: &Named, kind: Kind) -> Setting {
+        let cells = self.cells;
+        let mut setting = Setting {
+            key: column.name.clone(),
+            values: Vec::new(),
+            sigmas: Vec::new(),
+        };
+        let is_number = matches!(kind, Kind::Number(_));
+        for (line, texts) in &cells.rows {
+            let text = &texts[column.place];
+            let value = match (text.is_empty(), is_number) {
+                (true, _) => None,
+                (false, true) => self.number(*line, &column.name, text).map(Value::Float),
+                (false, false) => Some(toml_or_text(text).0),
+            };
+            if let Some(rule) = value.as_ref().and_then(|value| kind.check(value).err()) {
+                self.refuse(*line, &column.name, text, rule);
+            }
+            setting.values.push(value);
+            setting.sigmas.push(self.sigma(*line, column, texts));
+        }
+        setting
+    }
+
+    /// The uncertainty that stands in a row for the value in `column`.
+    fn sigma(&mut self, line: u64, column: &Named, texts: &[String]) -> Option<f64> {
+        let place = column.uncertainty?;
+        let name = self.cells.names[place].clone();
+        let sigma = self.number(line, &name, &texts[place])?;
+        if sigma > 0.0 {
+            return Some(sigma);
+        }
+        let rule = "must be greater than zero: where there is no uncertainty the place is empty";
+        self.refuse(line, &name, &texts[place], rule);
+        None
+    }
+
+    /// The number that `text` in the column `name` is; `None` where the place is empty or the number refused.
+    fn number(&mut self, line: u64, name: &str, text: &str) -> Option<f64> {
+        if text.is_empty() {
+            return None;
+        }
+        let has_comma = text.contains(',');
+        let written = match has_comma && self.cells.separator != ',' && !text.contains('.') {
+            true => text.replacen(',', ".", 1),
+            false => text.to_owned(),
+        };
+        let number = match written.parse::<f64>() {
+            Ok(number) if number.is_finite() => number,
+            Ok(_) => {
+                let rule = "must be a finite number: a value that is missing is an empty place";
+                self.refuse(line, name, text, rule);
+                return None;
+            }
+            Err(_) => {
+                let rule = match has_comma {
+                    true => {
+                        "must be a number with one decimal sign, a point (1.5), and nothing between its thousands"
+                    }
+                    false => {
+                        "must be a number, without its unit; a value that is missing is an empty place"
+                    }
+                };
+                self.refuse(line, name, text, rule);
+                return None;
+            }
+        };
+        self.uses_commas |= has_comma;
+        self.uses_points |= text.contains('.');
+        if self.uses_commas && self.uses_points {
+            let rule = "has another decimal sign than the numbers before it: write all of them with a point, or all with a comma";
+            self.refuse(line, name, text, rule);
+            // Told once: each number after it would be refused for one of the two.
+            (self.uses_commas, self.uses_points) = (false, false);
+        }
+        Some(number)
+    }
+
+    fn refuse(&mut self, line: u64, name: &str, text: &str, rule: impl Into<String>) {
+        self.found.add(|| {
+            let problem = Problem {
+                value: brief(text, 40),
+                ..Problem::at(name, rule)
+            };
+            at_line(line, problem)
+        });
+    }
+}

@@ -1,0 +1,121 @@
+//! What a run says of the quantities of a series, at the times at which they were measured.
+//!
+//! Between two steps the scheme itself takes one shorter step: nothing is interpolated, and the value is as good as those
+//! of the steps. Where nothing but the time places the rows of a run, as under `exact`, it goes from one measured time to
+//! the next, and the time step does not count. Neither does the length of the run: the motion goes on after its last step.
+
+use super::Series;
+use crate::run::{NotFinite, Simulation};
+use crate::scenario::{Scenario, Window};
+use std::sync::Arc;
+
+/// Steps that are taken without asking whether to go on.
+const BLOCK: u64 = 4096;
+
+/// Reads a run at the times of a series while it is stepped.
+#[derive(Clone, Debug)]
+pub struct Reader<'a> {
+    series: &'a Series,
+    /// Where in the points of each curve the next one to be read stands.
+    next: Vec<usize>,
+    values: Vec<Vec<f64>>,
+}
+
+impl<'a> Reader<'a> {
+    /// A reader at the beginning of a run.
+    pub fn new(series: &'a Series) -> Self {
+        Self {
+            next: vec![0; series.curves.len()],
+            values: vec![Vec::new(); series.curves.len()],
+            series,
+        }
+    }
+
+    /// The earliest time that has not been read, s.
+    pub fn next_time_s(&self) -> Option<f64> {
+        let curves = self.series.curves.iter().zip(&self.next);
+        let rows = curves.filter_map(|(curve, &next)| Some(curve.points.get(next)?.row));
+        rows.min().map(|row| self.series.times_s[row])
+    }
+
+    /// Reads `simulation` at every time from the one at which it stands up to, and without, that of its next step.
+    ///
+    /// # Errors
+    /// When its numbers stop being finite on the way.
+    pub fn take(&mut self, simulation: &Simulation) -> Result<(), NotFinite> {
+        let end_s = simulation.next_time_s();
+        while let Some(time_s) = self.next_time_s().filter(|time_s| *time_s < end_s) {
+            if time_s <= simulation.now().time_s() {
+                self.read(simulation, time_s);
+                continue;
+            }
+            let mut between = simulation.clone();
+            between.step_to_time(time_s)?;
+            self.read(&between, time_s);
+        }
+        Ok(())
+    }
+
+    /// Reads what was measured at `time_s` off `simulation`, which stands there.
+    fn read(&mut self, simulation: &Simulation, time_s: f64) {
+        let curves = self.series.curves.iter().zip(&mut self.next);
+        for ((curve, next), values) in curves.zip(&mut self.values) {
+            let is_now = |next: usize| {
+                let point = curve.points.get(next);
+                point.is_some_and(|point| self.series.times_s[point.row] == time_s)
+            };
+            while is_now(*next) {
+                values.push(curve.quantity.of(simulation.now()));
+                *next += 1;
+            }
+        }
+    }
+
+    /// The values read so far: of each curve those of its first points.
+    pub fn values(&self) -> &[Vec<f64>] {
+        &self.values
+    }
+}
+
+/// What the run of `scenario` says at the times of `series`: of each curve a value for every point, in the point's unit.
+/// `None` where `go_on` said no on the way.
+///
+/// # Errors
+/// When the numbers stop being finite before the last of these times.
+pub fn at_times(
+    series: &Series,
+    scenario: &Arc<Scenario>,
+    go_on: &dyn Fn() -> bool,
+) -> Result<Option<Vec<Vec<f64>>>, NotFinite> {
+    let mut reader = Reader::new(series);
+    let mut simulation = Simulation::new(Arc::clone(scenario));
+    let jumps = needs_no_steps(series, scenario);
+    while let Some(time_s) = reader.next_time_s() {
+        if jumps {
+            simulation.step_to_time(time_s)?;
+            reader.read(&simulation, time_s);
+        } else {
+            reader.take(&simulation)?;
+            simulation.step()?;
+        }
+        if simulation.step_number().is_multiple_of(BLOCK) && !go_on() {
+            return Ok(None);
+        }
+    }
+    Ok(Some(reader.values))
+}
+
+/// Whether the motion at a time does not depend on the steps that lead there.
+fn needs_no_steps(series: &Series, scenario: &Scenario) -> bool {
+    let is_exact = scenario.motion.scheme.order.is_none();
+    let counts_steps = |window: Window| matches!(window, Window::Steps { .. });
+    // Full turns are counted step by step.
+    let counts_turns = series
+        .curves
+        .iter()
+        .any(|curve| curve.quantity.is_direction);
+    is_exact
+        && !counts_turns
+        && scenario.edits.is_empty()
+        && !scenario.pushes.iter().any(|push| counts_steps(push.window))
+}

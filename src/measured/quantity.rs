@@ -1,0 +1,116 @@
+//! What can be measured on one run over its time: quantities that it has at every step.
+
+use crate::analysis::readouts::{self, Readout};
+use crate::export::columns::Column;
+use crate::run::Step;
+use crate::scenario::start;
+
+/// The column of the time.
+pub const TIME: &str = "t_s";
+
+/// Columns of a run's CSV that count its steps and edits, and measure nothing.
+pub const COUNTS: [&str; 2] = ["step", "segment"];
+
+/// A quantity that a run has at every step.
+#[derive(Debug)]
+pub struct Quantity {
+    /// Its name with the unit, as in the run's CSV and in the table of readouts.
+    pub name: &'static str,
+    /// Whether it is an angle of which only the direction can be seen, so that it is known but for whole turns.
+    pub is_direction: bool,
+    read: Read,
+}
+
+#[derive(Debug)]
+enum Read {
+    /// A column of the run's CSV.
+    Column,
+    /// A readout that has no column.
+    Step(fn(&Step) -> f64),
+}
+
+const fn column(name: &'static str) -> Quantity {
+    Quantity {
+        name,
+        is_direction: false,
+        read: Read::Column,
+    }
+}
+
+const fn live(name: &'static str, read: fn(&Step) -> f64) -> Quantity {
+    Quantity {
+        name,
+        is_direction: false,
+        read: Read::Step(read),
+    }
+}
+
+/// Every quantity that can be measured over time.
+pub static QUANTITIES: [Quantity; 14] = [
+    column("x_m"),
+    column("y_m"),
+    column("z_m"),
+    column("Lx_Js"),
+    column("Ly_Js"),
+    column("Lz_Js"),
+    column("wx_rad_per_s"),
+    column("wy_rad_per_s"),
+    column("wz_rad_per_s"),
+    column("tilt_deg"),
+    Quantity {
+        is_direction: true,
+        ..column("azimuth_deg")
+    },
+    column("energy_J"),
+    live("spin_rpm", |step| {
+        start::rpm(step.scenario().spin_rad_per_s(step.after()))
+    }),
+    live("L_axle_Js", |step| {
+        let state = step.after();
+        state.momentum.dot(&state.axle())
+    }),
+];
+
+impl Quantity {
+    /// The quantity of that name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        QUANTITIES.iter().find(|quantity| quantity.name == name)
+    }
+
+    /// Its row in the table of readouts, with unit, meaning and symbol.
+    pub fn readout(&self) -> Option<&'static Readout> {
+        readouts::find(self.name)
+    }
+
+    /// Its value after `step`, in the unit of its name.
+    pub fn of(&self, step: &Step) -> f64 {
+        match self.read {
+            Read::Step(read) => read(step),
+            Read::Column => Column::find(self.name)
+                .map_or(f64::NAN, |column| column.value(&step.sample()).number()),
+        }
+    }
+}
+
+/// The names of all quantities, of the time, and of the columns that count.
+pub fn names() -> impl Iterator<Item = &'static str> + Clone {
+    let quantities = QUANTITIES.iter().map(|quantity| quantity.name);
+    std::iter::once(TIME).chain(quantities).chain(COUNTS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::columns::COLUMNS;
+
+    #[test]
+    fn every_column_of_a_run_and_nothing_without_a_readout_can_be_measured() {
+        for column in COLUMNS {
+            assert!(names().any(|name| name == column.name), "{}", column.name);
+        }
+        for quantity in &QUANTITIES {
+            let readout = quantity.readout().unwrap();
+            assert_eq!(readout.source, readouts::Source::State, "{}", quantity.name);
+        }
+    }
+}

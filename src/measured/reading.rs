@@ -1,0 +1,75 @@
+//! A file of measured data, from its text to checked numbers.
+
+use super::cells::{Cells, text_of};
+use super::names::named;
+use super::numbers::Numbers;
+use super::quantity::TIME;
+use super::shipped;
+use super::{Data, Measured};
+use crate::scenario::problem::Found;
+use crate::scenario::problem::nearest;
+use crate::scenario::{Problem, Problems};
+use std::path::Path;
+
+/// Opens what `name` names: data that come with the program, or else a file. A file's name holds a `/` or ends in `.csv`.
+///
+/// # Errors
+/// When there are no such data, or as [`read`].
+pub fn open(name: &str) -> Result<Measured, Problems> {
+    if let Some(shipped) = shipped::find(name) {
+        return read(&format!("presets/measured/{name}.csv"), shipped.text);
+    }
+    let path = Path::new(name);
+    if !name.contains('/') && !name.contains('.') && !path.exists() {
+        let near = nearest(name, shipped::SHIPPED.iter().map(|data| data.name));
+        let rule = format!(
+            "no measured data of that name: {near} (a file's name holds a / or ends in .csv)"
+        );
+        return Err(Problems::one(name, Problem::at("", rule)));
+    }
+    let text = text_of(path).map_err(|problem| Problems::one(name, problem))?;
+    read(name, &text)
+}
+
+/// Reads the measured data that `text` holds, which is the file `origin`.
+///
+/// # Errors
+/// Everything that is wrong with it: with the names of the columns first, and where these are right with the rows.
+pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
+    let cells = Cells::of(origin, text)?;
+    let refused = |found: Found| Problems {
+        origin: origin.to_owned(),
+        list: found.list,
+        more: found.more,
+    };
+    let columns = named(&cells).map_err(|problems| refused(problems.into()))?;
+    let mut numbers = Numbers::of(&cells);
+    let data = match columns.iter().any(|column| column.name == TIME) {
+        true => Data::Series(numbers.series(&columns)),
+        false => Data::Table(numbers.table(&columns)),
+    };
+    let measured = Measured {
+        origin: origin.to_owned(),
+        about: cells.about.clone(),
+        data,
+    };
+    let mut found = numbers.found;
+    if found.list.is_empty() && measured.count() == 0 {
+        found.add(|| {
+            Problem::at(
+                "",
+                "holds no measured value: every place of its measured columns is empty",
+            )
+        });
+    }
+    if found.list.is_empty() {
+        return Ok(measured);
+    }
+    // Columns are read one after the other, and a file is mended from its top to its end.
+    let line = |problem: &Problem| {
+        let place = problem.place.as_deref()?.strip_prefix("line ")?;
+        place.parse::<u64>().ok()
+    };
+    found.list.sort_by_key(line);
+    Err(refused(found))
+}

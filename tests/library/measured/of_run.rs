@@ -1,0 +1,92 @@
+//! What a run says at the measured times.
+
+use crate::support::scenarios::preset;
+use gyrolab::measured::{Data, Series, at_times, read};
+use gyrolab::run::{Simulation, Truth};
+use std::sync::Arc;
+
+/// A series of these columns with a row at each of these times.
+fn series(columns: &[&str], times_s: &[f64]) -> Series {
+    let mut text = format!("t_s,{}\n", columns.join(","));
+    for time_s in times_s {
+        text += &format!("{time_s}{}\n", ",0".repeat(columns.len()));
+    }
+    match read("lab.csv", &text).unwrap().data {
+        Data::Series(series) => series,
+        Data::Table(_) => unreachable!(),
+    }
+}
+
+fn values(series: &Series, preset_name: &str, set: &[&str]) -> Vec<Vec<f64>> {
+    let scenario = Arc::new(preset(preset_name, set));
+    at_times(series, &scenario, &|| true).unwrap().unwrap()
+}
+
+#[test]
+fn at_the_times_of_steps_it_is_what_the_run_exports() {
+    let times_s: Vec<f64> = (0..40).map(|step| f64::from(step) * 0.1).collect();
+    let series = series(&["z_m", "azimuth_deg", "Lx_Js"], &times_s);
+    for scheme in ["report", "strang", "exact"] {
+        let set = [format!("motion.scheme={scheme}")];
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        let values = values(&series, "wobble-push", &set);
+        let mut simulation = Simulation::new(Arc::new(preset("wobble-push", &set)));
+        for row in 0..times_s.len() {
+            simulation.step_to(row as u64).unwrap();
+            let sample = simulation.sample();
+            assert_eq!(values[0][row], sample.position.z, "{scheme} {row}");
+            assert_eq!(values[1][row], sample.azimuth_deg, "{scheme} {row}");
+            assert_eq!(values[2][row], sample.momentum.x, "{scheme} {row}");
+        }
+    }
+}
+
+#[test]
+fn between_steps_it_is_as_good_as_the_scheme() {
+    // Two thirds of a time step behind every step, a push in seconds and one in steps among them.
+    let times_s: Vec<f64> = (0..30)
+        .map(|step| f64::from(step) * 0.02 + 0.0133)
+        .collect();
+    let series = series(&["tilt_deg", "spin_rpm"], &times_s);
+    let set = ["motion.time_step_s=0.02", "motion.scheme=srkn11b"];
+    let found = values(&series, "loops", &set);
+    let mut truth = Truth::new(Arc::new(preset("loops", &set)));
+    for (row, &time_s) in times_s.iter().enumerate() {
+        let state = truth.state_at(time_s);
+        let tilt_deg = gyrolab::physics::observables::tilt_deg(&state);
+        assert!(
+            (found[0][row] - tilt_deg).abs() < 1e-6,
+            "{} {tilt_deg}",
+            found[0][row]
+        );
+    }
+}
+
+#[test]
+fn exact_does_not_need_the_time_step() {
+    let times_s = [0.0, 0.137, 0.137, 2.5, 90.0];
+    let series = series(&["tilt_deg", "x_m", "Lz_Js"], &times_s);
+    let coarse = values(
+        &series,
+        "cusps",
+        &["motion.scheme=exact", "motion.time_step_s=7"],
+    );
+    let fine = values(
+        &series,
+        "cusps",
+        &["motion.scheme=exact", "motion.time_step_s=0.01"],
+    );
+    for (coarse, fine) in coarse.iter().flatten().zip(fine.iter().flatten()) {
+        assert!(
+            (coarse - fine).abs() <= 1e-10 * fine.abs().max(1.0),
+            "{coarse} {fine}"
+        );
+    }
+}
+
+#[test]
+fn the_motion_goes_on_behind_the_last_step_of_the_run() {
+    let series = series(&["tilt_deg", "azimuth_deg"], &[0.0, 5.0]);
+    let short = values(&series, "method-1", &["motion.steps=1"]);
+    assert_eq!(short, values(&series, "method-1", &[]));
+}
