@@ -460,7 +460,7 @@ readouts! {
     "measured_nutation_period_s", "s", Measured, "mean time between two turning points of the tilt", |r| value(r.nutation), "*T*_{n}";
     "measured_nutation_uncertainty_s", "s", Measured, "one standard error of it", |r| uncertainty(r.nutation);
     "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what is measured is strobed", |r| r.nutation_is_resolved();
-    "predicted_precession_period_s", "s", Theory, "time of one turn of the mean precession of the exact motion about +z", |r| r.theory_about_z().and_then(|theory| theory.precession_period_s()), "*T*_{p}";
+    "predicted_precession_period_s", "s", Theory, "time of one turn of the mean precession of the exact motion about +z", |r| r.theory_about_z().and_then(Theory::precession_period_s), "*T*_{p}";
     "predicted_body_cone_period_s", "s", Theory, "free symmetric body: time in which the instantaneous axis goes once round the axle, seen from the body, (I1/|I3 - I1|) 2 pi/omega3; null under a load, without spin, for I3 = I1, and where only a rotor spins", |r| r.theory.filter(|_| !r.has_rotor).and_then(|theory| theory.body_cone_period_s), "*T*_{c}";
     "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation), "*ω*_{n}";
     "fast_top_nutation_rpm", "rpm", Theory, "the same in revolutions a minute", |r| r.theory.map(|theory| start::rpm(theory.fast_top_nutation)), "*ω*_{n}";

@@ -3,7 +3,7 @@
 //! - [`ladder`]: the numbers 1, 2 and 5 times a power of ten.
 //! - [`number`]: numbers in as few digits as a reader needs.
 //! - [`printable`]: text with nothing in it that steers a terminal.
-//! - [`unit`]: units at the end of names.
+//! - [`mod@unit`]: units at the end of names.
 //! - [`wrap`]: text in lines of a width.
 
 pub mod ladder;
