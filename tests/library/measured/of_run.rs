@@ -31,12 +31,13 @@ fn at_the_times_of_steps_it_is_what_the_run_exports() {
         let set: Vec<&str> = set.iter().map(String::as_str).collect();
         let values = values(&series, "wobble-push", &set);
         let mut simulation = Simulation::new(Arc::new(preset("wobble-push", &set)));
-        for row in 0..times_s.len() {
-            simulation.step_to(row as u64).unwrap();
+        let rows = values[0].iter().zip(&values[1]).zip(&values[2]);
+        for (row, ((z_m, azimuth_deg), lx_js)) in (0..).zip(rows) {
+            simulation.step_to(row).unwrap();
             let sample = simulation.sample();
-            assert_eq!(values[0][row], sample.position.z, "{scheme} {row}");
-            assert_eq!(values[1][row], sample.azimuth_deg, "{scheme} {row}");
-            assert_eq!(values[2][row], sample.momentum.x, "{scheme} {row}");
+            assert_eq!(*z_m, sample.position.z, "{scheme} {row}");
+            assert_eq!(*azimuth_deg, sample.azimuth_deg, "{scheme} {row}");
+            assert_eq!(*lx_js, sample.momentum.x, "{scheme} {row}");
         }
     }
 }
