@@ -3,7 +3,9 @@
 use super::INTERRUPTED;
 use crate::export::Destination;
 use crate::export::destination::DestinationError;
-use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use indicatif::{
+    HumanCount, HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle,
+};
 use signal_hook::consts::{SIGHUP, TERM_SIGNALS};
 use signal_hook::flag;
 use signal_hook::iterator::Signals;
@@ -140,6 +142,8 @@ pub(super) struct Meter {
 
 impl Meter {
     const QUIET: Duration = Duration::from_secs(1);
+    /// No time left is told to be longer, s: ten years.
+    const MOST_SECONDS: f64 = 3e8;
 
     pub(super) fn new() -> Self {
         Self::counting("step")
@@ -163,15 +167,27 @@ impl Meter {
                 ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr_with_hz(4));
             let of = self.of;
             let template = format!(
-                "{{wide_bar}} {of} {{human_pos}} of {{human_len}}, {{rate}}/s, {{eta}} left"
+                "{{wide_bar}} {of} {{human_pos}} of {{human_len}}, {{rate}}/s, {{rest}} left"
             );
             let style = ProgressStyle::with_template(&template)
                 .unwrap_or_else(|_| ProgressStyle::default_bar());
-            let rate = |state: &ProgressState, text: &mut dyn fmt::Write| {
-                // What cannot be shown of a rate is not worth an error.
-                let _ = write!(text, "{}", HumanCount(state.per_sec().round() as u64));
+            // Of all that is done, and all the time that it took: a rate of the last moments would be wrong at first.
+            let each =
+                |state: &ProgressState| state.elapsed().as_secs_f64() / state.pos().max(1) as f64;
+            // What cannot be shown of them is not worth an error.
+            let rate = move |state: &ProgressState, text: &mut dyn fmt::Write| {
+                let _ = write!(text, "{}", HumanCount((1.0 / each(state)).round() as u64));
             };
-            let style = style.with_key("rate", rate);
+            let rest = move |state: &ProgressState, text: &mut dyn fmt::Write| {
+                let count = state.len().unwrap_or_default().saturating_sub(state.pos());
+                let seconds = (each(state) * count as f64).min(Self::MOST_SECONDS);
+                let _ = write!(
+                    text,
+                    "{:#}",
+                    HumanDuration(Duration::from_secs_f64(seconds))
+                );
+            };
+            let style = style.with_key("rate", rate).with_key("rest", rest);
             bar.with_style(style.progress_chars("=> "))
                 .with_elapsed(self.begin.elapsed())
         });

@@ -3,6 +3,8 @@
 use super::chart::Chart;
 use super::chart::layout::Layout;
 use super::of_runs::{Drawn, Request};
+use super::page::cover::range;
+use super::page::scene::Point;
 use crate::text::ladder;
 use crate::text::number::{shortest, significant};
 
@@ -58,50 +60,47 @@ pub(super) fn warning(chart: &Chart, drawn: &[Drawn], request: &Request) -> Opti
 }
 
 /// Side of the places of a path that are looked at, pt, and how many places from the edge of the ink make its inside.
-const PLACE_PT: f64 = 0.25;
-const INSIDE: usize = 4;
-/// Turns of a path that a proposed stretch shows.
-const TURNS: f64 = 3.0;
+const PLACE_PT: f64 = 0.5;
+const INSIDE: usize = 3;
+/// About the width of a path's line, pt, and the part of the black places that the lines of a proposed stretch are to cover.
+const LINE_PT: f64 = 0.9;
+const LOOSE: f64 = 0.3;
 
-/// As [`warning`], of the path from above.
-pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) -> Option<String> {
-    let layout = Layout::new(chart, 0.0);
-    let placed = layout.panels.first()?;
-    let (width, height) = (placed.frame.width(), placed.frame.height());
-    let side = |length: f64| (length / PLACE_PT).ceil() as usize + 1;
-    let (columns, rows) = (side(width), side(height));
-    for (drawn, series) in drawn.iter().zip(&chart.panels.first()?.series) {
-        if series.points.len() < 2000 {
-            continue;
-        }
-        let mut ink = vec![false; columns * rows];
-        let mut length_pt = 0.0;
-        for pair in series.points.windows(2) {
-            let (a, b) = (placed.place(&pair[0]), placed.place(&pair[1]));
-            let length = (b.x - a.x).hypot(b.y - a.y);
-            length_pt += length;
-            let parts = (length / PLACE_PT).ceil().clamp(1.0, 4000.0);
-            for part in 0..parts as u32 {
-                let share = f64::from(part) / parts;
-                let x = (a.x + share * (b.x - a.x) - placed.frame.left) / PLACE_PT;
-                let y = (a.y + share * (b.y - a.y) - placed.frame.top) / PLACE_PT;
-                if x >= 0.0 && y >= 0.0 && (x as usize) < columns && (y as usize) < rows {
-                    ink[y as usize * columns + x as usize] = true;
-                }
+/// As [`warning`], of a path whose points stand at `places` on the page, in the order of time up to `end_s`.
+pub(super) fn path_warning(places: &[Point], end_s: f64, request: &Request) -> Option<String> {
+    if places.len() < 2000 {
+        return None;
+    }
+    let (left, right) = range(places.iter().map(|place| place.x))?;
+    let (top, bottom) = range(places.iter().map(|place| place.y))?;
+    let side = |length: f64| (length / PLACE_PT) as usize + 1;
+    let (columns, rows) = (side(right - left), side(bottom - top));
+    let mut ink = vec![false; columns * rows];
+    let mut length_pt = 0.0;
+    for pair in places.windows(2) {
+        let (dx, dy) = (pair[1].x - pair[0].x, pair[1].y - pair[0].y);
+        let length = (dx * dx + dy * dy).sqrt();
+        length_pt += length;
+        let parts = (length / PLACE_PT).ceil().clamp(1.0, 4000.0);
+        let (dx, dy) = (dx / parts / PLACE_PT, dy / parts / PLACE_PT);
+        let (x, y) = ((pair[0].x - left) / PLACE_PT, (pair[0].y - top) / PLACE_PT);
+        for part in 0..parts as u32 {
+            let part = f64::from(part);
+            let (column, row) = ((x + part * dx) as usize, (y + part * dy) as usize);
+            if let Some(place) = ink.get_mut(row * columns + column) {
+                *place = true;
             }
         }
-        let inked = ink.iter().filter(|inked| **inked).count();
-        let inside = deep_inside(&ink, columns);
-        if (inside as f64) < MOST * inked as f64 {
-            continue;
-        }
-        // One turn about the middle is about as long as the picture is wide, three times.
-        let turns = length_pt / (3.0 * width);
-        let time_s = drawn.course.end_s - request.from_s;
-        let window_s = TURNS * time_s / turns.max(1.0);
-        return Some(proposal(request.from_s, window_s, request, "its turns"));
     }
-    None
+    let inked = ink.iter().filter(|inked| **inked).count();
+    let inside = deep_inside(&ink, columns);
+    if (inside as f64) < MOST * inked as f64 {
+        return None;
+    }
+    let area = inked as f64 * PLACE_PT * PLACE_PT;
+    let share = (LOOSE * area / (length_pt * LINE_PT)).min(0.5);
+    let window_s = share * (end_s - request.from_s);
+    Some(proposal(request.from_s, window_s, request, "its turns"))
 }
 
 /// How many of the places with ink have ink all around, as far as `INSIDE`.

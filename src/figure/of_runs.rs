@@ -1,5 +1,6 @@
 //! Figures of runs: their curves over time, their paths from above and in space.
 
+use super::chart::layout::Layout;
 use super::chart::legend::longest_name;
 use super::chart::{Axis, Chart, Panel, Series, Style};
 use super::course::{self, Course, Wanted};
@@ -119,10 +120,14 @@ pub fn figure(
         }
         Kind::Above => {
             let chart = above(title, runs, &drawn, request);
-            warnings.extend(dense::path_warning(&chart, &drawn, request));
+            warnings.extend(path_warning(&chart, &drawn, request));
             chart.scene()
         }
-        Kind::ThreeD => space::scene(&title, runs, &drawn, request.width_pt),
+        Kind::ThreeD => {
+            let (scene, warning) = space::scene(&title, runs, &drawn, request);
+            warnings.extend(warning);
+            scene
+        }
     };
     Ok(Some(Figure {
         scene,
@@ -276,6 +281,17 @@ fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Request) -> Cha
         }],
         is_true_to_scale: true,
     }
+}
+
+/// What is said of a path from above that is solid black.
+fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) -> Option<String> {
+    let layout = Layout::new(chart, 0.0);
+    let placed = layout.panels.first()?;
+    let series = &chart.panels.first()?.series;
+    drawn.iter().zip(series).find_map(|(drawn, series)| {
+        let places: Vec<_> = series.points.iter().map(|at| placed.place(at)).collect();
+        dense::path_warning(&places, drawn.course.end_s, request)
+    })
 }
 
 /// The radii of the circles between which the exact motion of the traced point stays, from above, m; none where pushes or

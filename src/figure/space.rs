@@ -10,11 +10,12 @@ use super::chart::curve;
 use super::chart::layout::EDGE;
 use super::chart::legend::Legend;
 use super::chart::ticks::{Tick, Ticks};
-use super::of_runs::{Drawn, Run};
+use super::dense;
+use super::of_runs::{Drawn, Request, Run};
 use super::page::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
 use super::page::scene::{Color, Pen, Point, Scene};
 use super::quantity;
-use crate::observe::camera::Camera;
+use crate::observe::camera::{Camera, View};
 use nalgebra::Vector3;
 
 /// Height of the box, of the length of its sides.
@@ -34,17 +35,23 @@ const SIDES: [f64; 2] = [-0.5, 0.5];
 
 /// The box on the page.
 struct Space {
-    camera: Camera,
+    view: View,
     /// What the three sides of the box show.
     ranges: [(f64, f64); 3],
     /// The length of a side on the page, pt.
     side_pt: f64,
 }
 
-/// The figure of paths in space on a page of that width.
-pub(super) fn scene(title: &str, runs: &[Run], drawn: &[Drawn], width_pt: f64) -> Scene {
+/// The figure of paths in space, and what is said of it where one of them is solid black.
+pub(super) fn scene(
+    title: &str,
+    runs: &[Run],
+    drawn: &[Drawn],
+    request: &Request,
+) -> (Scene, Option<String>) {
+    let width_pt = request.width_pt;
     let mut space = Space {
-        camera: camera(runs),
+        view: camera(runs).view(),
         ranges: ranges(drawn),
         side_pt: 0.5 * width_pt,
     };
@@ -52,17 +59,16 @@ pub(super) fn scene(title: &str, runs: &[Run], drawn: &[Drawn], width_pt: f64) -
         .iter()
         .map(|drawn| (drawn.name.as_str(), &drawn.style));
     let legend = Legend::new(series, None);
-    // The labels do not grow with the box: the room that is left over tells how much larger it may be.
-    let mut items = space.draw(drawn);
+    // The labels do not grow with the box: the room that is left over tells how much larger it may be. All paths are in it.
     for _ in 0..4 {
-        let (left, _, right, _) = extent(&items);
+        let (left, _, right, _) = extent(&space.draw(&[]));
         let over = right - left - (width_pt - 2.0 * EDGE);
         space.side_pt = (space.side_pt - over / 1.45).max(0.1 * width_pt);
-        items = space.draw(drawn);
         if over.abs() < 0.2 {
             break;
         }
     }
+    let mut items = space.draw(drawn);
     let (left, top, right, bottom) = extent(&items);
     let above = legend.height_above(width_pt) + EDGE;
     let shift = at(0.5 * (width_pt - left - right), above - top);
@@ -74,7 +80,12 @@ pub(super) fn scene(title: &str, runs: &[Run], drawn: &[Drawn], width_pt: f64) -
     items.width_pt = width_pt;
     items.height_pt = above + bottom - top + EDGE;
     legend.draw_above(width_pt, EDGE, &mut items);
-    items
+    let warning = drawn.iter().find_map(|drawn| {
+        let path = drawn.course.path.iter();
+        let places: Vec<_> = path.map(|at| space.place(&space.boxed(at))).collect();
+        dense::path_warning(&places, drawn.course.end_s, request)
+    });
+    (items, warning)
 }
 
 /// The direction that the first run's file asks for, or the usual one; never so low or so high that a side of the box vanishes.
@@ -125,8 +136,8 @@ impl Space {
 
     /// Where a place in the box stands on the page, pt.
     fn place(&self, boxed: &Vector3<f64>) -> Point {
-        let (right, up) = self.camera.project(boxed);
-        let size = self.side_pt * EYE / (EYE + self.camera.depth(boxed));
+        let (right, up) = self.view.project(boxed);
+        let size = self.side_pt * EYE / (EYE + self.view.depth(boxed));
         at(size * right, -size * up)
     }
 
@@ -134,7 +145,7 @@ impl Space {
     fn near(&self, axis: usize) -> f64 {
         let mut ahead = Vector3::zeros();
         ahead[axis] = 1.0;
-        if self.camera.depth(&ahead) < 0.0 {
+        if self.view.depth(&ahead) < 0.0 {
             0.5
         } else {
             -0.5
@@ -306,7 +317,7 @@ impl Space {
         let across = 1 - axis;
         outside[across] += 0.1 * middle[across].signum();
         let (a, b) = (self.place(&middle), self.place(&outside));
-        let length = (b.x - a.x).hypot(b.y - a.y).max(1e-9);
+        let length = libm::hypot(b.x - a.x, b.y - a.y).max(1e-9);
         at((b.x - a.x) / length, (b.y - a.y) / length)
     }
 }

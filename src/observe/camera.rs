@@ -108,21 +108,50 @@ impl Camera {
         }
     }
 
+    /// Its sines and cosines: for many points in turn. The same on every machine.
+    pub fn view(&self) -> View {
+        let (sin_yaw, cos_yaw) = libm::sincos(self.yaw_deg.to_radians());
+        let (sin_pitch, cos_pitch) = libm::sincos(self.pitch_deg.to_radians());
+        View {
+            sin_yaw,
+            cos_yaw,
+            sin_pitch,
+            cos_pitch,
+        }
+    }
+
     /// Where `point` (world frame, m) stands in the picture: right and up, m.
     pub fn project(&self, point: &Vector3<f64>) -> (f64, f64) {
-        let (sin_yaw, cos_yaw) = self.yaw_deg.to_radians().sin_cos();
-        let (sin_pitch, cos_pitch) = self.pitch_deg.to_radians().sin_cos();
-        let right = cos_yaw * point.x + sin_yaw * point.y;
-        let depth = cos_yaw * point.y - sin_yaw * point.x;
-        (right, cos_pitch * point.z + sin_pitch * depth)
+        self.view().project(point)
     }
 
     /// How much farther from the eye than the pivot `point` (world frame, m) is, m.
     pub fn depth(&self, point: &Vector3<f64>) -> f64 {
-        let (sin_yaw, cos_yaw) = self.yaw_deg.to_radians().sin_cos();
-        let (sin_pitch, cos_pitch) = self.pitch_deg.to_radians().sin_cos();
-        let depth = cos_yaw * point.y - sin_yaw * point.x;
-        cos_pitch * depth - sin_pitch * point.z
+        self.view().depth(point)
+    }
+}
+
+/// A camera whose angles are known by their sines and cosines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    sin_yaw: f64,
+    cos_yaw: f64,
+    sin_pitch: f64,
+    cos_pitch: f64,
+}
+
+impl View {
+    /// As [`Camera::project`].
+    pub fn project(&self, point: &Vector3<f64>) -> (f64, f64) {
+        let right = self.cos_yaw * point.x + self.sin_yaw * point.y;
+        let depth = self.cos_yaw * point.y - self.sin_yaw * point.x;
+        (right, self.cos_pitch * point.z + self.sin_pitch * depth)
+    }
+
+    /// As [`Camera::depth`].
+    pub fn depth(&self, point: &Vector3<f64>) -> f64 {
+        let depth = self.cos_yaw * point.y - self.sin_yaw * point.x;
+        self.cos_pitch * depth - self.sin_pitch * point.z
     }
 }
 

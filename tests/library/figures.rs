@@ -380,34 +380,35 @@ fn a_constant_curve_has_an_axis_with_room() {
 
 #[test]
 fn a_black_figure_proposes_a_stretch_that_is_not() {
-    let runs = [run("method-1", &[])];
-    let figure = drawn(&runs, &request("traces"));
-    let [warning] = &figure.warnings[..] else {
-        panic!("{:?}", figure.warnings)
-    };
-    assert!(warning.contains("solid black"), "{warning}");
-    let to_s: f64 = warning
-        .split_once("--to ")
-        .unwrap()
-        .1
-        .split(' ')
-        .next()
-        .unwrap()
-        .parse()
-        .unwrap();
-    let part = Request {
-        to_s: Some(to_s),
-        ..request("traces")
-    };
-    assert_eq!(drawn(&runs, &part).warnings, [""; 0]);
-    assert_eq!(
-        drawn(&[run("wobble-push", &[])], &request("traces")).warnings,
-        [""; 0]
-    );
-    assert_eq!(
-        drawn(&[run("cusps", &[])], &request("above")).warnings,
-        [""; 0]
-    );
+    for (name, kind) in [
+        ("method-1", "traces"),
+        ("method-1", "above"),
+        ("method-2-slow", "3d"),
+        ("fast-top", "3d"),
+    ] {
+        let runs = [run(name, &[])];
+        let figure = drawn(&runs, &request(kind));
+        let [warning] = &figure.warnings[..] else {
+            panic!("{name} {kind}: {:?}", figure.warnings)
+        };
+        assert!(warning.contains("solid black"), "{warning}");
+        let (_, proposed) = warning.split_once("--to ").unwrap();
+        let to_s: f64 = proposed.split(' ').next().unwrap().parse().unwrap();
+        let part = Request {
+            to_s: Some(to_s),
+            ..request(kind)
+        };
+        assert_eq!(drawn(&runs, &part).warnings, [""; 0], "{name} {kind}");
+    }
+    for (name, kind) in [
+        ("wobble-push", "traces"),
+        ("wobble-push", "3d"),
+        ("cusps", "above"),
+        ("cusps", "3d"),
+    ] {
+        let figure = drawn(&[run(name, &[])], &request(kind));
+        assert_eq!(figure.warnings, [""; 0], "{name} {kind}");
+    }
 }
 
 #[test]

@@ -24,7 +24,7 @@ impl Scale {
     pub fn place(&self, value: f64) -> f64 {
         let (low, high) = self.range;
         let share = match self.is_log {
-            true => (value.ln() - low.ln()) / (high.ln() - low.ln()),
+            true => libm::log(value / low) / libm::log(high / low),
             false => (value - low) / (high - low),
         };
         self.places.0 + share * (self.places.1 - self.places.0)
@@ -35,7 +35,7 @@ impl Scale {
         let (low, high) = self.range;
         let share = (place - self.places.0) / (self.places.1 - self.places.0);
         match self.is_log {
-            true => libm::exp(low.ln() + share * (high.ln() - low.ln())),
+            true => low * libm::exp(share * libm::log(high / low)),
             false => low + share * (high - low),
         }
     }

@@ -52,9 +52,9 @@ impl Placed {
 
 /// Draws a line that is cut off outside of `clip`, in fewer pieces that look the same.
 pub fn put(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene: &mut Scene) {
-    let runs_right = |piece: &Vec<Point>| piece.windows(2).all(|pair| pair[1].x >= pair[0].x);
+    let runs_right = pieces.iter().flatten().is_sorted_by(|a, b| b.x >= a.x);
     let is_dashed = !pen.dash_pt.is_empty();
-    let lines = if pieces.iter().all(runs_right) {
+    let lines = if runs_right {
         let flat = if is_dashed { FLAT_PT } else { 0.0 };
         pieces.iter().map(|piece| thinned(piece, flat)).collect()
     } else if is_dashed {

@@ -145,7 +145,7 @@ fn panel_height(chart: &Chart) -> f64 {
     let is_log = chart.panels.iter().any(|panel| panel.y.is_log);
     let height = if is_log { LOG * height } else { height };
     // A wide figure is lower for its width than a narrow one.
-    let wide = (chart.width_pt / COLUMN_PT).clamp(0.6, 3.0).powf(0.6);
+    let wide = libm::pow((chart.width_pt / COLUMN_PT).clamp(0.6, 3.0), 0.6);
     // Numbers in the panels' titles are the same for all: the longest title decides.
     let longest = chart.panels.iter().map(|panel| {
         let title = panel.y.title(&Ticks::default());

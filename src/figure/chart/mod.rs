@@ -238,7 +238,7 @@ impl Axis {
         };
         if self.is_log {
             let (low, high) = (low.max(1.0 / FARTHEST), high.max(1.0 / FARTHEST));
-            let decades = high.log10() - low.log10();
+            let decades = libm::log10(high / low);
             let margin = if decades > 0.1 {
                 MARGIN * decades
             } else {

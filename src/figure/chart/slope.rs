@@ -46,7 +46,7 @@ fn find(
     let width = length * frame.width();
     // As steep as the line: the axes' decades may differ in length.
     let decade = |scale: &super::axis::Scale| {
-        (scale.places.1 - scale.places.0).abs() / (scale.range.1.ln() - scale.range.0.ln())
+        (scale.places.1 - scale.places.0).abs() / libm::log(scale.range.1 / scale.range.0)
     };
     let height = slope * width * decade(&placed.y) / decade(&placed.x);
     if !(HEIGHTS.0..=HEIGHTS.1 * frame.height()).contains(&height.abs()) {

@@ -123,7 +123,7 @@ impl Ticks {
     /// The ticks from `low` to `high`, both above 0, on a logarithmic axis: powers of ten as close as `fits` allows; over
     /// less than a decade and a half their 2- and 5-fold too, or else the ticks of a linear axis.
     pub fn log(low: f64, high: f64, fits: impl Fn(&[Tick]) -> bool) -> Self {
-        let (first, last) = (ceil(low.log10()), floor(high.log10()));
+        let (first, last) = (ceil(libm::log10(low)), floor(libm::log10(high)));
         if high / low < 32.0 {
             let mut close = Self::of_rungs(low, high);
             if close.major.len() >= 2 && fits(&close.major) {
@@ -169,7 +169,7 @@ impl Ticks {
             let decade = rung.div_euclid(3) as i32;
             Numbers { digit, decade }.label(1, power)
         };
-        let minor = (floor(low.log10())..=floor(high.log10())).flat_map(parts_of_decade);
+        let minor = (floor(libm::log10(low))..=floor(libm::log10(high))).flat_map(parts_of_decade);
         let is_inside = |at: &f64| (low..=high).contains(at);
         Self {
             major: rungs

@@ -81,8 +81,9 @@ fn slope(points: &[[f64; 2]]) -> Option<(usize, f64)> {
     const LEAST: f64 = 0.3;
     let is_sound = |point: &&[f64; 2]| point[0] > 0.0 && point[1] > 0.0 && point[1].is_finite();
     let points: Vec<_> = points.iter().filter(is_sound).collect();
-    let slope =
-        |pair: &[&[f64; 2]]| (pair[1][1] / pair[0][1]).ln() / (pair[1][0] / pair[0][0]).ln();
+    let slope = |pair: &[&[f64; 2]]| {
+        libm::log(pair[1][1] / pair[0][1]) / libm::log(pair[1][0] / pair[0][0])
+    };
     let slopes = points.windows(2).map(slope);
     let mut slopes: Vec<f64> = slopes
         .filter(|slope| slope.is_finite() && *slope > LEAST)

@@ -196,7 +196,8 @@ impl Grid {
     }
 }
 
-fn range(numbers: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+/// The least and the greatest of `numbers`; `None` where there is none, or one is not finite.
+pub fn range(numbers: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let start = (f64::INFINITY, f64::NEG_INFINITY);
     let (low, high) = numbers.fold(start, |(low, high), n| (low.min(n), high.max(n)));
     (low <= high && (high - low).is_finite()).then_some((low, high))

@@ -5,6 +5,7 @@ use crate::figure::chart::axis::Scale;
 use crate::figure::chart::curve;
 use crate::figure::of_runs::Drawn;
 use crate::figure::page::scene::{Color, Pen, Point, Scene};
+use foldhash::fast::FixedState;
 use nalgebra::Vector3;
 use std::collections::HashSet;
 
@@ -21,7 +22,7 @@ impl Space {
             .iter()
             .map(|drawn| {
                 let boxed = drawn.course.path.iter().map(|point| self.boxed(point));
-                let place = |boxed: Vector3<f64>| (self.place(&boxed), self.camera.depth(&boxed));
+                let place = |boxed: Vector3<f64>| (self.place(&boxed), self.view.depth(&boxed));
                 fresh(boxed.map(place).collect())
             })
             .collect();
@@ -36,8 +37,9 @@ impl Space {
             places: (0.0, DEPTHS as f64),
         };
         let degree = |depth: f64| (share.place(depth).max(0.0) as usize).min(DEPTHS - 1);
+        let by_degree: Vec<_> = paths.iter().map(|path| by_degree(path, degree)).collect();
         for nearness in 0..DEPTHS {
-            for (path, drawn) in paths.iter().zip(drawn) {
+            for (pieces, drawn) in by_degree.iter().zip(drawn) {
                 let part = nearness as f64 / (DEPTHS - 1) as f64;
                 let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
                 let color = paler(drawn.style.color, FARTHEST_WHITE * (1.0 - part));
@@ -45,11 +47,7 @@ impl Space {
                     dash_pt: drawn.style.dash_pt.to_vec(),
                     ..round(width, color)
                 };
-                let parts = path
-                    .iter()
-                    .map(|path| pieces(path, |depth| degree(depth) == nearness));
-                let pieces: Vec<_> = parts.flatten().collect();
-                curve::put(&pieces, &pen, None, scene);
+                curve::put(&pieces[nearness], &pen, None, scene);
             }
         }
     }
@@ -65,8 +63,11 @@ pub(super) fn fresh(path: Vec<(Point, f64)>) -> Vec<Vec<(Point, f64)>> {
     if path.len() < MANY {
         return vec![path];
     }
-    let place = |point: &Point| [point.x, point.y].map(|length| (length / PLACE_PT).floor() as i32);
-    let mut drawn = HashSet::new();
+    let place = |point: &Point| {
+        let number = |length: f64| u64::from((length / PLACE_PT).floor() as i32 as u32);
+        number(point.x) << 32 | number(point.y)
+    };
+    let mut drawn = HashSet::with_hasher(FixedState::default());
     let mut pieces = Vec::new();
     let mut piece: Vec<(Point, f64)> = Vec::new();
     for here in path {
@@ -90,22 +91,23 @@ pub(super) fn fresh(path: Vec<(Point, f64)>) -> Vec<Vec<(Point, f64)>> {
     pieces
 }
 
-/// The pieces of a path of which `is_here` says so of the depth of their begin.
-fn pieces(path: &[(Point, f64)], is_here: impl Fn(f64) -> bool) -> Vec<Vec<Point>> {
-    let mut pieces = Vec::new();
-    let mut piece: Vec<Point> = Vec::new();
-    for pair in path.windows(2) {
-        if is_here(pair[0].1) {
-            if piece.is_empty() {
-                piece.push(pair[0].0);
+/// A path's lines by the degree of depth at which they begin: those that follow each other are one piece.
+fn by_degree(
+    path: &[Vec<(Point, f64)>],
+    degree: impl Fn(f64) -> usize,
+) -> [Vec<Vec<Point>>; DEPTHS] {
+    let mut pieces: [Vec<Vec<Point>>; DEPTHS] = Default::default();
+    for path in path {
+        let mut last = None;
+        for pair in path.windows(2) {
+            let degree = degree(pair[0].1);
+            let pieces = &mut pieces[degree];
+            match pieces.last_mut() {
+                Some(piece) if last == Some(degree) => piece.push(pair[1].0),
+                _ => pieces.push(vec![pair[0].0, pair[1].0]),
             }
-            piece.push(pair[1].0);
-        } else if !piece.is_empty() {
-            pieces.push(std::mem::take(&mut piece));
+            last = Some(degree);
         }
-    }
-    if !piece.is_empty() {
-        pieces.push(piece);
     }
     pieces
 }

@@ -6,9 +6,15 @@ use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Condvar, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// How far the work may be ahead of the first result that is not there yet.
 const AHEAD: u64 = 1 << 14;
+/// A core keeps its results for so long before it hands them over: each handing over wakes the thread that takes them.
+const KEPT: Duration = Duration::from_millis(10);
+
+/// Results with their numbers in the range.
+type Done<T> = Vec<(u64, T)>;
 
 /// Computes `of` for all of `range` on all cores, and gives the results to `take` in the order of the range, as many at once
 /// as are there. It ends where `take` breaks, or where `of`, which is told whether to go on, gives nothing.
@@ -31,8 +37,9 @@ pub fn in_order<T: Send>(
     };
     let queue = Queue {
         next: AtomicU64::new(range.start),
-        end: range.end,
-        taken: Mutex::new(range.start),
+        end: AtomicU64::new(range.end),
+        taken: AtomicU64::new(range.start),
+        asleep: Mutex::new(()),
         moved: Condvar::new(),
         stops: AtomicBool::new(false),
     };
@@ -51,9 +58,12 @@ pub fn in_order<T: Send>(
 /// What the workers share.
 struct Queue {
     next: AtomicU64,
-    end: u64,
+    /// Where the work ends: at the range's end, or where `of` has given nothing.
+    end: AtomicU64,
     /// All results below this one have been taken.
-    taken: Mutex<u64>,
+    taken: AtomicU64,
+    /// Held between a worker's look and its sleep, and while it is to be woken, so that it misses nothing.
+    asleep: Mutex<()>,
     moved: Condvar,
     stops: AtomicBool,
 }
@@ -61,50 +71,68 @@ struct Queue {
 impl Queue {
     fn work<T>(
         &self,
-        results: &Sender<(u64, Option<T>)>,
+        results: &Sender<Done<T>>,
         of: &impl Fn(u64, &dyn Fn() -> bool) -> Option<T>,
     ) {
-        let go_on = || !self.stops.load(Ordering::Relaxed);
+        let go_on = || !self.stops();
+        let (mut done, mut since) = (Vec::new(), Instant::now());
         loop {
             let index = self.next.fetch_add(1, Ordering::Relaxed);
-            if index >= self.end || !self.wait_for(index) {
+            let is_waiting = self.is_far(index);
+            let is_last = self.is_beyond(index);
+            if is_last || is_waiting || since.elapsed() >= KEPT {
+                // What is not handed over cannot be taken: nobody waits with results in hand.
+                if results.send(std::mem::take(&mut done)).is_err() {
+                    return;
+                }
+                since = Instant::now();
+            }
+            if is_last || (is_waiting && !self.wait_for(index)) {
                 return;
             }
-            let result = of(index, &go_on);
-            let is_last = result.is_none();
-            if results.send((index, result)).is_err() || is_last {
-                return;
+            match of(index, &go_on) {
+                Some(result) => done.push((index, result)),
+                None => self.wake(|| {
+                    self.end.fetch_min(index, Ordering::Relaxed);
+                }),
             }
         }
     }
 
+    fn stops(&self) -> bool {
+        self.stops.load(Ordering::Relaxed)
+    }
+
+    /// Whether there is nothing to do at `index`.
+    fn is_beyond(&self, index: u64) -> bool {
+        index >= self.end.load(Ordering::Relaxed) || self.stops()
+    }
+
+    /// Whether `index` is too far ahead of what has been taken.
+    fn is_far(&self, index: u64) -> bool {
+        index >= self.taken.load(Ordering::Relaxed).saturating_add(AHEAD)
+    }
+
     /// Waits until `index` is not too far ahead; false where the work has stopped.
     fn wait_for(&self, index: u64) -> bool {
-        let taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_ahead = |taken: &mut u64| {
-            index >= taken.saturating_add(AHEAD) && !self.stops.load(Ordering::Relaxed)
-        };
-        let waited = self.moved.wait_while(taken, is_ahead);
+        let asleep = self.asleep.lock().unwrap_or_else(PoisonError::into_inner);
+        let waits = |_: &mut ()| self.is_far(index) && !self.is_beyond(index);
+        let waited = self.moved.wait_while(asleep, waits);
         drop(waited.unwrap_or_else(PoisonError::into_inner));
-        !self.stops.load(Ordering::Relaxed)
+        !self.is_beyond(index)
     }
 
     /// Gives the results to `take` in order, until all are there or one is missing for good.
     fn collect<T>(
         &self,
         begin: u64,
-        results: &Receiver<(u64, Option<T>)>,
+        results: &Receiver<Done<T>>,
         take: &mut impl FnMut(Vec<T>) -> ControlFlow<()>,
     ) {
         let mut waiting = BTreeMap::new();
         let mut next = begin;
         while let Ok(first) = results.recv() {
-            for (index, result) in std::iter::once(first).chain(results.try_iter()) {
-                match result {
-                    Some(result) => drop(waiting.insert(index, result)),
-                    None => self.stop(),
-                }
-            }
+            waiting.extend(std::iter::once(first).chain(results.try_iter()).flatten());
             let mut ready = Vec::new();
             while let Some(result) = waiting.remove(&next) {
                 ready.push(result);
@@ -113,16 +141,19 @@ impl Queue {
             if !ready.is_empty() && take(ready).is_break() {
                 return;
             }
-            *self.taken.lock().unwrap_or_else(PoisonError::into_inner) = next;
-            self.moved.notify_all();
+            self.wake(|| self.taken.store(next, Ordering::Relaxed));
         }
     }
 
     fn stop(&self) {
-        // Under the lock, so that no worker misses it between its look and its sleep.
-        let taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
-        self.stops.store(true, Ordering::Relaxed);
-        drop(taken);
+        self.wake(|| self.stops.store(true, Ordering::Relaxed));
+    }
+
+    /// Does what the sleeping workers wait for, and wakes them.
+    fn wake(&self, change: impl FnOnce()) {
+        let asleep = self.asleep.lock().unwrap_or_else(PoisonError::into_inner);
+        change();
+        drop(asleep);
         self.moved.notify_all();
     }
 }
