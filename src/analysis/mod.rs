@@ -5,6 +5,7 @@
 //!
 //! These rooms follow a run and read it; none of them changes a number of it.
 
+pub mod beside;
 mod between;
 pub mod compare;
 pub mod cost;
@@ -22,6 +23,7 @@ mod tilt_swing;
 pub mod trial;
 mod turns;
 
+pub use beside::Beside;
 pub use extremes::Extremes;
 pub use health::Health;
 pub use measure::{Instruments, Measured};

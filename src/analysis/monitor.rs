@@ -1,6 +1,6 @@
 //! What follows a run step by step and can say at any moment how it stands: instruments, theory, health.
 
-use super::cost::is_affordable;
+use super::beside::Beside;
 use super::extremes::Extremes;
 use super::frozen::Frozen;
 use super::health::Health;
@@ -9,7 +9,7 @@ use super::theory::Theory;
 use super::tilt_swing::TiltSwing;
 use super::trial::Deviation;
 use crate::physics::{State, SymmetricTop};
-use crate::run::{Step, Truth};
+use crate::run::Step;
 use crate::scenario::Scenario;
 use std::sync::Arc;
 
@@ -18,8 +18,7 @@ use std::sync::Arc;
 pub struct Monitor {
     instruments: Instruments,
     extremes: Extremes,
-    truth: Option<Truth>,
-    most_distance_m: f64,
+    beside: Beside,
     /// Steps still to be held against the exact motion.
     unheld: Vec<State>,
     /// The change of forces since which the instruments measure.
@@ -33,13 +32,10 @@ pub struct Monitor {
 impl Monitor {
     /// A monitor for the run that begins at `step`.
     pub fn new(step: &Step) -> Self {
-        let scenario = step.scenario();
-        let truth = is_affordable(scenario).then(|| Truth::new(Arc::clone(scenario)));
         Self {
             instruments: Instruments::new(step),
             extremes: Extremes::new(step),
-            truth,
-            most_distance_m: 0.0,
+            beside: Beside::new(step.scenario()),
             unheld: Vec::new(),
             changes: step.changes(),
             since: step.number(),
@@ -50,11 +46,7 @@ impl Monitor {
 
     /// Goes on with a run of `scenario`, whose past is the same.
     pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
-        match &mut self.truth {
-            Some(truth) => truth.go_on_in(scenario),
-            None => self.truth = Some(Truth::new(Arc::clone(scenario))),
-        }
-        self.truth.take_if(|_| !is_affordable(scenario));
+        self.beside.go_on_in(scenario);
     }
 
     /// Takes in `step`; to be shown every step. Every one of them is held against the exact motion: what leaves it and
@@ -62,7 +54,7 @@ impl Monitor {
     #[inline]
     pub fn follow(&mut self, step: &Step) {
         self.measure(step);
-        self.hold_distance(step.after());
+        self.beside.hold(step.after());
     }
 
     /// The same, but for the exact motion: [`catch_up`](Self::catch_up) comes to that later, at the latest when health or
@@ -70,7 +62,7 @@ impl Monitor {
     #[inline]
     pub fn follow_ahead(&mut self, step: &Step) {
         self.measure(step);
-        if self.truth.is_some() {
+        if self.beside.is_known() {
             self.unheld.push(*step.after());
         }
     }
@@ -79,7 +71,7 @@ impl Monitor {
     pub fn catch_up(&mut self) {
         let states = std::mem::take(&mut self.unheld);
         for state in &states {
-            self.hold_distance(state);
+            self.beside.hold(state);
         }
         self.unheld = states;
         self.unheld.clear();
@@ -109,7 +101,7 @@ impl Monitor {
         Health::new(
             step,
             deviation,
-            deviation.map(|_| self.most_distance_m),
+            deviation.map(|_| self.most_distance_m()),
             theory.map(|theory| theory.tilt_range_deg.1 - theory.tilt_range_deg.0),
         )
     }
@@ -117,32 +109,13 @@ impl Monitor {
     /// How far off the exact motion the run is at `step`; `None` where that would take too long.
     pub fn deviation(&mut self, step: &Step) -> Option<Deviation> {
         self.catch_up();
-        let deviation = Deviation::of(step.after(), self.truth.as_mut()?);
-        self.take_in(deviation.distance_m);
-        self.truth.as_ref().map(|_| deviation)
-    }
-
-    #[inline]
-    fn hold_distance(&mut self, state: &State) {
-        if let Some(truth) = &mut self.truth {
-            let distance_m = Deviation::distance_of(state, truth);
-            self.take_in(distance_m);
-        }
-    }
-
-    #[inline]
-    fn take_in(&mut self, distance_m: f64) {
-        if distance_m.is_finite() {
-            self.most_distance_m = self.most_distance_m.max(distance_m);
-        } else {
-            self.truth = None; // it has left the range of numbers, and does not come back
-        }
+        self.beside.deviation(step.after())
     }
 
     /// What theory says of the exact motion at `time_s` (s); `None` for a lopsided body, a push off the axle, or a
     /// motion that would take too long.
     pub fn theory(&mut self, time_s: f64) -> Option<Theory> {
-        let truth = self.truth.as_mut()?;
+        let truth = self.beside.truth()?;
         let state = truth.state_at(time_s);
         let body = &truth.scenario().body.mechanics;
         let top = SymmetricTop::of(body)?;
@@ -153,7 +126,17 @@ impl Monitor {
 
     /// The largest distance of the traced point from the exact motion so far, m; 0 where it is not held against that.
     pub fn most_distance_m(&self) -> f64 {
-        self.most_distance_m
+        self.beside.most_distance_m()
+    }
+
+    /// How far the run strays from the exact motion, as far as its steps are held against that.
+    pub fn beside(&self) -> &Beside {
+        &self.beside
+    }
+
+    /// Takes over what was found of the steps that it [measured](Self::measure), and did not hold against the exact motion.
+    pub fn set_beside(&mut self, beside: Beside) {
+        self.beside = beside;
     }
 
     /// The least and the greatest over every step of the run.

@@ -3,7 +3,7 @@
 //! They are equally spaced from the start. When there are too many, every second one is dropped and the spacing doubles,
 //! so that memory is bounded however long the run is.
 
-use crate::analysis::Monitor;
+use crate::analysis::{Beside, Monitor};
 use crate::run::Simulation;
 
 /// Steps between two checkpoints at first.
@@ -63,11 +63,21 @@ impl Checkpoints {
         }
     }
 
-    /// Stores the run's present state if its step is a multiple of the spacing. To be called after every step.
+    /// Stores the run's present state if its step is a multiple of the spacing. To be called after every step. Returns
+    /// whether it was.
     #[inline]
-    pub fn offer(&mut self, simulation: &Simulation, monitor: &Monitor) {
-        if simulation.step_number().is_multiple_of(self.spacing) {
+    pub fn offer(&mut self, simulation: &Simulation, monitor: &Monitor) -> bool {
+        let is_due = simulation.step_number().is_multiple_of(self.spacing);
+        if is_due {
             self.keep(simulation, monitor);
+        }
+        is_due
+    }
+
+    /// Gives the checkpoint at `step`, if it is stored, what was found of its distance from the exact motion later.
+    pub fn set_beside(&mut self, step: u64, beside: Beside) {
+        if let Ok(place) = self.later.binary_search_by_key(&step, Checkpoint::step) {
+            self.later[place].monitor.set_beside(beside);
         }
     }
 

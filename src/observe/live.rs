@@ -4,6 +4,8 @@
 //! steps on from there, with the same bits as the first time. The pictures of the steps that then lie ahead are stored
 //! separately.
 
+mod on_two_cores;
+
 use super::checkpoints::Checkpoints;
 use super::overlay::Overlay;
 use super::path::Path;
@@ -103,16 +105,22 @@ impl LiveRun {
     /// # Errors
     /// When the numbers stop being finite; the run then stays at the step before.
     pub fn step(&mut self) -> Result<(), NotFinite> {
+        self.take_step(Monitor::follow).map(drop)
+    }
+
+    /// Takes one time step, of which the monitor takes in what `follow` gives it. Returns whether that stored a checkpoint.
+    #[inline]
+    fn take_step(&mut self, follow: impl Fn(&mut Monitor, &Step)) -> Result<bool, NotFinite> {
         let step = self.simulation.step()?;
-        self.monitor.follow(step);
+        follow(&mut self.monitor, step);
         self.now = moment(step);
         if self.last_whole.is_none() && !step.after().is_a_rotation() {
             let before = step.before().filter(|before| before.is_a_rotation());
             self.last_whole = before.map(|before| (step.number() - 1, *before));
         }
-        self.checkpoints.offer(&self.simulation, &self.monitor);
+        let is_stored = self.checkpoints.offer(&self.simulation, &self.monitor);
         self.keep();
-        Ok(())
+        Ok(is_stored)
     }
 
     /// Adds the present moment to the recording and the path, unless they have it already.

@@ -103,9 +103,7 @@ impl Playback {
     /// # Errors
     /// When the numbers stop being finite on the way.
     pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
-        while self.step_number() < step {
-            self.run.step()?;
-        }
+        self.run.step_to(step)?;
         self.stop = self.next_stop();
         Ok(())
     }
@@ -349,8 +347,8 @@ impl Playback {
         let here = self.step_number();
         self.stop = here.saturating_add(steps);
         let first = here.saturating_add(at_once);
-        while self.step_number() < first && self.run.step().is_ok() {}
-        self.hurries = self.step_number() < self.stop; // a failed step is tried again by advance(), which reports it
+        let _ = self.run.step_to(first); // a failed step is tried again by advance(), which reports it
+        self.hurries = self.step_number() < self.stop;
         if !self.hurries {
             self.stop = self.next_stop();
         }
