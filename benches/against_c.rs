@@ -65,6 +65,7 @@ fn splitting_in_rust(name: &str) -> f64 {
     scheme.load(&Loads {
         gravity: 9.8,
         pushes: Vec::new(),
+        ..Loads::default()
     });
     scheme.start(&state);
     let begin = Instant::now();

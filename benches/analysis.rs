@@ -92,6 +92,7 @@ fn schemes(criterion: &mut Criterion) {
         let loads = Loads {
             gravity: scenario.motion.gravity,
             pushes: Vec::new(),
+            ..Loads::default()
         };
         for info in SCHEMES {
             let mut scheme = info.make(&scenario.body.mechanics);
@@ -112,6 +113,7 @@ fn billionth(criterion: &mut Criterion) {
     let loads = Loads {
         gravity: scenario.motion.gravity,
         pushes: Vec::new(),
+        ..Loads::default()
     };
     let body = &scenario.body.mechanics;
     let run = |steps: u32, look: &mut dyn FnMut(u32, &State)| {

@@ -25,13 +25,15 @@ pub fn integration_rad(scenario: &Scenario) -> f64 {
     (spin + swing) * Clock::end_s(scenario)
 }
 
-/// Whether the body is symmetric and every push, those of edits too, acts on its axle.
+/// Whether there is no friction, the body is symmetric and every push, those of edits too, acts on its axle.
 fn has_closed_form(scenario: &Scenario) -> bool {
     let body = &scenario.body.mechanics;
     let edited = scenario.edits.iter().flat_map(Edit::pushes_set);
     let mut pushed = scenario.pushes.iter().chain(edited).map(|push| push.point);
-    SymmetricTop::of(body)
-        .is_some_and(|top| pushed.all(|point| top.has_on_axle(body, &body.points()[point].at)))
+    let on_axle =
+        |top: &SymmetricTop, point: usize| top.has_on_axle(body, &body.points()[point].at);
+    scenario.friction.is_none()
+        && SymmetricTop::of(body).is_some_and(|top| pushed.all(|point| on_axle(&top, point)))
 }
 
 #[cfg(test)]

@@ -59,7 +59,8 @@ impl Frozen {
         let scenario = step.scenario();
         let body = &scenario.body.mechanics;
         let top = SymmetricTop::of(body).filter(|_| step.motion().scheme.name == "report")?;
-        let load = step.loads().on_axle(body, &top)?;
+        let rubs = !step.loads().friction.is_none();
+        let load = step.loads().on_axle(body, &top).filter(|_| !rubs)?;
         let (state, time_step_s) = (step.after(), step.motion().time_step_s);
         let size = state.momentum.norm();
         if load.x != 0.0 || load.y != 0.0 || !(size > 0.0 && size.is_finite()) {

@@ -22,8 +22,8 @@ use std::sync::Arc;
 pub const BELIEVED_WITHIN: f64 = 0.01;
 /// Steps that a search for a better time step may take, of the report's 14 points; of more points as many fewer.
 const SEARCH_STEPS: u64 = 2_000_000;
-/// Where a time step is not to be mended, this scheme is tried.
-pub const BETTER_SCHEME: &str = "srkn11b";
+/// Where a time step is not to be mended, the first of these is tried that can be true to the scenario's friction.
+const BETTER_SCHEMES: [&str; 2] = ["srkn11b", "strang"];
 /// A nutation that swings by less than this (degrees) is none.
 const LEAST_SWING_DEG: f64 = 1e-6;
 /// A nutation that has changed by less than this part is as it was.
@@ -97,6 +97,8 @@ pub enum Advice {
     TimeStep(f64),
     /// Another scheme at this time step, s: the run's own was tried down to `tried_s` without success.
     Scheme {
+        /// The scheme.
+        name: &'static str,
         /// The time step of the other scheme, s.
         time_step_s: f64,
         /// The finest time step tried with the run's own, s.
@@ -268,11 +270,12 @@ fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
             false => Advice::Holds,
         };
     }
-    let better = SchemeInfo::find(BETTER_SCHEME).unwrap_or(scheme);
+    let better = better_scheme(scenario);
     if rescale::accumulates(scenario) {
         // At another time step it would be another run.
         return match better != scheme && holds(own, better) {
             true => Advice::Scheme {
+                name: better.name,
                 time_step_s: own,
                 tried_s: own,
             },
@@ -289,11 +292,21 @@ fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
     let mut steps = std::iter::once(own).chain(finer_time_steps(scenario));
     match steps.find(|&step| better != scheme && holds(step, better)) {
         Some(time_step_s) => Advice::Scheme {
+            name: better.name,
             time_step_s,
             tried_s,
         },
         None => Advice::Nothing,
     }
+}
+
+/// The scheme that is tried where a time step is not to be mended.
+fn better_scheme(scenario: &Scenario) -> &'static SchemeInfo {
+    let able = |scheme: &&SchemeInfo| scheme.admits.objection(&scenario.friction).is_none();
+    let mut better = BETTER_SCHEMES
+        .iter()
+        .filter_map(|name| SchemeInfo::find(name));
+    better.find(able).unwrap_or(scenario.motion.scheme)
 }
 
 /// The length of `vector`, also where its squares leave the range of numbers.

@@ -8,7 +8,7 @@ use super::measure::{Instruments, Measured};
 use super::theory::Theory;
 use super::tilt_swing::TiltSwing;
 use super::trial::Deviation;
-use crate::physics::{State, SymmetricTop};
+use crate::physics::{LagrangeTop, State, SymmetricTop};
 use crate::run::Step;
 use crate::scenario::Scenario;
 use std::sync::Arc;
@@ -102,7 +102,9 @@ impl Monitor {
             step,
             deviation,
             deviation.map(|_| self.most_distance_m()),
-            theory.map(|theory| theory.tilt_range_deg.1 - theory.tilt_range_deg.0),
+            theory
+                .filter(|theory| !theory.is_of_a_moment)
+                .map(|theory| theory.tilt_range_deg.1 - theory.tilt_range_deg.0),
         )
     }
 
@@ -112,16 +114,25 @@ impl Monitor {
         self.beside.deviation(step.after())
     }
 
-    /// What theory says of the exact motion at `time_s` (s); `None` for a lopsided body, a push off the axle, or a
-    /// motion that would take too long.
+    /// What theory says of the exact motion at `time_s` (s), where there is friction as if it ceased then; `None` for a
+    /// lopsided body, a push off the axle, or a motion that would take too long.
     pub fn theory(&mut self, time_s: f64) -> Option<Theory> {
         let truth = self.beside.truth()?;
         let state = truth.state_at(time_s);
         let body = &truth.scenario().body.mechanics;
         let top = SymmetricTop::of(body)?;
         let load = truth.loads().on_axle(body, &top)?;
-        let motion = truth.motion().closed_form()?;
-        Some(Theory::new(&top, &load, motion, &state))
+        if truth.loads().friction.is_none() {
+            let motion = truth.motion().closed_form()?;
+            return Some(Theory::new(&top, &load, motion, &state));
+        }
+        let (turn, momentum) = (state.orientation, state.momentum);
+        let motion = LagrangeTop::new(top.across, top.along, load, turn, momentum);
+        let theory = Theory::new(&top, &load, &motion, &state);
+        Some(Theory {
+            is_of_a_moment: true,
+            ..theory
+        })
     }
 
     /// The largest distance of the traced point from the exact motion so far, m; 0 where it is not held against that.

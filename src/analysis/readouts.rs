@@ -34,6 +34,8 @@ pub struct Readouts {
     pub spin_rad_per_s: f64,
     /// Whether a rotor spins in a frame that does not.
     pub has_rotor: bool,
+    /// Work of friction since the start, J; `None` where there is no friction.
+    pub friction_work: Option<f64>,
     /// I3/I1 of a symmetric body.
     pub kappa: Option<f64>,
     /// How it stands.
@@ -78,6 +80,7 @@ impl Readouts {
             spin: state.momentum.dot(&state.axle()),
             spin_rad_per_s: step.scenario().spin_rad_per_s(state),
             has_rotor: step.scenario().rotor.is_some(),
+            friction_work: (!step.loads().friction.is_none()).then(|| step.friction_work()),
             kappa: SymmetricTop::of(&step.scenario().body.mechanics).map(|top| top.kappa()),
             health: *health,
             advice: advice.copied(),
@@ -122,6 +125,12 @@ impl Readouts {
     /// Theory, where its axis is +z, about which the measured numbers are too.
     pub fn theory_about_z(&self) -> Option<&Theory> {
         self.theory.as_ref().filter(|theory| theory.axis == Axis::Z)
+    }
+
+    /// The same, where it is of the motion that does follow: there is no friction.
+    fn lasting_theory(&self) -> Option<&Theory> {
+        self.theory_about_z()
+            .filter(|theory| !theory.is_of_a_moment)
     }
 
     /// Whether the time step shows the nutation as it is: `Some(false)` where what is measured is strobed,
@@ -282,7 +291,7 @@ impl Source {
             Self::Scheme => "a formula for the scheme at this time step",
             Self::Exact => "held against the exact motion",
             Self::Theory => {
-                "theory of the heavy symmetric top, for the exact motion under the present forces"
+                "theory of the heavy symmetric top without friction, for the exact motion under the present forces"
             }
             Self::Clock => "the machine's clock",
         }
@@ -426,6 +435,7 @@ readouts! {
     "azimuth_deg", "deg", State, "azimuth of the axle, counted on through full turns", |r| r.sample.azimuth_deg, "*φ*";
     "energy_J", "J", State, "kinetic energy, and that of the weight from the pivot", |r| r.sample.energy, "*E*";
     "energy_drift", "", State, "energy that only the scheme's error can have made, in units of M g |c|, or of the kinetic energy at the start where M g |c| is below 1e-9 of it", |r| r.health.energy_drift;
+    "friction_work_J", "J", State, "work of friction since the start, which the energy drift counts as work: of each impulse of it, the impulse times the mean of omega before and after; under exact and rk4 its power integrated", |r| r.friction_work;
     "segment", "", Scenario, "edits of time step, scheme or gravity before this step", |r| r.sample.segment;
     "measured_lowest_tilt_deg", "deg", EveryStep, "least angle of the axle from +z", |r| r.extremes.lowest_tilt_deg, "*θ*_{min}";
     "measured_highest_tilt_deg", "deg", EveryStep, "greatest angle of the axle from +z", |r| r.extremes.highest_tilt_deg, "*θ*_{max}";
@@ -446,22 +456,22 @@ readouts! {
     "Lz_drift_Js", "J s", Exact, "L_z less the exact motion's", |r| r.health.deviation.map(|off| off.lz);
     "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle", |r| r.kappa, "*κ*";
     "theory_axis", "", Theory, "the axis that theory speaks of: +z, or another (against the forces, or along L where there are none), and then what it says about that axis is null", |r| r.theory.map(|theory| theory.axis.to_string());
-    "path", "", Theory, "the path of the axle about +z", |r| r.theory_about_z().map(|theory| theory.path.to_string());
-    "predicted_lowest_tilt_deg", "deg", Theory, "least tilt of the exact motion from +z", |r| r.theory_about_z().map(|theory| theory.tilt_range_deg.0), "*θ*_{min}";
-    "predicted_highest_tilt_deg", "deg", Theory, "greatest tilt of the exact motion from +z", |r| r.theory_about_z().map(|theory| theory.tilt_range_deg.1), "*θ*_{max}";
-    "cusp_tilt_deg", "deg", Theory, "tilt at which the axle stands still in azimuth", |r| r.theory_about_z().and_then(|theory| theory.cusp_tilt_deg);
-    "predicted_precession_rad_per_s", "rad/s", Theory, "mean precession of the exact motion about +z", |r| r.theory_about_z().and_then(|theory| theory.precession), "*Ω*_{p}";
+    "path", "", Theory, "the path of the axle about +z", |r| r.lasting_theory().map(|theory| theory.path.to_string());
+    "predicted_lowest_tilt_deg", "deg", Theory, "least tilt of the exact motion from +z", |r| r.lasting_theory().map(|theory| theory.tilt_range_deg.0), "*θ*_{min}";
+    "predicted_highest_tilt_deg", "deg", Theory, "greatest tilt of the exact motion from +z", |r| r.lasting_theory().map(|theory| theory.tilt_range_deg.1), "*θ*_{max}";
+    "cusp_tilt_deg", "deg", Theory, "tilt at which the axle stands still in azimuth", |r| r.lasting_theory().and_then(|theory| theory.cusp_tilt_deg);
+    "predicted_precession_rad_per_s", "rad/s", Theory, "mean precession of the exact motion about +z", |r| r.lasting_theory().and_then(|theory| theory.precession), "*Ω*_{p}";
     "measured_precession_rad_per_s", "rad/s", Measured, "mean precession about +z", |r| value(r.precession), "*Ω*_{p}";
     "measured_precession_uncertainty_rad_per_s", "rad/s", Measured, "one standard error of it", |r| uncertainty(r.precession);
     "slow_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the slow one", |r| r.theory_about_z().and_then(|theory| theory.slow_precession), "*Ω*_{slow}";
     "fast_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the fast one", |r| r.theory_about_z().and_then(|theory| theory.fast_precession), "*Ω*_{fast}";
     "fast_top_precession_rad_per_s", "rad/s", Theory, "the fast top's precession M g h/L3", |r| r.theory_about_z().and_then(|theory| theory.fast_top_precession), "*M* *g* *h*/*L*_{3}";
-    "predicted_nutation_period_s", "s", Theory, "nutation period of the exact motion", |r| r.theory_about_z().and_then(|theory| theory.nutation_period_s), "*T*_{n}";
+    "predicted_nutation_period_s", "s", Theory, "nutation period of the exact motion", |r| r.lasting_theory().and_then(|theory| theory.nutation_period_s), "*T*_{n}";
     "measured_nutation_period_s", "s", Measured, "mean time between two turning points of the tilt", |r| value(r.nutation), "*T*_{n}";
     "measured_nutation_uncertainty_s", "s", Measured, "one standard error of it", |r| uncertainty(r.nutation);
     "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what is measured is strobed", |r| r.nutation_is_resolved();
-    "predicted_precession_period_s", "s", Theory, "time of one turn of the mean precession of the exact motion about +z", |r| r.theory_about_z().and_then(Theory::precession_period_s), "*T*_{p}";
-    "predicted_body_cone_period_s", "s", Theory, "free symmetric body: time in which the instantaneous axis goes once round the axle, seen from the body, (I1/|I3 - I1|) 2 pi/omega3; null under a load, without spin, for I3 = I1, and where only a rotor spins", |r| r.theory.filter(|_| !r.has_rotor).and_then(|theory| theory.body_cone_period_s), "*T*_{c}";
+    "predicted_precession_period_s", "s", Theory, "time of one turn of the mean precession of the exact motion about +z", |r| r.lasting_theory().and_then(Theory::precession_period_s), "*T*_{p}";
+    "predicted_body_cone_period_s", "s", Theory, "free symmetric body: time in which the instantaneous axis goes once round the axle, seen from the body, (I1/|I3 - I1|) 2 pi/omega3; null under a load, without spin, for I3 = I1, and where only a rotor spins", |r| r.theory.filter(|theory| !r.has_rotor && !theory.is_of_a_moment).and_then(|theory| theory.body_cone_period_s), "*T*_{c}";
     "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation), "*ω*_{n}";
     "fast_top_nutation_rpm", "rpm", Theory, "the same in revolutions a minute", |r| r.theory.map(|theory| start::rpm(theory.fast_top_nutation)), "*ω*_{n}";
     "L_axle_Js", "J s", State, "L along the axle", |r| r.spin, "*L*_{3}";

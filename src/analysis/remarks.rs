@@ -2,7 +2,7 @@
 //! the summary.
 
 use super::Health;
-use super::health::{Advice, BETTER_SCHEME, Nutation, Picture};
+use super::health::{Advice, Nutation, Picture};
 use crate::run::EnergyUnit;
 use crate::text::number::{
     NONE, exponent, fixed, short, shortest, signed, signed_exponent, steady, times,
@@ -156,19 +156,21 @@ fn how_to_mend(health: &Health, advice: &Advice) -> String {
             format!("; a time step of {step} s{option}{throughout} keeps it within 1 %")
         }
         Advice::Scheme {
+            name,
             time_step_s,
             tried_s,
         } if time_step_s == tried_s => {
             let step = shortest(*time_step_s);
-            format!("; the scheme {BETTER_SCHEME} at {step} s{throughout} mends it")
+            format!("; the scheme {name} at {step} s{throughout} mends it")
         }
         Advice::Scheme {
+            name,
             time_step_s,
             tried_s,
         } => {
             let (step, tried) = (shortest(*time_step_s), shortest(*tried_s));
             format!(
-                "; no time step down to {tried} s mends it, but the scheme {BETTER_SCHEME} at {step} s{throughout} does"
+                "; no time step down to {tried} s mends it, but the scheme {name} at {step} s{throughout} does"
             )
         }
     }
@@ -237,18 +239,19 @@ fn mend(health: &Health, advice: &Advice) -> Option<Remark> {
             (long, format!("dt {step} s mends it"))
         }
         Advice::Scheme {
+            name,
             time_step_s,
             tried_s,
         } => {
             let step = shortest(*time_step_s);
             let long = match health.can_be_rescaled {
-                true => format!("--scheme {BETTER_SCHEME} --time-step {step} would mend it"),
+                true => format!("--scheme {name} --time-step {step} would mend it"),
                 false if time_step_s == tried_s => {
-                    format!("--scheme {BETTER_SCHEME} would mend it")
+                    format!("--scheme {name} would mend it")
                 }
-                false => format!("{BETTER_SCHEME} at {step} s throughout would mend it"),
+                false => format!("{name} at {step} s throughout would mend it"),
             };
-            (long, format!("{BETTER_SCHEME}, dt {step} s mends it"))
+            (long, format!("{name}, dt {step} s mends it"))
         }
         Advice::Holds | Advice::Nothing | Advice::BoundToItsTimeStep => return None,
     };

@@ -43,6 +43,9 @@ pub struct Theory {
     pub cusp_tilt_deg: Option<f64>,
     /// The path of the axle.
     pub path: Path,
+    /// Whether there is friction: then all this is of the motion that would follow if it ceased now, and no part of the
+    /// motion that does follow, but for the rates at this moment.
+    pub is_of_a_moment: bool,
 }
 
 /// The axis that a theory speaks of: its tilts are angles from it, its precession turns about it.
@@ -164,6 +167,7 @@ impl Theory {
                 true => Path::ThroughVertical,
                 false => path(tilt_range_deg, cusp_tilt_deg),
             },
+            is_of_a_moment: false,
         }
     }
 

@@ -85,15 +85,17 @@ impl Summary {
 
     fn write_rates(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let readouts = &self.readouts;
+        // Under friction no motion goes on as theory has it.
+        let theory = readouts.theory.filter(|theory| !theory.is_of_a_moment);
         let precession = Comparison {
             unit: "rad/s",
             measured: readouts.precession,
-            predicted: readouts.theory.and_then(|theory| theory.precession),
+            predicted: theory.and_then(|theory| theory.precession),
         };
         let nutation = Comparison {
             unit: "s",
             measured: readouts.nutation,
-            predicted: readouts.theory.and_then(|theory| theory.nutation_period_s),
+            predicted: theory.and_then(|theory| theory.nutation_period_s),
         };
         let path = readouts.theory.as_ref().map(|theory| theory.path);
         let why = match (precession.predicted, path) {

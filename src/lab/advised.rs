@@ -3,7 +3,7 @@
 use super::Lab;
 use super::carry_out::{Answer, Done};
 use super::player::Player;
-use crate::analysis::health::{Advice, BETTER_SCHEME, advise};
+use crate::analysis::health::{Advice, advise};
 use crate::observe::advisor::Advisor;
 use crate::run::Simulation;
 use crate::scenario::Scenario;
@@ -39,7 +39,9 @@ impl Player {
     fn offered(&self, advice: &Advice) -> Option<Offer> {
         let (time_step_s, scheme) = match *advice {
             Advice::TimeStep(time_step_s) => (time_step_s, None),
-            Advice::Scheme { time_step_s, .. } => (time_step_s, Some(BETTER_SCHEME)),
+            Advice::Scheme {
+                name, time_step_s, ..
+            } => (time_step_s, Some(name)),
             Advice::Holds | Advice::Nothing | Advice::BoundToItsTimeStep => return None,
         };
         let end_s = self.playback.end_s();

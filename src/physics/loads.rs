@@ -1,6 +1,6 @@
-//! What pulls at the body: gravity on every point, and pushes on single ones.
+//! What acts on the body: gravity on every point, pushes on single ones, and friction.
 
-use super::Body;
+use super::{Body, Friction};
 use nalgebra::{Matrix3, Vector3};
 
 /// A force on one point of the body, constant in the world frame while the loads hold.
@@ -12,13 +12,15 @@ pub struct PointForce {
     pub force: Vector3<f64>,
 }
 
-/// All forces during a stretch of time in which none of them changes.
+/// All forces and the friction during a stretch of time in which none of them changes.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Loads {
     /// Acceleration of gravity along −z, m/s².
     pub gravity: f64,
     /// Forces beside gravity.
     pub pushes: Vec<PointForce>,
+    /// Friction about the pivot.
+    pub friction: Friction,
 }
 
 impl Loads {
@@ -74,6 +76,7 @@ mod tests {
         let loads = Loads {
             gravity: 9.8,
             pushes: vec![push],
+            ..Loads::default()
         };
         let turn = rotation::about(&Vector3::new(0.3, -1.0, 0.4), 0.7);
         let weight = Vector3::new(0.0, 0.0, -0.5 * 9.8);

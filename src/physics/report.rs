@@ -6,6 +6,8 @@
 //! 4. X ← R X, point by point
 //! 5. L ← L + dt Σ X × F, at the *new* positions
 //!
+//! Friction, which the report has not, acts in 5: with the Ω of the step, about the axle as the turn has left it.
+//!
 //! The points themselves are carried from step to step, as the report carries them, two at a time: they are turned, and
 //! then summed to the torque (5) and the inertia that the next step begins with (1). Two lanes on every processor, added
 //! up in one fixed order, give every machine the same bits. The baseline x86-64 has 16 registers: they hold a rotation and
@@ -16,7 +18,7 @@
 
 use super::rotation::AxisAngle;
 use super::workings::{Listener, Nobody, Phase};
-use super::{Body, Loads, PointForce, Scheme, State};
+use super::{Body, Damping, Loads, PointForce, Scheme, State, friction};
 use nalgebra::{Matrix3, Vector3};
 use points::{Inertia, LANES, Moments, Pair, Turn};
 use wide::f64x2;
@@ -34,6 +36,9 @@ pub struct Report {
     massive: usize,
     gravity: f64,
     pushes: Vec<PointForce>,
+    damping: Option<Damping>,
+    /// Work of friction in the step taken last, J.
+    work: f64,
     /// From the positions as they stand: what the next step begins with.
     inertia: Inertia,
 }
@@ -47,6 +52,8 @@ impl Report {
             massive: 0,
             gravity: 0.0,
             pushes: Vec::new(),
+            damping: None,
+            work: 0.0,
             inertia: Inertia::of(&body.inertia()),
         }
     }
@@ -108,6 +115,15 @@ impl Report {
         let momentum = state.momentum;
         state.momentum += dt * torque;
         listener.hear(|| phases::momentum_phase(dt, &torque, &momentum, &state.momentum));
+        if let Some(damping) = &self.damping {
+            let q = &state.orientation;
+            let omega = q.tr_mul(&angular_velocity);
+            let action = damping.act(&omega, &q.tr_mul(&torque), dt);
+            let impulse = q * action.impulse;
+            state.momentum += impulse;
+            self.work = action.work;
+            listener.hear(|| friction::phase(dt, &omega, &impulse, &state.momentum));
+        }
         self.inertia = Inertia::of_points(&moments);
     }
 }
@@ -133,6 +149,12 @@ impl Scheme for Report {
     fn load(&mut self, loads: &Loads) {
         self.gravity = loads.gravity;
         self.pushes.clone_from(&loads.pushes);
+        self.damping = Damping::new(&self.body, &loads.friction);
+        self.work = 0.0;
+    }
+
+    fn friction_work(&self) -> f64 {
+        self.work
     }
 
     fn step(&mut self, dt: f64, state: &mut State) {
@@ -185,7 +207,7 @@ mod tests {
             let mut scheme = Report::new(&body);
             scheme.load(&Loads {
                 gravity: 9.8,
-                pushes: Vec::new(),
+                ..Loads::default()
             });
             scheme.start(&state);
             for _ in 0..100 {

@@ -1,11 +1,12 @@
-//! The classical Runge-Kutta scheme on dQ/dt = \[Ω\]× Q, dL/dt = torque(Q), Ω = Q I₀⁻¹ Qᵀ L.
+//! The classical Runge-Kutta scheme on dQ/dt = \[Ω\]× Q, dL/dt = torque(Q, Ω), Ω = Q I₀⁻¹ Qᵀ L; the torque depends on Ω where
+//! there is friction.
 //!
 //! It is here so that the textbook's tops have a scheme that is true to them. It works on the matrix Q itself, whose
 //! equation is smooth off the rotations too, and pulls it back to a rotation once, at the end of the step: that
 //! changes the result by no more than the step's own error.
 
 use super::workings::{Changes, Listener, Nobody, Phase, Quantity};
-use super::{Body, Loads, Scheme, State, loads::torque, rotation};
+use super::{Body, Damping, Loads, Scheme, State, loads::torque, rotation};
 use nalgebra::{Matrix3, Vector3};
 
 /// Runge-Kutta of order 4; see the module's text.
@@ -13,6 +14,9 @@ use nalgebra::{Matrix3, Vector3};
 pub struct Rk4 {
     inverse_inertia: Matrix3<f64>,
     moment: Matrix3<f64>,
+    damping: Option<Damping>,
+    /// Work of friction in the step taken last, J.
+    work: f64,
     body: Body,
 }
 
@@ -22,8 +26,10 @@ struct Slope {
     angular_velocity: Vector3<f64>,
     /// dQ/dt = \[Ω\]× Q, 1/s.
     orientation: Matrix3<f64>,
-    /// dL/dt, the torque, N m.
+    /// dL/dt, the torque, that of friction included, N m.
     momentum: Vector3<f64>,
+    /// The power of friction, W.
+    power: f64,
 }
 
 impl Rk4 {
@@ -32,18 +38,28 @@ impl Rk4 {
         Self {
             inverse_inertia: body.inverse_inertia(),
             moment: Matrix3::zeros(),
+            damping: None,
+            work: 0.0,
             body: body.clone(),
         }
     }
 
     #[inline]
     fn slope(&self, orientation: &Matrix3<f64>, momentum: &Vector3<f64>) -> Slope {
-        let omega = orientation * (self.inverse_inertia * orientation.tr_mul(momentum));
-        Slope {
+        let in_body = self.inverse_inertia * orientation.tr_mul(momentum);
+        let omega = orientation * in_body;
+        let mut slope = Slope {
             angular_velocity: omega,
             orientation: rotation::crossed(&omega, orientation),
             momentum: torque(orientation, &self.moment),
+            power: 0.0,
+        };
+        if let Some(damping) = &self.damping {
+            let friction = damping.torque(&in_body);
+            slope.momentum += orientation * friction;
+            slope.power = friction.dot(&in_body);
         }
+        slope
     }
 
     fn slope_after(&self, state: &State, slope: &Slope, time: f64) -> Slope {
@@ -52,7 +68,7 @@ impl Rk4 {
     }
 
     #[inline]
-    fn advance<L: Listener>(&self, dt: f64, state: &mut State, listener: &mut L) {
+    fn advance<L: Listener>(&mut self, dt: f64, state: &mut State, listener: &mut L) {
         let k1 = self.slope(&state.orientation, &state.momentum);
         listener.hear(|| {
             k1.phase(
@@ -89,6 +105,10 @@ impl Rk4 {
         listener.hear(|| orientation_phase(dt, &before.orientation, &bent, &state.orientation));
         state.momentum += torque * (dt / 6.0);
         listener.hear(|| momentum_phase(dt, &before.momentum, &state.momentum));
+        if self.damping.is_some() {
+            let power = k1.power + 2.0 * (k2.power + k3.power) + k4.power;
+            self.work = power * (dt / 6.0);
+        }
     }
 }
 
@@ -143,6 +163,12 @@ impl Scheme for Rk4 {
 
     fn load(&mut self, loads: &Loads) {
         self.moment = loads.moment(&self.body);
+        self.damping = Damping::new(&self.body, &loads.friction);
+        self.work = 0.0;
+    }
+
+    fn friction_work(&self) -> f64 {
+        self.work
     }
 
     fn step(&mut self, dt: f64, state: &mut State) {

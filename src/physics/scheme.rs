@@ -3,7 +3,7 @@
 use super::exact::Exact;
 use super::splitting::{Kind, SplittingScheme};
 use super::stepping::Scheme;
-use super::{Body, report::Report, rk4::Rk4};
+use super::{Body, Friction, report::Report, rk4::Rk4};
 
 /// One row of the table of schemes.
 #[derive(Debug)]
@@ -22,7 +22,35 @@ pub struct SchemeInfo {
     /// Whether it turns the body by its free motion exactly, however far that leads in one step. The others must turn it by
     /// little in a step for their rows to show the motion.
     pub turns_exactly: bool,
+    /// The friction that it can be true to.
+    pub admits: Admits,
     make: fn(&Body) -> Box<dyn Scheme>,
+}
+
+/// The friction that a scheme can be true to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Admits {
+    /// Any.
+    Any,
+    /// Any but dry friction.
+    WithoutDry,
+    /// None.
+    None,
+}
+
+impl Admits {
+    /// Why a scheme of this kind cannot be true to `friction`; `None` where it can.
+    pub fn objection(self, friction: &Friction) -> Option<&'static str> {
+        match self {
+            Self::None if !friction.is_none() => {
+                Some("goes backwards in time within a step, where friction would feed the motion")
+            }
+            Self::WithoutDry if friction.spin_dry > 0.0 => Some(
+                "takes the torque as smooth in time, which dry friction is not where it stops the spin",
+            ),
+            _ => None,
+        }
+    }
 }
 
 /// Every scheme, the report's first.
@@ -34,6 +62,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
         source: "report, section 3",
         continuous: false,
         turns_exactly: false,
+        admits: Admits::Any,
         make: |body| Box::new(Report::new(body)),
     },
     SchemeInfo {
@@ -43,6 +72,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
         source: "Kutta 1901; Hairer, Norsett, Wanner, Solving ODEs I, section II.1",
         continuous: true,
         turns_exactly: false,
+        admits: Admits::WithoutDry,
         make: |body| Box::new(Rk4::new(body)),
     },
     SchemeInfo {
@@ -52,6 +82,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
         source: "Strang, SIAM J. Numer. Anal. 5, 506 (1968); for the top: Reich, Fields Inst. Commun. 10, 181 (1996)",
         continuous: true,
         turns_exactly: true,
+        admits: Admits::Any,
         make: |body| Box::new(SplittingScheme::new(Kind::Strang, body)),
     },
     SchemeInfo {
@@ -61,6 +92,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
         source: "Blanes and Moan, J. Comput. Appl. Math. 142, 313 (2002), table 3",
         continuous: true,
         turns_exactly: true,
+        admits: Admits::None,
         make: |body| Box::new(SplittingScheme::new(Kind::Srkn11b, body)),
     },
     SchemeInfo {
@@ -70,9 +102,18 @@ pub const SCHEMES: &[SchemeInfo] = &[
         source: "Klein and Sommerfeld, Theorie des Kreisels, chapter VI; Whittaker, Analytical Dynamics, sections 71-72",
         continuous: true,
         turns_exactly: true,
+        admits: Admits::Any,
         make: |body| Box::new(Exact::new(body)),
     },
 ];
+
+/// The schemes that can be true to `friction`, in the table's order.
+pub fn true_to(friction: &Friction) -> impl Iterator<Item = &'static SchemeInfo> + Clone {
+    let friction = *friction;
+    SCHEMES
+        .iter()
+        .filter(move |scheme| scheme.admits.objection(&friction).is_none())
+}
 
 /// The names of all schemes, in the table's order.
 pub const fn names() -> [&'static str; SCHEMES.len()] {

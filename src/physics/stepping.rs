@@ -10,7 +10,8 @@ pub trait Scheme: Send {
     /// Takes the run over at `state`: at its beginning, or from another scheme.
     fn start(&mut self, state: &State);
 
-    /// From now on these are the forces.
+    /// From now on these are the forces and the friction. Of friction a scheme must be given none that it
+    /// [cannot be true to](super::scheme::SchemeInfo::admits).
     fn load(&mut self, loads: &Loads);
 
     /// Takes `state` `dt` seconds further, its time left as it is: time is the run's, which counts steps.
@@ -18,6 +19,12 @@ pub trait Scheme: Send {
 
     /// The same step, to the last bit, with what is computed on the way added to `phases`.
     fn explain(&mut self, dt: f64, state: &mut State, phases: &mut Vec<Phase>);
+
+    /// The work of friction in the step taken last, J: 0, or less. Of friction that acts as an impulse it is the impulse
+    /// times the mean of ω before and after it; of friction that is integrated, the integral.
+    fn friction_work(&self) -> f64 {
+        0.0
+    }
 
     /// What there is to say of how the run was computed, beyond the scheme's name.
     fn remark(&self) -> Option<String> {

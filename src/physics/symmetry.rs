@@ -133,6 +133,7 @@ mod tests {
         let loads = |pushes| Loads {
             gravity: 10.0,
             pushes,
+            ..Loads::default()
         };
         let sum = loads(vec![push(4)]).on_axle(&body, &top).unwrap();
         assert_eq!(sum, Vector3::new(6.0, 0.0, -20.0));

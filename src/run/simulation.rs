@@ -55,6 +55,7 @@ impl Simulation {
         let loads = Loads {
             gravity: motion.gravity,
             pushes: Vec::with_capacity(scenario.pushes.len()),
+            friction: scenario.friction,
         };
         let mut scheme = motion.scheme.make(body);
         scheme.load(&loads);
@@ -63,6 +64,7 @@ impl Simulation {
         let energy = EnergyAccount {
             start: kinetic + motion.gravity * observables::weight_height(body, &state),
             work: 0.0,
+            friction: 0.0,
             scale: EnergyScale::of(&scenario),
         };
         Self {
@@ -242,6 +244,7 @@ impl Simulation {
     #[inline]
     fn take_part(&mut self, length_s: f64, workings: Option<&mut Workings>) {
         let state = &mut self.now.after;
+        let rubs = !self.now.loads.friction.is_none();
         match workings {
             None => self.scheme.step(length_s, state),
             Some(workings) => {
@@ -253,6 +256,9 @@ impl Simulation {
                     phases,
                 });
             }
+        }
+        if rubs {
+            self.now.energy.friction += self.scheme.friction_work();
         }
     }
 

@@ -33,6 +33,8 @@ pub(super) struct EnergyAccount {
     pub start: f64,
     /// Work of pushes and of edits of gravity since then, J.
     pub work: f64,
+    /// Work of friction since then, J: 0, or less.
+    pub friction: f64,
     /// What its error is measured in; `None` where there is nothing to measure it by.
     pub scale: Option<EnergyScale>,
 }
@@ -137,10 +139,15 @@ impl Step {
         })
     }
 
-    /// (E − E₀ − W)/S: the energy that only the scheme's error can have made, W the work of pushes and of edits of
-    /// gravity, S as [`EnergyScale`] has it; `None` where there is no S, or the drift is beyond the range of numbers.
+    /// Work of friction since the start, J, as [the scheme](crate::physics::Scheme::friction_work) has it: 0, or less.
+    pub fn friction_work(&self) -> f64 {
+        self.energy.friction
+    }
+
+    /// (E − E₀ − W)/S: the energy that only the scheme's error can have made, W the work of pushes, of edits of gravity and
+    /// of friction, S as [`EnergyScale`] has it; `None` where there is no S, or the drift is beyond the range of numbers.
     pub fn energy_drift(&self) -> Option<f64> {
-        let gained = self.energy() - self.energy.start - self.energy.work;
+        let gained = self.energy() - self.energy.start - self.energy.work - self.energy.friction;
         let drift = gained / self.energy.scale?.size;
         drift.is_finite().then_some(drift)
     }

@@ -152,6 +152,7 @@ impl Truth {
         let mut loads = Loads {
             gravity: era.gravity,
             pushes: Vec::new(),
+            friction: self.scenario.friction,
         };
         pushes::acting(
             era.pushes.iter(),

@@ -6,6 +6,7 @@ use super::keys::TOP;
 use super::model::{Body, Scenario};
 use super::parts::{body, motion, pushes};
 use super::problem::{Found, Problem, listed};
+use super::rubbing::{friction, objection};
 use super::start::start;
 use crate::physics::{State, observables};
 use std::sync::Arc;
@@ -22,8 +23,12 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
     };
     let motion = motion(&file.motion);
     let (start, rotor) = start(&file.start, &body, &file.body.part, motion.gravity)?;
+    let friction = friction(file.friction.as_ref(), &body, rotor)?;
+    if let Some(problem) = objection("motion.scheme", motion.scheme, &friction) {
+        return Err(vec![problem].into());
+    }
     let pushes = pushes(&file.push, &body)?;
-    let edits = edits(&file, &body, &pushes)?;
+    let edits = edits(&file, &body, &pushes, &friction)?;
     if !is_readable(&body, trace, &start, motion.gravity) {
         let rule = "energy or traced point leave the range of floating-point numbers: use momentum, gravity and distances nearer to 1";
         return Err(vec![Problem::at("start", rule)].into());
@@ -33,6 +38,7 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
         trace,
         start,
         rotor,
+        friction,
         motion,
         steps: file.motion.steps,
         written_for_s: motion.time_step_s,

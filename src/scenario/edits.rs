@@ -7,12 +7,15 @@ use super::model::{Body, Edit, Motion, Scenario, Touches};
 use super::parts::{motion, push};
 use super::problem::{Problem, nearest};
 use super::pushes::{Push, PushFiles, Pushes};
+use super::rubbing::objection;
+use crate::physics::Friction;
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
 /// Motion and pushes as the edits so far have made them. One more edit costs what it changes, however many there are.
 pub(super) struct Progress<'a> {
     body: &'a Body,
+    friction: Friction,
     motion: Motion,
     /// Length of the run in steps; no edit changes it.
     steps: u64,
@@ -23,13 +26,14 @@ pub(super) struct Progress<'a> {
     last: u64,
 }
 
-/// The edits of `file`, whose pushes are `pushes`.
+/// The edits of `file`, whose pushes are `pushes` and whose friction is `friction`.
 pub(super) fn edits(
     file: &ScenarioFile,
     body: &Body,
     pushes: &Pushes,
+    friction: &Friction,
 ) -> Result<Vec<Edit>, Vec<Problem>> {
-    let mut progress = Progress::at_start(file, body, pushes);
+    let mut progress = Progress::at_start(file, body, pushes, friction);
     let entries = file.edit.iter().enumerate();
     entries
         .map(|(index, entry)| progress.edit(entry, &format!("edit.{index}")))
@@ -37,10 +41,16 @@ pub(super) fn edits(
 }
 
 impl<'a> Progress<'a> {
-    /// Before the first edit of `file`, whose pushes are `pushes`.
-    pub(super) fn at_start(file: &ScenarioFile, body: &'a Body, pushes: &Pushes) -> Self {
+    /// Before the first edit of `file`, whose pushes are `pushes` and whose friction is `friction`.
+    pub(super) fn at_start(
+        file: &ScenarioFile,
+        body: &'a Body,
+        pushes: &Pushes,
+        friction: &Friction,
+    ) -> Self {
         Self {
             body,
+            friction: *friction,
             motion: motion(&file.motion),
             steps: file.motion.steps,
             pushes: pushes.clone(),
@@ -56,6 +66,7 @@ impl<'a> Progress<'a> {
     pub(super) fn after(scenario: &'a Scenario) -> Self {
         let start = Self {
             body: &scenario.body,
+            friction: scenario.friction,
             motion: scenario.motion,
             steps: scenario.file.motion.steps,
             pushes: scenario.pushes.clone(),
@@ -114,6 +125,11 @@ impl<'a> Progress<'a> {
             problems.into_iter().map(moved).collect()
         };
         let (motion_now, pushes_now) = set.read(self.body).map_err(inside)?;
+        if let Some(motion) = &motion_now
+            && let Some(problem) = objection("motion.scheme", motion.scheme, &self.friction)
+        {
+            return Err(inside(vec![problem]));
+        }
         self.last = entry.step;
         self.motion = motion_now.unwrap_or(self.motion);
         let mut set_pushes = Vec::with_capacity(pushes_now.len());

@@ -24,6 +24,8 @@ pub struct ScenarioFile {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub push: Vec<PushFile>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction: Option<FrictionFile>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub view: Option<ViewFile>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub expected: Vec<ExpectedFile>,
@@ -163,6 +165,22 @@ pub struct PushFile {
     pub for_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub accumulates: Option<bool>,
+}
+
+/// `[friction]`
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case, reason = "keys carry their unit as it is written")]
+#[allow(missing_docs, reason = "the table of keys says what each key means")]
+pub struct FrictionFile {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spin_dry_Nm: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spin_viscous_Nms: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spin_quadratic_Nms2: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub swing_viscous_Nms: Option<f64>,
 }
 
 /// `[view]`

@@ -132,6 +132,7 @@ pub(crate) fn head(file: &ScenarioFile) -> ScenarioFile {
         start: file.start.clone(),
         motion: file.motion.clone(),
         push: Vec::new(),
+        friction: file.friction,
         view: file.view.clone(),
         expected: file.expected.clone(),
         edit: Vec::new(),

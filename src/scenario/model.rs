@@ -3,7 +3,7 @@
 use super::file::ScenarioFile;
 use super::problem::{Problem, nearest};
 use super::pushes::{Push, PushFiles, Pushes};
-use crate::physics::{self, Part, SchemeInfo, State, observables, part};
+use crate::physics::{self, Friction, Part, SchemeInfo, State, observables, part};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -20,6 +20,8 @@ pub struct Scenario {
     pub start: State,
     /// The part's moment about the axle, kg m², where only one part of the body spins.
     pub rotor: Option<f64>,
+    /// Friction about the pivot, throughout.
+    pub friction: Friction,
     /// How it moves at the start.
     pub motion: Motion,
     /// Length of the run in steps.

@@ -83,6 +83,7 @@ pub fn table_of(file: &ScenarioFile) -> Table {
         start: file.start.clone(),
         motion: file.motion.clone(),
         push: file.push.clone(),
+        friction: file.friction,
         view: file.view.clone(),
         expected: Vec::new(),
         edit: Vec::new(),

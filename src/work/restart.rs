@@ -58,6 +58,7 @@ pub fn scenario_from(scenario: &Scenario, state: &State, step: u64) -> Result<Sc
             steps: steps_of_same_length(scenario, &motion),
         },
         push,
+        friction: old.friction,
         view: speed.map(|speed| ViewFile {
             speed: Some(speed),
             ..ViewFile::default()

@@ -158,6 +158,7 @@ fn advice_is_right(name: &str, scenario: &Scenario) -> Advice {
         Advice::Scheme {
             time_step_s,
             tried_s,
+            ..
         } => {
             is_held(time_step_s, find_scheme("srkn11b"));
             assert!(

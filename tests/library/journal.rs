@@ -179,6 +179,7 @@ fn orientation_and_momentum_pass_from_scheme_to_scheme() {
         scheme.load(&Loads {
             gravity: 5.0,
             pushes: Vec::new(),
+            ..Loads::default()
         });
         scheme.start(&state);
         for step in 51..=60 {

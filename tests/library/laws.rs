@@ -36,7 +36,7 @@ fn tilted(tilt: f64, momentum: [f64; 3]) -> State {
 fn weight() -> Loads {
     Loads {
         gravity: 9.8,
-        pushes: Vec::new(),
+        ..Loads::default()
     }
 }
 
@@ -64,6 +64,7 @@ fn vertical_forces_conserve_the_bits_of_lz() {
     let loads = Loads {
         gravity: 9.8,
         pushes: vec![push],
+        ..Loads::default()
     };
     let start = tilted(0.7, [3.0, -20.0, 1000.0]);
     for name in ["report", "rk4"] {
@@ -156,6 +157,7 @@ fn measured_multiplier(height: f64, momentum: f64, dt: f64) -> Complex<f64> {
     let no_weight = Loads {
         gravity: 0.0,
         pushes: Vec::new(),
+        ..Loads::default()
     };
     let end = run("report", &body, &no_weight, &start, dt, 1);
     seen(&end) / seen(&start)

@@ -14,6 +14,7 @@ mod exported;
 mod figure_files;
 mod figures;
 mod finding;
+mod friction;
 mod health;
 mod journal;
 mod kept;

@@ -234,6 +234,7 @@ fn alone(scenario: &Scenario, scheme: &str, mut state: State, steps: u64) -> Sta
     scheme.load(&Loads {
         gravity: 9.8,
         pushes: Vec::new(),
+        ..Loads::default()
     });
     scheme.start(&state);
     (0..steps).for_each(|_| scheme.step(0.01, &mut state));

@@ -2,7 +2,7 @@
 //!
 //! - [`LagrangeTop`]: a body symmetric about its axle, under a constant force that acts on the axle. Solved in closed
 //!   form by theta functions: any time, past or future, in one evaluation and without stepping.
-//! - [`AccurateMotion`]: any body under any constant forces, by a Taylor series held to rounding.
+//! - [`AccurateMotion`]: any body under any constant forces and friction, by a Taylor series held to rounding.
 //!
 //! [`ExactMotion`] takes the one that serves; [`Exact`] makes a scheme of it.
 
@@ -11,6 +11,7 @@ mod lagrange;
 mod part;
 mod phases;
 mod scheme;
+mod sliding;
 mod taylor;
 mod theta;
 mod turning;
@@ -21,7 +22,7 @@ pub use taylor::AccurateMotion;
 
 use super::symmetry::SymmetricTop;
 use super::workings::{Listener, Nobody};
-use super::{Body, Loads, State};
+use super::{Body, Damping, Loads, State};
 use nalgebra::{Matrix3, Vector3};
 
 /// The exact motion from one state on, while the loads stay as they are.
@@ -46,6 +47,8 @@ pub enum Kind {
     Closed,
     /// By an integration held to rounding: any body, any forces.
     Integrated,
+    /// By an integration held to rounding, with friction; where the spin stops is found as an event.
+    Rubbing,
 }
 
 impl ExactMotion {
@@ -53,15 +56,19 @@ impl ExactMotion {
     pub fn new(body: &Body, loads: &Loads, state: &State) -> Self {
         let (turn, momentum) = (state.orientation, state.momentum);
         let top = SymmetricTop::of(body);
+        let damping = Damping::new(body, &loads.friction);
         let force = top.and_then(|top| Some((top, loads.on_axle(body, &top)?)));
-        let solution = match force {
+        let solution = match force.filter(|_| damping.is_none()) {
             Some((top, force)) => Solution::Closed(Box::new(LagrangeTop::new(
                 top.across, top.along, force, turn, momentum,
             ))),
-            None => AccurateMotion::new(body.inertia(), loads.moment(body), turn, momentum)
-                .map_or(Solution::None, |motion| {
-                    Solution::Integrated(Box::new(motion))
-                }),
+            None => {
+                let moment = loads.moment(body);
+                AccurateMotion::damped(body.inertia(), moment, turn, momentum, damping)
+                    .map_or(Solution::None, |motion| {
+                        Solution::Integrated(Box::new(motion))
+                    })
+            }
         };
         Self {
             begin_s: state.time_s,
@@ -113,9 +120,18 @@ impl ExactMotion {
 
     /// How it is found.
     pub fn kind(&self) -> Kind {
-        match self.solution {
+        match &self.solution {
             Solution::Closed(_) => Kind::Closed,
+            Solution::Integrated(motion) if motion.has_friction() => Kind::Rubbing,
             Solution::Integrated(_) | Solution::None => Kind::Integrated,
+        }
+    }
+
+    /// The work of friction from where it began to the time asked for last, J.
+    pub fn friction_work(&self) -> f64 {
+        match &self.solution {
+            Solution::Integrated(motion) => motion.friction_work(),
+            Solution::Closed(_) | Solution::None => 0.0,
         }
     }
 
@@ -133,6 +149,9 @@ impl std::fmt::Display for Kind {
         f.write_str(match self {
             Self::Closed => "closed form",
             Self::Integrated => "integration held to 1e-12",
+            Self::Rubbing => {
+                "integration held to 1e-12, friction in it and stops of the spin found as events"
+            }
         })
     }
 }

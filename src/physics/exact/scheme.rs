@@ -13,6 +13,9 @@ pub struct Exact {
     motion: Option<ExactMotion>,
     pace: Pace,
     kinds: (bool, bool),
+    /// Work of friction since the loads changed, and in the step taken last, J.
+    work: f64,
+    step_work: f64,
 }
 
 /// Time since the loads changed, counted in steps and not summed.
@@ -51,6 +54,8 @@ impl Exact {
             motion: None,
             pace,
             kinds: (false, false),
+            work: 0.0,
+            step_work: 0.0,
         }
     }
 
@@ -58,6 +63,7 @@ impl Exact {
     fn advance<L: Listener>(&mut self, dt: f64, state: &mut State, listener: &mut L) {
         let motion = self.motion.get_or_insert_with(|| {
             self.pace = Pace::default();
+            self.work = 0.0;
             ExactMotion::new(
                 &self.body,
                 &self.loads,
@@ -69,10 +75,13 @@ impl Exact {
         });
         match motion.kind() {
             Kind::Closed => self.kinds.0 = true,
-            Kind::Integrated => self.kinds.1 = true,
+            Kind::Integrated | Kind::Rubbing => self.kinds.1 = true,
         }
         let now = motion.at_heard(self.pace.advance(dt), listener);
         (state.orientation, state.momentum) = (now.orientation, now.momentum);
+        let work = motion.friction_work();
+        self.step_work = work - self.work;
+        self.work = work;
     }
 }
 
@@ -94,7 +103,14 @@ impl Scheme for Exact {
         self.advance(dt, state, phases);
     }
 
+    fn friction_work(&self) -> f64 {
+        self.step_work
+    }
+
     fn remark(&self) -> Option<String> {
+        if !self.loads.friction.is_none() {
+            return Some(Kind::Rubbing.to_string());
+        }
         match self.kinds {
             (true, true) => Some(format!(
                 "{}, and off the axle {}",

@@ -9,16 +9,19 @@
 //! where M = sum over the forces of (body point)(world force)^T. Every right side is a polynomial in q and L, so that each
 //! Taylor coefficient follows from the lower ones by Cauchy products, and no derivative is ever formed by hand. The step
 //! follows from the last two coefficients. Since q' is always across q, the exact series keeps |q| = 1; setting |q| to 1
-//! after a step takes out rounding alone and leaves the order as it is.
+//! after a step takes out rounding alone and leaves the order as it is. Friction adds a torque that is a polynomial too,
+//! piece by piece (`sliding`).
 //!
 //! Source: A. Jorba and M. Zou, A software package for the numerical integration of ODEs by means of high-order Taylor
 //! methods, Experimental Mathematics 14 (2005) 99-117.
 
+use super::sliding::{Before, Known, Sliding};
+use crate::physics::Damping;
 use crate::physics::loads::axial;
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 /// Order of the series. At 53 bits the cost per second of motion is lowest near 20 (Jorba and Zou, section 3.2).
-const ORDER: usize = 22;
+pub(super) const ORDER: usize = 22;
 /// Size of the last term of a step against the whole: below rounding, so that rounding alone is left.
 const LAST_TERM: f64 = f64::EPSILON / 16.0;
 
@@ -37,7 +40,35 @@ pub struct AccurateMotion {
     momentum: [Vector3<f64>; ORDER + 1],
     /// What rounding has kept out of `momentum[0]`. A fast top turns an error of L into an angle that grows with time.
     carry: Vector3<f64>,
+    friction: Option<Box<Rubbing>>,
 }
+
+/// Friction, and where to go back to: what it has stopped cannot be followed backwards.
+#[derive(Clone, Debug)]
+struct Rubbing {
+    sliding: Sliding,
+    /// Centres of the series so far, every `apart`-th of them; the first is the start.
+    centres: Vec<Centre>,
+    apart: u64,
+    /// How many series there have been before this one.
+    count: u64,
+    /// Where in the series it was asked for last, s from the centre.
+    asked_s: f64,
+}
+
+/// Where a series begins.
+#[derive(Clone, Copy, Debug)]
+struct Centre {
+    count: u64,
+    time: f64,
+    turn: Quaternion<f64>,
+    momentum: Vector3<f64>,
+    carry: Vector3<f64>,
+    friction: Before,
+}
+
+/// The most centres that are kept.
+const MOST_CENTRES: usize = 512;
 
 impl AccurateMotion {
     /// The body that is in this state at t = 0.
@@ -52,6 +83,17 @@ impl AccurateMotion {
         moment: Matrix3<f64>,
         orientation: Matrix3<f64>,
         momentum: Vector3<f64>,
+    ) -> Option<Self> {
+        Self::damped(inertia, moment, orientation, momentum, None)
+    }
+
+    /// As [`new`](Self::new), with the friction of `damping`, which is of this body.
+    pub fn damped(
+        inertia: Matrix3<f64>,
+        moment: Matrix3<f64>,
+        orientation: Matrix3<f64>,
+        momentum: Vector3<f64>,
+        damping: Option<Damping>,
     ) -> Option<Self> {
         let finite = |m: &Matrix3<f64>| m.iter().all(|x| x.is_finite());
         if ![inertia, moment, orientation].iter().all(finite)
@@ -70,22 +112,41 @@ impl AccurateMotion {
             turn: [Quaternion::new(0.0, 0.0, 0.0, 0.0); ORDER + 1],
             momentum: [Vector3::zeros(); ORDER + 1],
             carry: Vector3::zeros(),
+            friction: damping.map(|damping| Box::new(Rubbing::new(damping, moment))),
         };
         motion.expand(*turn.as_ref(), momentum);
         Some(motion)
     }
 
+    /// Whether there is friction.
+    pub fn has_friction(&self) -> bool {
+        self.friction.is_some()
+    }
+
+    /// The work of friction from the start to the time asked for last, J.
+    pub fn friction_work(&self) -> f64 {
+        let rubbing = self.friction.as_ref();
+        rubbing.map_or(0.0, |rubbing| rubbing.sliding.work(rubbing.asked_s))
+    }
+
     /// Orientation (body to world components) and L (J s, world frame) at `t` s after the start.
     ///
-    /// Asking for times in order costs one short polynomial each; going back integrates back. Not a number for a time that
-    /// is not finite, or that is too far for the turning of the body to be told apart by it.
+    /// Asking for times in order costs one short polynomial each; going back integrates back, or where there is friction
+    /// on from an earlier time. Not a number for a time that is not finite, or that is too far for the turning of the body
+    /// to be told apart by it, or with friction before the start.
     pub fn advance(&mut self, t: f64) -> (Matrix3<f64>, Vector3<f64>) {
+        if t < self.time || t - self.time > self.radius {
+            self.go_to_centre(t);
+        }
         while (t - self.time).abs() > self.radius {
             if !self.step_towards(t) {
                 return (Matrix3::repeat(f64::NAN), Vector3::repeat(f64::NAN));
             }
         }
         let (turn, change) = self.evaluate(t - self.time);
+        if let Some(rubbing) = &mut self.friction {
+            rubbing.asked_s = t - self.time;
+        }
         (
             rotation(turn.normalize()),
             self.momentum[0] + (change + self.carry),
@@ -102,7 +163,7 @@ impl AccurateMotion {
         let next = self.time + self.radius.copysign(t - self.time);
         // The step is what the sum became, not what it was meant to be: no error of time builds up.
         let step = next - self.time;
-        if step == 0.0 || !t.is_finite() {
+        if step == 0.0 || !t.is_finite() || (step < 0.0 && self.friction.is_some()) {
             return false;
         }
         let (turn, change) = self.evaluate(step);
@@ -110,8 +171,30 @@ impl AccurateMotion {
         let momentum = self.momentum[0] + change;
         self.carry = change - (momentum - self.momentum[0]);
         self.time = next;
+        if let Some(rubbing) = &mut self.friction {
+            rubbing.count += 1;
+            rubbing.sliding.go_on_from(step);
+        }
         self.expand(turn.normalize(), momentum);
         true
+    }
+
+    /// With friction, goes to the last centre that was kept before `t`, unless `t` is ahead and this one is as near.
+    fn go_to_centre(&mut self, t: f64) {
+        let Some(rubbing) = &mut self.friction else {
+            return;
+        };
+        let before = rubbing.centres.partition_point(|centre| centre.time <= t);
+        let Some(&centre) = rubbing.centres.get(before.saturating_sub(1)) else {
+            return;
+        };
+        if t >= self.time && centre.count <= rubbing.count {
+            return;
+        }
+        rubbing.count = centre.count;
+        rubbing.sliding.go_back(centre.friction);
+        (self.time, self.carry) = (centre.time, centre.carry);
+        self.expand(centre.turn, centre.momentum);
     }
 
     /// The quaternion, and the change of L, at `t` s from the centre of the series, by Horner's rule.
@@ -129,6 +212,13 @@ impl AccurateMotion {
         let mut spin = [Vector3::zeros(); ORDER];
         let mut matrix = [Matrix3::zeros(); ORDER];
         (self.turn[0], self.momentum[0]) = (turn, momentum);
+        if let Some(rubbing) = &mut self.friction {
+            rubbing.keep(self.time, turn, momentum, self.carry);
+            let momentum = &mut self.momentum[0];
+            rubbing
+                .sliding
+                .begin(&rotation(turn), momentum, self.momentum_unit);
+        }
         for k in 0..ORDER {
             matrix[k] = convolve(k, |i, j| product_matrix(&self.turn[i], &self.turn[j]));
             spin[k] =
@@ -136,9 +226,22 @@ impl AccurateMotion {
             let rate = convolve(k, |i, j| times_vector(&self.turn[i], &spin[j]));
             let next = (k + 1) as f64;
             self.turn[k + 1] = rate * 0.5 / next;
-            self.momentum[k + 1] = axial(&(matrix[k] * self.moment)) / next;
+            let torque = axial(&(matrix[k] * self.moment));
+            let torque = match &mut self.friction {
+                None => torque,
+                Some(rubbing) => {
+                    let (matrix, omega) = (&matrix[..=k], &spin[..=k]);
+                    torque + rubbing.sliding.coefficient(k, &Known { matrix, omega })
+                }
+            };
+            self.momentum[k + 1] = torque / next;
         }
         self.radius = self.reach(ORDER - 1).min(self.reach(ORDER));
+        if let Some(rubbing) = &mut self.friction
+            && let Some(event) = rubbing.sliding.find_event(self.radius)
+        {
+            self.radius = event;
+        }
     }
 
     /// Distance at which term `k` falls to `LAST_TERM` of the state, s.
@@ -154,8 +257,57 @@ impl AccurateMotion {
     }
 }
 
+impl Rubbing {
+    fn new(damping: Damping, moment: Matrix3<f64>) -> Self {
+        Self {
+            sliding: Sliding::new(damping, moment),
+            centres: Vec::new(),
+            apart: 1,
+            count: 0,
+            asked_s: 0.0,
+        }
+    }
+
+    /// Keeps the centre of the series that begins, if its turn has come and it is not kept yet.
+    fn keep(
+        &mut self,
+        time: f64,
+        turn: Quaternion<f64>,
+        momentum: Vector3<f64>,
+        carry: Vector3<f64>,
+    ) {
+        let is_kept = self
+            .centres
+            .last()
+            .is_some_and(|last| last.count >= self.count);
+        if is_kept || !self.count.is_multiple_of(self.apart) {
+            return;
+        }
+        if self.centres.len() == MOST_CENTRES {
+            self.apart *= 2;
+            let apart = self.apart;
+            self.centres
+                .retain(|centre| centre.count.is_multiple_of(apart));
+            if !self.count.is_multiple_of(apart) {
+                return;
+            }
+        }
+        self.centres.push(Centre {
+            count: self.count,
+            time,
+            turn,
+            momentum,
+            carry,
+            friction: self.sliding.before(),
+        });
+    }
+}
+
 /// The k-th coefficient of a product of two series, from the products of their coefficients.
-fn convolve<T: core::ops::Add<Output = T>>(k: usize, product: impl Fn(usize, usize) -> T) -> T {
+pub(super) fn convolve<T: core::ops::Add<Output = T>>(
+    k: usize,
+    product: impl Fn(usize, usize) -> T,
+) -> T {
     (1..=k).fold(product(0, k), |sum, i| sum + product(i, k - i))
 }
 

@@ -19,6 +19,7 @@ use free_body::{FreeBody, SymmetricBody, orthonormal};
 use principal::ROUNDING;
 use turn::Turn;
 
+mod damped;
 pub mod free_body;
 mod jacobi;
 mod phases;

@@ -1,7 +1,8 @@
 //! A composition as a scheme.
 
+use super::damped::DampedStrang;
 use super::{Kind, Splitting};
-use crate::physics::workings::Phase;
+use crate::physics::workings::{Listener, Nobody, Phase};
 use crate::physics::{Body, Loads, Scheme, State};
 
 /// A splitting of one kind for one body; see [`super`].
@@ -10,6 +11,10 @@ pub struct SplittingScheme {
     body: Body,
     kind: Kind,
     splitting: Splitting,
+    /// Takes the steps where there is friction.
+    damped: Option<DampedStrang>,
+    /// Work of friction in the step taken last, J.
+    work: f64,
 }
 
 impl SplittingScheme {
@@ -20,6 +25,16 @@ impl SplittingScheme {
             body: body.clone(),
             kind,
             splitting,
+            damped: None,
+            work: 0.0,
+        }
+    }
+
+    #[inline]
+    fn advance<L: Listener>(&mut self, dt: f64, state: &mut State, listener: &mut L) {
+        match &self.damped {
+            None => self.splitting.step_heard(state, dt, listener),
+            Some(damped) => self.work = damped.step(state, dt, listener),
         }
     }
 }
@@ -29,14 +44,20 @@ impl Scheme for SplittingScheme {
 
     fn load(&mut self, loads: &Loads) {
         self.splitting = Splitting::new(self.kind, &self.body.inertia(), &loads.moment(&self.body));
+        self.damped = DampedStrang::new(&self.body, loads).filter(|_| self.kind == Kind::Strang);
+        self.work = 0.0;
     }
 
     fn step(&mut self, dt: f64, state: &mut State) {
-        self.splitting.step(state, dt);
+        self.advance(dt, state, &mut Nobody);
     }
 
     fn explain(&mut self, dt: f64, state: &mut State, phases: &mut Vec<Phase>) {
-        self.splitting.step_heard(state, dt, phases);
+        self.advance(dt, state, phases);
+    }
+
+    fn friction_work(&self) -> f64 {
+        self.work
     }
 
     fn boxed(&self) -> Box<dyn Scheme> {

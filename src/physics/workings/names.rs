@@ -1,7 +1,7 @@
 //! The names of phases, by which files and commands choose one.
 
 /// Every name that a phase has, whatever the scheme: those of the report's scheme first, in its order.
-pub const NAMES: [&str; 18] = [
+pub const NAMES: [&str; 19] = [
     "inertia",
     "angular velocity",
     "axis and angle",
@@ -9,6 +9,7 @@ pub const NAMES: [&str; 18] = [
     "new positions",
     "torque",
     "new momentum",
+    "friction",
     "kick",
     "free motion",
     "spin about the axle",

@@ -45,6 +45,7 @@ const TABLE: &[Words] = &[
     words("new positions", "R turns every point to its new place.", "where the points are", "the wheel before (°) and after"),
     words("torque", "How the forces turn the body about the pivot: each where its point is now.", "nothing yet; gives τ", "the arrow τ; forces: g and F"),
     words("new momentum", "In the time dt the forces change L. The next step begins with the new L.", "L, and nothing else", "the arrow L, and dL at its tip"),
+    words("friction", "Friction slows the spin, and the swing of the axle: it takes from L while the body stands still.", "L, and nothing else", "the arrow L"),
     words("kick", "The forces act for the time h: they change L while the body stands still.", "L, and nothing else", "the arrow L, and dL at its tip"),
     words("free motion", "The body moves for the time h as if there were no forces: L stays.", "how the body stands", "the wheel before (°) and after"),
     words("spin about the axle", "The body turns about its own axle, once for the whole step.", "how the body stands about its axle", "the wheel before (°) and after"),

@@ -48,7 +48,7 @@ impl<'a> Shown<'a> {
             "angular velocity" => &["Ω", "L"],
             "torque" => &["τ", "g", "F"],
             "new momentum" | "kick" => &["L", "dL", "new L"],
-            "free motion" => &["L"],
+            "free motion" | "friction" => &["L"],
             name if name.starts_with("slope") => &["Ω", "τ"],
             _ => &["u"],
         }
@@ -57,7 +57,8 @@ impl<'a> Shown<'a> {
     /// Whether the body is drawn as it stood before the step too.
     pub fn has_before(&self) -> bool {
         match self.phase.name {
-            "angular velocity" | "axis and angle" | "torque" | "new momentum" | "kick" => false,
+            "angular velocity" | "axis and angle" | "torque" | "new momentum" | "kick"
+            | "friction" => false,
             name => !name.starts_with("slope"),
         }
     }

@@ -1,0 +1,276 @@
+//! Friction about the pivot: on the spin about the axle, and on the swing of the axle.
+//!
+//! With e3 the axle, ω3 = ω·e3 and ωp = ω − ω3 e3 its torque is −(k0 sgn ω3 + k1 ω3 + k2 |ω3| ω3) e3 − k4 ωp. Where ω3 = 0
+//! dry friction holds, up to k0, against what would turn the body about its axle.
+//!
+//! A time step cannot take this torque at its beginning: it would carry a spin that dry friction stops beyond zero, and
+//! feed one whose k1 dt/I3 is above 2. While the body does not turn, though, ω under a constant torque and friction is
+//! known in closed form: about the axle it is a Riccati equation, across it decays exponentially. Schemes take that
+//! ([`Damping::act`]).
+
+use super::Body;
+use super::workings::{Changes, Phase, Quantity};
+use nalgebra::{Matrix3, Vector3};
+
+/// The coefficients of friction. All are zero, or more.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Friction {
+    /// k0: dry friction on the spin, N m.
+    pub spin_dry: f64,
+    /// k1: viscous friction on the spin, N m s.
+    pub spin_viscous: f64,
+    /// k2: friction on the spin by the square of its rate, N m s².
+    pub spin_quadratic: f64,
+    /// k4: viscous friction on the swing, N m s.
+    pub swing_viscous: f64,
+    /// Where one part alone spins, its moment about the axle, kg m²: the spin that rubs is L along the axle over it.
+    pub rotor: Option<f64>,
+}
+
+impl Friction {
+    /// Whether there is no friction.
+    pub fn is_none(&self) -> bool {
+        !self.is_on_spin() && self.swing_viscous == 0.0
+    }
+
+    /// Whether the spin is rubbed.
+    pub fn is_on_spin(&self) -> bool {
+        self.spin_dry > 0.0 || self.spin_viscous > 0.0 || self.spin_quadratic > 0.0
+    }
+}
+
+/// Friction on one body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Damping {
+    friction: Friction,
+    inertia: Matrix3<f64>,
+    inverse_inertia: Matrix3<f64>,
+    /// The moment against a torque about the axle, kg m²: 1/(e3·I⁻¹e3).
+    along: f64,
+    /// The spin that rubs over ω3: 1, or that of the rotor.
+    gear: f64,
+    /// Across the axle, two directions square to each other in which a torque along one changes ω along it alone, each
+    /// with the moment against it, kg m².
+    across: [(Vector3<f64>, f64); 2],
+}
+
+/// What friction does while the body stands at one orientation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Action {
+    /// Its part of the change of L, body frame, J s.
+    pub impulse: Vector3<f64>,
+    /// Its work, J: the impulse times the mean of ω before and after.
+    pub work: f64,
+}
+
+impl Damping {
+    /// `friction` on `body`; `None` where there is no friction.
+    pub fn new(body: &Body, friction: &Friction) -> Option<Self> {
+        let inverse = body.inverse_inertia();
+        let along = 1.0 / inverse[(2, 2)];
+        (!friction.is_none()).then(|| Self {
+            friction: *friction,
+            inertia: body.inertia(),
+            inverse_inertia: inverse,
+            along,
+            gear: friction.rotor.map_or(1.0, |moment| along / moment),
+            across: across(&inverse),
+        })
+    }
+
+    /// The coefficients.
+    pub fn friction(&self) -> &Friction {
+        &self.friction
+    }
+
+    /// Inertia about the pivot, body frame, kg m².
+    pub fn inertia(&self) -> &Matrix3<f64> {
+        &self.inertia
+    }
+
+    /// Inverse of the inertia about the pivot, body frame, 1/(kg m²).
+    pub fn inverse_inertia(&self) -> &Matrix3<f64> {
+        &self.inverse_inertia
+    }
+
+    /// The moment against a torque about the axle, kg m².
+    pub fn moment_along(&self) -> f64 {
+        self.along
+    }
+
+    /// The least moment against a torque of friction, kg m².
+    pub fn least_moment(&self) -> f64 {
+        let [(_, first), (_, second)] = self.across;
+        first.min(second).min(self.along / self.gear)
+    }
+
+    /// The spin that rubs over ω3.
+    pub fn gear(&self) -> f64 {
+        self.gear
+    }
+
+    /// The torque of friction where the body turns by `omega`, body frame, rad/s; N m.
+    pub fn torque(&self, omega: &Vector3<f64>) -> Vector3<f64> {
+        let (friction, spin) = (&self.friction, self.gear * omega.z);
+        let sign = if spin == 0.0 { 0.0 } else { spin.signum() };
+        let about = friction.spin_dry * sign
+            + (friction.spin_viscous + friction.spin_quadratic * spin.abs()) * spin;
+        let swing = -friction.swing_viscous * omega;
+        Vector3::new(swing.x, swing.y, -about)
+    }
+
+    /// What friction does during `time_s` to the body that turns by `omega`, while it stands as it is and another torque
+    /// acts too, a constant one (N m); everything in the body frame. In closed form for a body symmetric about its axle, of any other
+    /// to second order in the time: half the time about the axle, the whole across it, half about the axle.
+    pub fn act(&self, omega: &Vector3<f64>, torque: &Vector3<f64>, time_s: f64) -> Action {
+        let half = 0.5 * time_s;
+        let turned = |impulse: &Vector3<f64>| omega + self.inverse_inertia * impulse;
+        let mut impulse = Vector3::zeros();
+        let mut whole = Vector3::zeros();
+        let about = self.about(omega.z, torque.z, half);
+        impulse.z += about;
+        whole.z += about + torque.z * half;
+        let swing = self.swing(&turned(&whole), torque, time_s);
+        impulse += swing;
+        whole += swing + Vector3::new(torque.x, torque.y, 0.0) * time_s;
+        let about = self.about(turned(&whole).z, torque.z, half);
+        impulse.z += about;
+        whole.z += about + torque.z * half;
+        let work = 0.5 * impulse.dot(&(omega + turned(&whole)));
+        Action { impulse, work }
+    }
+
+    /// The impulse of friction about the axle, J s, beside a constant torque about it (N m).
+    fn about(&self, omega: f64, torque: f64, time_s: f64) -> f64 {
+        if !self.friction.is_on_spin() {
+            return 0.0;
+        }
+        let moment = self.along / self.gear;
+        let before = self.gear * omega;
+        let after = spin_after(&self.friction, moment, before, torque, time_s);
+        moment * (after - before) - torque * time_s
+    }
+
+    /// The impulse of friction across the axle, J s, beside a constant torque (N m).
+    fn swing(&self, omega: &Vector3<f64>, torque: &Vector3<f64>, time_s: f64) -> Vector3<f64> {
+        let rubbing = self.friction.swing_viscous;
+        if rubbing == 0.0 {
+            return Vector3::zeros();
+        }
+        let along_one = |(direction, moment): &(Vector3<f64>, f64)| {
+            let (rate, torque) = (omega.dot(direction), torque.dot(direction));
+            // The rate goes to the one at which friction balances the torque.
+            let change = libm::expm1(-rubbing * time_s / moment) * (rate - torque / rubbing);
+            direction * (moment * change - torque * time_s)
+        };
+        self.across.iter().map(along_one).sum()
+    }
+}
+
+/// The phase of a time step in which friction changes L by `impulse` (world frame, J s) during `time_s`; `omega` is the
+/// angular velocity before it, body frame, rad/s.
+pub(super) fn phase(
+    time_s: f64,
+    omega: &Vector3<f64>,
+    impulse: &Vector3<f64>,
+    momentum: &Vector3<f64>,
+) -> Phase {
+    Phase::of(
+        "friction",
+        "L ← L + ΔL, ΔL of −(k₀ sgn ω₃ + k₁ ω₃ + k₂ |ω₃| ω₃) a − k₄ ω across a, in the time h at this orientation",
+        vec![
+            Quantity::new("h", "s", time_s),
+            Quantity::new("Ω seen from the body", "rad/s", *omega),
+            Quantity::new("ΔL", "J s", *impulse),
+            Quantity::new("new L", "J s", *momentum),
+        ],
+    )
+    .changing(Changes::Momentum)
+}
+
+/// The two principal directions of the part of `inverse` (inverse inertia, body frame) across the axle, each with its
+/// moment.
+fn across(inverse: &Matrix3<f64>) -> [(Vector3<f64>, f64); 2] {
+    let (xx, yy, xy) = (inverse[(0, 0)], inverse[(1, 1)], inverse[(0, 1)]);
+    let (sin, cos) = libm::sincos(0.5 * libm::atan2(2.0 * xy, xx - yy));
+    [Vector3::new(cos, sin, 0.0), Vector3::new(-sin, cos, 0.0)]
+        .map(|direction| (direction, 1.0 / direction.dot(&(inverse * direction))))
+}
+
+/// The rate of a spin after `time_s`, rad/s, that was `spin`, of a body with this `moment` (kg m²) about its axle, under friction and a
+/// constant torque about the axle, N m.
+fn spin_after(friction: &Friction, moment: f64, spin: f64, torque: f64, time_s: f64) -> f64 {
+    let (mut spin, mut left) = (spin, time_s);
+    // A spin that comes to a stop is held, or set off the other way, from where it does not come back.
+    for _ in 0..2 {
+        if spin == 0.0 && torque.abs() <= friction.spin_dry {
+            return 0.0;
+        }
+        let sign = if spin == 0.0 { torque } else { spin }.signum();
+        let slowing = Slowing {
+            constant: (sign * torque - friction.spin_dry) / moment,
+            linear: friction.spin_viscous / moment,
+            square: friction.spin_quadratic / moment,
+        };
+        match slowing.stops_after(spin.abs()) {
+            Some(stop) if stop <= left => (spin, left) = (0.0, left - stop),
+            _ => return sign * slowing.after(spin.abs(), left),
+        }
+    }
+    spin
+}
+
+/// dω/dt = a − b ω − c ω² for ω at or above 0, b and c not negative: a Riccati equation of constant coefficients.
+///
+/// With D = b² + 4ac and T = tanh(√D t/2)/√D (of a negative D tan, of none t/2) its solution is
+/// ω(t) = (ω₀ (1 − b T) + 2 a T)/(1 + (b + 2 c ω₀) T).
+#[derive(Clone, Copy, Debug)]
+struct Slowing {
+    /// a, rad/s².
+    constant: f64,
+    /// b, 1/s.
+    linear: f64,
+    /// c, 1/rad.
+    square: f64,
+}
+
+impl Slowing {
+    /// √|D|, 1/s, and whether D is not negative.
+    fn root(&self) -> (f64, bool) {
+        let product = 4.0 * self.constant * self.square;
+        if product == 0.0 {
+            return (self.linear, true);
+        }
+        let square = self.linear * self.linear + product;
+        (square.abs().sqrt(), square >= 0.0)
+    }
+
+    /// ω after `time_s`, before it has come to a stop.
+    fn after(&self, omega: f64, time_s: f64) -> f64 {
+        let (root, is_real) = self.root();
+        let half = 0.5 * root * time_s;
+        let reach = match is_real {
+            _ if root == 0.0 => 0.5 * time_s,
+            true => libm::tanh(half) / root,
+            false => libm::tan(half) / root,
+        };
+        let (a, b, c) = (self.constant, self.linear, self.square);
+        let after =
+            (omega * (1.0 - b * reach) + 2.0 * a * reach) / (1.0 + (b + 2.0 * c * omega) * reach);
+        after.max(0.0)
+    }
+
+    /// The time after which ω is 0, s; `None` where it never is.
+    fn stops_after(&self, omega: f64) -> Option<f64> {
+        if self.constant >= 0.0 {
+            return None;
+        }
+        let reach = omega / (self.linear * omega - 2.0 * self.constant);
+        let (root, is_real) = self.root();
+        Some(match is_real {
+            _ if root == 0.0 => 2.0 * reach,
+            true => 2.0 * libm::atanh(root * reach) / root,
+            false => 2.0 * libm::atan(root * reach) / root,
+        })
+    }
+}

@@ -1,0 +1,69 @@
+//! Friction as a scenario gives it, and the schemes that can be true to it.
+
+use super::file::FrictionFile;
+use super::model::Body;
+use super::problem::{Problem, listed};
+use crate::physics::{Damping, Friction, SchemeInfo, scheme};
+
+/// The most that a coefficient of friction may be over the least moment of the body: what it does to the motion is then
+/// still told apart from infinity.
+const MOST_RATE: f64 = 1e100;
+
+/// The friction of `[friction]` on `body`, of which one part alone spins where its moment `rotor` (kg m²) is given.
+pub(super) fn friction(
+    file: Option<&FrictionFile>,
+    body: &Body,
+    rotor: Option<f64>,
+) -> Result<Friction, Vec<Problem>> {
+    let Some(file) = file else {
+        return Ok(Friction::default());
+    };
+    let friction = Friction {
+        spin_dry: file.spin_dry_Nm.unwrap_or(0.0),
+        spin_viscous: file.spin_viscous_Nms.unwrap_or(0.0),
+        spin_quadratic: file.spin_quadratic_Nms2.unwrap_or(0.0),
+        swing_viscous: file.swing_viscous_Nms.unwrap_or(0.0),
+        rotor,
+    };
+    let Some(damping) = Damping::new(&body.mechanics, &friction) else {
+        return Ok(Friction::default());
+    };
+    let rates = [
+        ("spin_dry_Nm", friction.spin_dry),
+        ("spin_viscous_Nms", friction.spin_viscous),
+        ("spin_quadratic_Nms2", friction.spin_quadratic),
+        ("swing_viscous_Nms", friction.swing_viscous),
+    ];
+    let least = damping.least_moment();
+    match rates.iter().find(|(_, rate)| *rate / least > MOST_RATE) {
+        None => Ok(friction),
+        Some((name, rate)) => {
+            let rule = format!(
+                "is too large for this body, whose least moment is {least:e} kg m^2: at most {:e}",
+                MOST_RATE * least
+            );
+            let value = toml::Value::Float(*rate);
+            Err(vec![Problem::with_value(
+                format!("friction.{name}"),
+                &value,
+                rule,
+            )])
+        }
+    }
+}
+
+/// What there is against `scheme`, named at `key`, under `friction`.
+pub(super) fn objection(
+    key: &str,
+    scheme: &'static SchemeInfo,
+    friction: &Friction,
+) -> Option<Problem> {
+    let why = scheme.admits.objection(friction)?;
+    let able = scheme::true_to(friction).map(|scheme| scheme.name);
+    let value = toml::Value::String(scheme.name.to_owned());
+    let rule = format!(
+        "cannot be true to this friction: it {why}; take one of {}",
+        listed(able)
+    );
+    Some(Problem::with_value(key, &value, rule))
+}

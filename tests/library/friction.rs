@@ -1,0 +1,544 @@
+//! The laws of friction: how spin and swing die, where the spin stops, what the work is, and that no time step explodes.
+
+use gyrolab::physics::{
+    Body, Friction, Loads, PointForce, PointMass, Scheme, SchemeInfo, State, observables, rotation,
+};
+use nalgebra::Vector3;
+use std::f64::consts::FRAC_PI_3;
+
+/// The report's wheel of 5 kg, with a point on the axle and one off it, both without mass.
+fn wheel() -> Body {
+    body(0.5)
+}
+
+/// The wheel, the mass of whose first point is `first` kg: 0.5 is symmetric.
+fn body(first: f64) -> Body {
+    let ring = (0..10).map(|j| {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(j) / 10.0);
+        PointMass {
+            at: Vector3::new(0.8 * cos, 0.8 * sin, 0.5),
+            mass: if j == 0 { first } else { 0.5 },
+        }
+    });
+    let without_mass =
+        [Vector3::z(), Vector3::new(0.4, 0.0, 0.5)].map(|at| PointMass { at, mass: 0.0 });
+    Body::new(ring.chain(without_mass).collect()).unwrap()
+}
+
+const OFF_AXLE: usize = 11;
+
+fn moments(body: &Body) -> (f64, f64) {
+    let inertia = body.inertia();
+    (inertia[(0, 0)], inertia[(2, 2)])
+}
+
+/// Tilted by 60 degrees, with this angular velocity in the body frame.
+fn start(body: &Body, omega: [f64; 3]) -> State {
+    let orientation = rotation::about(&Vector3::x(), FRAC_PI_3);
+    State {
+        time_s: 0.0,
+        orientation,
+        momentum: orientation * (body.inertia() * Vector3::from(omega)),
+    }
+}
+
+fn weight(friction: Friction) -> Loads {
+    Loads {
+        gravity: 9.8,
+        friction,
+        ..Loads::default()
+    }
+}
+
+fn free(friction: Friction) -> Loads {
+    Loads {
+        friction,
+        ..Loads::default()
+    }
+}
+
+/// A run under one scheme: the state, and the work of friction so far, J.
+struct Run {
+    scheme: Box<dyn Scheme>,
+    state: State,
+    work: f64,
+}
+
+impl Run {
+    fn new(name: &str, body: &Body, loads: &Loads, start: State) -> Self {
+        let mut scheme = SchemeInfo::find(name).unwrap().make(body);
+        scheme.load(loads);
+        scheme.start(&start);
+        Self {
+            scheme,
+            state: start,
+            work: 0.0,
+        }
+    }
+
+    fn step(&mut self, dt: f64, steps: u32) -> &State {
+        for _ in 0..steps {
+            self.scheme.step(dt, &mut self.state);
+            self.work += self.scheme.friction_work();
+        }
+        &self.state
+    }
+}
+
+fn spin_momentum(state: &State) -> f64 {
+    state.axle().dot(&state.momentum)
+}
+
+fn energy(body: &Body, loads: &Loads, state: &State) -> f64 {
+    observables::kinetic_energy(body, state)
+        + loads.gravity * observables::weight_height(body, state)
+}
+
+fn omega_across(body: &Body, state: &State) -> f64 {
+    let omega = observables::angular_velocity(body, state);
+    let axle = state.axle();
+    (omega - axle * axle.dot(&omega)).norm()
+}
+
+/// The schemes under which the spin obeys its law to rounding: nothing else changes L along the axle.
+const TRUE_TO_SPIN: [&str; 2] = ["strang", "exact"];
+
+/// L along the axle after `t` seconds, of the spin's law alone, from `start` (J s).
+type Law = fn(f64, f64, f64) -> f64;
+
+#[test]
+fn the_spin_dies_by_its_law_whatever_the_axle_does() {
+    let body = wheel();
+    let (_, along) = moments(&body);
+    let cases: [(Friction, Law); 3] = [
+        (
+            Friction {
+                spin_viscous: 0.3,
+                ..Friction::default()
+            },
+            |start, along, t| start * (-0.3 * t / along).exp(),
+        ),
+        (
+            Friction {
+                spin_dry: 2.0,
+                ..Friction::default()
+            },
+            |start, _, t| start.signum() * (start.abs() - 2.0 * t).max(0.0),
+        ),
+        (
+            Friction {
+                spin_quadratic: 0.02,
+                ..Friction::default()
+            },
+            |start, along, t| start / (1.0 + start.abs() * 0.02 * t / (along * along)),
+        ),
+    ];
+    for (friction, law) in cases {
+        for (swing, spin) in [(0.0, 12.0), (0.7, 12.0), (0.7, -12.0), (0.0, -3.0)] {
+            let friction = Friction {
+                swing_viscous: swing,
+                ..friction
+            };
+            for name in TRUE_TO_SPIN {
+                let begin = start(&body, [0.4, -0.3, spin]);
+                let first = spin_momentum(&begin);
+                let mut run = Run::new(name, &body, &weight(friction), begin);
+                for second in 1..=25 {
+                    run.step(0.01, 100);
+                    let (found, expected) = (
+                        spin_momentum(&run.state),
+                        law(first, along, f64::from(second)),
+                    );
+                    assert!(
+                        (found - expected).abs() < 1e-11 * first.abs(),
+                        "{name}, {friction:?}, {spin} rad/s, {second} s: {found} for {expected}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn dry_viscous_and_quadratic_friction_together_solve_their_equation() {
+    let body = wheel();
+    let (_, along) = moments(&body);
+    // The three signs of the discriminant k1^2 - 4 k0 k2.
+    for [dry, viscous, quadratic] in [
+        [0.5, 2.0, 0.1],
+        [0.4, 0.4, 0.1],
+        [2.0, 0.1, 0.5],
+        [0.0, 0.2, 0.1],
+    ] {
+        let friction = Friction {
+            spin_dry: dry,
+            spin_viscous: viscous,
+            spin_quadratic: quadratic,
+            ..Friction::default()
+        };
+        let slope = |spin: f64| -(dry + viscous * spin + quadratic * spin * spin) / along;
+        for name in TRUE_TO_SPIN {
+            let mut run = Run::new(name, &body, &free(friction), start(&body, [0.2, 0.0, 5.0]));
+            let mut spin = 5.0;
+            for step in 1..=2000 {
+                run.step(0.01, 1);
+                // Runge and Kutta's scheme, the steps so short that their error is rounding.
+                for _ in 0..20 {
+                    let h = 0.0005;
+                    let k1 = slope(spin);
+                    let k2 = slope(spin + 0.5 * h * k1);
+                    let k3 = slope(spin + 0.5 * h * k2);
+                    let k4 = slope(spin + h * k3);
+                    spin += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+                }
+                if spin <= 0.05 {
+                    break;
+                }
+                let found = spin_momentum(&run.state) / along;
+                assert!(
+                    (found - spin).abs() < 1e-10,
+                    "{name}, {friction:?}, step {step}: {found} for {spin}"
+                );
+            }
+            run.step(0.01, 3000);
+            let stopped = spin_momentum(&run.state);
+            if dry > 0.0 {
+                assert!(stopped.abs() < 1e-12, "{name}, {friction:?}: {stopped}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_swing_of_a_free_body_dies_and_its_spin_does_not() {
+    let body = wheel();
+    let (across, _) = moments(&body);
+    let friction = Friction {
+        swing_viscous: 0.9,
+        ..Friction::default()
+    };
+    for spin in [8.0, 0.0, -8.0] {
+        let begin = start(&body, [0.6, 0.2, spin]);
+        let (swing, first) = (omega_across(&body, &begin), spin_momentum(&begin));
+        for name in TRUE_TO_SPIN {
+            let mut run = Run::new(name, &body, &free(friction), begin);
+            for second in 1..=20 {
+                run.step(0.01, 100);
+                let expected = swing * (-0.9 * f64::from(second) / across).exp();
+                let found = omega_across(&body, &run.state);
+                assert!(
+                    (found - expected).abs() < 1e-11 * swing,
+                    "{name}: {found} for {expected}"
+                );
+                assert!((spin_momentum(&run.state) - first).abs() < 1e-11 * first.abs().max(1.0));
+            }
+        }
+    }
+}
+
+#[test]
+fn what_friction_does_is_the_energy_that_goes() {
+    let all = Friction {
+        spin_dry: 0.4,
+        spin_viscous: 0.05,
+        spin_quadratic: 0.01,
+        swing_viscous: 0.3,
+        rotor: None,
+    };
+    let smooth = Friction {
+        spin_dry: 0.0,
+        ..all
+    };
+    for body in [body(0.5), body(0.9)] {
+        for (name, friction, allowed) in [
+            ("exact", all, 1e-11),
+            ("exact", smooth, 1e-11),
+            ("rk4", smooth, 1e-8),
+            ("strang", all, 2e-4),
+        ] {
+            let loads = weight(friction);
+            let begin = start(&body, [0.4, -0.3, 20.0]);
+            let first = energy(&body, &loads, &begin);
+            let mut run = Run::new(name, &body, &loads, begin);
+            run.step(0.002, 5000);
+            let lost = energy(&body, &loads, &run.state) - first;
+            assert!(run.work < -100.0, "{name}: {}", run.work);
+            assert!(
+                (lost - run.work).abs() < allowed * first.abs(),
+                "{name}, {friction:?}: {lost} J went, work {} J",
+                run.work
+            );
+        }
+    }
+}
+
+#[test]
+fn the_schemes_converge_on_the_exact_motion_in_their_orders() {
+    let smooth = Friction {
+        spin_viscous: 0.2,
+        spin_quadratic: 0.01,
+        swing_viscous: 0.4,
+        ..Friction::default()
+    };
+    for body in [body(0.5), body(0.9)] {
+        for (name, friction, order) in [
+            ("report", smooth, 1.0),
+            ("strang", smooth, 2.0),
+            ("rk4", smooth, 4.0),
+            (
+                "strang",
+                Friction {
+                    spin_dry: 0.5,
+                    ..smooth
+                },
+                2.0,
+            ),
+        ] {
+            let loads = weight(friction);
+            let begin = start(&body, [0.4, -0.3, 9.0]);
+            let at_end = |name: &str, steps: u32| {
+                let mut run = Run::new(name, &body, &loads, begin);
+                run.step(3.0 / f64::from(steps), steps).axle()
+            };
+            let exact = at_end("exact", 300);
+            let off = |steps| (at_end(name, steps) - exact).norm();
+            let steps = if name == "report" { 30_000 } else { 1500 };
+            let found = (off(steps) / off(2 * steps)).log2();
+            assert!(
+                (found - order).abs() < 0.15,
+                "{name}, {friction:?}: order {found}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_report_stops_the_spin_where_dry_friction_does_and_keeps_it_stopped() {
+    let body = wheel();
+    let friction = Friction {
+        spin_dry: 2.0,
+        ..Friction::default()
+    };
+    for spin in [3.0, -3.0] {
+        let begin = start(&body, [0.0, 0.0, spin]);
+        let stop_s = spin_momentum(&begin).abs() / 2.0;
+        for dt in [0.01, 0.5, 7.0] {
+            let mut run = Run::new("report", &body, &free(friction), begin);
+            let before = (stop_s / dt) as u32;
+            run.step(dt, before);
+            let left = spin_momentum(&run.state) * spin.signum();
+            assert!(
+                (left - 2.0 * (stop_s - dt * f64::from(before))).abs() < 1e-9,
+                "{left}"
+            );
+            for _ in 0..100 {
+                run.step(dt, 1);
+            }
+            run.step(dt, 1);
+            assert!(
+                spin_momentum(&run.state).abs() < 1e-14,
+                "{}",
+                spin_momentum(&run.state)
+            );
+        }
+    }
+}
+
+#[test]
+fn strong_friction_in_a_long_step_stops_and_does_not_explode() {
+    let body = wheel();
+    for friction in [
+        Friction {
+            spin_viscous: 1e4,
+            ..Friction::default()
+        },
+        Friction {
+            spin_quadratic: 1e6,
+            ..Friction::default()
+        },
+        Friction {
+            spin_dry: 1e9,
+            spin_viscous: 1e3,
+            spin_quadratic: 1e3,
+            swing_viscous: 1e4,
+            ..Friction::default()
+        },
+    ] {
+        for name in ["report", "strang"] {
+            let loads = free(friction);
+            let begin = start(&body, [0.5, 0.0, 30.0]);
+            let mut run = Run::new(name, &body, &loads, begin);
+            let mut before = energy(&body, &loads, &begin);
+            for step in 0..50 {
+                run.step(0.5, 1);
+                let now = energy(&body, &loads, &run.state);
+                assert!(
+                    now <= before * (1.0 + 1e-12),
+                    "{name}, {friction:?}, step {step}: {before} to {now}"
+                );
+                before = now;
+            }
+            assert!(
+                spin_momentum(&run.state).abs() < 0.02,
+                "{}",
+                spin_momentum(&run.state)
+            );
+        }
+    }
+}
+
+/// A body at rest, hanging straight down, that a push off the axle would turn about it by 0.4 m times its force.
+#[test]
+fn dry_friction_holds_what_does_not_spin_up_to_its_strength() {
+    let body = wheel();
+    let (_, along) = moments(&body);
+    let hanging = State {
+        time_s: 0.0,
+        orientation: rotation::about(&Vector3::x(), std::f64::consts::PI),
+        momentum: Vector3::zeros(),
+    };
+    let loads = |force: f64| Loads {
+        friction: Friction {
+            spin_dry: 2.0,
+            ..Friction::default()
+        },
+        pushes: vec![PointForce {
+            point: OFF_AXLE,
+            force: Vector3::new(0.0, force, 0.0),
+        }],
+        gravity: 1e6, // so heavy that the push does not swing it
+    };
+    for name in ["report", "strang", "exact"] {
+        let mut held = Run::new(name, &body, &loads(4.9), hanging);
+        held.step(0.0001, 2000);
+        let crept = spin_momentum(&held.state);
+        assert!(crept.abs() < 1e-9, "{name}: {crept}");
+        let mut turned = Run::new(name, &body, &loads(5.1), hanging);
+        turned.step(0.0001, 2000);
+        // 5.1 N at 0.4 m, seen from the body that hangs upside down, less 2 N m, for 0.2 s.
+        let expected = -(5.1 * 0.4 - 2.0) * 0.2;
+        let found = spin_momentum(&turned.state);
+        assert!(
+            (found - expected).abs() < 1e-3 * expected.abs(),
+            "{name}: {found} for {expected}, moment {along}"
+        );
+    }
+}
+
+#[test]
+fn the_exact_motion_with_friction_is_the_same_in_whatever_order_it_is_asked_for() {
+    let body = body(0.9);
+    let friction = Friction {
+        spin_dry: 1.5,
+        spin_viscous: 0.1,
+        swing_viscous: 0.2,
+        ..Friction::default()
+    };
+    let begin = start(&body, [0.4, -0.3, 9.0]);
+    let loads = weight(friction);
+    let exact = || gyrolab::physics::ExactMotion::new(&body, &loads, &begin);
+    let mut forward = exact();
+    let times: Vec<_> = (0..400).map(|i| f64::from(i) * 0.37).collect();
+    let states: Vec<_> = times.iter().map(|&t| forward.at(t)).collect();
+    let mut about = exact();
+    for i in (0..400).map(|i| i * 167 % 400) {
+        assert_eq!(about.at(times[i]), states[i], "at {} s", times[i]);
+    }
+}
+
+#[test]
+fn a_fast_top_with_friction_on_its_swing_loses_its_nutation_and_then_sinks() {
+    let body = wheel();
+    let (across, _) = moments(&body);
+    let rubbing = 0.5;
+    let loads = weight(Friction {
+        swing_viscous: rubbing,
+        ..Friction::default()
+    });
+    let begin = start(&body, [0.0, 0.0, 200.0]);
+    let mut run = Run::new("exact", &body, &loads, begin);
+    let load = 9.8 * body.first_moment().z;
+    run.step(0.01, 10_000); // nutation is e^-15 of what it was
+    let (first, spin) = (
+        observables::tilt_deg(&run.state).to_radians(),
+        spin_momentum(&run.state),
+    );
+    let precession = load / spin;
+    run.step(0.01, 2000);
+    let now = observables::tilt_deg(&run.state).to_radians();
+    let mean = 0.5 * (now + first);
+    let expected = rubbing * precession * mean.sin() / spin * 20.0;
+    // To first order: the ratio is 1 + 2 I1 M g c cos(tilt)/L3^2.
+    let next_order = 1.0 + 2.0 * across * load * mean.cos() / (spin * spin);
+    let ratio = (now - first) / expected;
+    assert!(
+        (ratio / next_order - 1.0).abs() < 1e-4,
+        "{ratio}, {next_order}"
+    );
+}
+
+#[test]
+fn an_almost_upright_top_wakes_as_its_spin_falls_below_the_limit_and_falls() {
+    let body = wheel();
+    let (across, along) = moments(&body);
+    let load = 9.8 * body.first_moment().z;
+    let limit = 2.0 * (across * load).sqrt();
+    let tilt: f64 = 1e-4;
+    let orientation = rotation::about(&Vector3::x(), tilt);
+    let begin = State {
+        time_s: 0.0,
+        orientation,
+        momentum: orientation * Vector3::new(0.0, 0.0, 1.1 * limit),
+    };
+    // Seconds in which the spin falls to 1/e.
+    for decay_s in [300.0, 30.0] {
+        let loads = weight(Friction {
+            spin_viscous: along / decay_s,
+            ..Friction::default()
+        });
+        let mut run = Run::new("exact", &body, &loads, begin);
+        while observables::tilt_deg(&run.state).to_radians() < 10.0 * tilt {
+            run.step(0.01, 1);
+            assert!(spin_momentum(&run.state) > 0.5 * limit, "it sleeps on");
+        }
+        let found = spin_momentum(&run.state) / limit;
+        let expected = waking(across, load, 1.1 * limit, decay_s) / limit;
+        assert!(
+            (found - expected).abs() < 2e-4,
+            "{decay_s} s: {found} for {expected}"
+        );
+        assert!(
+            (0.9..0.99).contains(&found),
+            "below the limit, where it is said to be: {found}"
+        );
+        let mut lowest: f64 = 0.0;
+        for _ in 0..300 {
+            lowest = lowest.max(observables::tilt_deg(run.step(0.1, 1)));
+        }
+        assert!(lowest > 30.0, "it falls: {lowest} degrees");
+    }
+}
+
+/// L along the axle at which the tilt of an almost upright top is ten times its start's. The axle's horizontal part, as a
+/// complex number, obeys I1 z'' - i L3(t) z' - M g c z = 0 while it is small.
+fn waking(across: f64, load: f64, spin: f64, decay_s: f64) -> f64 {
+    type Complex = nalgebra::Complex<f64>;
+    let slope = |t: f64, [z, v]: [Complex; 2]| {
+        let spin = Complex::new(0.0, spin * (-t / decay_s).exp());
+        [v, (spin * v + z * load) / across]
+    };
+    let mut state = [Complex::new(1.0, 0.0), Complex::new(0.0, 0.0)];
+    let (mut t, h) = (0.0, 1e-3);
+    while state[0].norm() < 10.0 {
+        let moved = |k: [Complex; 2], h: f64| [state[0] + k[0] * h, state[1] + k[1] * h];
+        let k1 = slope(t, state);
+        let k2 = slope(t + 0.5 * h, moved(k1, 0.5 * h));
+        let k3 = slope(t + 0.5 * h, moved(k2, 0.5 * h));
+        let k4 = slope(t + h, moved(k3, h));
+        for i in 0..2 {
+            state[i] += (k1[i] + k2[i] * 2.0 + k3[i] * 2.0 + k4[i]) * (h / 6.0);
+        }
+        t += h;
+    }
+    spin * (-t / decay_s).exp()
+}
