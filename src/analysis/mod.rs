@@ -1,10 +1,11 @@
 //! What a run's numbers are worth: [`theory`] says what the top should do, [`measure`] and [`extremes`] what the run did,
 //! [`frozen`] what the report's scheme should make of it,
 //! [`health`] what the time step made of it, [`remarks`] the same in words. [`readouts`] is the one table of all these
-//! numbers under their names, and [`compare`] holds schemes and time steps against the exact motion.
+//! numbers under their names, [`at_end`] reads them off a run at its end, and [`compare`] holds schemes and time steps against the exact motion.
 //!
 //! These rooms follow a run and read it; none of them changes a number of it.
 
+pub mod at_end;
 pub mod beside;
 mod between;
 pub mod compare;

@@ -2,6 +2,7 @@
 
 use super::cast::CastArgs;
 use super::figure::FigureArgs;
+use super::fit::FitArgs;
 use super::layout::LayoutArgs;
 use super::manual::ManArgs;
 use super::sweep::SweepArgs;
@@ -56,6 +57,8 @@ pub(super) enum Command {
     Cast(CastArgs),
     /// Run a grid of runs on all cores and write a row for each, or list the shipped sweeps
     Sweep(SweepArgs),
+    /// Fit keys of a scenario to measured data: values with uncertainties, and whether the model fits
+    Fit(FitArgs),
     /// List the shipped presets, or print one, or a shipped sweep, as TOML
     Presets {
         /// The preset or sweep to print

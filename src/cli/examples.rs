@@ -57,6 +57,13 @@ const EXAMPLES: &[(&str, &str)] = &[
   gyrolab man sweep                                 sweep files, and sweeps on many machines",
     ),
     (
+        "fit",
+        "  gyrolab fit heidelberg-nutation --in heidelberg --free body.part.0.moments_kg_m2.2
+  gyrolab fit lab.csv --in mine.toml --free start.spin_rpm,start.tilt_deg=10..40
+  gyrolab fit lab.csv --in mine.toml --free start.spin_rpm -o fit.csv && gyrolab figure fit.csv -o fit.pdf
+  gyrolab man fit                                   how files of measured data are written",
+    ),
+    (
         "presets",
         "  gyrolab presets                           what there is to run
   gyrolab presets method-2 > mine.toml      one of them, to change",

@@ -8,6 +8,7 @@ mod compare;
 mod complete;
 mod examples;
 mod figure;
+mod fit;
 mod info;
 mod layout;
 mod lesson;
@@ -78,6 +79,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Compare(args) => compare::compare(&args),
         Command::Figure(args) => figure::figure(&args),
         Command::Sweep(args) => sweep::sweep(&args),
+        Command::Fit(args) => fit::fit(&args),
         Command::Verify(args) => verify::verify(&args),
         Command::Cast(args) => cast::cast(&args),
         Command::Presets { name } => info::presets(name.as_deref()),

@@ -132,6 +132,39 @@ fn hangup_is_ignored() -> bool {
     mask.is_none_or(|mask| mask & (1 << (SIGHUP - 1)) != 0)
 }
 
+/// What is going on, on stderr, for work of which nobody knows how much there is: after a second, for somebody who watches.
+pub(super) struct Ticker {
+    begin: Instant,
+    bar: Option<ProgressBar>,
+}
+
+impl Ticker {
+    pub(super) fn new() -> Self {
+        Self {
+            begin: Instant::now(),
+            bar: None,
+        }
+    }
+
+    pub(super) fn show(&mut self, text: &str) {
+        if self.begin.elapsed() < Meter::QUIET || !io::stderr().is_terminal() {
+            return;
+        }
+        let bar = self.bar.get_or_insert_with(|| {
+            let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(4));
+            bar.enable_steady_tick(Duration::from_millis(250));
+            bar
+        });
+        bar.set_message(text.to_owned());
+    }
+
+    pub(super) fn clear(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 /// Steps, rate and time left on stderr, for runs that take more than a second and have somebody to watch them.
 pub(super) struct Meter {
     /// What is counted.

@@ -109,6 +109,29 @@ pub struct Point {
 }
 
 impl Measured {
+    /// How many rows there are.
+    pub fn rows(&self) -> usize {
+        match &self.data {
+            Data::Series(series) => series.lines.len(),
+            Data::Table(table) => table.lines.len(),
+        }
+    }
+
+    /// Leaves out what was measured in the rows, counted from 0, of which `is_kept` says no.
+    pub fn keep_rows(&mut self, is_kept: impl Fn(usize) -> bool) {
+        let keep = |points: &mut Vec<Point>| points.retain(|point| is_kept(point.row));
+        match &mut self.data {
+            Data::Series(series) => series
+                .curves
+                .iter_mut()
+                .for_each(|curve| keep(&mut curve.points)),
+            Data::Table(table) => table
+                .readouts
+                .iter_mut()
+                .for_each(|column| keep(&mut column.points)),
+        }
+    }
+
     /// How many values were measured.
     pub fn count(&self) -> usize {
         match &self.data {

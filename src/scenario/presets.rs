@@ -44,6 +44,7 @@ pub const PRESETS: &[Preset] = presets![
     "phone": "e, then wy: at 0 nothing slips, and it comes round flat."
     "rugby-pass": "e, then wx: a larger slip of the wrist widens the circle, its time stays."
     "earth": "e, then tilt: does the pole go round faster when it leans less?"
+    "heidelberg": "gyrolab fit heidelberg-precession --in heidelberg --free body.part.0.moments_kg_m2.2 finds its moment."
     "poinsot": "o opens wing-nut: a free body again, about its middle axis."
 ];
 

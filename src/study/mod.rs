@@ -1,9 +1,11 @@
-//! What many runs say, and what an exported run is worth: sweeps, verification, write-ups.
+//! What many runs say, and what an exported run is worth: sweeps, fits, verification, write-ups.
 //!
+//! - [`fit`]: keys of a scenario so that its runs come nearest to measured data.
 //! - [`sweep`]: a grid of runs, a row each.
 //! - [`verify`]: a CSV, computed again and held against its rows.
 //! - [`writeup`]: a run as a folder of files for a write-up.
 
+pub mod fit;
 pub mod sweep;
 pub mod verify;
 pub mod writeup;

@@ -3,8 +3,9 @@
 use super::axis::Axis;
 use super::checks::{axes, measured};
 use super::file::{Base, SweepFile};
-use super::row::{Row, line, readouts};
+use super::row::{Row, line};
 use super::shard::Shard;
+use crate::analysis::at_end::readouts;
 use crate::analysis::readouts::{Readout, Value as Readable};
 use crate::export::csv::commented;
 use crate::run::Clock;

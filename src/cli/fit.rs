@@ -1,0 +1,244 @@
+//! `gyrolab fit`: keys of a scenario, so that its runs come nearest to measured data.
+
+use super::args::Changes;
+use super::progress::{self, Ticker};
+use super::scenario::change;
+use super::{INTERRUPTED, print, refuse, tell};
+use crate::export::Destination;
+use crate::measured::{self, Measured};
+use crate::physics::SchemeInfo;
+use crate::physics::scheme;
+use crate::scenario::{Document, Problem, Problems};
+use crate::study::fit::report::Report;
+use crate::study::fit::table::{self, Asked};
+use crate::study::fit::{Fit, Free, Model, NoFit, fit as fitted, free};
+use crate::text::number::significant;
+use crate::text::printable::{Shown, brief};
+use anyhow::{Context, anyhow};
+use clap::Args;
+use clap::error::ErrorKind;
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use toml::Value;
+
+#[derive(Debug, Args)]
+pub(super) struct FitArgs {
+    /// Measured data: a CSV file, a time series or a table of runs, or shipped data such as heidelberg-precession
+    pub(super) measured: String,
+
+    /// The scenario that is fitted: a preset's name, or a file (.toml or .csv)
+    #[arg(long = "in", value_name = "SCENARIO")]
+    pub(super) scenario: String,
+
+    /// The keys whose values are looked for, each from its value in the scenario on, and within FROM..TO where that is given
+    #[arg(
+        long,
+        value_name = "KEY[=FROM..TO],...",
+        value_delimiter = ',',
+        required = true
+    )]
+    pub(super) free: Vec<String>,
+
+    #[command(flatten)]
+    pub(super) changes: Changes,
+
+    /// Fit these rows of the data alone, counted from 1, such as 1,3,5-8
+    #[arg(long, value_name = "ROWS")]
+    pub(super) rows: Option<Rows>,
+
+    /// Write data, model and residuals as CSV to this file, or to stdout for -; gyrolab figure draws it
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+
+    /// Give the result as one JSON object
+    #[arg(long)]
+    pub(super) json: bool,
+
+    /// Replace an existing file
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+/// Rows of the data, counted from 1, as they were given.
+#[derive(Clone, Debug)]
+pub(super) struct Rows {
+    text: String,
+    ranges: Vec<(usize, usize)>,
+}
+
+impl std::str::FromStr for Rows {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || "must be rows counted from 1, such as 1,3,5-8".to_owned();
+        let number = |text: &str| text.trim().parse().ok().filter(|&row: &usize| row > 0);
+        let range = |part: &str| {
+            let (first, last) = part.split_once('-').unwrap_or((part, part));
+            let (first, last) = (number(first)?, number(last)?);
+            (first <= last).then_some((first, last))
+        };
+        let ranges: Option<Vec<_>> = text.split(',').map(range).collect();
+        Ok(Self {
+            text: text.to_owned(),
+            ranges: ranges.ok_or_else(wrong)?,
+        })
+    }
+}
+
+/// What is fitted when nothing says by which scheme: the true motion, and not the artefacts of a time step.
+const SCHEME: &str = "exact";
+
+pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
+    let on_stdout = args
+        .output
+        .as_deref()
+        .is_some_and(Destination::is_for_stdout);
+    if args.json && on_stdout {
+        let message =
+            "--json and -o - both claim stdout: write the CSV to a file, or leave --json out";
+        refuse("fit", ErrorKind::ArgumentConflict, message);
+    }
+    let measured = measured::open(&args.measured)?;
+    let measured = chosen(measured, args.rows.as_ref())?;
+    let document = scenario(args)?;
+    let keys = args
+        .free
+        .iter()
+        .map(|argument| Free::parse(argument, &document));
+    let keys = keys.collect::<Result<Vec<_>, _>>()?;
+    free::are_apart(&keys)?;
+    let model = Model::new(&document, keys, measured)?;
+    let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
+    let ticker = RefCell::new(Ticker::new());
+    let told = |step: u64, sum: f64| {
+        let sum = if sum.is_finite() {
+            significant(sum, 4)
+        } else {
+            "n/a".to_owned()
+        };
+        let text = format!("step {step}, {} runs, chi^2 {sum}", model.runs());
+        ticker.borrow_mut().show(&text);
+    };
+    let found = fitted(&model, &|| !interruption.has_come(), &told);
+    ticker.borrow().clear();
+    let found = match found {
+        Ok(found) => found,
+        Err(NoFit::Interrupted) => return Ok(ExitCode::from(INTERRUPTED)),
+        Err(error) => {
+            let what = format!("{} in {}", args.measured, args.scenario);
+            return Err(anyhow::Error::new(error).context(what));
+        }
+    };
+    let report = Report {
+        fit: &found,
+        model: &model,
+        scheme: scheme_of(&document),
+    };
+    if let Some(output) = output {
+        let path = args.output.as_deref().unwrap_or(Path::new("the output"));
+        write(output, &report, args).with_context(|| format!("cannot write {}", Shown(path)))?;
+    }
+    if interruption.may_act_at_once() {
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    tell_of(&report, args)
+}
+
+/// The scenario with all that the command line changes in it.
+fn scenario(args: &FitArgs) -> Result<Document, Problems> {
+    let mut document = Document::open(&args.scenario)?;
+    let sets_scheme = |set: &String| set.trim_start().starts_with("motion.scheme");
+    if args.changes.scheme.is_none() && !args.changes.set.iter().any(sets_scheme) {
+        document.scenario()?; // what is wrong with it is told as it stands in its file
+        let written = document.set_value("motion.scheme", Value::String(SCHEME.to_owned()));
+        written.map_err(|problem| Problems::one(args.scenario.clone(), problem))?;
+    }
+    change(&mut document, &args.changes)?;
+    document.scenario()?;
+    Ok(document)
+}
+
+fn scheme_of(document: &Document) -> &'static str {
+    let name = document
+        .table()
+        .get("motion")
+        .and_then(|motion| motion.get("scheme"));
+    let name = name
+        .and_then(Value::as_str)
+        .unwrap_or(scheme::SCHEMES[0].name);
+    SchemeInfo::find(name).map_or(SCHEME, |scheme| scheme.name)
+}
+
+/// The rows of `measured` that are to be fitted.
+fn chosen(mut measured: Measured, rows: Option<&Rows>) -> Result<Measured, Problems> {
+    let Some(rows) = rows else {
+        return Ok(measured);
+    };
+    let count = measured.rows();
+    let refused = |rule: String| {
+        let mut problem = Problem::at("", rule);
+        problem.place = Some(format!("--rows {}", brief(&rows.text, 80)));
+        Problems::one("", problem)
+    };
+    if let Some((_, beyond)) = rows.ranges.iter().find(|(_, last)| *last > count) {
+        return Err(refused(format!(
+            "there is no row {beyond}: the data have {count}"
+        )));
+    }
+    measured.keep_rows(|row| {
+        let number = row + 1;
+        rows.ranges
+            .iter()
+            .any(|(first, last)| (*first..=*last).contains(&number))
+    });
+    match measured.count() {
+        0 => Err(refused("these rows hold no measured value".to_owned())),
+        _ => Ok(measured),
+    }
+}
+
+/// Writes the CSV of a fit.
+fn write(mut output: Destination, report: &Report<'_>, args: &FitArgs) -> anyhow::Result<()> {
+    let Fit { keys, quality, .. } = report.fit;
+    let values: Vec<f64> = keys.iter().map(|key| key.value).collect();
+    let scenario = report.model.scenario(&values).map_err(|why| anyhow!(why))?;
+    let asked = Asked {
+        measured: args.measured.clone(),
+        scenario: args.scenario.clone(),
+        free: args.free.clone(),
+        rows: args.rows.as_ref().map(|rows| rows.text.clone()),
+        chi_squared: quality.chi_squared,
+        degrees_of_freedom: quality.degrees_of_freedom,
+        scatter: quality.scatter,
+        verdict: report.fit.sentence(report.model),
+    };
+    table::write(&mut output, report, &scenario, asked)?;
+    output.keep()?;
+    Ok(())
+}
+
+/// The result: on stdout, or on stderr where stdout or a file has the rows.
+fn tell_of(report: &Report<'_>, args: &FitArgs) -> anyhow::Result<ExitCode> {
+    if args.output.is_some() {
+        tell(report);
+    }
+    if args.json {
+        print(&format!("{}\n", serde_json::to_string(report)?))?;
+    } else if args.output.is_none() {
+        print(&format!("{report}\n"))?;
+    }
+    if let Some(path) = args
+        .output
+        .as_deref()
+        .filter(|path| !Destination::is_for_stdout(path))
+    {
+        let rows = report.fit.residuals.len();
+        let plural = if rows == 1 { "" } else { "s" };
+        tell(format_args!(
+            "gyrolab: {rows} row{plural} in {}",
+            Shown(path)
+        ));
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,165 @@
+//! A key whose value is looked for.
+
+use crate::scenario::dotted;
+use crate::scenario::keys::{self, Absent, Effect, Kind, Nudge, Range};
+use crate::scenario::{Document, Problem, Problems};
+use crate::text::number::shortest;
+use crate::text::printable::brief;
+use toml::Value;
+
+/// A free key: where the search begins, and what it may not leave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Free {
+    /// The dotted key.
+    pub key: String,
+    /// Its value in the scenario.
+    pub start: f64,
+    /// The least value; -infinity where there is none.
+    pub from: f64,
+    /// The greatest value; infinity where there is none.
+    pub to: f64,
+    /// A value of the size that is usual for it.
+    pub scale: f64,
+    /// The argument, as it was given.
+    pub argument: String,
+}
+
+/// How large a change of a value is that is 0 and has no bounds, where the table of keys does not know better.
+const SMALL: f64 = 0.01;
+
+impl Free {
+    /// The free key that `argument`, KEY or KEY=FROM..TO, means in `scenario`; either end may be left out.
+    ///
+    /// # Errors
+    /// When there is no such key, no number of a run depends on it, it has no value to begin from, or the bounds are none
+    /// or leave the value out.
+    pub fn parse(argument: &str, scenario: &Document) -> Result<Self, Problems> {
+        let refused = |rule: String| {
+            let mut problem = Problem::at("", rule);
+            problem.place = Some(format!("--free {}", brief(argument, 80)));
+            Problems::one("", problem)
+        };
+        Self::read(argument.trim(), scenario).map_err(refused)
+    }
+
+    fn read(argument: &str, scenario: &Document) -> Result<Self, String> {
+        let (key, bounds) = match argument.split_once('=') {
+            Some((key, bounds)) => (key.trim(), Some(bounds.trim())),
+            None => (argument, None),
+        };
+        let (row, kind) = keys::find(key)?;
+        let Kind::Number(range) = kind else {
+            return Err(not_a_number(key, kind));
+        };
+        if Effect::of(key) == Effect::None || key.starts_with("edit.") {
+            return Err("no number of a run depends on this key: it cannot be fitted".to_owned());
+        }
+        let (from, to) = bounds.map_or(Ok((f64::NEG_INFINITY, f64::INFINITY)), ends)?;
+        let from = match range {
+            Range::NotNegative | Range::Positive => from.max(0.0),
+            Range::Any | Range::Zoom => from,
+        };
+        let start = match dotted::find(scenario.table(), key) {
+            Some(Value::Float(number)) => *number,
+            Some(Value::Integer(whole)) => *whole as f64,
+            _ => match row.lab.map(|lab| lab.absent) {
+                Some(Absent::Number(number)) => number,
+                _ => {
+                    return Err(format!(
+                        "has no value in the scenario, from which the search would begin: give it one by --set {key}=..."
+                    ));
+                }
+            },
+        };
+        if !(from..=to).contains(&start) {
+            return Err(format!(
+                "begins at {}, the scenario's value, outside of {}..{}: give other bounds, or begin inside by --set {key}=...",
+                shortest(start),
+                shown(from),
+                shown(to)
+            ));
+        }
+        let nudge = match row.lab.map(|lab| lab.nudge) {
+            Some(Nudge::By(size) | Nudge::Hundredth(size)) => size,
+            _ => SMALL,
+        };
+        let width = Some(to - from).filter(|width| width.is_finite());
+        let scale = match start.abs() {
+            0.0 => width.unwrap_or(nudge),
+            size => size,
+        };
+        Ok(Self {
+            key: key.to_owned(),
+            start,
+            from,
+            to,
+            scale,
+            argument: argument.to_owned(),
+        })
+    }
+}
+
+/// Why `key` cannot be fitted, which holds no number.
+fn not_a_number(key: &str, kind: Kind) -> String {
+    match kind {
+        Kind::Vector => {
+            format!("is a vector, of which each number can be free: {key}.0, {key}.1, {key}.2")
+        }
+        Kind::Whole(..) | Kind::WholeOr(..) => {
+            "is a whole number, which cannot be varied by little: vary it by gyrolab sweep"
+                .to_owned()
+        }
+        _ => "is no number: it cannot be fitted".to_owned(),
+    }
+}
+
+/// The two ends of `FROM..TO`.
+fn ends(bounds: &str) -> Result<(f64, f64), String> {
+    let wrong = || {
+        "bounds must be FROM..TO, two numbers of which either may be left out, such as 0.1..0.5 or 0..".to_owned()
+    };
+    let (from, to) = bounds.split_once("..").ok_or_else(wrong)?;
+    let number = |text: &str, absent: f64| match text.trim() {
+        "" => Ok(absent),
+        text => text
+            .parse()
+            .ok()
+            .filter(|number: &f64| number.is_finite())
+            .ok_or_else(wrong),
+    };
+    let (from, to) = (number(from, f64::NEG_INFINITY)?, number(to, f64::INFINITY)?);
+    match from < to {
+        true => Ok((from, to)),
+        false => Err(format!(
+            "the bounds leave no room: {} must be below {}",
+            shown(from),
+            shown(to)
+        )),
+    }
+}
+
+/// A bound as it is written; nothing where there is none.
+pub(super) fn shown(bound: f64) -> String {
+    match bound.is_finite() {
+        true => shortest(bound),
+        false => String::new(),
+    }
+}
+
+/// Refuses free keys that write into the same value.
+///
+/// # Errors
+/// When two of them do.
+pub fn are_apart(free: &[Free]) -> Result<(), Problems> {
+    for (index, one) in free.iter().enumerate() {
+        let is_same = |other: &&Free| {
+            dotted::is_in(&one.key, &other.key) || dotted::is_in(&other.key, &one.key)
+        };
+        if free[..index].iter().any(|other| is_same(&other)) {
+            let mut problem = Problem::at(one.key.clone(), "is free twice: name it once");
+            problem.place = Some("--free".to_owned());
+            return Err(Problems::one("", problem));
+        }
+    }
+    Ok(())
+}

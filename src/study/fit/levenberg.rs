@@ -1,0 +1,287 @@
+//! The search for the least sum of squares: Levenberg and Marquardt's, within bounds.
+//!
+//! Sources: D. W. Marquardt, J. Soc. Indust. Appl. Math. 11, 431 (1963); J. J. Moré, Lecture Notes in Mathematics 630, 105
+//! (1978), for the scaling of the parameters, which never shrinks; H. B. Nielsen, Damping parameter in Marquardt's method,
+//! IMM-REP-1999-05, Technical University of Denmark (1999), for the damping. Bounds are held by projection: a parameter at a
+//! bound, beyond which the sum would fall, stays there while the others are looked for (D. P. Bertsekas, SIAM J. Control
+//! Optim. 20, 221 (1982)). A well-kept crate with this method, levenberg-marquardt, needs another version of nalgebra.
+
+use nalgebra::{DMatrix, DVector};
+
+/// What is to be made small.
+pub trait Problem {
+    /// The residuals r at `p`, in units in which a standard uncertainty is 1.
+    ///
+    /// # Errors
+    /// Why there are none.
+    fn residuals(&self, p: &[f64]) -> Result<DVector<f64>, Stop>;
+
+    /// −∂r/∂p at `p`: a column for each parameter.
+    ///
+    /// # Errors
+    /// Why there is none.
+    fn slopes(&self, p: &[f64]) -> Result<DMatrix<f64>, Stop>;
+
+    /// Is told after each step how many have been taken and how large the sum is.
+    fn tell(&self, step: u64, sum: f64);
+}
+
+/// Why something was not computed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stop {
+    /// There is no such run, or no such number of it.
+    Impossible(String),
+    /// Somebody wants it to end.
+    Interrupted,
+}
+
+/// From where to where a parameter may go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// The least value; may be infinite.
+    pub from: f64,
+    /// The greatest value; may be infinite.
+    pub to: f64,
+}
+
+/// Where a search has ended.
+#[derive(Clone, Debug)]
+pub struct Minimum {
+    /// The parameters.
+    pub p: Vec<f64>,
+    /// The residuals there.
+    pub residuals: DVector<f64>,
+    /// −∂r/∂p there.
+    pub slopes: DMatrix<f64>,
+    /// Which parameters are held at a bound, beyond which the sum would be less.
+    pub held: Vec<bool>,
+    /// How many steps were taken.
+    pub steps: u64,
+    /// Why it is no minimum, where it is none.
+    pub failure: Option<Failure>,
+}
+
+/// Why a search has not found a minimum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// After so many steps it still got better.
+    TooManySteps,
+    /// However short a step is, it makes nothing better, though the slopes say that it should.
+    Stuck,
+}
+
+/// The most steps.
+pub const MOST_STEPS: u64 = 200;
+
+/// By less than this the sum (in which 1 is a standard uncertainty) is not worth making less.
+const ENOUGH: f64 = 1e-8;
+/// The same as a part of the sum.
+const ENOUGH_OF_SUM: f64 = 1e-10;
+/// Where no step makes it less, so much is left to rounding.
+const ROUNDING: f64 = 1e-3;
+/// Singular values below this part of the largest are the rounding of the slopes.
+pub const SINGULAR: f64 = 1e-6;
+/// The damping at the beginning, of slopes whose columns have length 1.
+const DAMPING: f64 = 1e-3;
+const MOST_DAMPING: f64 = 1e12;
+
+/// Looks for the least sum of squares from `start` on.
+///
+/// # Errors
+/// When there are no residuals at the start, no slopes where the search stands, or somebody ended it.
+pub fn search(problem: &dyn Problem, start: &[f64], bounds: &[Bounds]) -> Result<Minimum, Stop> {
+    let mut p = start.to_vec();
+    let mut r = problem.residuals(&p)?;
+    let mut scale = DVector::zeros(p.len());
+    let (mut damping, mut growth) = (DAMPING, 2.0);
+    for step in 0.. {
+        let slopes = problem.slopes(&p)?;
+        problem.tell(step, r.norm_squared());
+        for (scale, column) in scale.iter_mut().zip(slopes.column_iter()) {
+            *scale = column.norm().max(*scale);
+        }
+        let held = held(&p, bounds, &slopes, &r);
+        let linear = Linear::new(&slopes, &scale, &held, &r);
+        let end = |failure| {
+            Ok(Minimum {
+                p: p.clone(),
+                residuals: r.clone(),
+                slopes: slopes.clone(),
+                held: held.clone(),
+                steps: step,
+                failure,
+            })
+        };
+        let gain = linear.gain();
+        if gain <= ENOUGH.max(ENOUGH_OF_SUM * r.norm_squared()) {
+            return end(None);
+        }
+        if step == MOST_STEPS {
+            return end(Some(Failure::TooManySteps));
+        }
+        loop {
+            let trial = projected(&p, &linear.step(damping), bounds);
+            let moved = DVector::from_iterator(p.len(), trial.iter().zip(&p).map(|(a, b)| a - b));
+            let foreseen = r.norm_squared() - (&r - &slopes * &moved).norm_squared();
+            let there = match problem.residuals(&trial) {
+                Ok(there) => Some(there),
+                Err(Stop::Impossible(_)) => None,
+                Err(Stop::Interrupted) => return Err(Stop::Interrupted),
+            };
+            let gained = there.as_ref().map_or(f64::NEG_INFINITY, |there| {
+                r.norm_squared() - there.norm_squared()
+            });
+            if let Some(there) = there.filter(|_| gained > 0.0) {
+                let ratio = 2.0 * (gained / foreseen).min(1.0) - 1.0;
+                damping *= (1.0 - ratio * ratio * ratio).clamp(1.0 / 3.0, 2.0);
+                growth = 2.0;
+                (p, r) = (trial, there);
+                break;
+            }
+            damping *= growth;
+            growth *= 2.0;
+            if damping > MOST_DAMPING {
+                let is_rounding = gain <= ROUNDING.max(ROUNDING * ROUNDING * r.norm_squared());
+                return end((!is_rounding).then_some(Failure::Stuck));
+            }
+        }
+    }
+    Err(Stop::Interrupted) // not reached: the steps are counted above
+}
+
+/// Which parameters stand at a bound and would leave it.
+fn held(p: &[f64], bounds: &[Bounds], slopes: &DMatrix<f64>, r: &DVector<f64>) -> Vec<bool> {
+    let pull = slopes.tr_mul(r); // upwards where it is positive
+    let is_held = |index: usize| {
+        let (at, pull) = (p[index], pull[index]);
+        at <= bounds[index].from && pull < 0.0 || at >= bounds[index].to && pull > 0.0
+    };
+    (0..p.len()).map(is_held).collect()
+}
+
+fn projected(p: &[f64], step: &DVector<f64>, bounds: &[Bounds]) -> Vec<f64> {
+    let moved = p.iter().zip(step.iter()).zip(bounds);
+    moved
+        .map(|((p, step), bounds)| (p + step).clamp(bounds.from, bounds.to))
+        .collect()
+}
+
+/// The linear problem at one place: J δ = r for the parameters that are not held, in units of their scales.
+struct Linear {
+    /// The parameters that are not held.
+    moving: Vec<usize>,
+    count: usize,
+    scale: DVector<f64>,
+    singular: DVector<f64>,
+    /// Uᵀ r.
+    along: DVector<f64>,
+    v_t: DMatrix<f64>,
+}
+
+impl Linear {
+    fn new(slopes: &DMatrix<f64>, scale: &DVector<f64>, held: &[bool], r: &DVector<f64>) -> Self {
+        let moves = |index: &usize| !held[*index] && scale[*index] > 0.0;
+        let moving: Vec<usize> = (0..held.len()).filter(moves).collect();
+        let columns = moving
+            .iter()
+            .map(|&index| slopes.column(index) / scale[index]);
+        let columns: Vec<DVector<f64>> = columns.collect();
+        let mut linear = Self {
+            count: held.len(),
+            scale: scale.clone(),
+            singular: DVector::zeros(0),
+            along: DVector::zeros(0),
+            v_t: DMatrix::zeros(0, 0),
+            moving,
+        };
+        if !columns.is_empty() && !r.is_empty() {
+            let svd = DMatrix::from_columns(&columns).svd(true, true);
+            if let (Some(u), Some(v_t)) = (svd.u, svd.v_t) {
+                linear.along = u.tr_mul(r);
+                linear.v_t = v_t;
+                linear.singular = svd.singular_values;
+            }
+        }
+        linear
+    }
+
+    /// By how much the sum would fall, were the residuals linear.
+    fn gain(&self) -> f64 {
+        let least = SINGULAR * self.singular.amax();
+        let pairs = self.singular.iter().zip(self.along.iter());
+        let seen = pairs.filter(|(singular, _)| **singular > least);
+        seen.map(|(_, along)| along * along).sum()
+    }
+
+    /// The step under `damping`, in the parameters' own units.
+    fn step(&self, damping: f64) -> DVector<f64> {
+        let mut step = DVector::zeros(self.count);
+        let damped = self.singular.zip_map(&self.along, |singular, along| {
+            singular * along / (singular * singular + damping)
+        });
+        let moved = self.v_t.tr_mul(&damped);
+        for (&index, moved) in self.moving.iter().zip(moved.iter()) {
+            step[index] = moved / self.scale[index];
+        }
+        step
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rosenbrock's valley: (1 - x, 10 (y - x²)).
+    struct Valley;
+
+    impl Problem for Valley {
+        fn residuals(&self, p: &[f64]) -> Result<DVector<f64>, Stop> {
+            Ok(DVector::from_vec(vec![
+                1.0 - p[0],
+                10.0 * (p[1] - p[0] * p[0]),
+            ]))
+        }
+
+        fn slopes(&self, p: &[f64]) -> Result<DMatrix<f64>, Stop> {
+            Ok(DMatrix::from_row_slice(
+                2,
+                2,
+                &[1.0, 0.0, 20.0 * p[0], -10.0],
+            ))
+        }
+
+        fn tell(&self, _: u64, _: f64) {}
+    }
+
+    const NONE: Bounds = Bounds {
+        from: f64::NEG_INFINITY,
+        to: f64::INFINITY,
+    };
+
+    #[test]
+    fn a_bent_valley_is_followed_to_its_end() {
+        let minimum = search(&Valley, &[-1.2, 1.0], &[NONE, NONE]).unwrap();
+        assert_eq!(minimum.failure, None);
+        assert!((minimum.p[0] - 1.0).abs() < 1e-4 && (minimum.p[1] - 1.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn a_bound_is_held_and_the_rest_is_found_on_it() {
+        let bounds = [
+            NONE,
+            Bounds {
+                from: -1.0,
+                to: 0.5,
+            },
+        ];
+        let minimum = search(&Valley, &[-1.2, 0.0], &bounds).unwrap();
+        assert_eq!(
+            (minimum.failure, &minimum.held[..]),
+            (None, &[false, true][..])
+        );
+        // On y = 1/2 the sum (1 - x)² + 100 (1/2 - x²)² is least at the root of its slope.
+        let slope = |x: f64| -2.0 * (1.0 - x) - 400.0 * x * (0.5 - x * x);
+        assert_eq!(minimum.p[1], 0.5);
+        assert!(slope(minimum.p[0]).abs() < 1e-2, "{}", minimum.p[0]);
+    }
+}

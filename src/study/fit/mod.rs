@@ -1,0 +1,21 @@
+//! Fits: values for keys of a scenario so that its runs come nearest to what was measured, in the sense of weighted least
+//! squares, with what the data say of these values and of the model.
+//!
+//! [`free`] says which keys are free, from where to where. A [`Model`] computes the runs for given values and holds them
+//! against the data. [`levenberg`] looks for the values, [`weights`] says how much each datum counts, [`solution`] what the
+//! minimum says of the keys, [`verdict`] whether the model fits, in a sentence. [`search`] brings these together to a
+//! [`Fit`], [`report`] writes it for people and programs, [`table`] as a CSV.
+
+pub mod free;
+pub mod levenberg;
+pub mod model;
+pub mod report;
+pub mod search;
+pub mod solution;
+pub mod table;
+pub mod verdict;
+pub mod weights;
+
+pub use free::Free;
+pub use model::Model;
+pub use search::{Fit, NoFit, fit};

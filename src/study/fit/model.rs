@@ -1,0 +1,290 @@
+//! The runs of a scenario for given values of its free keys, beside the data.
+
+use super::free::Free;
+use super::levenberg::Stop;
+use crate::analysis::at_end;
+use crate::analysis::readouts::Readout;
+use crate::measured::{
+    Data, Measured, Point, Quantity, Residual, Series, Table, at_times, residuals,
+};
+use crate::scenario::dotted::is_in;
+use crate::scenario::{Document, Problem, Problems, Scenario, ScenarioFile};
+use rayon::prelude::*;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use toml::Value;
+
+/// A scenario, its free keys, and the data that its runs are held against.
+#[derive(Debug)]
+pub struct Model {
+    base: Document,
+    /// The keys whose values are looked for.
+    pub free: Vec<Free>,
+    /// The data.
+    pub measured: Measured,
+    /// The title of the scenario.
+    pub title: String,
+    /// The columns that were measured.
+    pub columns: Vec<Measurand>,
+    /// Every measured value: column by column, and in each in the order of the rows.
+    pub data: Vec<Datum>,
+    runs: AtomicU64,
+}
+
+/// A column that was measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Measurand {
+    /// Its row in the table of readouts.
+    pub readout: &'static Readout,
+    /// The quantity, of a time series.
+    pub quantity: Option<&'static Quantity>,
+}
+
+/// A measured value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Datum {
+    /// The column, by its place.
+    pub column: usize,
+    /// Row, value, and uncertainty.
+    pub point: Point,
+}
+
+impl Model {
+    /// The model that `scenario` is with these keys free, beside `measured`.
+    ///
+    /// # Errors
+    /// When the scenario is wrong, or a key is free that a column sets.
+    pub fn new(scenario: &Document, free: Vec<Free>, measured: Measured) -> Result<Self, Problems> {
+        let checked = scenario.scenario()?;
+        if let Data::Table(table) = &measured.data {
+            are_apart(&free, table)?;
+        }
+        let file = ScenarioFile {
+            gyrolab: None,
+            // They are about the scenario as it stands alone, and about a screen.
+            expected: Vec::new(),
+            view: None,
+            ..checked.file
+        };
+        let (columns, data) = listed(&measured.data);
+        Ok(Self {
+            title: file.title.clone(),
+            base: Document::from_file(scenario.origin(), &file)?,
+            free,
+            measured,
+            columns,
+            data,
+            runs: AtomicU64::new(0),
+        })
+    }
+
+    /// How many runs have been computed so far.
+    pub fn runs(&self) -> u64 {
+        self.runs.load(Ordering::Relaxed)
+    }
+
+    /// The scenario with these values of the free keys, as it stands in a file.
+    ///
+    /// # Errors
+    /// Why there is no such scenario.
+    pub fn scenario(&self, p: &[f64]) -> Result<Scenario, String> {
+        checked(&self.document(p)?)
+    }
+
+    fn document(&self, p: &[f64]) -> Result<Document, String> {
+        let mut document = self.base.clone();
+        for (free, &value) in self.free.iter().zip(p) {
+            write(&mut document, &free.key, Value::Float(value))?;
+        }
+        Ok(document)
+    }
+
+    /// What the runs with these values say of each datum, in its unit.
+    ///
+    /// # Errors
+    /// Why there is no such run, or which number it does not have.
+    pub fn values(&self, p: &[f64], go_on: &(dyn Fn() -> bool + Sync)) -> Result<Vec<f64>, Stop> {
+        match &self.measured.data {
+            Data::Series(series) => self.of_series(series, p, go_on),
+            Data::Table(table) => self.of_table(table, p, go_on, None),
+        }
+    }
+
+    /// The same for a table of runs, with the value of the `key`-th setting changed by `by` times its uncertainty in every row.
+    ///
+    /// # Errors
+    /// As [`values`](Self::values).
+    pub fn values_with(
+        &self,
+        p: &[f64],
+        (key, by): (usize, f64),
+        go_on: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Vec<f64>, Stop> {
+        match &self.measured.data {
+            Data::Series(series) => self.of_series(series, p, go_on),
+            Data::Table(table) => self.of_table(table, p, go_on, Some((key, by))),
+        }
+    }
+
+    fn of_series(
+        &self,
+        series: &Series,
+        p: &[f64],
+        go_on: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Vec<f64>, Stop> {
+        let scenario = self.scenario(p).map_err(Stop::Impossible)?;
+        self.runs.fetch_add(1, Ordering::Relaxed);
+        let values = at_times(series, &Arc::new(scenario), go_on);
+        let values = values.map_err(|error| Stop::Impossible(error.to_string()))?;
+        let values = values.ok_or(Stop::Interrupted)?;
+        let named = self.data.iter().zip(values.into_iter().flatten());
+        named
+            .map(|(datum, value)| self.finite(datum, Some(value)))
+            .collect()
+    }
+
+    fn of_table(
+        &self,
+        table: &Table,
+        p: &[f64],
+        go_on: &(dyn Fn() -> bool + Sync),
+        changed: Option<(usize, f64)>,
+    ) -> Result<Vec<f64>, Stop> {
+        let document = self.document(p).map_err(Stop::Impossible)?;
+        let wanted: Vec<&Readout> = self.columns.iter().map(|column| column.readout).collect();
+        let mut is_wanted = vec![false; table.lines.len()];
+        for datum in &self.data {
+            is_wanted[datum.point.row] = true;
+        }
+        let rows: Vec<Vec<Option<f64>>> = is_wanted
+            .par_iter()
+            .enumerate()
+            .map(|(row, is_wanted)| {
+                if !is_wanted {
+                    return Ok(Vec::new());
+                }
+                let document = with_settings(&document, table, row, changed);
+                let scenario = document.and_then(|document| checked(&document));
+                let scenario = scenario
+                    .map_err(|why| Stop::Impossible(format!("in {}: {why}", self.row(row))))?;
+                self.runs.fetch_add(1, Ordering::Relaxed);
+                let read = at_end::readouts(scenario, &wanted, &|| go_on());
+                let read =
+                    read.map_err(|why| Stop::Impossible(format!("in {}: {why}", self.row(row))))?;
+                let read = read.ok_or(Stop::Interrupted)?;
+                Ok(read.iter().map(|value| value.number()).collect())
+            })
+            .collect::<Result<_, Stop>>()?;
+        let of = |datum: &Datum| self.finite(datum, rows[datum.point.row][datum.column]);
+        self.data.iter().map(of).collect()
+    }
+
+    /// A value that is there and finite.
+    fn finite(&self, datum: &Datum, value: Option<f64>) -> Result<f64, Stop> {
+        let name = self.columns[datum.column].readout.name;
+        value.filter(|value| value.is_finite()).ok_or_else(|| {
+            let row = self.row(datum.point.row);
+            Stop::Impossible(format!(
+                "{name} is null in {row}: the run of the scenario does not have this number (gyrolab readouts says when)"
+            ))
+        })
+    }
+
+    /// A row as it is told: by its number, from 1, and its line in the file.
+    pub fn row(&self, row: usize) -> String {
+        let lines = match &self.measured.data {
+            Data::Series(series) => &series.lines,
+            Data::Table(table) => &table.lines,
+        };
+        let line = lines.get(row).copied().unwrap_or_default();
+        format!("row {} (line {line} of the data)", row + 1)
+    }
+
+    /// The data held against `values`, one residual each.
+    pub fn residuals(&self, values: &[f64]) -> Vec<Residual> {
+        let mut all = Vec::with_capacity(values.len());
+        for (column, measurand) in self.columns.iter().enumerate() {
+            let of_column = self.data.iter().zip(values);
+            let (points, model): (Vec<Point>, Vec<f64>) = of_column
+                .filter(|(datum, _)| datum.column == column)
+                .map(|(datum, value)| (datum.point, *value))
+                .unzip();
+            all.extend(residuals(measurand.quantity, &points, &model));
+        }
+        all
+    }
+}
+
+/// The columns that were measured, and every value in them.
+fn listed(data: &Data) -> (Vec<Measurand>, Vec<Datum>) {
+    let (mut columns, mut all) = (Vec::new(), Vec::new());
+    let mut add = |readout, quantity, points: &[Point]| {
+        let column = columns.len();
+        columns.push(Measurand { readout, quantity });
+        all.extend(points.iter().map(|&point| Datum { column, point }));
+    };
+    match data {
+        Data::Series(series) => {
+            for curve in &series.curves {
+                if let Some(readout) = curve.quantity.readout() {
+                    add(readout, Some(curve.quantity), &curve.points);
+                }
+            }
+        }
+        Data::Table(table) => {
+            for column in &table.readouts {
+                add(column.readout, None, &column.points);
+            }
+        }
+    }
+    (columns, all)
+}
+
+/// `document` with what the `row` of `table` sets, one setting changed by so many times its uncertainty.
+fn with_settings(
+    document: &Document,
+    table: &Table,
+    row: usize,
+    changed: Option<(usize, f64)>,
+) -> Result<Document, String> {
+    let mut document = document.clone();
+    for (index, setting) in table.settings.iter().enumerate() {
+        let Some(value) = &setting.values[row] else {
+            continue;
+        };
+        let by = changed.filter(|(key, _)| *key == index);
+        let value = match (value, by, setting.sigmas[row]) {
+            (Value::Float(number), Some((_, by)), Some(sigma)) => Value::Float(number + by * sigma),
+            _ => value.clone(),
+        };
+        write(&mut document, &setting.key, value)?;
+    }
+    Ok(document)
+}
+
+fn write(document: &mut Document, key: &str, value: Value) -> Result<(), String> {
+    let written = document.set_value(key, value);
+    written.map_err(|problem| problem.to_string())
+}
+
+fn checked(document: &Document) -> Result<Scenario, String> {
+    let scenario = document.scenario();
+    scenario.map_err(|problems| problems.in_one_line())
+}
+
+/// Refuses a free key that a column sets.
+fn are_apart(free: &[Free], table: &Table) -> Result<(), Problems> {
+    for key in free {
+        let is_same = |other: &str| is_in(&key.key, other) || is_in(other, &key.key);
+        if let Some(column) = table.settings.iter().find(|setting| is_same(&setting.key)) {
+            let rule = format!(
+                "is set by the column {} in every row: it cannot be free",
+                column.key
+            );
+            let mut problem = Problem::at(key.key.clone(), rule);
+            problem.place = Some("--free".to_owned());
+            return Err(Problems::one("", problem));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,112 @@
+//! What a minimum says of the keys: their uncertainties, how these hang together, and what cannot be told apart.
+
+use super::free::Free;
+use super::levenberg::{Minimum, SINGULAR};
+use nalgebra::{DMatrix, DVector};
+
+/// What the data say of the keys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// The covariances of the keys, in their units, for data whose uncertainty is 1; `None` of a key whose value the data do
+    /// not say, or that is held at a bound.
+    pub covariance: Vec<Vec<Option<f64>>>,
+    /// How many independent combinations of keys the data say.
+    pub rank: usize,
+    /// The keys on which no datum depends.
+    pub silent: Vec<usize>,
+    /// The combinations of keys that change no datum: the keys by their places, and the change of each, relative to its
+    /// value, the largest of them 1; absolute where the value is 0.
+    pub alike: Vec<Vec<(usize, f64)>>,
+}
+
+/// A key that moves no datum by this part of its uncertainty when it changes by its own size moves none.
+const SILENT: f64 = 1e-7;
+/// Parts of a combination below this are rounding.
+const PART: f64 = 1e-2;
+
+impl Solution {
+    /// What `minimum` says of `free`.
+    pub fn of(minimum: &Minimum, free: &[Free]) -> Self {
+        let slopes = &minimum.slopes;
+        let norms: Vec<f64> = slopes.column_iter().map(|column| column.norm()).collect();
+        let size = |index: usize| match minimum.p[index].abs() {
+            0.0 => free[index].scale,
+            size => size,
+        };
+        let is_silent = |index: usize| norms[index] * size(index) <= SILENT;
+        let silent: Vec<usize> = (0..free.len()).filter(|&index| is_silent(index)).collect();
+        let moves = |index: &usize| !minimum.held[*index] && !silent.contains(index);
+        let moving: Vec<usize> = (0..free.len()).filter(moves).collect();
+        let mut solution = Self {
+            covariance: vec![vec![None; free.len()]; free.len()],
+            rank: 0,
+            silent,
+            alike: Vec::new(),
+        };
+        if moving.is_empty() {
+            return solution;
+        }
+        let columns: Vec<DVector<f64>> = moving
+            .iter()
+            .map(|&index| slopes.column(index) / norms[index])
+            .collect();
+        let svd = DMatrix::from_columns(&columns).svd(false, true);
+        let Some(v_t) = svd.v_t else {
+            return solution;
+        };
+        // With fewer data than keys some directions have no singular value at all.
+        let singular = |k: usize| svd.singular_values.get(k).copied().unwrap_or(0.0);
+        let least = SINGULAR * svd.singular_values.amax();
+        let (seen, unseen): (Vec<usize>, Vec<usize>) =
+            (0..v_t.nrows()).partition(|&k| singular(k) > least);
+        solution.rank = seen.len();
+        let relative = |k: usize, place: usize| {
+            let index = moving[place];
+            v_t[(k, place)] / (norms[index] * size(index))
+        };
+        for &k in &unseen {
+            let parts: Vec<f64> = (0..moving.len()).map(|place| relative(k, place)).collect();
+            let is_part = |place: &usize| v_t[(k, *place)].abs() > PART;
+            let largest = parts.iter().copied().fold(0.0, |largest: f64, part| {
+                if part.abs() > largest.abs() {
+                    part
+                } else {
+                    largest
+                }
+            });
+            let parts = (0..moving.len())
+                .filter(is_part)
+                .map(|place| (moving[place], parts[place] / largest));
+            solution.alike.push(parts.collect());
+        }
+        let is_known = |place: usize| {
+            let in_unseen = |k: &usize| v_t[(*k, place)].abs() > PART;
+            !unseen.iter().any(|k| in_unseen(k))
+        };
+        for i in (0..moving.len()).filter(|&place| is_known(place)) {
+            for j in (0..moving.len()).filter(|&place| is_known(place)) {
+                let terms = seen
+                    .iter()
+                    .map(|&k| v_t[(k, i)] * v_t[(k, j)] / singular(k).powi(2));
+                let covariance = terms.sum::<f64>() / (norms[moving[i]] * norms[moving[j]]);
+                solution.covariance[moving[i]][moving[j]] =
+                    Some(covariance).filter(|covariance| covariance.is_finite());
+            }
+        }
+        solution
+    }
+
+    /// One standard uncertainty of the `index`-th key.
+    pub fn sigma(&self, index: usize) -> Option<f64> {
+        self.covariance[index][index].map(f64::sqrt)
+    }
+
+    /// The correlation of two keys.
+    pub fn correlation(&self, i: usize, j: usize) -> Option<f64> {
+        let correlation = self.covariance[i][j]? / (self.sigma(i)? * self.sigma(j)?);
+        match i == j {
+            true => Some(1.0),
+            false => Some(correlation.clamp(-1.0, 1.0)),
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! Whether the model fits, in one sentence.
+
+use super::model::Model;
+use super::search::Fit;
+use crate::measured::Residual;
+use crate::text::number::{short, significant};
+use statrs::function::gamma::checked_gamma_ur;
+
+/// How well a model fits its data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quality {
+    /// The sum of the squared residuals in units of their uncertainties; `None` where none are stated.
+    pub chi_squared: Option<f64>,
+    /// How many data there are beyond those that the fitted values take up.
+    pub degrees_of_freedom: u64,
+    /// The probability that a model that is right has so large a chi^2 or a larger one.
+    pub probability: Option<f64>,
+    /// The largest residual in units of its uncertainty.
+    pub worst: Option<f64>,
+    /// The scatter of data without uncertainties about the model, in their unit: the root of the sum of the squared residuals
+    /// over the degrees of freedom.
+    pub scatter: Option<f64>,
+}
+
+/// Below this probability a model does not fit; above 1 less this, the uncertainties are too large.
+const RARE: f64 = 0.01;
+/// Rows that are off by more than this many uncertainties are named.
+const FAR: f64 = 3.0;
+/// The most rows that are named.
+const MOST_NAMED: usize = 5;
+/// From this correlation on, two keys are hardly told apart.
+pub(super) const HARDLY: f64 = 0.99;
+
+impl Quality {
+    /// Of data with uncertainties.
+    pub(super) fn weighted(
+        chi_squared: f64,
+        degrees_of_freedom: u64,
+        residuals: &[Residual],
+    ) -> Self {
+        let half = 0.5 * degrees_of_freedom as f64;
+        let probability = match degrees_of_freedom {
+            0 => None,
+            _ => checked_gamma_ur(half, 0.5 * chi_squared).ok(),
+        };
+        let worst = residuals.iter().filter_map(Residual::in_sigmas);
+        Self {
+            chi_squared: Some(chi_squared),
+            degrees_of_freedom,
+            probability: probability.filter(|probability| probability.is_finite()),
+            worst: worst.map(f64::abs).reduce(f64::max),
+            scatter: None,
+        }
+    }
+
+    /// Whether the model fits, where that can be said: its chi^2 is not rare. Uncertainties that are too large are no reason
+    /// against it.
+    pub fn fits(&self) -> Option<bool> {
+        self.probability.map(|probability| probability >= RARE)
+    }
+
+    /// Of data without; `size` is the root of the sum of their squared residuals, in their unit.
+    pub(super) fn unweighted(size: f64, degrees_of_freedom: u64) -> Self {
+        Self {
+            chi_squared: None,
+            degrees_of_freedom,
+            probability: None,
+            worst: None,
+            scatter: (degrees_of_freedom > 0).then(|| size / (degrees_of_freedom as f64).sqrt()),
+        }
+    }
+}
+
+impl Fit {
+    /// Whether the model fits, in one sentence.
+    pub fn sentence(&self, model: &Model) -> String {
+        let Quality {
+            chi_squared,
+            degrees_of_freedom: freedom,
+            probability,
+            ..
+        } = self.quality;
+        let Some(chi_squared) = chi_squared else {
+            return self.of_scatter(model);
+        };
+        let degrees = match freedom {
+            1 => "1 degree of freedom".to_owned(),
+            count => format!("{count} degrees of freedom"),
+        };
+        let sum = format!("chi^2 {} at {degrees}", significant(chi_squared, 3));
+        match probability {
+            None => {
+                "Whether the model fits cannot be said: there are as many fitted values as data"
+                    .to_owned()
+                    + "."
+            }
+            Some(probability) if probability < RARE => format!(
+                "The model does not fit: {sum}, which chance gives {}; {}.",
+                once_in(probability),
+                self.far(model)
+            ),
+            Some(probability) if probability > 1.0 - RARE => format!(
+                "The model fits, but the uncertainties are too large: {sum}; by their scatter the data are about {} times as good as stated.",
+                significant((freedom as f64 / chi_squared).sqrt(), 2)
+            ),
+            Some(_) => format!("The model fits: {sum}."),
+        }
+    }
+
+    fn of_scatter(&self, model: &Model) -> String {
+        let unit = model
+            .columns
+            .first()
+            .map_or("", |column| column.readout.unit);
+        match self.quality.scatter {
+            Some(scatter) => format!(
+                "Whether the model fits cannot be said, since the data have no uncertainties: they scatter about it by {} {unit}, of which the uncertainties of the keys are made.",
+                short(scatter)
+            ),
+            None => "Whether the model fits cannot be said: the data have no uncertainties, and there are as many fitted values as data.".to_owned(),
+        }
+    }
+
+    /// The rows that are far off.
+    fn far(&self, model: &Model) -> String {
+        let mut off: Vec<(f64, usize)> = self
+            .residuals
+            .iter()
+            .filter_map(|residual| Some((residual.in_sigmas()?.abs(), residual.row + 1)))
+            .collect();
+        off.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let worst = off.first().map_or(0.0, |(sigmas, _)| *sigmas);
+        off.retain(|(sigmas, _)| *sigmas > FAR);
+        let mut rows: Vec<usize> = off.iter().map(|(_, row)| *row).collect();
+        rows.sort_unstable();
+        rows.dedup();
+        let more = rows.len().saturating_sub(MOST_NAMED);
+        if rows.is_empty() {
+            let single = if model.data.len() == 1 {
+                "the row is"
+            } else {
+                "no row is"
+            };
+            return format!(
+                "{single} more than {} sigma off: all of them lean",
+                significant(worst, 2)
+            );
+        }
+        let least = off.last().map_or(0.0, |(sigmas, _)| *sigmas);
+        let names: Vec<String> = rows
+            .iter()
+            .take(MOST_NAMED)
+            .map(ToString::to_string)
+            .collect();
+        let sigmas = match rows.len() {
+            1 => format!("{} sigma", significant(worst, 2)),
+            _ => format!(
+                "{} to {} sigma",
+                significant(least, 2),
+                significant(worst, 2)
+            ),
+        };
+        match (&names[..], more) {
+            ([row], _) => format!("row {row} is {sigmas} off"),
+            (rows, 0) => {
+                let (last, rows) = rows
+                    .split_last()
+                    .map_or(("", rows), |(last, rows)| (last.as_str(), rows));
+                format!("rows {} and {last} are {sigmas} off", rows.join(", "))
+            }
+            (rows, more) => format!("rows {} and {more} more are {sigmas} off", rows.join(", ")),
+        }
+    }
+
+    /// What cannot be told apart, and other things to know about the keys; a sentence each.
+    pub fn remarks(&self) -> Vec<String> {
+        let key = |index: usize| self.keys[index].free.key.as_str();
+        let mut remarks = Vec::new();
+        for &index in &self.solution.silent {
+            remarks.push(format!(
+                "The data do not depend on {}: they say nothing of it.",
+                key(index)
+            ));
+        }
+        for alike in &self.solution.alike {
+            let names: Vec<&str> = alike.iter().map(|(index, _)| key(*index)).collect();
+            let changes: Vec<String> = alike
+                .iter()
+                .map(|(index, part)| self.changed(*index, *part))
+                .collect();
+            remarks.push(format!(
+                "The data cannot tell {} apart: changing {} together changes no measured number.",
+                names.join(" and "),
+                changes.join(" and ")
+            ));
+        }
+        for (index, fitted) in self
+            .keys
+            .iter()
+            .enumerate()
+            .filter(|(_, fitted)| fitted.is_held)
+        {
+            let bound = significant(fitted.value, 6);
+            remarks.push(format!(
+                "{} stands at its bound {bound}: the fit would be better beyond it, and it has no uncertainty.",
+                key(index)
+            ));
+        }
+        for i in 0..self.keys.len() {
+            for j in 0..i {
+                let correlation = self.solution.correlation(i, j).filter(|c| c.abs() > HARDLY);
+                if let Some(correlation) = correlation {
+                    remarks.push(format!(
+                        "{} and {} are hardly told apart: their correlation is {correlation:.4}.",
+                        key(j),
+                        key(i)
+                    ));
+                }
+            }
+        }
+        if self.weights.count_settings {
+            remarks.push(
+                "The uncertainties of the settings count: each datum is weighed by both."
+                    .to_owned(),
+            );
+        }
+        remarks
+    }
+
+    /// A change of the `index`-th key by a part, such as "motion.gravity_m_per_s2 by +1 %".
+    fn changed(&self, index: usize, part: f64) -> String {
+        let fitted = &self.keys[index];
+        match fitted.value == 0.0 {
+            true => format!(
+                "{} by {:+.2e}",
+                fitted.free.key,
+                0.01 * part * fitted.free.scale
+            ),
+            false => format!("{} by {:+.2} %", fitted.free.key, part),
+        }
+    }
+}
+
+/// A small probability in words.
+fn once_in(probability: f64) -> String {
+    match 1.0 / probability {
+        times if times < 1e6 => format!("once in {} times", significant(times, 2)),
+        times if times.is_finite() => format!("once in {times:.0e} times"),
+        _ => "never".to_owned(),
+    }
+}
