@@ -2,6 +2,7 @@
 
 use super::cost::is_affordable;
 use super::extremes::Extremes;
+use super::farthest::Farthest;
 use super::frozen::Frozen;
 use super::health::Health;
 use super::measure::{Instruments, Measured};
@@ -19,7 +20,7 @@ pub struct Monitor {
     instruments: Instruments,
     extremes: Extremes,
     truth: Option<Truth>,
-    most_distance_m: f64,
+    farthest: Farthest,
     /// Steps still to be held against the exact motion.
     unheld: Vec<State>,
     /// The change of forces since which the instruments measure.
@@ -39,7 +40,7 @@ impl Monitor {
             instruments: Instruments::new(step),
             extremes: Extremes::new(step),
             truth,
-            most_distance_m: 0.0,
+            farthest: Farthest::new(scenario.arm_m()),
             unheld: Vec::new(),
             changes: step.changes(),
             since: step.number(),
@@ -83,6 +84,11 @@ impl Monitor {
         }
         self.unheld = states;
         self.unheld.clear();
+        if let Some(truth) = &mut self.truth
+            && !self.farthest.settle(truth)
+        {
+            self.truth = None;
+        }
     }
 
     /// As [`follow`](Self::follow), without holding the step against the exact motion: for a reader of what is measured
@@ -109,7 +115,7 @@ impl Monitor {
         Health::new(
             step,
             deviation,
-            deviation.map(|_| self.most_distance_m),
+            deviation.map(|_| self.farthest.most_m()),
             theory.map(|theory| theory.tilt_range_deg.1 - theory.tilt_range_deg.0),
         )
     }
@@ -118,23 +124,17 @@ impl Monitor {
     pub fn deviation(&mut self, step: &Step) -> Option<Deviation> {
         self.catch_up();
         let deviation = Deviation::of(step.after(), self.truth.as_mut()?);
-        self.take_in(deviation.distance_m);
+        if !self.farthest.take_in(deviation.distance_m) {
+            self.truth = None;
+        }
         self.truth.as_ref().map(|_| deviation)
     }
 
     #[inline]
     fn hold_distance(&mut self, state: &State) {
-        if let Some(truth) = &mut self.truth {
-            let distance_m = Deviation::distance_of(state, truth);
-            self.take_in(distance_m);
-        }
-    }
-
-    #[inline]
-    fn take_in(&mut self, distance_m: f64) {
-        if distance_m.is_finite() {
-            self.most_distance_m = self.most_distance_m.max(distance_m);
-        } else {
+        if let Some(truth) = &mut self.truth
+            && !self.farthest.follow(state, truth)
+        {
             self.truth = None; // it has left the range of numbers, and does not come back
         }
     }
@@ -151,9 +151,10 @@ impl Monitor {
         Some(Theory::new(&top, &load, motion, &state))
     }
 
-    /// The largest distance of the traced point from the exact motion so far, m; 0 where it is not held against that.
+    /// The largest distance of the traced point from the exact motion up to the last [`deviation`](Self::deviation), m; 0
+    /// where it is not held against that.
     pub fn most_distance_m(&self) -> f64 {
-        self.most_distance_m
+        self.farthest.most_m()
     }
 
     /// The least and the greatest over every step of the run.
