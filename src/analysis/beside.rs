@@ -2,6 +2,7 @@
 //! that it may be found on another core than the one that steps.
 
 use super::cost::is_affordable;
+use super::farthest::Farthest;
 use super::trial::Deviation;
 use crate::physics::State;
 use crate::run::Truth;
@@ -13,7 +14,7 @@ use std::sync::Arc;
 pub struct Beside {
     /// `None` where it would take too long, or has left the range of numbers.
     truth: Option<Truth>,
-    most_distance_m: f64,
+    farthest: Farthest,
 }
 
 impl Beside {
@@ -22,7 +23,7 @@ impl Beside {
         let truth = is_affordable(scenario).then(|| Truth::new(Arc::clone(scenario)));
         Self {
             truth,
-            most_distance_m: 0.0,
+            farthest: Farthest::new(scenario.arm_m()),
         }
     }
 
@@ -48,30 +49,35 @@ impl Beside {
     /// Holds the distance of the next `state` of the run.
     #[inline]
     pub fn hold(&mut self, state: &State) {
-        if let Some(truth) = &mut self.truth {
-            let distance_m = Deviation::distance_of(state, truth);
-            self.take_in(distance_m);
+        if let Some(truth) = &mut self.truth
+            && !self.farthest.follow(state, truth)
+        {
+            self.truth = None; // it has left the range of numbers, and does not come back
+        }
+    }
+
+    /// Computes the largest distance so far to the last bit.
+    pub fn settle(&mut self) {
+        if let Some(truth) = &mut self.truth
+            && !self.farthest.settle(truth)
+        {
+            self.truth = None;
         }
     }
 
     /// How far off the run is in `state`; `None` where it is not held against the exact motion.
     pub fn deviation(&mut self, state: &State) -> Option<Deviation> {
+        self.settle();
         let deviation = Deviation::of(state, self.truth.as_mut()?);
-        self.take_in(deviation.distance_m);
+        if !self.farthest.take_in(deviation.distance_m) {
+            self.truth = None;
+        }
         self.truth.as_ref().map(|_| deviation)
     }
 
-    #[inline]
-    fn take_in(&mut self, distance_m: f64) {
-        if distance_m.is_finite() {
-            self.most_distance_m = self.most_distance_m.max(distance_m);
-        } else {
-            self.truth = None; // it has left the range of numbers, and does not come back
-        }
-    }
-
-    /// The largest distance of the traced point from the exact motion so far, m; 0 where it is not held against that.
+    /// The largest distance of the traced point from the exact motion up to the last time that it was [settled](Self::settle),
+    /// m; 0 where it is not held against that.
     pub fn most_distance_m(&self) -> f64 {
-        self.most_distance_m
+        self.farthest.most_m()
     }
 }

@@ -44,7 +44,7 @@ pub struct Row {
     /// Largest deviation of L_z from the exact motion's, over |L| at the start; `None` where that is not finite.
     #[serde(rename = "Lz_drift", serialize_with = "or_na")]
     pub lz_drift: Option<f64>,
-    /// Cost of a step, ns.
+    /// Cost of a step where stepping went fastest, ns.
     pub ns_per_step: f64,
     /// Time spent on stepping alone, s.
     pub wall_s: f64,
@@ -111,7 +111,10 @@ impl Row {
             energy_drift: trial.energy_drift,
             spin_drift: Some(trial.spin_drift).filter(|drift| drift.is_finite()),
             lz_drift: Some(trial.lz_drift).filter(|drift| drift.is_finite()),
-            ns_per_step: wall_s * 1e9 / trial.steps.max(1) as f64,
+            ns_per_step: match trial.fastest_s.is_finite() {
+                true => trial.fastest_s * 1e9,
+                false => 0.0, // it broke at its first step
+            },
             wall_s,
         }
     }

@@ -11,6 +11,7 @@ mod between;
 pub mod compare;
 pub mod cost;
 pub mod extremes;
+mod farthest;
 pub mod frozen;
 pub mod health;
 pub mod measure;

@@ -75,6 +75,7 @@ impl Monitor {
         }
         self.unheld = states;
         self.unheld.clear();
+        self.beside.settle();
     }
 
     /// As [`follow`](Self::follow), without holding the step against the exact motion: for a reader of what is measured
@@ -135,7 +136,8 @@ impl Monitor {
         })
     }
 
-    /// The largest distance of the traced point from the exact motion so far, m; 0 where it is not held against that.
+    /// The largest distance of the traced point from the exact motion up to the last [`deviation`](Self::deviation), m; 0
+    /// where it is not held against that.
     pub fn most_distance_m(&self) -> f64 {
         self.beside.most_distance_m()
     }

@@ -235,6 +235,13 @@ fn drawn(
         exact: args.exact,
         width_pt: args.width * PT_PER_MM,
     };
+    for run in runs.iter().filter(|run| run.named.ends_with(".csv")) {
+        tell(format_args!(
+            "gyrolab: {}: its {} steps are computed anew from its header",
+            Shown(Path::new(&run.named)),
+            run.scenario.steps
+        ));
+    }
     let mut meter = Meter::new();
     let figure = of_runs::figure(runs, &request, |step, of| {
         meter.show(step, of);

@@ -118,18 +118,30 @@ fn explained(mut error: clap::Error) -> Refused {
             ));
         }
     }
-    let is_folder = matches!(
-        error.get(ContextKind::InvalidArg),
-        Some(ContextValue::String(arg)) if arg.starts_with("--folder")
-    );
-    if error.kind() == ErrorKind::UnknownArgument && is_folder {
+    let unknown = match (error.kind(), error.get(ContextKind::InvalidArg)) {
+        (ErrorKind::UnknownArgument, Some(ContextValue::String(argument))) => argument.as_str(),
+        _ => "",
+    };
+    if let Some(tip) = tip_for(unknown) {
         error.remove(ContextKind::SuggestedArg);
         error.remove(ContextKind::Usage); // it would speak of that argument
-        let tip = "--folder is for the lab: gyrolab --folder DIR; this command reads and writes the files that it is given";
         let tip = StyledStr::from(tip.to_owned());
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
     }
     Refused::ByClap(error)
+}
+
+/// What is said of an option that a command does not have, where what is meant is known.
+fn tip_for(unknown: &str) -> Option<&'static str> {
+    match unknown {
+        "--folder" => Some(
+            "--folder is for the lab: gyrolab --folder DIR; this command reads and writes the files that it is given",
+        ),
+        "--dt" => Some(
+            "the time step: --time-step 0.05 holds the seconds of a run and of its pushes, --set motion.time_step_s=0.05 their steps",
+        ),
+        _ => None,
+    }
 }
 
 /// The command whose name is one or two letters off `typed`, if `typed` is none and no scenario.

@@ -143,7 +143,34 @@ fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
     if let Some(shard) = args.shard {
         file.shard = Some(shard.to_string());
     }
-    Sweep::new(file, &base, &|problems| document.placed(problems))
+    let keys: Vec<_> = file.vary.iter().map(|vary| vary.key.clone()).collect();
+    Sweep::new(file, &base, &|problems| {
+        let mut placed = document.placed(problems);
+        for problem in &mut placed.list {
+            if let Some(argument) = argument_behind(problem, &keys, &args.vary) {
+                axis::place(problem, argument);
+            }
+        }
+        placed
+    })
+}
+
+/// The `--vary` that `problem` is about; `keys` are those that vary, in their order.
+fn argument_behind<'a>(
+    problem: &Problem,
+    keys: &[String],
+    arguments: &'a [String],
+) -> Option<&'a str> {
+    let place = problem.key.strip_prefix("vary.");
+    let number = place.and_then(|place| place.split('.').next()?.parse::<usize>().ok());
+    let key = number
+        .and_then(|number| keys.get(number))
+        .unwrap_or(&problem.key);
+    let of_key = |argument: &&String| {
+        let name = argument.split('=').next().unwrap_or_default();
+        name.trim() == key
+    };
+    arguments.iter().rev().find(of_key).map(String::as_str)
 }
 
 /// Makes the file whole, or as much of it as there is time for.

@@ -1,7 +1,6 @@
 //! The table of CSV columns: every number of a [`Sample`] with its column name.
 
 use crate::run::Sample;
-use serde::ser::{Serialize, SerializeTuple, Serializer};
 
 /// A column of the CSV.
 #[derive(Debug)]
@@ -33,53 +32,78 @@ pub enum Value {
 
 use Value::{Number, Whole};
 
-/// Generates from one list both the table, for access by name, and the serializer of a row, which needs no look-up.
-macro_rules! columns {
-    ($($name:literal, $about:literal, $kind:ident($sample:ident $(. $field:ident)+);)*) => {
-        /// Every column, in the order of the CSV.
-        pub const COLUMNS: &[Column] = &[
-            $(Column { name: $name, about: $about, value: |$sample| $kind($sample $(. $field)+) }),*
-        ];
+/// Every column, in the order of the CSV.
+pub const COLUMNS: &[Column] = &[
+    column("step", "number of the time step, 0 at the start", |s| {
+        Whole(s.step)
+    }),
+    column("t_s", "time", |s| Number(s.time_s)),
+    column("x_m", "traced point, world frame", |s| Number(s.position.x)),
+    column("y_m", "traced point, world frame", |s| Number(s.position.y)),
+    column("z_m", "traced point, world frame", |s| Number(s.position.z)),
+    column(
+        "Lx_Js",
+        "angular momentum about the pivot, world frame",
+        |s| Number(s.momentum.x),
+    ),
+    column(
+        "Ly_Js",
+        "angular momentum about the pivot, world frame",
+        |s| Number(s.momentum.y),
+    ),
+    column(
+        "Lz_Js",
+        "angular momentum about the pivot, world frame",
+        |s| Number(s.momentum.z),
+    ),
+    column(
+        "wx_rad_per_s",
+        "angular velocity I^-1 L at this step, world frame",
+        |s| Number(s.angular_velocity.x),
+    ),
+    column(
+        "wy_rad_per_s",
+        "angular velocity I^-1 L at this step, world frame",
+        |s| Number(s.angular_velocity.y),
+    ),
+    column(
+        "wz_rad_per_s",
+        "angular velocity I^-1 L at this step, world frame",
+        |s| Number(s.angular_velocity.z),
+    ),
+    column("tilt_deg", "angle of the axle from +z", |s| {
+        Number(s.tilt_deg)
+    }),
+    column(
+        "azimuth_deg",
+        "azimuth of the axle, counted on through full turns",
+        |s| Number(s.azimuth_deg),
+    ),
+    column(
+        "energy_J",
+        "kinetic energy, and that of the weight from the pivot",
+        |s| Number(s.energy),
+    ),
+    column(
+        "segment",
+        "edits of time step, scheme or gravity before this step",
+        |s| Whole(s.segment),
+    ),
+];
 
-        impl Serialize for Row<'_> {
-            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                let mut row = serializer.serialize_tuple(COLUMNS.len())?;
-                $({
-                    let $sample = self.0;
-                    row.serialize_element(&($sample $(. $field)+))?;
-                })*
-                row.end()
-            }
-        }
-    };
-}
-
-/// A sample as one row.
-#[derive(Clone, Copy, Debug)]
-pub struct Row<'a>(pub &'a Sample);
-
-columns! {
-    "step", "number of the time step, 0 at the start", Whole(s.step);
-    "t_s", "time", Number(s.time_s);
-    "x_m", "traced point, world frame", Number(s.position.x);
-    "y_m", "traced point, world frame", Number(s.position.y);
-    "z_m", "traced point, world frame", Number(s.position.z);
-    "Lx_Js", "angular momentum about the pivot, world frame", Number(s.momentum.x);
-    "Ly_Js", "angular momentum about the pivot, world frame", Number(s.momentum.y);
-    "Lz_Js", "angular momentum about the pivot, world frame", Number(s.momentum.z);
-    "wx_rad_per_s", "angular velocity I^-1 L at this step, world frame", Number(s.angular_velocity.x);
-    "wy_rad_per_s", "angular velocity I^-1 L at this step, world frame", Number(s.angular_velocity.y);
-    "wz_rad_per_s", "angular velocity I^-1 L at this step, world frame", Number(s.angular_velocity.z);
-    "tilt_deg", "angle of the axle from +z", Number(s.tilt_deg);
-    "azimuth_deg", "azimuth of the axle, counted on through full turns", Number(s.azimuth_deg);
-    "energy_J", "kinetic energy, and that of the weight from the pivot", Number(s.energy);
-    "segment", "edits of time step, scheme or gravity before this step", Whole(s.segment);
+const fn column(name: &'static str, about: &'static str, value: fn(&Sample) -> Value) -> Column {
+    Column { name, about, value }
 }
 
 impl Column {
     /// The column of that name.
     pub fn find(name: &str) -> Option<&'static Self> {
         COLUMNS.iter().find(|column| column.name == name)
+    }
+
+    /// Its field in the row of `sample`.
+    pub(super) fn cell(&self, sample: &Sample) -> Cell<'_> {
+        Cell::Number(self.value(sample))
     }
 
     /// The value of `sample` in this column.

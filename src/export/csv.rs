@@ -2,12 +2,12 @@
 //! memory does not grow with the run.
 
 use super::Layout;
-use super::columns::{Cell, Row, Value};
+use super::columns::{COLUMNS, Cell, Value};
 use super::layout::Shape;
 use super::points::{NamedPoint, PlacedPoint};
 use crate::run::Sample;
 use crate::scenario::Scenario;
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 
 /// It makes spreadsheet programs read the file as UTF-8.
 const BYTE_ORDER_MARK: &str = "\u{feff}";
@@ -15,8 +15,7 @@ const BYTE_ORDER_MARK: &str = "\u{feff}";
 /// Writes a run's CSV row by row.
 #[derive(Debug)]
 pub struct CsvWriter<W: Write> {
-    rows: csv::Writer<W>,
-    count: u64,
+    rows: Rows<W>,
     layout: Layout,
     /// The points of the body, where each of them has a row.
     points: Vec<NamedPoint>,
@@ -35,24 +34,32 @@ impl<W: Write> CsvWriter<W> {
     ///
     /// # Errors
     /// When `out` cannot be written.
-    pub fn with_layout(mut out: W, scenario: &Scenario, layout: Layout) -> io::Result<Self> {
+    pub fn with_layout(out: W, scenario: &Scenario, layout: Layout) -> io::Result<Self> {
+        let mut out = BufWriter::new(out);
         if layout.has_decimal_comma() {
             out.write_all(BYTE_ORDER_MARK.as_bytes())?;
         }
         out.write_all(layout.comments().as_bytes())?;
         out.write_all(commented(&scenario.to_toml()).as_bytes())?;
-        let mut rows = csv::WriterBuilder::new()
-            .has_headers(false)
-            .delimiter(layout.delimiter() as u8)
-            .from_writer(out);
-        rows.write_record(layout.names()).map_err(plain)?;
+        out.write_all(
+            layout
+                .names()
+                .join(&layout.delimiter().to_string())
+                .as_bytes(),
+        )?;
+        out.write_all(b"\n")?;
         let points = match layout.is_of_points() {
-            true => NamedPoint::all_of(scenario),
+            true => NamedPoint::all_of(scenario, |name| field(name, layout.delimiter() as u8)),
             false => Vec::new(),
         };
         Ok(Self {
-            rows,
-            count: 0,
+            rows: Rows {
+                out,
+                delimiter: layout.delimiter() as u8,
+                decimal: layout.has_decimal_comma().then_some(b','),
+                line: Vec::new(),
+                count: 0,
+            },
             layout,
             points,
         })
@@ -68,88 +75,90 @@ impl<W: Write> CsvWriter<W> {
     /// # Errors
     /// When the row cannot be written.
     pub fn write(&mut self, sample: &Sample) -> io::Result<()> {
-        let comma = self.layout.has_decimal_comma();
         let rows = &mut self.rows;
         match self.layout.shape() {
-            Shape::Whole if !comma => {
-                rows.serialize(Row(sample)).map_err(plain)?;
-                self.count += 1;
-            }
-            Shape::Whole => {
-                let columns = super::COLUMNS.iter();
-                write_row(
-                    rows,
-                    columns.map(|column| Cell::Number(column.value(sample))),
-                    comma,
-                )?;
-                self.count += 1;
-            }
-            Shape::Columns(columns) => {
-                let cells = columns
-                    .iter()
-                    .map(|column| Cell::Number(column.value(sample)));
-                write_row(rows, cells, comma)?;
-                self.count += 1;
-            }
+            Shape::Whole => rows.add(COLUMNS.iter().map(|column| column.cell(sample))),
+            Shape::Columns(columns) => rows.add(columns.iter().map(|column| column.cell(sample))),
             Shape::Points(columns) => {
                 for point in &self.points {
                     let placed = PlacedPoint::new(point, sample);
-                    write_row(
-                        rows,
-                        columns.iter().map(|column| column.cell(&placed)),
-                        comma,
-                    )?;
-                    self.count += 1;
+                    rows.add(columns.iter().map(|column| column.cell(&placed)))?;
                 }
+                Ok(())
             }
         }
-        Ok(())
     }
 
     /// How many rows have been added.
     pub fn count(&self) -> u64 {
-        self.count
+        self.rows.count
     }
 
     /// Writes what is still buffered, and returns the output.
     ///
     /// # Errors
     /// When the output cannot be written.
-    pub fn finish(mut self) -> io::Result<W> {
-        self.rows.flush()?;
-        self.rows
-            .into_inner()
-            .map_err(csv::IntoInnerError::into_error)
+    pub fn finish(self) -> io::Result<W> {
+        let whole = self.rows.out.into_inner();
+        whole.map_err(io::IntoInnerError::into_error)
     }
 }
 
-/// Writes one row field by field; numbers are those that csv writes with serde.
-fn write_row<'a, W: Write>(
-    rows: &mut csv::Writer<W>,
-    cells: impl Iterator<Item = Cell<'a>>,
-    comma: bool,
-) -> io::Result<()> {
-    let (mut digits, mut whole) = (ryu::Buffer::new(), itoa::Buffer::new());
-    for cell in cells {
-        let written = match cell {
-            Cell::Text(text) => rows.write_field(text),
-            Cell::Number(Value::Whole(count)) => rows.write_field(whole.format(count)),
-            Cell::Number(Value::Number(number)) if comma => {
-                rows.write_field(digits.format(number).replace('.', ","))
+/// Rows of numbers, and of texts that are fields already: nothing in them has to be looked at for what to quote.
+#[derive(Debug)]
+struct Rows<W: Write> {
+    out: BufWriter<W>,
+    delimiter: u8,
+    /// What stands for the decimal point.
+    decimal: Option<u8>,
+    /// The row that is being written.
+    line: Vec<u8>,
+    count: u64,
+}
+
+impl<W: Write> Rows<W> {
+    /// Writes one row; its numbers are those that csv writes with serde.
+    fn add<'a>(&mut self, cells: impl Iterator<Item = Cell<'a>>) -> io::Result<()> {
+        let line = &mut self.line;
+        line.clear();
+        let (mut digits, mut whole) = (ryu::Buffer::new(), itoa::Buffer::new());
+        for cell in cells {
+            let begin = line.len();
+            match cell {
+                Cell::Text(text) => line.extend_from_slice(text.as_bytes()),
+                Cell::Number(Value::Whole(count)) => {
+                    line.extend_from_slice(whole.format(count).as_bytes());
+                }
+                Cell::Number(Value::Number(number)) => {
+                    line.extend_from_slice(digits.format(number).as_bytes());
+                    if let Some(decimal) = self.decimal
+                        && let Some(point) = line[begin..].iter_mut().find(|c| **c == b'.')
+                    {
+                        *point = decimal;
+                    }
+                }
             }
-            Cell::Number(Value::Number(number)) => rows.write_field(digits.format(number)),
-        };
-        written.map_err(plain)?;
+            line.push(self.delimiter);
+        }
+        if let Some(last) = line.last_mut() {
+            *last = b'\n';
+        }
+        self.count += 1;
+        self.out.write_all(line)
     }
-    rows.write_record(None::<&[u8]>).map_err(plain)
 }
 
-/// The system's error without csv's wrapping, which would hide its kind: a closed pipe is handled unlike a full disk.
-fn plain(error: csv::Error) -> io::Error {
-    match error.into_kind() {
-        csv::ErrorKind::Io(error) => error,
-        other => io::Error::other(format!("{other:?}")),
-    }
+/// `text` as it stands in a CSV, quoted where it has to be.
+fn field(text: &str, delimiter: u8) -> String {
+    let mut writer = csv::WriterBuilder::new()
+        .delimiter(delimiter)
+        .from_writer(Vec::new());
+    // Writing to memory does not fail.
+    let written = writer.write_record([text]).is_ok();
+    debug_assert!(written);
+    let mut field = String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default();
+    field.truncate(field.trim_end_matches('\n').len());
+    field
 }
 
 /// `text` with "# " before every line, as the run file is written above the rows.

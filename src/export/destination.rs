@@ -31,6 +31,9 @@ pub enum DestinationError {
     /// The file exists and may not be replaced.
     #[error("{} exists; --force replaces it", Shown(.0))]
     Exists(PathBuf),
+    /// The name is that of a workbook.
+    #[error("{}: gyrolab writes CSV, and no workbook: let the name end in .csv (--excel makes it one that a double click opens)", Shown(.0))]
+    Workbook(PathBuf),
     /// The path is a folder.
     #[error("{} is a folder: name a file in it", Shown(.0))]
     Folder(PathBuf),
@@ -69,6 +72,18 @@ impl DestinationError {
             other => other.to_string(),
         }
     }
+}
+
+/// Whether a file of that name would be taken for a workbook of a spreadsheet program.
+pub fn is_workbook(path: &Path) -> bool {
+    const ENDINGS: [&str; 4] = ["xlsx", "xls", "xlsm", "ods"];
+    let is_one = |ending: &str| {
+        ENDINGS
+            .iter()
+            .any(|other| ending.eq_ignore_ascii_case(other))
+    };
+    path.extension()
+        .is_some_and(|ending| is_one(&ending.to_string_lossy()))
 }
 
 impl Destination {
@@ -115,6 +130,7 @@ impl Destination {
             error,
         };
         match fs::metadata(path) {
+            _ if is_workbook(path) => Err(DestinationError::Workbook(path.to_owned())),
             Ok(there) if there.is_dir() => Err(DestinationError::Folder(path.to_owned())),
             Err(_) if !names_a_file(path) => Err(DestinationError::Folder(path.to_owned())),
             Ok(there) if !there.is_file() => Err(DestinationError::NotAFile(path.to_owned())),

@@ -22,6 +22,7 @@ pub struct PointColumn {
 /// A point of the body under the name that it has in the CSV.
 #[derive(Clone, Debug)]
 pub(super) struct NamedPoint {
+    /// As it stands in the CSV.
     name: String,
     mass: PointMass,
 }
@@ -92,8 +93,9 @@ impl PointColumn {
 }
 
 impl NamedPoint {
-    /// The points of `scenario`'s body in its order: the rim's as `rim.0`, `rim.1` and so on, every other by its name.
-    pub(super) fn all_of(scenario: &Scenario) -> Vec<Self> {
+    /// The points of `scenario`'s body in its order: the rim's as `rim.0`, `rim.1` and so on, every other by its name, which
+    /// `field` makes fit for the CSV.
+    pub(super) fn all_of(scenario: &Scenario, field: impl Fn(&str) -> String) -> Vec<Self> {
         let body = &scenario.body;
         let points = body.mechanics.points();
         let mut named: Vec<_> = points
@@ -106,7 +108,7 @@ impl NamedPoint {
             .collect();
         for name in body.names() {
             if let Some(point) = body.point(name).and_then(|index| named.get_mut(index)) {
-                point.name = name.to_owned();
+                point.name = field(name);
             }
         }
         named

@@ -1,5 +1,6 @@
 //! The kinds of figures of a run, by the names of the lab's panes and of a CSV's columns.
 
+use crate::analysis::readouts;
 use crate::export::columns::{COLUMNS, Column};
 use crate::observe::recording::Curve;
 use crate::scenario::problem;
@@ -54,9 +55,18 @@ fn column(name: &str) -> Result<&'static Column, String> {
     let known = NAMES
         .into_iter()
         .chain(COLUMNS.iter().map(|column| column.name));
-    Column::find(name).ok_or_else(|| {
-        let near = problem::nearest(name, known);
-        format!("is neither traces, above, 3d nor a column of the CSV: {near}")
+    Column::find(name).ok_or_else(|| match readouts::find(name) {
+        Some(_) => {
+            let columns: Vec<_> = COLUMNS.iter().map(|column| column.name).collect();
+            format!(
+                "is a readout, one number of a run, and no column: a sweep's table is drawn by its readouts; over time there is {}",
+                columns.join(", ")
+            )
+        }
+        None => {
+            let near = problem::nearest(name, known);
+            format!("is neither traces, above, 3d nor a column of the CSV: {near}")
+        }
     })
 }
 

@@ -40,7 +40,9 @@ impl Table {
     /// # Errors
     /// When it is a table and cannot be read.
     pub fn read(path: &Path) -> Result<Option<Self>, Problem> {
-        if path.extension().is_none_or(|ending| ending != "csv") || !path.is_file() {
+        let is_part = path.extension().is_some_and(|ending| ending == "part");
+        let is_csv = path.extension().is_some_and(|ending| ending == "csv");
+        if !(is_csv || is_part) || !path.is_file() {
             return Ok(None);
         }
         let refused = |error: std::io::Error| Problem::at("", format!("cannot be read: {error}"));
@@ -51,6 +53,10 @@ impl Table {
         let Some((subject, title)) = subject(&header, &names) else {
             return Ok(None);
         };
+        if is_part {
+            let rule = "holds the rows of a sweep that is not whole yet: the command that began it goes on with it, and the file gets its name";
+            return Err(Problem::at("", rule));
+        }
         if size > LONGEST {
             return Err(Problem::at("", format!("is longer than {LONGEST} bytes")));
         }

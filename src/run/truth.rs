@@ -68,6 +68,16 @@ impl Truth {
         self.piece.orientation_at(time_s)
     }
 
+    /// The same within a few units of rounding, in half of that time; `None` where there is no such short way, or the forces
+    /// change before `time_s`.
+    #[inline]
+    pub fn orientation_near(&self, time_s: f64) -> Option<Matrix3<f64>> {
+        let is_here = self.piece.begin_s() <= time_s && time_s <= self.end_s;
+        is_here
+            .then(|| self.piece.orientation_near(time_s))
+            .flatten()
+    }
+
     /// Goes to the piece that `time_s` lies in.
     #[inline]
     fn go_to(&mut self, time_s: f64) {

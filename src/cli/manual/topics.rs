@@ -62,3 +62,16 @@ fn list(rows: impl Iterator<Item = (&'static str, &'static str)>) -> String {
     rows.map(|(name, about)| format!("  {name:<14} {about}\n"))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_topic_fits_a_terminal_of_80_columns() {
+        for (name, text) in TOPICS {
+            let long = text.lines().find(|line| line.chars().count() > 80);
+            assert_eq!(long, None, "{name}");
+        }
+    }
+}

@@ -15,14 +15,19 @@ const TICK: f64 = 3.0;
 const MINOR_TICK: f64 = 1.7;
 /// Half the width of the ends of an error bar, pt.
 const BAR_END: f64 = 1.7;
-/// What is said where error bars would be hidden by their marks.
+/// What is said where error bars would be hidden by their marks; and where other marks have no errors.
 const SMALL_ERRORS: &str = "errors smaller than marks";
+const KNOWN_SMALL: &str = "known errors smaller than marks";
 
 impl Chart {
     /// The chart on its page.
     pub fn scene(&self) -> Scene {
         let bare = Layout::new(self, 0.0);
-        let remark = self.hides_errors(&bare).then_some(SMALL_ERRORS);
+        let remark = match (self.hides_errors(&bare), self.lacks_errors()) {
+            (false, _) => None,
+            (true, false) => Some(SMALL_ERRORS),
+            (true, true) => Some(KNOWN_SMALL),
+        };
         let legend = Legend::of(self, remark);
         let corner = legend.free_corner(self, &bare);
         let layout = match corner {
@@ -58,6 +63,12 @@ impl Chart {
         let half = 0.5 * ink::width(title, *size);
         let middle = middle.min(self.width_pt - EDGE - half).max(EDGE + half);
         scene.write(title, *size, at(middle, layout.title_at()), 0.5);
+    }
+
+    /// Whether there are marks of which no error is known.
+    fn lacks_errors(&self) -> bool {
+        let mut series = self.panels.iter().flat_map(|panel| &panel.series);
+        series.any(|series| series.style.mark.is_some() && series.errors.is_empty())
     }
 
     /// Whether some error bar is too small to be drawn.

@@ -44,6 +44,16 @@ pub(super) fn drawn(
         ));
     }
     let quantities = quantities(table, varied, columns);
+    if columns.is_empty() && quantities.len() > MOST_PANELS {
+        let names = quantities
+            .iter()
+            .map(|quantity| quantity.parts[0].name.as_str());
+        return Err(format!(
+            "{} quantities do not fit on a page: choose some with --kind A,B; there are {}",
+            quantities.len(),
+            names.collect::<Vec<_>>().join(", ")
+        ));
+    }
     let mut panels = Vec::new();
     for quantity in &quantities {
         let mut panel = Panel {
@@ -80,6 +90,8 @@ pub(super) fn drawn(
     Ok((x, panels))
 }
 
+/// Panels on a page of which none was asked for by name.
+const MOST_PANELS: usize = 7;
 /// Series of one quantity that are still told apart.
 const MOST_SERIES: usize = 12;
 

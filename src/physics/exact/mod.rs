@@ -113,6 +113,13 @@ impl ExactMotion {
         }
     }
 
+    /// The same within a few units of rounding where that takes less time still; `None` where it does not.
+    #[inline]
+    pub fn orientation_near(&self, time_s: f64) -> Option<Matrix3<f64>> {
+        self.closed_form()
+            .map(|top| top.orientation_near(time_s - self.begin_s))
+    }
+
     /// When it began, s.
     pub fn begin_s(&self) -> f64 {
         self.begin_s

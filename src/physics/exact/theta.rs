@@ -25,6 +25,10 @@ const NO_RETURN: f64 = 1e-250;
 /// The same limit for the argument: a pulse this old has settled to far below rounding.
 const SETTLED: f64 = 300.0;
 
+/// Sine and cosine of an angle in radians: `libm`'s; or faster ones of which a last bit may be another.
+pub trait SinCos: Fn(f64) -> (f64, f64) + Copy {}
+impl<F: Fn(f64) -> (f64, f64) + Copy> SinCos for F {}
+
 /// Whether a theta function vanishes near the origin of its argument, or half a period away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parity {
@@ -123,12 +127,12 @@ impl Lattice {
         elliptic::incomplete(sin2, cos2, self.one_minus_m) / self.elliptic_rate
     }
 
-    /// Harmonics (odd, even) at `time` s from the nearest origin.
-    pub fn harmonics(&self, time: f64) -> (Harmonics, Harmonics) {
+    /// Harmonics (odd, even) at `time` s from the nearest origin, with that sine and cosine.
+    pub fn harmonics(&self, time: f64, sin_cos: impl SinCos) -> (Harmonics, Harmonics) {
         if self.pulsed {
             self.hyperbolic(self.rate * time)
         } else {
-            let h = circular(self.rate * time);
+            let h = circular(self.rate * time, sin_cos);
             (h, h)
         }
     }
@@ -246,8 +250,8 @@ impl Lattice {
     }
 }
 
-fn circular(z: f64) -> Harmonics {
-    let (sin, cos) = libm::sincos(2.0 * z);
+fn circular(z: f64, sin_cos: impl SinCos) -> Harmonics {
+    let (sin, cos) = sin_cos(2.0 * z);
     let mut h = Harmonics::ZERO;
     h.x[0] = 1.0;
     for k in 1..TERMS {

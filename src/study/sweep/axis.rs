@@ -5,7 +5,7 @@ use crate::scenario::document::toml_or_text;
 use crate::scenario::keys::{self, Kind};
 use crate::scenario::{Problem, Problems};
 use crate::text::number::rounded;
-use crate::text::printable::is_steering;
+use crate::text::printable::{brief, is_steering};
 use toml::Value;
 
 /// A key that varies, and its values in their order.
@@ -201,10 +201,17 @@ pub(super) fn overlap(one: &str, other: &str) -> bool {
 
 /// A refusal of the `--vary` argument.
 pub fn refused(argument: &str, rule: String) -> Problems {
-    use crate::text::printable::brief;
     let mut problem = Problem::at("", rule);
-    problem.place = Some(format!("--vary {}", brief(argument, 80)));
+    place(&mut problem, argument);
     Problems::one("", problem)
+}
+
+/// Says of `problem` that it is about that `--vary`.
+pub fn place(problem: &mut Problem, argument: &str) {
+    problem.place = Some(format!("--vary {}", brief(argument, 80)));
+    if problem.key.starts_with("vary.") {
+        problem.key.clear(); // a place in a file
+    }
 }
 
 #[cfg(test)]

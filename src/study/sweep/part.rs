@@ -7,6 +7,7 @@
 use super::grid::Sweep;
 use super::there::{There, look};
 use crate::export::Destination;
+use crate::export::destination::is_workbook;
 use crate::text::printable::Shown;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -218,6 +219,7 @@ pub(super) fn is_writable(path: &Path) -> Result<(), PartError> {
         .file_name()
         .is_some_and(|name| text.ends_with(name.as_encoded_bytes()));
     let why = match fs::metadata(path) {
+        _ if is_workbook(path) => "a sweep is written as CSV: let the name end in .csv",
         _ if Destination::is_for_stdout(path) => {
             "a sweep is not written to stdout, but to a file, in which it can be gone on with"
         }

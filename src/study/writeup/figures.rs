@@ -25,6 +25,8 @@ pub struct Drawing {
 
 /// A run of more swings than this has a figure of its first few of its own.
 const MANY_SWINGS: f64 = 15.0;
+/// Fewer steps a swing make a curve with corners.
+const SMOOTH: f64 = 40.0;
 /// So many swings are in that one.
 const FEW_SWINGS: f64 = 8.0;
 
@@ -48,6 +50,12 @@ pub fn figures(
     } else {
         ""
     };
+    let joined = readouts
+        .swing_s()
+        .map(|swing_s| swing_s / scenario.motion.time_step_s)
+        .filter(|steps| *steps < SMOOTH)
+        .map(|steps| format!("; straight lines join the run's steps, about {steps:.0} a swing"));
+    let beside = format!("{beside}{}", joined.unwrap_or_default());
     let mut wanted = vec![
         (
             TRACES,

@@ -11,9 +11,10 @@ pub fn table(quantities: &[Quantity], caption: &str) -> String {
 \begin{{table}}
 \centering
 \caption{{{}}}
-\begin{{tabular}}{{lrrl}}
+\footnotesize
+\begin{{tabular}}{{@{{}}p{{0.42\columnwidth}}rr@{{}}}}
 \hline
- & measured & theory & unit \\
+ & measured & theory \\
 \hline
 {rows}\hline
 \end{{tabular}}
@@ -28,11 +29,14 @@ fn row(quantity: &Quantity) -> String {
         Some(stated) => uncertain(&stated),
         None => number(&quantity.measured_text()),
     };
+    let unit = match quantity.readout.unit {
+        "" => String::new(),
+        name => format!(", {}", unit(name)),
+    };
     format!(
-        "{} & {measured} & {} & {} \\\\\n",
+        "\\raggedright {}{unit} & {measured} & {} \\\\\n",
         escaped(quantity.readout.meaning),
         number(&quantity.predicted_text()),
-        unit(quantity.readout.unit)
     )
 }
 

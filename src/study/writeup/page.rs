@@ -167,7 +167,8 @@ fn write_quantities(page: &mut String, quantities: &[Quantity]) -> fmt::Result {
     writeln!(
         page,
         "\nDigits in parentheses are one standard error, in units of the last digits: 0.886033(24) is 0.886033 ± 0.000024. \
-         \"Apart\" is how many of them lie between the measured number and theory. The least and \
+         \"Apart\" is how many of them lie between the measured number and theory, or, where these are more than a hundred, by what \
+         part of theory the run is off: that is the scheme's and its time step's doing. The least and \
          the greatest values are those of the whole run. Theory is that of the exact motion under the forces at the end of \
          the run; the standard error is that of reading the number off this run, and does not hold what the time step has done to it. \
          {NONE}: there is no such number, or none that can be stated. The same table for LaTeX is in `{}`, every readout in \

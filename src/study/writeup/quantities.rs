@@ -2,7 +2,7 @@
 
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Readout, Source};
-use crate::text::number::{NONE, Uncertain, fixed, short, uncertain};
+use crate::text::number::{NONE, Uncertain, fixed, short, significant, uncertain};
 
 /// A measured number, with what theory says of it.
 #[derive(Clone, Debug)]
@@ -16,6 +16,9 @@ pub struct Quantity {
     /// What theory says, in the same unit.
     pub predicted: Option<f64>,
 }
+
+/// So many standard errors off theory, a number is not off by the reading of it.
+const FAR: f64 = 100.0;
 
 /// Digits after the point of a number that has no uncertainty.
 const DECIMALS: usize = 6;
@@ -64,13 +67,22 @@ impl Quantity {
         }
     }
 
-    /// By how many standard errors it is off theory, as text: `+1.2`.
+    /// By how many standard errors it is off theory, as text: `+1.2`; where they are more than a hundred, which says nothing
+    /// any more, by what part of theory: `-3.4 %`.
     pub fn apart_text(&self) -> String {
         match (self.measured, self.uncertainty, self.predicted) {
             (Some(measured), Some(error), Some(predicted)) if error > 0.0 => {
                 let apart = (measured - predicted) / error;
                 let sign = if apart < 0.0 { '-' } else { '+' };
-                format!("{sign}{}", short(apart.abs()))
+                match apart.abs() <= FAR {
+                    true => format!("{sign}{}", short(apart.abs())),
+                    false if predicted == 0.0 => "far".to_owned(),
+                    false => {
+                        let part = ((measured - predicted) / predicted).abs();
+                        let sign = if measured < predicted { '-' } else { '+' };
+                        format!("{sign}{} %", significant(100.0 * part, 2))
+                    }
+                }
             }
             _ => NONE.to_owned(),
         }

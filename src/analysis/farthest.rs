@@ -1,0 +1,154 @@
+//! The largest distance of a run's traced point from the exact motion, over every step.
+//!
+//! The exact motion with its last bit costs as much as a step. Nearly all steps need it less well: a distance that is known
+//! within some rounding tells that it is not the largest. Only those that may be are kept, and computed to the last bit when
+//! the largest is asked for. It is the same number as if all had been.
+
+use super::trial::{Deviation, distance_near};
+use crate::physics::State;
+use crate::run::Truth;
+
+/// What a distance that is known nearly may be off, as a part of the arm: more than ten times what it was found to be.
+const OFF: f64 = 3e-14;
+/// A run that is no farther off than so many of these is held to the last bit at once.
+const WORTH_IT: f64 = 10.0;
+/// So many steps are kept at most.
+const KEPT: usize = 32;
+
+/// The largest distance so far.
+#[derive(Clone, Debug)]
+pub(super) struct Farthest {
+    /// What a distance that is known nearly may be off, m.
+    off_m: f64,
+    /// Of all steps but those in `kept`, m.
+    most_m: f64,
+    /// Of all steps, within [`OFF`].
+    near_m: f64,
+    /// The steps that may be farther off than `most_m`.
+    kept: Vec<State>,
+}
+
+impl Farthest {
+    /// Of a run whose traced point is so far from the pivot, m.
+    pub fn new(arm_m: f64) -> Self {
+        Self {
+            off_m: OFF * arm_m,
+            most_m: 0.0,
+            near_m: 0.0,
+            kept: Vec::new(),
+        }
+    }
+
+    /// Takes in a step of the run beside `truth`; whether its distance is a number.
+    #[inline]
+    pub fn follow(&mut self, state: &State, truth: &mut Truth) -> bool {
+        if self.near_m > WORTH_IT * self.off_m
+            && let Some(near_m) = distance_near(state, truth).filter(|near_m| near_m.is_finite())
+        {
+            return near_m < self.near_m - 2.0 * self.off_m || self.keep(state, near_m, truth);
+        }
+        // The forces may change here: what is kept belongs to those before.
+        let are_numbers = self.settle(truth);
+        self.take_in(Deviation::distance_of(state, truth)) && are_numbers
+    }
+
+    fn keep(&mut self, state: &State, near_m: f64, truth: &mut Truth) -> bool {
+        if near_m > self.near_m + 2.0 * self.off_m {
+            self.kept.clear(); // none of them is as far off
+        }
+        self.near_m = self.near_m.max(near_m);
+        self.kept.push(*state);
+        self.kept.len() < KEPT || self.settle(truth)
+    }
+
+    /// Computes to the last bit what has been kept; whether all of it is a number.
+    pub fn settle(&mut self, truth: &mut Truth) -> bool {
+        let kept = std::mem::take(&mut self.kept);
+        let distances = kept
+            .iter()
+            .map(|state| Deviation::distance_of(state, truth));
+        let are_numbers = distances.fold(true, |all, distance_m| self.take_in(distance_m) && all);
+        self.kept = kept;
+        self.kept.clear();
+        are_numbers
+    }
+
+    /// Takes in a distance, m; whether it is a number.
+    pub fn take_in(&mut self, distance_m: f64) -> bool {
+        if distance_m.is_finite() {
+            self.most_m = self.most_m.max(distance_m);
+            self.near_m = self.near_m.max(distance_m);
+        }
+        distance_m.is_finite()
+    }
+
+    /// The largest distance of all that has been settled, m.
+    pub fn most_m(&self) -> f64 {
+        self.most_m
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::Simulation;
+    use crate::scenario::Document;
+    use std::sync::Arc;
+
+    #[test]
+    fn it_is_the_largest_of_all_to_the_last_bit() {
+        for (preset, sets) in [
+            ("wobble-push", &["motion.steps=600"][..]),
+            ("method-2-slow", &["motion.steps=1500"]),
+            ("cusps", &["motion.steps=1500", "motion.time_step_s=0.02"]),
+            ("cusps", &["motion.steps=600", "motion.scheme=exact"]),
+            ("cusps", &["motion.steps=600", "motion.scheme=srkn11b"]),
+            ("sleeping", &["motion.steps=600", "motion.scheme=report"]),
+        ] {
+            let mut document = Document::open(preset).unwrap();
+            sets.iter().for_each(|set| document.set(set).unwrap());
+            let scenario = Arc::new(document.scenario().unwrap());
+            let mut simulation = Simulation::new(Arc::clone(&scenario));
+            let truths = || Truth::new(Arc::clone(&scenario));
+            let (mut every, mut some) = (truths(), truths());
+            let (mut most_m, mut farthest) = (0.0_f64, Farthest::new(scenario.arm_m()));
+            let mut kept = 0;
+            for number in 1..=scenario.steps {
+                let state = simulation.step().unwrap().after();
+                most_m = most_m.max(Deviation::distance_of(state, &mut every));
+                assert!(farthest.follow(state, &mut some));
+                kept = kept.max(farthest.kept.len());
+                if number % 97 == 0 {
+                    assert!(farthest.settle(&mut some));
+                    assert_eq!(farthest.most_m().to_bits(), most_m.to_bits(), "{preset}");
+                }
+            }
+            let is_worth_it = most_m > WORTH_IT * farthest.off_m;
+            assert_eq!(kept > 0, is_worth_it, "{preset} {sets:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_known_nearly_is_known_well_enough() {
+        for preset in [
+            "wobble-push",
+            "cusps",
+            "loops",
+            "sleeping",
+            "torque-free",
+            "method-1",
+        ] {
+            let scenario = Arc::new(Document::open(preset).unwrap().scenario().unwrap());
+            let mut truth = Truth::new(Arc::clone(&scenario));
+            let mut most = 0.0_f64;
+            for number in 0..20_000 {
+                let time_s = 0.0137 * f64::from(number);
+                let exact = truth.orientation_at(time_s);
+                if let Some(near) = truth.orientation_near(time_s) {
+                    most = most.max((exact - near).norm());
+                }
+            }
+            assert!((0.0..0.1 * OFF).contains(&most), "{preset}: {most:e}");
+        }
+    }
+}
