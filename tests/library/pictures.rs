@@ -270,6 +270,33 @@ fn the_edges_of_a_band_are_the_extremes_of_the_steps() {
 }
 
 #[test]
+fn no_mark_covers_the_word_for_a_push_straight_down() {
+    for (width, height) in [ROUND, (27, 17), (54, 24)] {
+        let mut now = run("wobble-push", &[], "", 0);
+        now.set_overlay(true);
+        for step in 1..=200 {
+            now.step().unwrap();
+            now.follow_exact(|| false);
+            let pane = FromAbove {
+                run: &now,
+                ghost: None,
+                pinned: None,
+                view: &view(&now, Marker::Braille),
+                reading: None,
+            };
+            let picture = drawn(pane, (width, height));
+            assert!(picture.contains("F down"), "step {step}:\n{picture}");
+            let (path, _) = picture.split_once("0.").unwrap(); // the legend begins with a scale in m
+            let path = path.replace("from above", "");
+            let point = ['o', '*']
+                .into_iter()
+                .any(|mark| path.replace("down", "").contains(mark));
+            assert!(point, "step {step}, the word covers the point:\n{picture}");
+        }
+    }
+}
+
+#[test]
 fn a_push_that_acts_is_an_arrow() {
     let sideways = &["push.0.force_N=[100, 50, 0]"][..];
     for (name, set) in [("down", &[][..]), ("sideways", sideways)] {
