@@ -142,6 +142,28 @@ fn columns_with(picture: &str, signs: &str) -> Vec<usize> {
 }
 
 #[test]
+fn the_run_before_is_seen_wherever_the_run_does_not_hide_it() {
+    // The height of a steady top is a level line: at every height it is as dense.
+    for tilt_deg in 20..45 {
+        let before = run(
+            "steady-slow",
+            &[&format!("start.tilt_deg={tilt_deg}")],
+            "",
+            3000,
+        );
+        let now = run("steady-slow", &["start.tilt_deg=50"], "", 3000);
+        let picture = traces(&now, Some(&Ghost::of(&before)), None, Marker::Braille);
+        let lines = picture.lines().skip_while(|line| !line.starts_with("│z"));
+        let of_run = "⠉⠒⠤⣀";
+        let dots = lines
+            .flat_map(str::chars)
+            .filter(|c| ('\u{2801}'..='\u{28ff}').contains(c));
+        let dots = dots.filter(|c| !of_run.contains(*c)).count();
+        assert!(dots >= 10, "{tilt_deg} degrees: {dots}\n{picture}");
+    }
+}
+
+#[test]
 fn the_run_before_is_ahead_of_the_pen_and_ends_where_it_ended() {
     let (now, ghost) = edited(100);
     // 10 s on 38 columns; it ended at 7 s.
