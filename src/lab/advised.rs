@@ -8,7 +8,7 @@ use crate::observe::advisor::Advisor;
 use crate::run::Simulation;
 use crate::scenario::Scenario;
 use crate::text::number::shortest;
-use crate::work::mended::mended;
+use crate::work::mended::{mended, replaced};
 use std::sync::Arc;
 
 /// What would mend the present run, and can be done to it.
@@ -67,6 +67,21 @@ impl Player {
         self.advisor.is_some() && self.advice().is_none()
     }
 
+    /// Why there is no advice to take now; `None` where there may be.
+    pub(super) fn why_no_advice(&self) -> Option<&'static str> {
+        let is_believed = self.reading().readouts.health.is_believed();
+        match (is_believed, self.is_seeking_advice()) {
+            (Some(true), _) => Some("there is nothing to mend: the run keeps to the exact motion"),
+            (None, _) => {
+                Some("whether there is something to mend is not known: nothing is advised")
+            }
+            (Some(false), true) => {
+                Some("what mends the numbers is being sought: press a again in a moment")
+            }
+            (Some(false), false) => None,
+        }
+    }
+
     /// What would mend doubtful numbers, in words, with the key that does it; `None` where nothing is known to, or where it
     /// cannot be done to this run.
     pub fn offer(&self) -> Option<String> {
@@ -87,24 +102,31 @@ impl Lab {
     /// Begins the run anew as the advice says, and plays it to the same time. Where no advice has come yet, it is looked for
     /// at once.
     pub(super) fn follow_advice(&mut self) -> Answer {
-        if self.player.reading().readouts.health.is_believed() != Some(false) {
-            return Err("there is nothing to mend: the run keeps to the exact motion".into());
+        if let Some(reason) = self
+            .player
+            .why_no_advice()
+            .filter(|_| !self.player.is_seeking_advice())
+        {
+            return Err(reason.into());
         }
-        if self.player.offer.is_none() && self.player.advice().is_none() {
-            let advice = advise(&self.player.to_be_mended());
+        if self.player.offer.is_none() {
+            let known = self.player.advice().copied();
+            let advice = known.unwrap_or_else(|| advise(&self.player.to_be_mended()));
             self.player.offer = self.player.offered(&advice);
         }
         let Some(Offer { what, scenario }) = self.player.offer.take() else {
             return Err("no time step or scheme is known that mends this run".into());
         };
         let left_at = self.player.step_to_leave_at();
+        let replaced = replaced(self.player.run().scenario());
+        let replaced = replaced.map_or(String::new(), |edits| format!(", in place of {edits}"));
         self.work.leave_at(left_at, self.values.next_push());
         self.work.begin_as_advised(&scenario);
         self.values.suit(&scenario);
         self.player.begin(scenario, false);
         self.scenario_has_changed();
         let said =
-            format!("{what} from the start; the run before is dotted, and u goes back to it");
+            format!("{what} from the start{replaced}; the run before is dotted, u goes back to it");
         Ok(self.on_its_way(Done::saying(said)))
     }
 }

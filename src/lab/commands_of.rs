@@ -47,13 +47,10 @@ impl Lab {
             Action::Undo => one(Command::Undo(times.unsigned_abs())),
             Action::Redo => one(Command::Redo(times.unsigned_abs())),
             Action::Push => one(Command::Push(PushChoice::default())),
-            Action::TakeAdvice if self.player.is_seeking_advice() => {
-                Err("what mends the numbers is being sought: press a again in a moment".to_owned())
-            }
-            Action::TakeAdvice if self.player.offer().is_none() => Err(
-                "nothing is advised: the line about the numbers says when a mends them".to_owned(),
-            ),
-            Action::TakeAdvice => one(Command::TakeAdvice),
+            Action::TakeAdvice => match self.player.why_no_advice() {
+                Some(reason) => Err(reason.to_owned()),
+                None => one(Command::TakeAdvice),
+            },
             Action::TogglePin => one(Command::Pin(!self.player.is_pinned())),
             Action::ToggleExact => one(Command::Exact(self.player.run().overlay().is_none())),
             Action::ToggleHealth => one(Command::Hide(self.view.toggled(Part::Health))),

@@ -245,7 +245,7 @@ impl Player {
         self.pinned = pinned.then_some(Pinned::Present);
         Done::saying(match (pinned, was_pinned) {
             (true, false) => {
-                "this run is pinned: it stays, in long and short dashes, whatever changes; i unpins it"
+                "this run is pinned: all of it stays, in long and short dashes, whatever changes; i unpins it"
             }
             (true, true) => "this run is pinned now, instead of the one before",
             (false, true) => "the pinned run is taken away",

@@ -134,8 +134,7 @@ impl Work {
 
     /// Leaves the present run and begins that of `scenario`, which follows the advice about it.
     pub(super) fn begin_as_advised(&mut self, scenario: &Arc<Scenario>) {
-        let name = self.name().to_owned();
-        self.change().begin(&name, scenario);
+        self.change().begin_as_advised(scenario);
     }
 
     /// Begins a new run: the present one with the values of `set`, to which it does `acts` at step 0. With `is_again` it

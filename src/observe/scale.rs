@@ -7,6 +7,9 @@ use crate::text::number::{fixed, rounded};
 /// A tick this share of the range beyond an end stands at the end: the difference is rounding.
 const ROUNDING: f64 = 1e-9;
 
+/// An end that is written this share of the range beside its place is read at that place.
+const UNSEEN: f64 = 0.025;
+
 /// Significant digits of a tick: no rounding of its last bits is seen.
 const DIGITS: usize = 15;
 
@@ -78,35 +81,35 @@ impl Scale {
 
     /// Both ends.
     pub fn in_words(&self) -> String {
-        self.with_digits(self.decimals())
+        self.with_digits(self.decimals(), " .. ")
     }
 
-    /// Both ends in at most `width` columns: with fewer digits where those of [`in_words`](Self::in_words) have no room, as
-    /// long as the ends are told apart; else as the middle and the distance of the ends from it. `None` where that has no
-    /// room either.
+    /// Both ends in at most `width` columns: close together where there is no room for spaces, else as the middle and the
+    /// distance of the ends from it, and then with fewer digits, as long as no end is seen to be elsewhere. `None` where
+    /// that has no room either.
     pub fn in_words_within(&self, width: usize) -> Option<String> {
         let fits = |words: &String| words.chars().count() <= width;
         let digits = self.decimals();
-        let least = decimals(self.high - self.low).min(digits);
-        let mut both = (least..=digits)
-            .rev()
-            .map(|digits| self.with_digits(digits));
-        if let Some(words) = both.find(fits) {
-            return Some(words);
-        }
         let (middle, half) = (0.5 * (self.low + self.high), 0.5 * (self.high - self.low));
         let about = |digits| format!("{} ± {}", fixed(middle, digits), fixed(half, digits));
-        let least = decimals(half).min(digits);
-        let mut about = (least..=digits).rev().map(about);
-        about.find(fits)
+        let is_true = |value: f64, digits: &usize| {
+            let unit = libm::exp10(-(*digits as f64));
+            (value - (value / unit).round() * unit).abs() <= UNSEEN * (self.high - self.low)
+        };
+        let forms = (0..=digits).rev().flat_map(|digits| {
+            let both = is_true(self.low, &digits) && is_true(self.high, &digits);
+            let words = [" .. ", ".."].map(|between| self.with_digits(digits, between));
+            let both = both.then_some(words).into_iter().flatten();
+            let around = is_true(middle, &digits) && is_true(half, &digits);
+            both.chain(around.then(|| about(digits)))
+        });
+        let mut forms = forms;
+        forms.find(fits)
     }
 
-    fn with_digits(&self, digits: usize) -> String {
-        format!(
-            "{} .. {}",
-            fixed(self.low, digits),
-            fixed(self.high, digits)
-        )
+    fn with_digits(&self, digits: usize, between: &str) -> String {
+        let [low, high] = [self.low, self.high].map(|end| fixed(end, digits));
+        format!("{low}{between}{high}")
     }
 }
 
@@ -172,10 +175,22 @@ mod tests {
         let within = |width| scale.in_words_within(width).unwrap_or_default();
         assert_eq!(within(30), "29.99875 .. 30.00125");
         assert_eq!(within(20), "29.99875 .. 30.00125");
-        assert_eq!(within(19), "29.9988 .. 30.0012");
-        assert_eq!(within(17), "29.999 .. 30.001");
-        assert_eq!(within(15), "30.000 ± 0.001");
-        assert_eq!(within(13), "");
+        assert_eq!(within(19), "29.99875..30.00125");
+        assert_eq!(within(17), "29.9988..30.0012");
+        assert_eq!(within(16), "29.9988..30.0012");
+        assert_eq!(
+            within(15),
+            "",
+            "with fewer digits the ends would be elsewhere"
+        );
+        let z = Scale {
+            low: 0.6,
+            high: 0.95,
+        };
+        let within = |width| z.in_words_within(width).unwrap_or_default();
+        assert_eq!(within(12), "0.60 .. 0.95");
+        assert_eq!(within(10), "0.60..0.95");
+        assert_eq!(within(9), "", "not 0.8 ± 0.2");
         for width in 0..40 {
             assert!(within(width).chars().count() <= width);
         }

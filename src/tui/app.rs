@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 
 /// Longest wait for events while nothing changes.
 const IDLE: Duration = Duration::from_millis(500);
-/// The same while an export is in progress in the background, or a file is being read for the browser.
+/// The same while something is done in the background: an export, a file read for the browser, a search for advice.
 const ATTENTIVE: Duration = Duration::from_millis(100);
 
 /// Runs `lab` and the lessons of its `class` on the terminal until the user leaves. It saves the lab in `session`, if
@@ -96,6 +96,7 @@ fn wait(lab: &Lab, class: &Class, to_frame: Duration) -> Duration {
     } else {
         let is_attentive = lab.files().is_exporting()
             || lab.on_top().browser().is_loading()
+            || lab.player().is_seeking_advice()
             || !lab.script().is_done();
         let rest = if is_attentive { ATTENTIVE } else { IDLE };
         let rest = class.wait().unwrap_or(rest).min(rest);

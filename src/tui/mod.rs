@@ -22,6 +22,7 @@ pub mod decoder;
 pub mod dots;
 pub mod keyboard;
 pub mod keymap;
+pub mod labels;
 pub mod layout;
 pub mod markers;
 pub mod mouse;

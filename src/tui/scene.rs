@@ -4,15 +4,14 @@
 use crate::observe::camera::Camera;
 use crate::tui::dots::{Dots, Ink};
 use nalgebra::Vector3;
-use ratatui::layout::Rect;
 
 /// A line hides what is farther than it by more than this part of the scene's reach: lines that meet do not hide each other.
 const BEHIND: f64 = 0.05;
 /// Half the angle of an arrow's head, radians.
-const HEAD_ANGLE: f64 = 0.45;
+const HEAD_ANGLE: f64 = 0.4;
 /// Length of an arrow's head, of the scene's reach; at least so many dots, and at most this part of the arrow.
-const HEAD: f64 = 0.1;
-const LEAST_HEAD: f64 = 6.0;
+const HEAD: f64 = 0.07;
+const LEAST_HEAD: f64 = 5.0;
 const MOST_OF_ARROW: f64 = 0.6;
 /// Strokes of a head to each side of its middle.
 const HEAD_STROKES: i32 = 3;
@@ -24,6 +23,8 @@ const IN_FRONT: f64 = 0.03;
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stroke {
+    /// Every dot, and those on both of its sides.
+    Heavy,
     /// Every dot, and those beside them.
     Thick,
     /// Every dot.
@@ -136,12 +137,17 @@ impl Scene {
         }
         let every = match stroke {
             Stroke::Dotted(every) => every.max(1),
-            Stroke::Thick | Stroke::Thin => 1,
+            Stroke::Heavy | Stroke::Thick | Stroke::Thin => 1,
         };
-        let beside = match (stroke, dx.abs() > dy.abs()) {
-            (Stroke::Thick, true) => Some((0.0, 1.0)),
-            (Stroke::Thick, false) => Some((1.0, 0.0)),
-            _ => None,
+        // Where a dot is as wide as a cell, the dot beside it makes a heavy line.
+        let beside: &[f64] = match stroke {
+            Stroke::Heavy if self.in_cell.0 > 1 => &[-1.0, 1.0],
+            Stroke::Heavy | Stroke::Thick => &[1.0],
+            Stroke::Thin | Stroke::Dotted(_) => &[],
+        };
+        let across = match dx.abs() > dy.abs() {
+            true => (0.0, 1.0),
+            false => (1.0, 0.0),
         };
         for dot in (0..=length as u32).step_by(every as usize) {
             let share = f64::from(dot) / length.max(1.0);
@@ -157,8 +163,8 @@ impl Scene {
                 });
             };
             speck(at);
-            if let Some((x, y)) = beside {
-                speck((at.0 + x, at.1 + y));
+            for side in beside {
+                speck((at.0 + side * across.0, at.1 + side * across.1));
             }
         }
     }
@@ -208,11 +214,11 @@ impl Scene {
         }
     }
 
-    /// A thick line that is in front of what lies along it: arrows along the axle do not cover it.
+    /// A heavy line that is in front of what lies along it: arrows along the axle do not cover it.
     pub fn rod(&mut self, from: &Vector3<f64>, to: &Vector3<f64>, ink: Ink) {
         let nearer = |point| self.camera.depth(point) - IN_FRONT * self.reach;
         let ends = ((self.dot(from), nearer(from)), (self.dot(to), nearer(to)));
-        self.line_of_dots(ends.0, ends.1, Stroke::Thick, ink);
+        self.line_of_dots(ends.0, ends.1, Stroke::Heavy, ink);
     }
 
     fn place(&self, (x, y): (f64, f64)) -> Option<(usize, usize)> {
@@ -253,19 +259,6 @@ impl Scene {
             }
         }
     }
-}
-
-/// `cell`, or the next one to its right, and then to its left, that keeps off those that are `taken` and in `area`.
-pub fn beside(cell: (u16, u16), width: u16, taken: &[(u16, u16)], area: Rect) -> (u16, u16) {
-    let (x, y) = cell;
-    let last = area.width.saturating_sub(width);
-    let is_free = |x: &u16| {
-        let mut near = taken.iter().filter(|(_, row)| *row == y);
-        near.all(|&(other, _)| other.abs_diff(*x) > width)
-    };
-    let right = (x.min(last)..=last).find(is_free);
-    let left = || (0..x.min(last)).rev().find(is_free);
-    (right.or_else(left).unwrap_or(x.min(last)), y)
 }
 
 #[cfg(test)]
@@ -316,15 +309,5 @@ mod tests {
         assert!((5..35).all(|row| is_set(x, row)), "the near line is whole");
         assert!(!is_set(x - 1, y) && !is_set(x + 1, y), "a gap beside it");
         assert!(is_set(x - 3, y) && is_set(x + 3, y), "the far line goes on");
-    }
-
-    #[test]
-    fn letters_keep_off_each_other_and_in_the_picture() {
-        let area = Rect::new(0, 0, 10, 3);
-        assert_eq!(beside((4, 1), 1, &[], area), (4, 1));
-        assert_eq!(beside((4, 1), 1, &[(4, 1)], area), (6, 1));
-        assert_eq!(beside((9, 1), 2, &[], area), (8, 1));
-        assert_eq!(beside((9, 1), 1, &[(9, 1)], area), (7, 1));
-        assert_eq!(beside((4, 1), 1, &[(4, 2)], area), (4, 1));
     }
 }

@@ -29,6 +29,10 @@ pub enum Role {
     Recent,
     /// The path before the last turn.
     Old,
+    /// The path of the last turn in space, where it must be told from the body.
+    Track,
+    /// The path before that in space.
+    OldTrack,
     /// The exact motion.
     Exact,
     /// The previous run.
@@ -60,7 +64,7 @@ impl Theme {
 fn modifier(role: Role) -> Modifier {
     match role {
         Role::Heading | Role::Focus | Role::Push | Role::Warning | Role::Recent => Modifier::BOLD,
-        Role::Quiet | Role::Ghost | Role::Old => Modifier::DIM,
+        Role::Quiet | Role::Ghost | Role::Old | Role::OldTrack => Modifier::DIM,
         Role::Selected => Modifier::REVERSED,
         _ => Modifier::empty(),
     }
@@ -77,7 +81,7 @@ fn colour(role: Role, background: Background) -> Color {
         Role::Exact => choose(Color::LightRed, Color::Magenta),
         Role::Warning => choose(Color::LightYellow, Color::Red),
         Role::Push => Color::Green,
-        Role::Focus => choose(Color::LightBlue, Color::Blue),
+        Role::Focus | Role::Track | Role::OldTrack => choose(Color::LightBlue, Color::Blue),
         _ => Color::Reset,
     }
 }
@@ -88,10 +92,12 @@ mod tests {
 
     #[test]
     fn nothing_else_on_the_traces_has_the_colour_of_the_exact_motion() {
-        use Role::{Exact, Ghost, Old, Path, Pinned, Push, Quiet, Recent, Warning, X, Y, Z};
+        use Role::{
+            Exact, Ghost, Old, OldTrack, Path, Pinned, Push, Quiet, Recent, Track, Warning, X, Y, Z,
+        };
         for background in [Background::Dark, Background::Light] {
             for role in [
-                X, Y, Z, Path, Recent, Old, Push, Warning, Ghost, Pinned, Quiet,
+                X, Y, Z, Path, Recent, Old, Track, OldTrack, Push, Warning, Ghost, Pinned, Quiet,
             ] {
                 assert_ne!(
                     colour(role, background),

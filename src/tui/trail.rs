@@ -22,27 +22,38 @@ const LONGEST_LINE: f64 = 8.0;
 /// The longest line between two recent places, of the sheet's shorter side.
 const LONGEST_RECENT_LINE: f64 = 0.5;
 
+/// The dots near a dot are those up to this distance across and down, and so many of them are more than two lines have.
+const NEAR: usize = 2;
+const CROWD: usize = 12;
+
 /// A path on a sheet of dots, each with its age.
 pub struct Trail {
     width: usize,
     height: usize,
     ages: Vec<Option<Age>>,
     counts: Vec<u16>,
-    /// Whether areas are drawn as sparsely as can be, because something else is drawn over them.
-    is_thin: bool,
+    around: Around,
+}
+
+/// What the path is drawn around.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Around {
+    /// Nothing: the picture is of the path.
+    Nothing,
+    /// The body: areas are as sparse as can be, because it is drawn over them, and the path has a colour of its own.
+    Body,
 }
 
 impl Trail {
-    /// An empty trail on the sheet of `dots`; `is_thin` says whether areas are drawn as sparsely as can be, because something
-    /// else is drawn over them.
-    pub fn new(dots: &Dots, is_thin: bool) -> Self {
+    /// An empty trail on the sheet of `dots`.
+    pub fn new(dots: &Dots, around: Around) -> Self {
         let (width, height) = (dots.width(), dots.height());
         Self {
             width,
             height,
             ages: vec![None; width * height],
             counts: vec![0; width * height],
-            is_thin,
+            around,
         }
     }
 
@@ -123,8 +134,14 @@ impl Trail {
         inside.then(|| self.ages[y * self.width + x]).flatten()
     }
 
-    /// Whether the path is on all four sides of a dot: it covers an area there, and is no line.
+    /// Whether the path covers an area at a dot, and is no line: it is on all four sides of the dot, or, around a body that
+    /// is to be seen through it, on many of the dots near it.
     fn is_covered(&self, x: usize, y: usize) -> bool {
+        if self.around == Around::Body {
+            let near = |at: usize| at.saturating_sub(NEAR)..=at + NEAR;
+            let dots = near(y).flat_map(|y| near(x).map(move |x| (x, y)));
+            return dots.filter(|&(x, y)| self.age(x, y).is_some()).count() >= CROWD;
+        }
         let (left, above) = (x.wrapping_sub(1), y.wrapping_sub(1));
         let around = [(left, y), (x + 1, y), (x, above), (x, y + 1)];
         around.into_iter().all(|(x, y)| self.age(x, y).is_some())
@@ -152,15 +169,29 @@ impl Trail {
                 }
                 let is_drawn = match self.is_covered(x, y) {
                     _ if age == Age::Recent || dwelt => true,
-                    true if self.is_thin => is_in_area(x, y, Age::Old),
+                    true if self.around == Around::Body => is_in_area(x, y, Age::Old),
                     true => is_in_area(x, y, age),
                     false => is_in_line(x, y, age),
                 };
                 if is_drawn {
                     let is_area = self.is_covered(x, y);
-                    dots.set(x as f64, y as f64, ink(age, is_area));
+                    dots.set(x as f64, y as f64, self.ink(age, is_area));
                 }
             }
+        }
+    }
+
+    fn ink(&self, age: Age, is_area: bool) -> Ink {
+        let [recent, turn, old] = match self.around {
+            Around::Nothing => [Role::Recent, Role::Path, Role::Old],
+            Around::Body => [Role::Focus, Role::Track, Role::OldTrack],
+        };
+        match age {
+            Age::Recent => Ink::Strong(recent),
+            // The exact motion is seen through it.
+            Age::Turn if is_area => Ink::Under(turn),
+            Age::Turn => Ink::Strong(turn),
+            Age::Old => Ink::Under(old),
         }
     }
 }
@@ -175,16 +206,6 @@ fn is_in_line(x: usize, y: usize, age: Age) -> bool {
 fn is_in_area(x: usize, y: usize, age: Age) -> bool {
     let is_corner = x.is_multiple_of(2) && y.is_multiple_of(2);
     is_corner && (age == Age::Turn || (x / 2 + y / 2).is_multiple_of(2))
-}
-
-fn ink(age: Age, is_area: bool) -> Ink {
-    match age {
-        Age::Recent => Ink::Strong(Role::Recent),
-        // The exact motion is seen through it.
-        Age::Turn if is_area => Ink::Under(Role::Path),
-        Age::Turn => Ink::Strong(Role::Path),
-        Age::Old => Ink::Under(Role::Old),
-    }
 }
 
 #[cfg(test)]
@@ -238,7 +259,7 @@ mod tests {
         (0..2400).for_each(|step| recording.push(&moment(step)));
         let now = moment(2400);
         let ages = Ages::new(Some(2.0), Some(60.0));
-        let mut trail = Trail::new(&sheet(), false);
+        let mut trail = Trail::new(&sheet(), Around::Nothing);
         let to_dot = |at: &Vector3<f64>| (at.x, at.y);
         trail.follow(&recording, &ages, (now.time_s, &now.position), to_dot);
         trail

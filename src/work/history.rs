@@ -27,6 +27,9 @@ pub struct RunRecord {
     /// The push that the user had prepared when they left the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub next_push: Option<NextPush>,
+    /// Whether the run follows the advice about the one before: the edits that it has from there are not undone in it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_advised: bool,
     /// The scenario, and what the user did to it.
     pub journal: Journal,
 }
@@ -101,6 +104,14 @@ impl History {
     pub fn begin(&mut self, name: &str, scenario: &Arc<Scenario>) {
         let journal = Journal::of_checked(scenario);
         self.begin_run(RunRecord::new(name, journal, scenario));
+    }
+
+    /// Leaves the present run and begins that of `scenario`, which follows the advice about it: one undo returns to the
+    /// present run, whatever edits the new one has from it.
+    pub fn begin_as_advised(&mut self, scenario: &Arc<Scenario>) {
+        let name = self.present.name.clone();
+        self.begin(&name, scenario);
+        self.present.is_advised = true;
     }
 
     fn begin_run(&mut self, next: RunRecord) {
@@ -181,7 +192,8 @@ impl History {
 
     /// Undoes the last act of the present run; where it has none, returns to the run before. `None` where there is none.
     pub fn undo(&mut self) -> Option<Reversal> {
-        if let Some((step, act)) = self.present.journal.undo() {
+        let is_as_advised = self.present.is_advised && self.present.journal.is_as_opened();
+        if !is_as_advised && let Some((step, act)) = self.present.journal.undo() {
             return Some(Reversal::SameRun { step, act });
         }
         self.exchange(|history| (&mut history.past, &mut history.undone))
@@ -214,6 +226,7 @@ impl RunRecord {
             left_at: 0,
             end_s: Clock::end_s(scenario),
             next_push: None,
+            is_advised: false,
             journal,
         }
     }
@@ -292,6 +305,31 @@ mod tests {
         }
         assert_eq!(history.redo(), None);
         assert_eq!(history.present().name, "cusps");
+    }
+
+    #[test]
+    fn undo_takes_the_advice_back_before_the_edits_that_it_kept() {
+        let mut history = History::new("method-2", &opened("method-2"));
+        let gravity = Act::set("motion.gravity_m_per_s2", Value::Float(5.0));
+        let edited = history.act(40, gravity).unwrap();
+        leave(&mut history, 90);
+        history.begin_as_advised(&edited);
+        let push = Act::set("motion.time_step_s", Value::Float(0.02));
+        history.act(7, push).unwrap();
+        assert!(matches!(
+            history.undo(),
+            Some(Reversal::SameRun { step: 7, .. })
+        ));
+        assert_eq!(history.undo(), Some(Reversal::OtherRun));
+        assert_eq!(history.present().left_at, 90);
+        assert!(matches!(
+            history.undo(),
+            Some(Reversal::SameRun { step: 40, .. })
+        ));
+        for _ in 0..3 {
+            assert!(history.redo().is_some());
+        }
+        assert!(history.present().is_advised && time_step(&history) == 0.02);
     }
 
     #[test]

@@ -59,6 +59,18 @@ pub fn mended(
     Document::from_file(ORIGIN, &file)?.scenario()
 }
 
+/// What of the edits of `scenario` a run as advised does without: the time step and the scheme, in words; `None` where
+/// nothing of that was edited.
+pub fn replaced(scenario: &Scenario) -> Option<&'static str> {
+    let edits = |key: &str| (scenario.file.edit.iter()).any(|edit| edit.set.contains_key(key));
+    match REPLACED.map(edits) {
+        [true, true] => Some("the edits of dt and scheme"),
+        [true, false] => Some("the edits of dt"),
+        [false, true] => Some("the edits of the scheme"),
+        [false, false] => None,
+    }
+}
+
 /// Whether `value`, set at `key`, makes a push count in steps.
 fn counts(key: &str, value: &Value) -> bool {
     let is_counted = |name: &str| COUNTED.contains(&name);
@@ -94,6 +106,8 @@ mod tests {
         assert_eq!(other.motion.scheme.name, run.motion.scheme.name);
         assert_eq!(other.edits[0].motion.gravity, 1.0);
         assert!((Clock::end_s(&other) - 30.0).abs() < 1e-9);
+        assert_eq!(replaced(&run), Some("the edits of dt and scheme"));
+        assert_eq!(replaced(&other), None);
     }
 
     #[test]

@@ -178,7 +178,7 @@ fn the_pinned_run_stays_until_it_is_unpinned() {
         ));
     }
     assert_eq!(pinned_s(&stage), Some(40.0));
-    stage.wait(6.0).shows("long and short: pinned");
+    stage.wait(6.0).shows("all of the pinned run");
     stage.shows("┤ pinned  230 s");
     for command in ["undo = 50", "redo = 7", "open = 'cusps'", "go_to = '1 s'"] {
         stage.commands(command);
@@ -237,10 +237,49 @@ fn advice_is_taken_by_one_key() {
     assert_eq!(ghost_s(&stage.lab), Some(40.0));
     let line = health(&stage);
     assert!(!line.contains("mends it"), "{line}");
-    stage.press("a").shows("nothing is advised");
+    stage.press("a").shows("there is nothing to mend");
     stage.press("u").wait(0.1);
     assert_eq!(stage.lab.player().motion().time_step_s, 0.1);
     assert_eq!(stage.step(), 400);
+}
+
+#[test]
+fn undo_takes_the_advice_back_before_an_earlier_edit() {
+    let mut desk = Desk::open("method-2");
+    desk.commands("go_to = 100\nset = { 'motion.gravity_m_per_s2' = 9 }\ngo_to = '40 s'");
+    desk.commands("take_advice = true");
+    let gravity = |desk: &Desk| desk.lab.player().motion().gravity;
+    assert_eq!(gravity(&desk), 9.0);
+    assert!(desk.lab.player().motion().time_step_s < 0.1);
+    desk.press(&[Key::Char('u')]);
+    desk.commands("run_until = 't_s >= 40'");
+    assert_eq!(
+        (desk.lab.player().motion().time_step_s, gravity(&desk)),
+        (0.1, 9.0)
+    );
+    desk.press(&[Key::Char('u')]);
+    assert_eq!(gravity(&desk), 9.8);
+}
+
+#[test]
+fn advice_that_takes_the_place_of_an_edit_says_so() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.commands("pause = true\ngo_to = 200\nset = { 'motion.scheme' = 'rk4' }\ngo_to = '40 s'");
+    stage.press("a").wait(0.1);
+    stage.shows("in place of the edits of the scheme");
+    assert!(stage.lab.player().run().scenario().edits.is_empty());
+}
+
+#[test]
+fn advice_that_has_come_is_taken_at_once() {
+    let mut stage = Stage::open("method-2", &[], LARGE);
+    stage.lab.take_advice();
+    stage.commands("pause = true\ngo_to = '40 s'");
+    while stage.lab.player().advice().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    // The key comes before the lab has looked whether there is news.
+    stage.press("a").shows("from the start");
 }
 
 #[test]
@@ -262,7 +301,7 @@ fn accumulating_pushes_offer_no_other_time_step() {
     stage.wait(1.0).commands("pause = true\ngo_to = 40");
     wait_for_advice(&mut stage);
     stage.shows_no("a takes it");
-    stage.press("a").shows("nothing is advised");
+    stage.press("a").shows("no time step or scheme is known");
     let command = &crate::support::desk::commands("take_advice = true")[0];
     let refusal = stage.lab.carry_out(command).unwrap_err().to_string();
     assert!(

@@ -142,6 +142,28 @@ fn columns_with(picture: &str, signs: &str) -> Vec<usize> {
 }
 
 #[test]
+fn the_run_before_is_seen_wherever_the_run_does_not_hide_it() {
+    // The height of a steady top is a level line: at every height it is as dense.
+    for tilt_deg in 20..45 {
+        let before = run(
+            "steady-slow",
+            &[&format!("start.tilt_deg={tilt_deg}")],
+            "",
+            3000,
+        );
+        let now = run("steady-slow", &["start.tilt_deg=50"], "", 3000);
+        let picture = traces(&now, Some(&Ghost::of(&before)), None, Marker::Braille);
+        let lines = picture.lines().skip_while(|line| !line.starts_with("│z"));
+        let of_run = "⠉⠒⠤⣀";
+        let dots = lines
+            .flat_map(str::chars)
+            .filter(|c| ('\u{2801}'..='\u{28ff}').contains(c));
+        let dots = dots.filter(|c| !of_run.contains(*c)).count();
+        assert!(dots >= 10, "{tilt_deg} degrees: {dots}\n{picture}");
+    }
+}
+
+#[test]
 fn the_run_before_is_ahead_of_the_pen_and_ends_where_it_ended() {
     let (now, ghost) = edited(100);
     // 10 s on 38 columns; it ended at 7 s.
@@ -266,6 +288,33 @@ fn the_edges_of_a_band_are_the_extremes_of_the_steps() {
         assert!(band.min <= min && max <= band.max);
         assert_eq!((column.extent.min, column.extent.max), (min, max));
         assert!(band.min < column.mean && column.mean < band.max);
+    }
+}
+
+#[test]
+fn no_mark_covers_the_word_for_a_push_straight_down() {
+    for (width, height) in [ROUND, (27, 17), (54, 24)] {
+        let mut now = run("wobble-push", &[], "", 0);
+        now.set_overlay(true);
+        for step in 1..=200 {
+            now.step().unwrap();
+            now.follow_exact(|| false);
+            let pane = FromAbove {
+                run: &now,
+                ghost: None,
+                pinned: None,
+                view: &view(&now, Marker::Braille),
+                reading: None,
+            };
+            let picture = drawn(pane, (width, height));
+            assert!(picture.contains("F down"), "step {step}:\n{picture}");
+            let (path, _) = picture.split_once("0.").unwrap(); // the legend begins with a scale in m
+            let path = path.replace("from above", "");
+            let point = ['o', '*']
+                .into_iter()
+                .any(|mark| path.replace("down", "").contains(mark));
+            assert!(point, "step {step}, the word covers the point:\n{picture}");
+        }
     }
 }
 

@@ -144,3 +144,72 @@ fn keys_and_commands_turn_the_camera_from_where_it_is() {
         }
     );
 }
+
+/// The rows of a picture.
+fn rows(picture: &str) -> Vec<Vec<char>> {
+    picture.lines().map(|line| line.chars().collect()).collect()
+}
+
+/// The first place of `sign` below the title.
+fn place(rows: &[Vec<char>], sign: char) -> (usize, usize) {
+    let mut below = rows.iter().enumerate().skip(2);
+    let found = below.find_map(|(y, line)| Some((line.iter().position(|c| *c == sign)?, y)));
+    found.unwrap()
+}
+
+/// Whether legs lead down from the pivot to both sides, farther than the wheel reaches.
+fn has_stand(picture: &str) -> bool {
+    let rows = rows(picture);
+    let (x, y) = place(&rows, '+');
+    let is_dots = |x: usize, y: usize| ('\u{2801}'..='\u{28ff}').contains(&rows[y][x]);
+    (1..8).all(|down| {
+        let left = x - 2 * down..x;
+        let right = x..=x + 2 * down;
+        left.clone().any(|x| is_dots(x, y + down)) && right.clone().any(|x| is_dots(x, y + down))
+    })
+}
+
+#[test]
+fn the_axle_is_a_heavy_line_from_the_stand_to_its_top() {
+    let mut stage = Stage::open("method-2", &[], LARGE);
+    stage.commands("pause = true\ngo_to = 600");
+    stage.press("d").wait(0.3);
+    let picture = stage.picture();
+    assert!(has_stand(&picture), "{picture}");
+    let rows = rows(&picture);
+    let (pivot, top) = (place(&rows, '+'), place(&rows, '*'));
+    let dots = |x: usize, y: usize| u32::from(rows[y][x]).saturating_sub(0x2800).count_ones();
+    let between = |from: usize, to: usize, share: f64| {
+        (from as f64 + share * (to as f64 - from as f64)).round() as usize
+    };
+    for share in [0.7, 0.8, 0.9] {
+        let (x, y) = (
+            between(pivot.0, top.0, share),
+            between(pivot.1, top.1, share),
+        );
+        let across: u32 = (x - 2..=x + 2).map(|x| dots(x, y)).sum();
+        assert!(across >= 10, "{across} dots at {share}:\n{picture}");
+    }
+}
+
+#[test]
+fn a_body_without_weight_stands_on_nothing() {
+    for (name, set) in [
+        ("torque-free", &[][..]),
+        ("method-2", &["motion.gravity_m_per_s2=0"][..]),
+    ] {
+        let mut stage = Stage::open(name, set, LARGE);
+        stage.commands("pause = true");
+        stage.press("d").wait(0.3).shows("no weight");
+        assert!(!has_stand(&stage.picture()), "{}", stage.picture());
+    }
+}
+
+#[test]
+fn the_legend_names_every_sign_beside_the_exact_motion_too() {
+    let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, 120, 40));
+    stage.press("t").wait(0.5);
+    for words in ["L angular momentum", "+ pivot", "* top", "dots: exact"] {
+        stage.shows(words);
+    }
+}

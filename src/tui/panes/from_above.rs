@@ -20,8 +20,9 @@ use crate::run::Clock;
 use crate::tui::dashes::{self, on_and_off};
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::keymap::ZOOM_KEYS;
+use crate::tui::labels::Labels;
 use crate::tui::theme::Role;
-use crate::tui::trail::Trail;
+use crate::tui::trail::{Around, Trail};
 use nalgebra::{Vector2, Vector3};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -105,8 +106,19 @@ impl Widget for FromAbove<'_> {
         let picture = above(lines);
         let plan = self.plan(picture);
         self.path(&plan, picture, buf);
-        self.pushes(&plan, picture, buf);
-        self.marks(&plan, picture, buf);
+        let forces = self.pushes(&plan, picture, buf);
+        let mut places = self.marks(&plan, picture, buf);
+        // Words keep off the marks; heads of arrows stand where they point.
+        let push = self.view.theme.style(Role::Push);
+        for (cell, sign) in forces {
+            let width = sign.len() as u16;
+            let cell = if width > 1 {
+                places.place(cell, width)
+            } else {
+                cell
+            };
+            write(picture, cell, sign, push, buf);
+        }
         let legend = Rect {
             y: picture.bottom(),
             height: lines as u16,
@@ -198,7 +210,7 @@ impl FromAbove<'_> {
                 dots.set(x, y, Ink::Faint(Role::Pinned));
             }
         }
-        let mut trail = Trail::new(&dots, false);
+        let mut trail = Trail::new(&dots, Around::Nothing);
         for (x, y) in self.run.path().dots() {
             trail.dot(plan.dot(x, y), Age::Old);
         }
@@ -221,8 +233,14 @@ impl FromAbove<'_> {
         dots.render(&self.view.theme, buf);
     }
 
-    /// Each push that acts: a line from the pushed point with a head, or a word where it is straight up or down.
-    fn pushes(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
+    /// Each push that acts: a line from the pushed point. Returns its head, or a word where it is straight up or down, and
+    /// where that is to stand.
+    fn pushes(
+        &self,
+        plan: &Plan,
+        picture: Rect,
+        buf: &mut Buffer,
+    ) -> Vec<((u16, u16), &'static str)> {
         let simulation = self.run.simulation();
         let points = self.run.scenario().body.mechanics.points();
         let mut dots = Dots::new(picture, self.view.marker);
@@ -244,39 +262,35 @@ impl FromAbove<'_> {
             }
         }
         dots.render(&self.view.theme, buf);
-        for (cell, sign) in signs {
-            write(picture, cell, sign, self.view.theme.style(Role::Push), buf);
-        }
+        signs
     }
 
-    /// The pivot, the axes' names, and where the point is now.
-    fn marks(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
-        let theme = &self.view.theme;
+    /// The pivot, the axes' names, and where the point is now. Returns which places are left for words.
+    fn marks(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) -> Labels {
+        let mut places = Labels::new(picture);
+        let mut mark = |cell, sign: &str, role| {
+            write(picture, cell, sign, self.view.theme.style(role), buf);
+            places.take(cell);
+        };
         let (right, middle) = (picture.width - 1, picture.height / 2);
-        write(picture, (right, middle), "x", theme.style(Role::X), buf);
-        write(
-            picture,
-            (picture.width / 2, 0),
-            "y",
-            theme.style(Role::Y),
-            buf,
-        );
+        mark((right, middle), "x", Role::X);
+        mark((picture.width / 2, 0), "y", Role::Y);
         if plan.shows(0.0, 0.0) {
-            let pivot = plan.cell(0.0, 0.0);
-            write(picture, pivot, "+", theme.style(Role::Quiet), buf);
+            mark(plan.cell(0.0, 0.0), "+", Role::Quiet);
         }
         let at = self.now(plan.across).position;
         let here = plan.cell(at.x, at.y);
-        let mut mark = "o";
+        let mut sign = "o";
         if let Some(overlay) = self.run.overlay() {
             let at = overlay.now().position;
             let exact = plan.cell(at.x, at.y);
             if plan.shows(at.x, at.y) {
-                write(picture, exact, "e", theme.style(Role::Exact), buf);
+                mark(exact, "e", Role::Exact);
             }
-            mark = if exact == here { "*" } else { mark };
+            sign = if exact == here { "*" } else { sign };
         }
-        write(picture, here, mark, theme.style(Role::Focus), buf);
+        mark(here, sign, Role::Focus);
+        places
     }
 }
 

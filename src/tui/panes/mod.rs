@@ -26,7 +26,7 @@ use crate::tui::keymap::Binding;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::style::Style;
+use ratatui::style::{Modifier, Style};
 use ratatui::widgets::{Block, Clear, Widget};
 use std::borrow::Cow;
 
@@ -180,6 +180,9 @@ pub(super) fn write(
     let room = (area.width - x) as usize;
     let text = printable(text);
     let text = shortened(&text, room);
+    // What stood there before was bold or faint for itself.
+    let weight = (Modifier::BOLD | Modifier::DIM).difference(style.add_modifier);
+    let style = style.remove_modifier(weight);
     let (end, _) = buf.set_stringn(area.x + x, area.y + y, text, room, style);
     end - area.x
 }

@@ -22,9 +22,10 @@ use crate::text::wrap::columns;
 use crate::tui::dashes::{self, on_and_off};
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::keymap::ZOOM_KEYS;
-use crate::tui::scene::{Scene, Stroke, beside};
+use crate::tui::labels::Labels;
+use crate::tui::scene::{Scene, Stroke};
 use crate::tui::theme::Role;
-use crate::tui::trail::Trail;
+use crate::tui::trail::{Around, Trail};
 use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -33,10 +34,15 @@ use shape::Shape;
 use std::f64::consts::TAU;
 
 /// Lengths of the arrows, of the scene's reach: their directions are what there is to see.
-const MOMENTUM: f64 = 1.2;
-const CHANGE: f64 = 0.35;
-/// Radius of the ground, and length of the vertical axis, of the same.
+const MOMENTUM: f64 = 1.28;
+const CHANGE: f64 = 0.3;
+/// Length of the axes of the world, of the same.
 const GROUND: f64 = 0.6;
+/// Height of the stand on whose tip the pivot is, and radius of its foot, of the same.
+const STAND: f64 = 0.3;
+const FOOT: f64 = 0.25;
+/// The legs of the stand.
+const LEGS: usize = 3;
 /// A torque below this part of the largest that the weight can have is none.
 const NO_TORQUE: f64 = 1e-9;
 /// Rows of the pane for each line of its legend.
@@ -122,20 +128,16 @@ impl Widget for ThreeD<'_> {
         let pivot = scene.shows(&pivot).then(|| scene.cell(&pivot));
         scene.draw(&mut dots);
         dots.render(theme, buf);
-        if let Some(pivot) = pivot {
-            write(picture, pivot, "+", theme.style(Role::Heading), buf);
-        }
-        for (sign, role, cell) in masses {
+        let pivot = pivot.map(|cell| ("+", Role::Heading, cell));
+        let here = here.map(|cell| ("*", Role::Focus, cell));
+        let mut places = Labels::new(picture);
+        for (sign, role, cell) in masses.into_iter().chain(pivot).chain(here) {
             write(picture, cell, sign, theme.style(role), buf);
+            places.take(cell);
         }
-        let mut taken: Vec<_> = here.into_iter().collect();
         for (name, role, cell) in cells.iter().rev() {
-            let cell = beside(*cell, columns(name) as u16, &taken, picture);
+            let cell = places.place(*cell, columns(name) as u16);
             write(picture, cell, name, theme.style(*role), buf);
-            taken.push(cell);
-        }
-        if let Some(here) = here {
-            write(picture, here, "*", theme.style(Role::Focus), buf);
         }
         let legend = Rect {
             y: picture.bottom(),
@@ -191,34 +193,58 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// The horizontal plane of the pivot, with the directions of x and y on it, and the vertical.
+    /// The stand on which the axle rests, or a level circle about a pivot that carries no weight; and the directions of x,
+    /// y and z.
     fn ground(&self, scene: &mut Scene) -> Vec<Label> {
-        let length = GROUND * self.reach;
-        let ink = Ink::Faint(Role::Quiet);
-        let around = |part: usize| {
-            let (sin, cos) = (TAU * part as f64 / PARTS as f64).sin_cos();
-            Vector3::new(length * cos, length * sin, 0.0)
+        let stands = self.stands();
+        let floor = Vector3::z() * if stands { -STAND * self.reach } else { 0.0 };
+        let radius = self.reach * if stands { FOOT } else { GROUND };
+        let around = |part: usize, parts: usize| {
+            let (sin, cos) = (TAU * part as f64 / parts as f64).sin_cos();
+            floor + Vector3::new(radius * cos, radius * sin, 0.0)
         };
-        let circle: Vec<_> = (0..PARTS).map(around).collect();
-        for pair in circle.chunks(2) {
-            if let [from, to] = pair {
-                scene.line(from, to, Stroke::Thin, ink);
+        let ink = Ink::Faint(Role::Quiet);
+        let circle: Vec<_> = (0..PARTS).map(|part| around(part, PARTS)).collect();
+        if stands {
+            scene.ring(&circle, |_| (Stroke::Thin, ink));
+            for leg in 0..LEGS {
+                let foot = around(2 * leg + 1, 2 * LEGS);
+                scene.line(
+                    &Vector3::zeros(),
+                    &foot,
+                    Stroke::Thin,
+                    Ink::Strong(Role::Quiet),
+                );
+            }
+        } else {
+            for pair in circle.chunks(2) {
+                if let [from, to] = pair {
+                    scene.line(from, to, Stroke::Thin, ink);
+                }
             }
         }
+        let length = GROUND * self.reach;
         let axes = [
-            ("x", Role::X, Vector3::x()),
-            ("y", Role::Y, Vector3::y()),
-            ("z", Role::Z, Vector3::z()),
+            ("x", Role::X, floor, Vector3::x()),
+            ("y", Role::Y, floor, Vector3::y()),
+            ("z", Role::Z, Vector3::zeros(), Vector3::z()),
         ];
-        for (_, _, axis) in axes {
-            scene.line(&Vector3::zeros(), &(axis * length), Stroke::Dotted(3), ink);
+        for (_, _, from, axis) in axes {
+            scene.line(&from, &(from + axis * length), Stroke::Dotted(3), ink);
         }
-        axes.map(|(name, role, axis)| (name, role, axis * length))
+        axes.map(|(name, role, from, axis)| (name, role, from + axis * length))
             .to_vec()
     }
 
+    /// Whether the pivot carries a weight that is off it, so that a stand is seen under it.
+    fn stands(&self) -> bool {
+        let body = &self.run.scenario().body.mechanics;
+        let weight = self.run.simulation().loads().gravity.abs() * body.first_moment().norm();
+        weight > 0.0
+    }
+
     fn path(&self, scene: &Scene, dots: &mut Dots) {
-        let mut trail = Trail::new(dots, true);
+        let mut trail = Trail::new(dots, Around::Body);
         let now = (self.state.time_s, &self.position);
         let ages = self
             .ages

@@ -277,10 +277,10 @@ impl Traces<'_> {
             let (text, style) = match value {
                 Some((_, value)) => {
                     let value = format!(" {value}");
-                    let rest = room.saturating_sub(value.len() + " in ".len());
+                    let rest = room.saturating_sub(value.len() + " ()".len());
                     if let Some(range) = scale.in_words_within(rest) {
                         let x = after + value.len() as u16;
-                        write(area, (x, 0), &format!(" in {range}"), quiet, buf);
+                        write(area, (x, 0), &format!(" ({range})"), quiet, buf);
                     }
                     (value, theme.style(Role::Focus))
                 }

@@ -200,6 +200,11 @@ impl Journal {
         }
     }
 
+    /// Whether nothing was done to the run since its file was opened: all edits are the file's own.
+    pub fn is_as_opened(&self) -> bool {
+        self.log.iter().all(|entry| entry.from_file)
+    }
+
     /// Drops what was undone: it can no longer be redone.
     pub fn forget_undone(&mut self) {
         self.undone.clear();

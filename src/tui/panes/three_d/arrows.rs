@@ -11,7 +11,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 /// Lengths of the arrows, of the scene's reach: their directions are what there is to see.
-const OMEGA: f64 = 0.75;
+const OMEGA: f64 = 1.12;
 const WEIGHT: f64 = 0.35;
 const TORQUE: f64 = 0.5;
 const PUSH: f64 = 0.4;
@@ -116,10 +116,11 @@ impl Subject<'_> {
         let forms = [
             (0, Some(0)),
             (0, Some(1)),
-            (0, None),
+            (0, Some(2)),
             (1, Some(1)),
-            (1, None),
+            (1, Some(2)),
             (2, Some(2)),
+            (1, None),
         ];
         let fits = |lines: &Vec<Line>| lines.len() <= most;
         let fitting = forms.into_iter().map(lines).find(fits);
@@ -153,24 +154,33 @@ impl Subject<'_> {
 
     /// What is drawn besides the arrows.
     fn signs_in_words(&self) -> Vec<Words> {
-        let mut words = vec![(["+ pivot", "+ pivot", "+"], Role::Heading)];
+        let mut words = vec![(["+ pivot"; 3], Role::Heading)];
         if self.run.scenario().file.trace.is_none() {
-            words.push((["* axle top", "* top", "*"], Role::Focus));
+            words.push((["* axle top", "* top", "* top"], Role::Focus));
         } else {
-            words.push((["* traced point", "* traced", "*"], Role::Focus));
+            words.push((["* traced point", "* traced", "* traced"], Role::Focus));
         }
         words.push((
             ["O o · masses, near to far", "O o · masses", ""],
             Role::Text,
         ));
         if self.run.overlay().is_some() {
-            words.push((["dots: exact motion", "dots: exact", ""], Role::Exact));
+            words.push((
+                ["dots: exact motion", "dots: exact", "dots: exact"],
+                Role::Exact,
+            ));
         }
         if self.pinned.is_some() {
-            words.push((["long dashes: pinned", "-- pinned", "--"], Role::Pinned));
+            words.push((
+                ["long dashes: pinned", "-- pinned", "-- pinned"],
+                Role::Pinned,
+            ));
         }
         if self.ghost.is_some() {
-            words.push((["dotted: other run", "dotted: other", ""], Role::Ghost));
+            words.push((
+                ["dotted: other run", "dotted: other", "dotted: other"],
+                Role::Ghost,
+            ));
         }
         words
     }

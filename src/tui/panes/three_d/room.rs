@@ -1,6 +1,6 @@
 //! What the scene must have room for.
 
-use super::{CHANGE, GROUND, MOMENTUM, Subject};
+use super::{CHANGE, GROUND, MOMENTUM, STAND, Subject};
 use crate::observe::camera::Zoom;
 use crate::observe::recording::Curve;
 use crate::tui::scene::Shown;
@@ -20,7 +20,12 @@ impl Subject<'_> {
         });
         let (first, last) = ((tilts.0 / TILT_DEG).floor(), (tilts.1 / TILT_DEG).ceil());
         // Circles about the vertical, radius and height.
-        let mut circles = vec![(GROUND * self.reach, 0.0), (0.0, GROUND * self.reach)];
+        let floor = if self.stands() {
+            -STAND * self.reach
+        } else {
+            0.0
+        };
+        let mut circles = vec![(GROUND * self.reach, floor), (0.0, GROUND * self.reach)];
         for tilt in first as i32..=last as i32 {
             let (sin, cos) = (f64::from(tilt) * TILT_DEG).to_radians().sin_cos();
             for &(across, height) in &self.shape.corners {

@@ -26,7 +26,7 @@ impl Subject<'_> {
         let state = self.state;
         let axle = state.axle();
         let (foot, top) = self.shape.axle;
-        scene.rod(&(axle * foot), &(axle * top), Ink::Strong(Role::Text));
+        scene.rod(&(axle * foot), &(axle * top), Ink::Strong(Role::Heading));
         for at in &self.shape.free {
             let foot = axle * at.z;
             scene.line(

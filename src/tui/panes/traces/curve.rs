@@ -37,11 +37,16 @@ pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: 
         let row = scale.from_top(value) * height as f64;
         row.clamp(0.0, height as f64 - 1.0) as usize
     };
-    let keeps = |x: usize, y: usize| match stroke {
+    let keeps = |x: usize| match stroke {
         Stroke::Full => true,
         Stroke::Dashed => (x / across).is_multiple_of(2),
         Stroke::LongAndShort => !matches!(x / across % LONG_AND_SHORT, 3 | 5),
-        Stroke::Dotted => x.is_multiple_of(across.max(2)) && y.is_multiple_of((down / 2).max(1)),
+        Stroke::Dotted => x.is_multiple_of(across.max(2)),
+    };
+    // Of a steep piece of a dotted curve two dots in a cell, from its top on: a level piece is seen at any height.
+    let apart = match stroke {
+        Stroke::Dotted => (down / 2).max(1),
+        _ => 1,
     };
     let mut before: Option<(usize, usize)> = None;
     for (x, column) in columns.iter().enumerate() {
@@ -52,7 +57,7 @@ pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: 
         let extent = column.band.unwrap_or(column.extent);
         let (top, bottom) = (row(extent.max), row(extent.min));
         let mut set = |from: usize, to: usize| {
-            for y in (from..=to).filter(|&y| keeps(x, y)) {
+            for y in (from..=to).step_by(apart).filter(|_| keeps(x)) {
                 dots.set(x as f64, y as f64, ink);
             }
         };

@@ -7,8 +7,12 @@ use crate::text::number::decimal;
 const BANDS: &str = "bands: lowest, mean (dotted) and highest of fast swings";
 /// What the title says of the exact motion, the run before and the pinned run: at length, in short and shorter.
 const EXACT: [&str; 3] = ["dashed: exact motion", "- - exact", "--exact"];
-const OTHER: [&str; 3] = ["dotted: other run", "··· other run", "···other"];
-const PINNED: [&str; 3] = ["long and short: pinned", "-- - pinned", "-- -pinned"];
+const OTHER: [&str; 3] = ["dotted: all of the other run", "··· other run", "···other"];
+const PINNED: [&str; 3] = [
+    "long and short: all of the pinned run",
+    "-- - pinned",
+    "-- -pinned",
+];
 
 impl Traces<'_> {
     /// What is drawn: the point, and the runs beside it where there are any, as far as there is room.
