@@ -81,7 +81,7 @@ impl Summary {
         writeln!(f, "  azimuth       {azimuth} degrees")?;
         let drift = remarks::energy_in_full(health);
         writeln!(f, "  energy drift  {drift}")?;
-        match &self.readouts.slowing {
+        match &self.readouts.health.slowing {
             Some(slowing) => writeln!(f, "  friction      {slowing}"),
             None => Ok(()),
         }
@@ -240,7 +240,7 @@ impl Comparison {
         let about = about(&axis);
         match self.predicted {
             Some(value) => format!("{} {unit} by theory{about}, {measured}", fixed(value, 6)),
-            None if readouts.slowing.is_some() => {
+            None if readouts.health.slowing.is_some() => {
                 format!("none by theory, as friction changes it, {measured}")
             }
             None if readouts.kappa.is_none() => format!("lopsided by theory, {measured}"),

@@ -630,7 +630,7 @@ fn theory_under_friction_is_of_the_moment_and_predicts_no_motion() {
     assert!(rubbed.number("friction_work_J").unwrap() < -1.0);
     assert_eq!(spared.number("friction_work_J"), None);
     assert!(rubbed.number("energy_drift").unwrap().abs() < 1e-6);
-    let slowing = rubbed.slowing.unwrap();
+    let slowing = rubbed.health.slowing.unwrap();
     assert!((slowing.swing_decay_s.unwrap() - 3.3).abs() < 1e-9);
     assert_eq!((slowing.spin_decay_s, slowing.spin_stop_s), (None, None));
 }
