@@ -5,6 +5,7 @@
 //! axle lag by δ/|1 − A|, where the truth is δ/(κψ).
 
 use super::cost::{AFFORDABLE_RAD, integration_rad, is_affordable};
+use super::slowing::Slowing;
 use super::trial::{Deviation, Trial};
 use crate::physics::loads::torque;
 use crate::physics::{SchemeInfo, SymmetricTop, observables};
@@ -50,6 +51,8 @@ pub struct Health {
     pub energy_drift: Option<f64>,
     /// What S is; `None` where there is none.
     pub energy_unit: Option<EnergyUnit>,
+    /// What friction does; `None` where there is none.
+    pub slowing: Option<Slowing>,
     /// How far off the exact motion it is now; `None` where the exact motion would take too long.
     pub deviation: Option<Deviation>,
     /// The largest distance of the traced point from the exact motion so far, m.
@@ -145,6 +148,7 @@ impl Health {
             },
             energy_drift: step.energy_drift(),
             energy_unit: step.energy_unit(),
+            slowing: Slowing::new(step),
             deviation,
             most_distance_m,
             arm_m: scenario.arm_m(),

@@ -34,8 +34,6 @@ pub struct Readouts {
     pub spin_rad_per_s: f64,
     /// Whether a rotor spins in a frame that does not.
     pub has_rotor: bool,
-    /// Work of friction since the start, J; `None` where there is no friction.
-    pub friction_work: Option<f64>,
     /// I3/I1 of a symmetric body.
     pub kappa: Option<f64>,
     /// How it stands.
@@ -80,7 +78,6 @@ impl Readouts {
             spin: state.momentum.dot(&state.axle()),
             spin_rad_per_s: step.scenario().spin_rad_per_s(state),
             has_rotor: step.scenario().rotor.is_some(),
-            friction_work: (!step.loads().friction.is_none()).then(|| step.friction_work()),
             kappa: SymmetricTop::of(&step.scenario().body.mechanics).map(|top| top.kappa()),
             health: *health,
             advice: advice.copied(),
@@ -435,7 +432,7 @@ readouts! {
     "azimuth_deg", "deg", State, "azimuth of the axle, counted on through full turns", |r| r.sample.azimuth_deg, "*φ*";
     "energy_J", "J", State, "kinetic energy, and that of the weight from the pivot", |r| r.sample.energy, "*E*";
     "energy_drift", "", State, "energy that only the scheme's error can have made, in units of M g |c|, or of the kinetic energy at the start where M g |c| is below 1e-9 of it", |r| r.health.energy_drift;
-    "friction_work_J", "J", State, "work of friction since the start, which the energy drift counts as work: of each impulse of it, the impulse times the mean of omega before and after; under exact and rk4 its power integrated", |r| r.friction_work;
+    "friction_work_J", "J", State, "work of friction since the start, which the energy drift counts as work: of each impulse of it, the impulse times the mean of omega before and after; under exact and rk4 its power integrated", |r| r.health.slowing.map(|slowing| slowing.work);
     "segment", "", Scenario, "edits of time step, scheme or gravity before this step", |r| r.sample.segment;
     "measured_lowest_tilt_deg", "deg", EveryStep, "least angle of the axle from +z", |r| r.extremes.lowest_tilt_deg, "*θ*_{min}";
     "measured_highest_tilt_deg", "deg", EveryStep, "greatest angle of the axle from +z", |r| r.extremes.highest_tilt_deg, "*θ*_{max}";

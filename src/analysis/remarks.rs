@@ -1,8 +1,8 @@
 //! The health of a run in words, all of them: the sentence after a run, the remarks on the lab's screen, and the lines of
 //! the summary.
 
-use super::Health;
 use super::health::{Advice, Nutation, Picture};
+use super::{Health, Slowing};
 use crate::run::EnergyUnit;
 use crate::text::number::{
     NONE, exponent, fixed, short, shortest, signed, signed_exponent, steady, times,
@@ -215,6 +215,7 @@ pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
         .partition(|(is_the_fault, _)| *is_the_fault);
     remarks.extend(faults.into_iter().map(|(_, remark)| remark));
     remarks.push(energy(health));
+    remarks.extend(health.slowing.map(|slowing| taken(&slowing)));
     remarks.extend(others.into_iter().map(|(_, remark)| remark));
     remarks
 }
@@ -343,6 +344,11 @@ fn energy(health: &Health) -> Remark {
     let unit = short_unit(health.energy_unit);
     let text = format!("energy drift {} {unit}", signed(drift, 4));
     Remark::new(text, false)
+}
+
+/// The energy that friction has taken; the drift counts it as work.
+fn taken(slowing: &Slowing) -> Remark {
+    Remark::new(format!("friction took {} J", short(-slowing.work)), false)
 }
 
 /// Why there is no energy drift.

@@ -8,8 +8,7 @@ use crate::analysis::compare::{Row, Table, compare as table_of};
 use crate::analysis::cost::is_affordable;
 use crate::export::Destination;
 use crate::export::csv::commented;
-use crate::physics::SchemeInfo;
-use crate::physics::scheme::SCHEMES;
+use crate::physics::{SchemeInfo, scheme};
 use crate::run::{Clock, EnergyScale, Truth};
 use crate::scenario::Scenario;
 use crate::scenario::rescale::MOST_STEPS;
@@ -39,10 +38,11 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
             shortest(duration_s(&scenario))
         );
     }
+    let schemes = schemes(args, &scenario)?;
     let time_steps = time_steps(args, &scenario)?;
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let meter = Mutex::new(Meter::new());
-    let rows = table_of(&scenario, &schemes(args), &time_steps, |taken, total| {
+    let rows = table_of(&scenario, &schemes, &time_steps, |taken, total| {
         meter
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
@@ -78,20 +78,34 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     ))
 }
 
-fn schemes(args: &CompareArgs) -> Vec<&'static SchemeInfo> {
+/// The schemes that are named, or all that can be true to the friction of `scenario`.
+///
+/// # Errors
+/// When one that is named cannot be true to it.
+fn schemes(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<Vec<&'static SchemeInfo>> {
+    let friction = &scenario.friction;
     let chosen = args.schemes.iter().chain(&args.scenario.changes.scheme);
     let mut seen = HashSet::new(); // one that is named twice is compared once
     let chosen: Vec<_> = chosen
         .filter(|name| seen.insert(name.as_str()))
         .filter_map(|name| SchemeInfo::find(name))
         .collect();
-    match chosen.is_empty() {
-        true => SCHEMES
-            .iter()
-            .filter(|scheme| scheme.order.is_some())
-            .collect(),
-        false => chosen,
+    let able = scheme::true_to(friction).filter(|scheme| scheme.order.is_some());
+    if chosen.is_empty() {
+        return Ok(able.collect());
     }
+    let objection = |scheme: &SchemeInfo| Some((scheme.name, scheme.admits.objection(friction)?));
+    if let Some((name, why)) = chosen.iter().find_map(|scheme| objection(scheme)) {
+        let able = able
+            .map(|scheme| scheme.name)
+            .collect::<Vec<_>>()
+            .join(", ");
+        bail!(
+            "{}: --schemes {name} cannot be true to this friction: it {why}; take of {able}",
+            args.scenario.scenario
+        );
+    }
+    Ok(chosen)
 }
 
 /// # Errors

@@ -80,7 +80,11 @@ impl Summary {
         let azimuth = fixed(sample.azimuth_deg, 6);
         writeln!(f, "  azimuth       {azimuth} degrees")?;
         let drift = remarks::energy_in_full(health);
-        writeln!(f, "  energy drift  {drift}")
+        writeln!(f, "  energy drift  {drift}")?;
+        match &self.readouts.health.slowing {
+            Some(slowing) => writeln!(f, "  friction      {slowing}"),
+            None => Ok(()),
+        }
     }
 
     fn write_rates(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -122,6 +126,10 @@ impl Summary {
             (Some(kappa), Some(theory)) => (fixed(kappa, 4), theory),
         };
         let Theory { path, axis, .. } = theory;
+        let ceased = match theory.is_of_a_moment {
+            true => "if friction ceased now: ",
+            false => "",
+        };
         let (low, high) = theory.tilt_range_deg;
         let [low, high] = [low, high].map(|tilt| fixed(tilt, 4));
         let from = match axis {
@@ -130,7 +138,7 @@ impl Summary {
         };
         writeln!(
             f,
-            "  theory        kappa {kappa}; path: {path}, tilt {low} to {high} degrees{from}"
+            "  theory        {ceased}kappa {kappa}; path: {path}, tilt {low} to {high} degrees{from}"
         )?;
         if *axis == Axis::Momentum {
             let why = "without a load the axle goes round L, and no spin is too small to stand";
@@ -232,6 +240,9 @@ impl Comparison {
         let about = about(&axis);
         match self.predicted {
             Some(value) => format!("{} {unit} by theory{about}, {measured}", fixed(value, 6)),
+            None if readouts.health.slowing.is_some() => {
+                format!("none by theory, as friction changes it, {measured}")
+            }
             None if readouts.kappa.is_none() => format!("lopsided by theory, {measured}"),
             None => format!("none by theory{about}, {measured}"),
         }

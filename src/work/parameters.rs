@@ -3,6 +3,7 @@
 
 mod offered;
 
+use crate::physics::scheme;
 use crate::scenario::dotted::{find, set_key};
 use crate::scenario::file::{BodyFile, ScenarioFile};
 use crate::scenario::keys::{EDITABLE_MOTION, InLab, KEYS, Key, Kind, Nudge, Range, join};
@@ -192,7 +193,7 @@ fn rows(
         size: size(&value),
         value: as_kind(value, key.kind),
         is_default: written.is_none(),
-        choices: choices(key, names),
+        choices: choices(key, names, scenario),
         kind: key.kind,
         lab,
     };
@@ -218,8 +219,12 @@ fn group(place: &str, table: &Table) -> String {
     }
 }
 
-fn choices(key: &Key, names: &Names) -> Vec<String> {
+fn choices(key: &Key, names: &Names, scenario: &Scenario) -> Vec<String> {
     match (key.kind, key.path) {
+        (_, "motion.scheme") => {
+            let able = scheme::true_to(&scenario.friction);
+            able.map(|scheme| scheme.name.to_owned()).collect()
+        }
         (Kind::OneOf(words), _) => words.iter().map(|&word| word.to_owned()).collect(),
         (_, "trace" | "push.*.point") => [&names.points[..], &names.parts].concat(),
         (_, "start.rotor") => names.parts.clone(),

@@ -4,7 +4,7 @@ use super::edited::fewer_digits;
 use crate::analysis::remarks::{short_no_drift, short_unit};
 use crate::analysis::theory::{Axis, Path};
 use crate::observe::reading::Reading;
-use crate::physics::Body;
+use crate::physics::{Body, Friction};
 use crate::scenario::{Motion, Scenario, Window};
 use crate::text::number::{NONE, exponent, fixed as decimals_of, shortest};
 use crate::tui::theme::Role;
@@ -133,6 +133,25 @@ pub(super) fn start_rows(scenario: &Scenario) -> Vec<Row> {
     ]
 }
 
+/// The friction, where there is one: its coefficient, or how many there are.
+fn friction_row(friction: &Friction) -> Option<Row> {
+    let coefficients = [
+        (friction.spin_dry, "N m"),
+        (friction.spin_viscous, "N m s"),
+        (friction.spin_quadratic, "N m s2"),
+        (friction.swing_viscous, "N m s"),
+    ];
+    let acting: Vec<_> = coefficients
+        .into_iter()
+        .filter(|(size, _)| *size > 0.0)
+        .collect();
+    match acting[..] {
+        [] => None,
+        [(size, unit)] => Some(value(2, "friction", shortest(size), unit)),
+        ref all => Some(value(2, "friction", all.len().to_string(), "kinds")),
+    }
+}
+
 pub(super) fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
     let pushes = match (scenario.pushes.len(), scenario.pushes.first()) {
         (0, _) => "none".to_owned(),
@@ -152,6 +171,7 @@ pub(super) fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
             "",
         ),
     ];
+    rows.extend(friction_row(&scenario.friction));
     if let (1, Some(push)) = (scenario.pushes.len(), scenario.pushes.first()) {
         let (when, unit) = match push.window {
             Window::Steps { first, count } => (

@@ -1,0 +1,77 @@
+//! What friction does to a run: its work so far, and how fast it takes spin and swing.
+
+use crate::physics::{Friction, SymmetricTop};
+use crate::run::Step;
+use crate::text::number::short;
+use std::fmt;
+
+/// Friction on a run at one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slowing {
+    /// Work of friction since the start, J: 0, or less.
+    pub work: f64,
+    /// The time in which viscous friction alone takes the spin to 1/e, I3/k1, s; of a rotor by its own moment.
+    pub spin_decay_s: Option<f64>,
+    /// The time in which dry friction alone would stop the present spin, L3/k0, s.
+    pub spin_stop_s: Option<f64>,
+    /// The time in which friction on the swing takes a fast top's nutation to 1/e, I1/k4, s.
+    pub swing_decay_s: Option<f64>,
+}
+
+impl Slowing {
+    /// Of the run at `step`; `None` where there is no friction. A lopsided body has no such times.
+    pub fn new(step: &Step) -> Option<Self> {
+        let friction = step.loads().friction;
+        if friction.is_none() {
+            return None;
+        }
+        let scenario = step.scenario();
+        let top = SymmetricTop::of(&scenario.body.mechanics);
+        let state = step.after();
+        let Friction {
+            spin_dry,
+            spin_viscous,
+            swing_viscous,
+            rotor,
+            ..
+        } = friction;
+        let along = top.map(|top| rotor.unwrap_or(top.along));
+        let time = |moment: Option<f64>, rate: f64| Some(moment? / rate).filter(|s| s.is_finite());
+        let spin = top.map(|_| state.axle().dot(&state.momentum).abs());
+        Some(Self {
+            work: step.friction_work(),
+            spin_decay_s: time(along, spin_viscous),
+            spin_stop_s: time(spin, spin_dry),
+            swing_decay_s: time(top.map(|top| top.across), swing_viscous),
+        })
+    }
+}
+
+impl fmt::Display for Slowing {
+    /// In one line: "work -5.47 J so far; on the swing: a nutation falls to 1/e in 3.3 s, and a precession sinks".
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "work {} J so far", short(self.work))?;
+        if let Some(seconds) = self.spin_decay_s {
+            write!(
+                f,
+                "; viscous: the spin falls to 1/e in {} s",
+                short(seconds)
+            )?;
+        }
+        if let Some(seconds) = self.spin_stop_s {
+            write!(
+                f,
+                "; dry: alone it would stop the spin in {} s",
+                short(seconds)
+            )?;
+        }
+        if let Some(seconds) = self.swing_decay_s {
+            let seconds = short(seconds);
+            write!(
+                f,
+                "; on the swing: a nutation falls to 1/e in {seconds} s, and what precesses sinks"
+            )?;
+        }
+        Ok(())
+    }
+}
