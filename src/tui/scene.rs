@@ -268,6 +268,7 @@ mod tests {
     use crate::lab::view::theme::{Background, Theme};
     use crate::tui::theme::Role;
     use ratatui::buffer::Buffer;
+    use ratatui::layout::Rect;
 
     #[test]
     fn what_is_nearer_hides_what_is_farther() {
