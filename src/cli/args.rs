@@ -47,7 +47,7 @@ pub(super) enum Command {
     Show(ShowArgs),
     /// Hold schemes and time steps against the exact motion: errors, drifts, cost, measured order
     Compare(CompareArgs),
-    /// Draw runs, or a table of compare or of a sweep, on paper: SVG, PDF or PNG
+    /// Draw runs, or a table of compare, of a sweep or of a fit, on paper: SVG, PDF or PNG
     Figure(FigureArgs),
     /// Make a folder for a write-up of a run: CSV, figures, measured numbers beside theory, and how to make it again
     Writeup(WriteupArgs),
