@@ -59,9 +59,9 @@ pub(super) enum Command {
     Sweep(SweepArgs),
     /// Fit keys of a scenario to measured data: values with uncertainties, and whether the model fits
     Fit(FitArgs),
-    /// List the shipped presets, or print one, or a shipped sweep, as TOML
+    /// List the shipped presets, or print one, or a shipped sweep, as TOML, or shipped measured data as CSV
     Presets {
-        /// The preset or sweep to print
+        /// The preset, sweep or measured data to print
         name: Option<String>,
     },
     /// List the sessions that --resume can come back to: name, time, step, whether it is in use, run
