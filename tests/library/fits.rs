@@ -410,6 +410,113 @@ fn data_without_uncertainties_are_weighed_by_their_scatter() {
 }
 
 #[test]
+fn two_keys_can_have_one_value() {
+    // Both moments across the axle, which must stay alike for the body to be symmetric.
+    let across = "body.part.0.moments_kg_m2.0+body.part.0.moments_kg_m2.1";
+    let (_, fit) = heidelberg("heidelberg-body-cone", &[across], &|_| true);
+    is_near("I1/I3", fit.keys[0].value / 3.75e-3, 1.0666, 5e-5);
+    let alone = |_: usize| true;
+    let mut measured = open("heidelberg-body-cone").unwrap();
+    measured.keep_rows(alone);
+    let set = ["body.point.0.at_m.2=0"];
+    let one = model(
+        "heidelberg",
+        &set,
+        &["body.part.0.moments_kg_m2.0"],
+        measured,
+    );
+    let told = found(&one).unwrap_err().to_string();
+    assert!(
+        told.contains("can be changed neither up nor down from 0.004: "),
+        "{told}"
+    );
+    let document = Document::open("heidelberg").unwrap();
+    let unlike = "body.part.0.moments_kg_m2.0+body.part.0.moments_kg_m2.2";
+    assert_eq!(
+        Free::parse(unlike, &document).unwrap_err().to_string(),
+        "--free body.part.0.moments_kg_m2.0+body.part.0.moments_kg_m2.2: body.part.0.moments_kg_m2.0 is 0.004 and body.part.0.moments_kg_m2.2 is 0.00375: keys that have one value must begin with it"
+    );
+}
+
+#[test]
+fn a_key_that_moves_nothing_leads_nowhere() {
+    let free = [MOMENT, "body.part.0.mass_kg"];
+    let (_, fit) = heidelberg("heidelberg-precession", &free, &|_| true);
+    assert_eq!((fit.keys[1].value, fit.keys[1].sigma), (4.2, None));
+    is_near("I3", fit.keys[0].value, 3.92e-3, 1e-5);
+}
+
+#[test]
+fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
+    use gyrolab::study::fit::table::{self, Asked};
+    let (model, fit) = heidelberg("heidelberg-precession", &[MOMENT], &|_| true);
+    let report = Report {
+        fit: &fit,
+        model: &model,
+        scheme: "exact",
+    };
+    let asked = Asked {
+        measured: "heidelberg-precession".to_owned(),
+        scenario: "heidelberg".to_owned(),
+        free: vec![MOMENT.to_owned()],
+        rows: None,
+        chi_squared: fit.quality.chi_squared,
+        degrees_of_freedom: 15,
+        scatter: None,
+        verdict: fit.sentence(&model),
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fit.csv");
+    let scenario = model.scenario(&[fit.keys[0].value]).unwrap();
+    let file = std::fs::File::create(&path).unwrap();
+    table::write(file, &report, &scenario, asked).unwrap();
+    let again = Document::read(&path).unwrap().scenario().unwrap();
+    assert_eq!(
+        again.file.body.part[0].moments_kg_m2.unwrap()[2],
+        fit.keys[0].value
+    );
+    let text = std::fs::read_to_string(&path).unwrap();
+    let header: String = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("# # "))
+        .flat_map(|line| [line, "\n"])
+        .collect();
+    let header: table::Header = toml::from_str(&header).unwrap();
+    assert_eq!(header.key[0].uncertainty, fit.keys[0].sigma);
+    assert_eq!(header.fit.chi_squared, fit.quality.chi_squared);
+    // Its figure has the values with their errors on the model, and below what is left of them.
+    let table = gyrolab::figure::table::Table::read(&path).unwrap().unwrap();
+    let chart = gyrolab::figure::of_table::chart(&table, &[], 240.0).unwrap();
+    let [values, residuals] = &chart.panels[..] else {
+        panic!("{} panels", chart.panels.len())
+    };
+    assert_eq!(values.series.len(), 8, "four settings, each with its model");
+    let points = |panel: &gyrolab::figure::chart::Panel| -> usize {
+        let marked = panel
+            .series
+            .iter()
+            .filter(|series| series.style.mark.is_some());
+        marked.map(|series| series.points.len()).sum()
+    };
+    assert_eq!((points(values), points(residuals)), (16, 16));
+    assert!(
+        values.series[1]
+            .errors
+            .iter()
+            .all(|error| (2.0..2.5).contains(error))
+    );
+    assert!(residuals.y.unit.contains('σ'));
+    assert_eq!(
+        gyrolab::study::verify::verify(&path, |_, _| std::ops::ControlFlow::Continue(()))
+            .unwrap_err()
+            .to_string()
+            .split(": ")
+            .nth(1),
+        Some("is the CSV of a fit, which is not verified")
+    );
+}
+
+#[test]
 fn what_cannot_be_fitted_is_refused_with_the_remedy() {
     let told = |free: &[&str], text: &str| {
         let document = Document::parse("top.toml", TOP).unwrap();
