@@ -47,7 +47,7 @@ pub(super) enum Command {
     Show(ShowArgs),
     /// Hold schemes and time steps against the exact motion: errors, drifts, cost, measured order
     Compare(CompareArgs),
-    /// Draw runs, or a table of compare or of a sweep, on paper: SVG, PDF or PNG
+    /// Draw runs, or a table of compare, of a sweep or of a fit, on paper: SVG, PDF or PNG
     Figure(FigureArgs),
     /// Make a folder for a write-up of a run: CSV, figures, measured numbers beside theory, and how to make it again
     Writeup(WriteupArgs),
@@ -59,9 +59,9 @@ pub(super) enum Command {
     Sweep(SweepArgs),
     /// Fit keys of a scenario to measured data: values with uncertainties, and whether the model fits
     Fit(FitArgs),
-    /// List the shipped presets, or print one, or a shipped sweep, as TOML
+    /// List the shipped presets, or print one, or a shipped sweep, as TOML, or shipped measured data as CSV
     Presets {
-        /// The preset or sweep to print
+        /// The preset, sweep or measured data to print
         name: Option<String>,
     },
     /// List the sessions that --resume can come back to: name, time, step, whether it is in use, run

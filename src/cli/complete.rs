@@ -5,7 +5,8 @@ use super::{command, manual, print};
 use crate::analysis::readouts::READOUTS;
 use crate::export::columns::COLUMNS;
 use crate::export::points::POINT_COLUMNS;
-use crate::scenario::keys::{KEYS, Kind};
+use crate::measured::shipped::SHIPPED;
+use crate::scenario::keys::{Effect, KEYS, Key, Kind};
 use crate::scenario::presets::PRESETS;
 use crate::teach::shipped::LESSONS;
 use anyhow::{Context, bail};
@@ -32,7 +33,8 @@ const COMPLETERS: &[(&str, Completer)] = &[
     ("runs", scenarios),
     ("set", settings),
     ("vary", settings),
-    ("free", settings),
+    ("free", free_keys),
+    ("measured", measured),
     ("columns", columns),
     ("measure", readouts),
     ("files", files),
@@ -199,6 +201,35 @@ fn readouts(current: &OsStr) -> Vec<CompletionCandidate> {
         current,
         readouts.map(|readout| (readout.name, readout.meaning)),
     )
+}
+
+/// Measured data that come with the program, and files of such.
+fn measured(current: &OsStr) -> Vec<CompletionCandidate> {
+    let shipped = named(current, SHIPPED.iter().map(|data| (data.name, "")));
+    with_files(current, shipped, &["csv"])
+}
+
+/// Dotted keys that hold a number, behind those that are typed with commas between them; of vectors each number.
+fn free_keys(current: &OsStr) -> Vec<CompletionCandidate> {
+    let text = current.to_string_lossy();
+    let (typed, begin) = match text.rsplit_once(',') {
+        Some((typed, begin)) => (format!("{typed},"), begin),
+        None => (String::new(), &*text),
+    };
+    let is_fitted =
+        |key: &&Key| Effect::of(key.path) != Effect::None && !key.path.starts_with("edit.");
+    let mut found = Vec::new();
+    for key in KEYS.iter().filter(is_fitted) {
+        let path = key.path.replace('*', "0");
+        let names = match key.kind {
+            Kind::Number(_) => vec![path],
+            Kind::Vector => (0..3).map(|place| format!("{path}.{place}")).collect(),
+            _ => Vec::new(),
+        };
+        let fitting = names.iter().filter(|name| name.starts_with(begin));
+        found.extend(fitting.map(|name| candidate(&format!("{typed}{name}"), key.about)));
+    }
+    found
 }
 
 fn topics(current: &OsStr) -> Vec<CompletionCandidate> {

@@ -26,7 +26,7 @@ use std::sync::Arc;
 
 #[derive(Debug, Args)]
 pub(super) struct FigureArgs {
-    /// Presets' names, or files (.toml or .csv): what gyrolab run takes, or the CSV of compare or of a sweep
+    /// Presets' names, or files (.toml or .csv): what gyrolab run takes, or the CSV of compare, of a sweep or of a fit
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<String>,
 
@@ -147,7 +147,7 @@ fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
             ))
         }
         (Some(_), 2..) => {
-            bail!("the table of a comparison or of a sweep is drawn alone: give one file")
+            bail!("the table of a comparison, of a sweep or of a fit is drawn alone: give one file")
         }
         (Some(table), _) => {
             let is_changed = args.exact

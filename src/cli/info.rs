@@ -4,6 +4,7 @@ use super::{lesson, print, tell};
 use crate::analysis::readouts::READOUTS;
 use crate::export::summary::steps_in_words;
 use crate::lab::command;
+use crate::measured::shipped as measured;
 use crate::physics::scheme::SCHEMES;
 use crate::run::Clock;
 use crate::scenario::keys::{KEYS, Key};
@@ -24,11 +25,14 @@ pub(super) fn presets(name: Option<&str>) -> anyhow::Result<ExitCode> {
         return print(&preset_list()?);
     };
     let preset = presets::find(name).map(|preset| preset.text);
-    match preset.or_else(|| sweeps::find(name).map(|sweep| sweep.text)) {
+    let preset = preset.or_else(|| sweeps::find(name).map(|sweep| sweep.text));
+    match preset.or_else(|| measured::find(name).map(|data| data.text)) {
         Some(text) => print(text),
         None => {
             let sweeps = sweeps::SWEEPS.iter().map(|sweep| sweep.name);
-            let near = nearest(name, PRESETS.iter().map(|preset| preset.name).chain(sweeps));
+            let data = measured::SHIPPED.iter().map(|data| data.name);
+            let names = PRESETS.iter().map(|preset| preset.name);
+            let near = nearest(name, names.chain(sweeps).chain(data));
             bail!("no preset named {}: {near}", printable(name))
         }
     }

@@ -5,7 +5,7 @@
 //! - [`of_runs`]: figures of runs: their curves over time, from above and in space. [`kind`] has the names of these,
 //!   [`course`] takes the numbers from stepping through the runs ([`over_time`]: those of a curve, in bounded memory),
 //!   [`dense`] finds the figures that would be solid black.
-//! - [`of_table`]: figures of a comparison or of a sweep, read by [`table`].
+//! - [`of_table`]: figures of a comparison, of a sweep or of a fit, read by [`table`].
 //! - [`quantity`]: columns and readouts as they stand at an axis.
 
 pub mod chart;

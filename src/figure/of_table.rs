@@ -1,6 +1,8 @@
-//! Figures of tables: error over time step with its slope; readouts over what was varied, measured beside predicted.
+//! Figures of tables: error over time step with its slope; readouts over what was varied, measured beside predicted; what
+//! was measured on the model that was fitted, and what is left of it.
 
 mod comparison;
+mod fit;
 mod sweep;
 
 use super::chart::Chart;
@@ -24,6 +26,9 @@ pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, St
     }
     let (x, panels) = match &table.subject {
         Subject::Comparison => comparison::drawn(table, columns, width_pt)?,
+        Subject::Fit { settings, run_file } => {
+            fit::drawn(table, settings, run_file, columns, width_pt)?
+        }
         Subject::Sweep { varied } => sweep::drawn(table, varied, columns, width_pt)?,
     };
     Ok(Chart {

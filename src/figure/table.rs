@@ -1,4 +1,4 @@
-//! A CSV that is no run: the table of a comparison, or of a sweep.
+//! A CSV that is no run: the table of a comparison, of a sweep, or of a fit.
 
 use crate::scenario::Problem;
 use crate::text::number::NONE;
@@ -19,7 +19,24 @@ pub enum Subject {
         /// The keys that were varied, the last of which runs fastest.
         varied: Vec<String>,
     },
+    /// What was measured, and what a fitted model says of it.
+    Fit {
+        /// The columns that say where each value was measured: the time, or settings.
+        settings: Vec<String>,
+        /// The run file of the fitted scenario.
+        run_file: String,
+    },
 }
+
+/// The columns of a fit, behind those that say where each value was measured.
+const OF_FIT: [&str; 6] = [
+    "quantity",
+    "measured",
+    "uncertainty",
+    "model",
+    "residual",
+    "residual_sigmas",
+];
 
 /// The columns of a table.
 #[derive(Clone, Debug)]
@@ -150,6 +167,10 @@ fn subject(header: &str, names: &[String]) -> Option<(Subject, String)> {
         return Some((Subject::Comparison, title));
     }
     let table = table?;
+    if let Some(settings) = settings_of_fit(names) {
+        let (title, run_file) = (title(&table), header.to_owned());
+        return Some((Subject::Fit { settings, run_file }, title));
+    }
     let vary = table.get("vary")?.as_array()?;
     let keys = vary.iter().filter_map(|vary| vary.get("key")?.as_str());
     let varied: Vec<String> = keys.map(str::to_owned).collect();
@@ -159,4 +180,11 @@ fn subject(header: &str, names: &[String]) -> Option<(Subject, String)> {
         own => own,
     };
     Some((Subject::Sweep { varied }, title))
+}
+
+/// The columns of the CSV of a fit that say where its values were measured; `None` where it is none.
+fn settings_of_fit(names: &[String]) -> Option<Vec<String>> {
+    let (row, rest) = names.split_first()?;
+    let count = rest.len().checked_sub(OF_FIT.len())?;
+    (row == "row" && rest[count..] == OF_FIT).then(|| rest[..count].to_vec())
 }

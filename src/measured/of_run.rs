@@ -92,13 +92,18 @@ pub fn at_times(
     let jumps = needs_no_steps(series, scenario);
     while let Some(time_s) = reader.next_time_s() {
         if jumps {
-            simulation.step_to_time(time_s)?;
-            reader.read(&simulation, time_s);
+            // An integration that takes long is done in parts, so that it can be ended.
+            let stride_s = BLOCK as f64 * scenario.motion.time_step_s;
+            let next_s = time_s.min(simulation.now().time_s() + stride_s);
+            simulation.step_to_time(next_s)?;
+            if next_s == time_s {
+                reader.read(&simulation, time_s);
+            }
         } else {
             reader.take(&simulation)?;
             simulation.step()?;
         }
-        if simulation.step_number().is_multiple_of(BLOCK) && !go_on() {
+        if (jumps || simulation.step_number().is_multiple_of(BLOCK)) && !go_on() {
             return Ok(None);
         }
     }

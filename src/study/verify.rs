@@ -94,6 +94,10 @@ pub fn verify(
                 None => Unverified::Stopped,
             })?
         }
+        names if names.ends_with(FIT_COLUMNS) => {
+            let rule = "is the CSV of a fit, which is not verified: the lines above its run file tell the command that makes it again";
+            return Err(refused(whole(rule.to_owned())));
+        }
         _ if document.table().contains_key("vary") => of_sweep::verify(path, watch)?,
         _ => {
             let layout = Layout::read(&text).map_err(|error| refused(of_layout(&error)))?;
@@ -108,6 +112,9 @@ pub fn verify(
         ..verified
     })
 }
+
+/// The last columns of the CSV of a fit.
+const FIT_COLUMNS: &[u8] = b",residual,residual_sigmas";
 
 fn whole(rule: String) -> Problem {
     Problem::at("", rule)

@@ -14,6 +14,7 @@ mod exported;
 mod figure_files;
 mod figures;
 mod finding;
+mod fits;
 mod friction;
 mod health;
 mod journal;

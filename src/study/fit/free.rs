@@ -10,8 +10,10 @@ use toml::Value;
 /// A free key: where the search begins, and what it may not leave.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Free {
-    /// The dotted key.
+    /// The dotted key; of several that have one value, all of them with + between.
     pub key: String,
+    /// The keys one by one.
+    pub keys: Vec<String>,
     /// Its value in the scenario.
     pub start: f64,
     /// The least value; -infinity where there is none.
@@ -28,7 +30,8 @@ pub struct Free {
 const SMALL: f64 = 0.01;
 
 impl Free {
-    /// The free key that `argument`, KEY or KEY=FROM..TO, means in `scenario`; either end may be left out.
+    /// The free key that `argument`, KEY or KEY=FROM..TO, means in `scenario`; either end may be left out. KEY+KEY are two
+    /// keys that have the same value, such as the two moments across the axle of a symmetric body.
     ///
     /// # Errors
     /// When there is no such key, no number of a run depends on it, it has no value to begin from, or the bounds are none
@@ -42,11 +45,65 @@ impl Free {
         Self::read(argument.trim(), scenario).map_err(refused)
     }
 
+    /// The size of the key where it has this value: by so much it changes when it changes wholly.
+    pub(super) fn size(&self, value: f64) -> f64 {
+        match value.abs() {
+            0.0 => self.scale,
+            size => size,
+        }
+    }
+
     fn read(argument: &str, scenario: &Document) -> Result<Self, String> {
         let (key, bounds) = match argument.split_once('=') {
             Some((key, bounds)) => (key.trim(), Some(bounds.trim())),
             None => (argument, None),
         };
+        let (from, to) = bounds.map_or(Ok((f64::NEG_INFINITY, f64::INFINITY)), ends)?;
+        let keys: Vec<String> = key.split('+').map(|key| key.trim().to_owned()).collect();
+        let one = Self::one(&keys[0], scenario)?;
+        for other in &keys[1..] {
+            let start = Self::one(other, scenario)?.start;
+            if start != one.start {
+                return Err(format!(
+                    "{} is {} and {other} is {}: keys that have one value must begin with it",
+                    keys[0],
+                    shortest(one.start),
+                    shortest(start)
+                ));
+            }
+        }
+        let One {
+            start,
+            nudge,
+            least,
+        } = one;
+        let from = from.max(least);
+        if !(from..=to).contains(&start) {
+            return Err(format!(
+                "begins at {}, the scenario's value, outside of {}..{}: give other bounds, or begin inside by --set {key}=...",
+                shortest(start),
+                shown(from),
+                shown(to)
+            ));
+        }
+        let width = Some(to - from).filter(|width| width.is_finite());
+        let scale = match start.abs() {
+            0.0 => width.unwrap_or(nudge),
+            size => size,
+        };
+        Ok(Self {
+            key: keys.join("+"),
+            keys,
+            start,
+            from,
+            to,
+            scale,
+            argument: argument.to_owned(),
+        })
+    }
+
+    /// What the key is in `scenario`.
+    fn one(key: &str, scenario: &Document) -> Result<One, String> {
         let (row, kind) = keys::find(key)?;
         let Kind::Number(range) = kind else {
             return Err(not_a_number(key, kind));
@@ -54,11 +111,6 @@ impl Free {
         if Effect::of(key) == Effect::None || key.starts_with("edit.") {
             return Err("no number of a run depends on this key: it cannot be fitted".to_owned());
         }
-        let (from, to) = bounds.map_or(Ok((f64::NEG_INFINITY, f64::INFINITY)), ends)?;
-        let from = match range {
-            Range::NotNegative | Range::Positive => from.max(0.0),
-            Range::Any | Range::Zoom => from,
-        };
         let start = match dotted::find(scenario.table(), key) {
             Some(Value::Float(number)) => *number,
             Some(Value::Integer(whole)) => *whole as f64,
@@ -71,32 +123,27 @@ impl Free {
                 }
             },
         };
-        if !(from..=to).contains(&start) {
-            return Err(format!(
-                "begins at {}, the scenario's value, outside of {}..{}: give other bounds, or begin inside by --set {key}=...",
-                shortest(start),
-                shown(from),
-                shown(to)
-            ));
-        }
-        let nudge = match row.lab.map(|lab| lab.nudge) {
-            Some(Nudge::By(size) | Nudge::Hundredth(size)) => size,
-            _ => SMALL,
-        };
-        let width = Some(to - from).filter(|width| width.is_finite());
-        let scale = match start.abs() {
-            0.0 => width.unwrap_or(nudge),
-            size => size,
-        };
-        Ok(Self {
-            key: key.to_owned(),
+        Ok(One {
             start,
-            from,
-            to,
-            scale,
-            argument: argument.to_owned(),
+            nudge: match row.lab.map(|lab| lab.nudge) {
+                Some(Nudge::By(size) | Nudge::Hundredth(size)) => size,
+                _ => SMALL,
+            },
+            least: match range {
+                Range::NotNegative | Range::Positive => 0.0,
+                Range::Any | Range::Zoom => f64::NEG_INFINITY,
+            },
         })
     }
+}
+
+/// What one key is in a scenario.
+struct One {
+    start: f64,
+    /// A small change of it.
+    nudge: f64,
+    /// The least value that it may have.
+    least: f64,
 }
 
 /// Why `key` cannot be fitted, which holds no number.
@@ -151,12 +198,11 @@ pub(super) fn shown(bound: f64) -> String {
 /// # Errors
 /// When two of them do.
 pub fn are_apart(free: &[Free]) -> Result<(), Problems> {
-    for (index, one) in free.iter().enumerate() {
-        let is_same = |other: &&Free| {
-            dotted::is_in(&one.key, &other.key) || dotted::is_in(&other.key, &one.key)
-        };
-        if free[..index].iter().any(|other| is_same(&other)) {
-            let mut problem = Problem::at(one.key.clone(), "is free twice: name it once");
+    let keys: Vec<&String> = free.iter().flat_map(|free| &free.keys).collect();
+    for (index, one) in keys.iter().enumerate() {
+        let is_same = |other: &&&String| dotted::is_in(one, other) || dotted::is_in(other, one);
+        if keys[..index].iter().any(|other| is_same(&other)) {
+            let mut problem = Problem::at((*one).clone(), "is free twice: name it once");
             problem.place = Some("--free".to_owned());
             return Err(Problems::one("", problem));
         }

@@ -94,7 +94,9 @@ impl Model {
     fn document(&self, p: &[f64]) -> Result<Document, String> {
         let mut document = self.base.clone();
         for (free, &value) in self.free.iter().zip(p) {
-            write(&mut document, &free.key, Value::Float(value))?;
+            for key in &free.keys {
+                write(&mut document, key, Value::Float(value))?;
+            }
         }
         Ok(document)
     }
@@ -274,14 +276,14 @@ fn checked(document: &Document) -> Result<Scenario, String> {
 
 /// Refuses a free key that a column sets.
 fn are_apart(free: &[Free], table: &Table) -> Result<(), Problems> {
-    for key in free {
-        let is_same = |other: &str| is_in(&key.key, other) || is_in(other, &key.key);
+    for key in free.iter().flat_map(|free| &free.keys) {
+        let is_same = |other: &str| is_in(key, other) || is_in(other, key);
         if let Some(column) = table.settings.iter().find(|setting| is_same(&setting.key)) {
             let rule = format!(
                 "is set by the column {} in every row: it cannot be free",
                 column.key
             );
-            let mut problem = Problem::at(key.key.clone(), rule);
+            let mut problem = Problem::at(key.clone(), rule);
             problem.place = Some("--free".to_owned());
             return Err(Problems::one("", problem));
         }

@@ -3,10 +3,11 @@
 use super::free::Free;
 use super::levenberg::{self, Bounds, Failure, Minimum, Problem, Stop};
 use super::model::Model;
-use super::solution::Solution;
+use super::solution::{SILENT, Solution};
 use super::verdict::Quality;
 use super::weights::Weights;
 use crate::measured::Residual;
+use crate::text::number::significant;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -167,7 +168,6 @@ pub fn fit(
 
 /// The keys with these values, as they are told.
 fn told(model: &Model, p: &[f64]) -> String {
-    use crate::text::number::significant;
     let pairs = model.free.iter().zip(p);
     let pairs = pairs.map(|(free, value)| format!("{} = {}", free.key, significant(*value, 6)));
     pairs.collect::<Vec<_>>().join(", ")
@@ -265,8 +265,15 @@ impl Problem for Weighed<'_> {
             .into_par_iter()
             .map(|index| slopes.of(p, index, changes[index]))
             .collect::<Result<_, Stop>>()?;
-        let columns = found.iter().map(|(slope, _)| self.weights.whitened(slope));
-        let columns: Vec<DVector<f64>> = columns.collect();
+        let column = |(index, (slope, _)): (usize, &(Vec<f64>, f64))| {
+            let column = self.weights.whitened(slope);
+            // The slope of what does not move is rounding, and would lead anywhere.
+            match column.norm() * self.model.free[index].size(p[index]) <= SILENT {
+                true => DVector::zeros(column.len()),
+                false => column,
+            }
+        };
+        let columns: Vec<DVector<f64>> = found.iter().enumerate().map(column).collect();
         *self.kept() = found.iter().map(|(_, change)| *change).collect();
         let slopes = DMatrix::from_columns(&columns);
         // The decomposition of a matrix with a NaN would not end.
@@ -322,21 +329,20 @@ impl Slopes<'_> {
             let values = self.model.values(&there, self.go_on);
             values.map(|values| (there[index], values))
         };
-        let here = || at(p[index]);
-        let either = |side: Result<_, Stop>| match side {
-            Err(Stop::Impossible(_)) => here(),
-            side => side,
-        };
-        let (high, above) = either(at(p[index] + change))?;
-        let (low, below) = either(at(p[index] - change))?;
-        let width = high - low;
-        if width == 0.0 {
-            let key = &self.model.free[index].key;
+        let (high, low) = (at(p[index] + change), at(p[index] - change));
+        if let (Err(Stop::Impossible(why)), Err(Stop::Impossible(_))) = (&high, &low) {
             return Err(Stop::Impossible(format!(
-                "{key} can be changed neither up nor down from {}",
-                crate::text::number::significant(p[index], 6)
+                "{} can be changed neither up nor down from {}: {why}",
+                self.model.free[index].key,
+                significant(p[index], 6)
             )));
         }
+        let either = |side: Result<_, Stop>| match side {
+            Err(Stop::Impossible(_)) => at(p[index]),
+            side => side,
+        };
+        let ((high, above), (low, below)) = (either(high)?, either(low)?);
+        let width = high - low;
         let pairs = above.iter().zip(&below);
         Ok((
             pairs

@@ -20,7 +20,7 @@ pub struct Solution {
 }
 
 /// A key that moves no datum by this part of its uncertainty when it changes by its own size moves none.
-const SILENT: f64 = 1e-7;
+pub(super) const SILENT: f64 = 1e-5;
 /// Parts of a combination below this are rounding.
 const PART: f64 = 1e-2;
 
@@ -29,10 +29,7 @@ impl Solution {
     pub fn of(minimum: &Minimum, free: &[Free]) -> Self {
         let slopes = &minimum.slopes;
         let norms: Vec<f64> = slopes.column_iter().map(|column| column.norm()).collect();
-        let size = |index: usize| match minimum.p[index].abs() {
-            0.0 => free[index].scale,
-            size => size,
-        };
+        let size = |index: usize| free[index].size(minimum.p[index]);
         let is_silent = |index: usize| norms[index] * size(index) <= SILENT;
         let silent: Vec<usize> = (0..free.len()).filter(|&index| is_silent(index)).collect();
         let moves = |index: &usize| !minimum.held[*index] && !silent.contains(index);

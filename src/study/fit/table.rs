@@ -91,7 +91,9 @@ pub fn write(
     let text = toml::to_string(&header).map_err(io::Error::other)?;
     out.write_all(commented(&commented(&text)).as_bytes())?;
     out.write_all(commented(&scenario.to_toml()).as_bytes())?;
-    let mut rows = csv::Writer::from_writer(out);
+    let mut rows = csv::WriterBuilder::new()
+        .has_headers(false)
+        .from_writer(out);
     let data = &report.model.measured.data;
     let mut names = vec!["row"];
     names.extend(at_names(data));

@@ -1,0 +1,600 @@
+//! Fits: the laws of least squares, the measured set of Heidelberg, and what is said where nothing can be found.
+
+use crate::support::dice::Dice;
+use gyrolab::measured::{Measured, at_times, open, read};
+use gyrolab::scenario::Document;
+use gyrolab::study::fit::report::Report;
+use gyrolab::study::fit::{Fit, Free, Model, NoFit, fit};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// The model of the preset `name` with these settings, under `exact`, with these keys free.
+#[track_caller]
+fn model(name: &str, set: &[&str], free: &[&str], measured: Measured) -> Model {
+    let mut document = Document::open(name).unwrap();
+    document.set("motion.scheme=exact").unwrap();
+    set.iter().for_each(|set| document.set(set).unwrap());
+    let free = free.iter().map(|key| Free::parse(key, &document).unwrap());
+    let free = free.collect();
+    Model::new(&document, free, measured).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn found(model: &Model) -> Result<Fit, NoFit> {
+    fit(model, &|| true, &|_, _| {})
+}
+
+#[track_caller]
+fn fitted(model: &Model) -> Fit {
+    found(model).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[track_caller]
+fn is_near(what: &str, value: f64, wanted: f64, within: f64) {
+    assert!(
+        (value - wanted).abs() <= within,
+        "{what}: {value}, not {wanted} +- {within}"
+    );
+}
+
+/// A normal deviate (Box and Muller).
+fn normal(dice: &mut Dice) -> f64 {
+    let (radius, angle) = (dice.between(1e-300, 1.0), dice.unit());
+    (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
+}
+
+/// A top whose motion is in closed form, quick to make and to run.
+const TOP: &str = r#"
+title = "A top"
+trace = "wheel"
+[[body.part]]
+name = "wheel"
+shape = "cylinder"
+mass_kg = 1
+radius_m = 0.1
+at_m = [0, 0, 0.2]
+[start]
+tilt_deg = 30
+spin_rpm = 3000
+[motion]
+scheme = "exact"
+time_step_s = 0.01
+steps = 100
+"#;
+
+/// Tilt and azimuth of the top at a dozen times, with noise of one and two tenths of a degree.
+fn noisy(seed: u64) -> String {
+    const TIMES: [f64; 12] = [
+        0.0, 0.03, 0.07, 0.1, 0.14, 0.21, 0.3, 0.33, 0.41, 0.52, 0.6, 0.77,
+    ];
+    let mut dice = Dice(seed);
+    for _ in 0..10 {
+        dice.unit();
+    }
+    let values = truth();
+    let head = "t_s,tilt_deg,tilt_uncertainty_deg,x_m,x_uncertainty_m\n".to_owned();
+    let row = |(index, time_s): (usize, &f64)| {
+        let tilt_deg = values[0][index] + 0.1 * normal(&mut dice);
+        let x_m = values[1][index] + 0.002 * normal(&mut dice);
+        format!("{time_s},{tilt_deg},0.1,{x_m},0.002\n")
+    };
+    TIMES
+        .iter()
+        .enumerate()
+        .map(row)
+        .fold(head, |text, row| text + &row)
+}
+
+/// The same without noise: tilt (degrees) and x (m).
+fn truth() -> &'static Vec<Vec<f64>> {
+    static TRUTH: std::sync::OnceLock<Vec<Vec<f64>>> = std::sync::OnceLock::new();
+    TRUTH.get_or_init(|| {
+        let times = "0,0.03,0.07,0.1,0.14,0.21,0.3,0.33,0.41,0.52,0.6,0.77";
+        let rows: String = times
+            .split(',')
+            .map(|time| format!("{time},0,0\n"))
+            .collect();
+        let data = read("lab.csv", &format!("t_s,tilt_deg,x_m\n{rows}"))
+            .unwrap()
+            .data;
+        let gyrolab::measured::Data::Series(series) = data else {
+            panic!("no series")
+        };
+        let scenario = Document::parse("top.toml", TOP)
+            .unwrap()
+            .scenario()
+            .unwrap();
+        at_times(&series, &Arc::new(scenario), &|| true)
+            .unwrap()
+            .unwrap()
+    })
+}
+
+const FREE: [&str; 2] = ["start.tilt_deg", "start.spin_rpm"];
+const TRUE: [f64; 2] = [30.0, 3000.0];
+
+fn fit_of_noise(seed: u64) -> Fit {
+    let mut document = Document::parse("top.toml", TOP).unwrap();
+    // The search begins some uncertainties off.
+    document.set("start.tilt_deg=30.4").unwrap();
+    document.set("start.spin_rpm=2950").unwrap();
+    let free = FREE.iter().map(|key| Free::parse(key, &document).unwrap());
+    let free = free.collect();
+    let measured = read("lab.csv", &noisy(seed)).unwrap();
+    fitted(&Model::new(&document, free, measured).unwrap())
+}
+
+#[test]
+fn the_truth_lies_within_two_sigma_as_often_as_it_should() {
+    const TRIALS: u64 = 1000;
+    let fits: Vec<Fit> = (1..=TRIALS)
+        .into_par_iter()
+        .map(|seed| fit_of_noise(seed * 0x9E37_79B9))
+        .collect();
+    for (index, truth) in TRUE.into_iter().enumerate() {
+        let off = |fit: &&Fit| {
+            let key = &fit.keys[index];
+            ((key.value - truth) / key.sigma.unwrap()).abs()
+        };
+        let covered = fits.iter().filter(|fit| off(fit) <= 2.0).count();
+        assert!((930..=980).contains(&covered), "{}: {covered}", FREE[index]);
+        let within_one = fits.iter().filter(|fit| off(fit) <= 1.0).count();
+        assert!(
+            (640..=725).contains(&within_one),
+            "{}: {within_one}",
+            FREE[index]
+        );
+    }
+    let mean = |of: &dyn Fn(&Fit) -> f64| fits.iter().map(of).sum::<f64>() / TRIALS as f64;
+    // 24 data less 2 keys; the mean of a thousand chi^2/22 scatters by 0.0095.
+    let each = mean(&|fit| fit.quality.chi_squared.unwrap() / 22.0);
+    assert!(fits.iter().all(|fit| fit.quality.degrees_of_freedom == 22));
+    is_near("chi^2 per degree of freedom", each, 1.0, 0.03);
+    is_near(
+        "mean probability",
+        mean(&|fit| fit.quality.probability.unwrap()),
+        0.5,
+        0.03,
+    );
+    let fits_count = fits
+        .iter()
+        .filter(|fit| fit.quality.fits() == Some(true))
+        .count();
+    assert!((980..=1000).contains(&fits_count), "{fits_count}");
+}
+
+#[test]
+fn the_scatter_of_fits_is_the_covariance_that_they_state() {
+    let fits: Vec<Fit> = (1..=60_u64)
+        .map(|seed| fit_of_noise(seed * 77_777))
+        .collect();
+    let count = fits.len() as f64;
+    let deviation = |fit: &Fit, index: usize| fit.keys[index].value - TRUE[index];
+    let covariance = |i: usize, j: usize| {
+        let products = fits.iter().map(|fit| deviation(fit, i) * deviation(fit, j));
+        products.sum::<f64>() / count
+    };
+    let correlation = covariance(0, 1) / (covariance(0, 0) * covariance(1, 1)).sqrt();
+    let stated = fits[0].solution.correlation(0, 1).unwrap();
+    // Of sixty pairs the correlation scatters by (1 - r^2)/sqrt(60) = 0.13 at most.
+    is_near("correlation", correlation, stated, 0.4);
+    for index in 0..2 {
+        let ratio = covariance(index, index).sqrt() / fits[0].keys[index].sigma.unwrap();
+        is_near(FREE[index], ratio, 1.0, 0.35);
+    }
+}
+
+#[test]
+fn data_without_noise_give_the_keys_back() {
+    let text = noisy(1);
+    let mut exact = "t_s,tilt_deg,x_m\n".to_owned();
+    for (index, line) in text.lines().skip(1).enumerate() {
+        let time = line.split(',').next().unwrap();
+        exact += &format!("{time},{},\n", truth()[0][index]);
+    }
+    let mut document = Document::parse("top.toml", TOP).unwrap();
+    document.set("start.spin_rpm=2700").unwrap();
+    let free = FREE.iter().map(|key| Free::parse(key, &document).unwrap());
+    let free = free.collect();
+    let fit = fitted(&Model::new(&document, free, read("lab.csv", &exact).unwrap()).unwrap());
+    for (key, truth) in fit.keys.iter().zip(TRUE) {
+        is_near(&key.free.key, key.value, truth, 1e-7 * truth);
+    }
+    assert_eq!(fit.quality.chi_squared, None);
+    assert!(fit.quality.scatter.unwrap() < 1e-7);
+}
+
+const MOMENT: &str = "body.part.0.moments_kg_m2.2";
+
+/// Shipped data, in which the weights are off the rod unless a column sets them.
+fn heidelberg(name: &str, free: &[&str], rows: &dyn Fn(usize) -> bool) -> (Model, Fit) {
+    let mut measured = open(name).unwrap();
+    measured.keep_rows(rows);
+    let model = model("heidelberg", &["body.point.0.at_m.2=0"], free, measured);
+    let fit = fitted(&model);
+    (model, fit)
+}
+
+#[test]
+fn heidelberg_the_same_ratio_of_moments_by_two_roads() {
+    for (name, ratio, sigma) in [
+        ("heidelberg-body-cone", 1.0666, 0.0010),
+        ("heidelberg-nutation", 1.0663, 0.0077),
+    ] {
+        let (_, fit) = heidelberg(name, &[MOMENT], &|_| true);
+        // I1 is held at 0.004 kg m^2: only the ratio counts.
+        let found = 4.0e-3 / fit.keys[0].value;
+        is_near(name, found, ratio, 5e-5);
+        let relative = fit.keys[0].sigma.unwrap() / fit.keys[0].value;
+        is_near(name, found * relative, sigma, 0.02 * sigma);
+    }
+}
+
+#[test]
+fn heidelberg_the_spin_decays_in_24_minutes() {
+    let measured = open("heidelberg-spin-decay").unwrap();
+    let free = ["start.spin_rpm", "friction.spin_viscous_Nms"];
+    // L along the axle decays so whatever the axle does: a splitting scheme with long steps shows it as well.
+    let set = [
+        "body.point.0.at_m.2=0",
+        "motion.scheme=strang",
+        "motion.time_step_s=2",
+    ];
+    let fit = fitted(&model("heidelberg", &set, &free, measured));
+    let viscous = &fit.keys[1];
+    let minutes = 3.75e-3 / viscous.value / 60.0;
+    is_near("decay time, min", minutes, 23.97, 0.01);
+    let sigma = minutes * viscous.sigma.unwrap() / viscous.value;
+    is_near("its uncertainty", sigma, 0.70, 0.01);
+}
+
+/// The rows with one weight or two at 15 or 20 cm, which stand in turn.
+fn torque(which: usize) -> impl Fn(usize) -> bool {
+    move |row| row % 4 == which
+}
+
+#[test]
+fn heidelberg_one_weight_and_two_differ() {
+    // The spins without their uncertainties: the published ones are those of the period alone.
+    let text = gyrolab::measured::shipped::find("heidelberg-precession")
+        .unwrap()
+        .text;
+    let without: String = text
+        .lines()
+        .map(|line| match line.starts_with('#') {
+            true => format!("{line}\n"),
+            false => {
+                let mut cells: Vec<&str> = line.split(',').collect();
+                cells.remove(3);
+                cells.join(",") + "\n"
+            }
+        })
+        .collect();
+    let published = [
+        (3.765, 0.047),
+        (3.871, 0.062),
+        (4.284, 0.096),
+        (4.335, 0.125),
+    ];
+    for (which, (moment, sigma)) in published.into_iter().enumerate() {
+        let mut measured = read("precession.csv", &without).unwrap();
+        measured.keep_rows(torque(which));
+        let fit = fitted(&model("heidelberg", &[], &[MOMENT], measured));
+        is_near("I3, g m^2", 1e3 * fit.keys[0].value, moment, 0.001);
+        is_near(
+            "its uncertainty",
+            1e3 * fit.keys[0].sigma.unwrap(),
+            sigma,
+            0.001,
+        );
+        // With those of the spin nothing moves by more than a fraction of its uncertainty.
+        let (_, fit) = heidelberg("heidelberg-precession", &[MOMENT], &torque(which));
+        is_near("I3, g m^2", 1e3 * fit.keys[0].value, moment, 0.1 * sigma);
+        assert_eq!(fit.quality.fits(), Some(true));
+    }
+}
+
+#[test]
+fn heidelberg_the_joint_fit_is_said_to_be_poor() {
+    let (model, fit) = heidelberg("heidelberg-precession", &[MOMENT], &|_| true);
+    is_near("chi^2", fit.quality.chi_squared.unwrap(), 33.5, 0.5);
+    assert_eq!(fit.quality.degrees_of_freedom, 15);
+    assert_eq!(
+        fit.sentence(&model),
+        "The model does not fit: chi^2 33.6 at 15 degrees of freedom, which chance gives once in 260 times; no row is more than 2.5 sigma off: all of them lean."
+    );
+}
+
+#[test]
+fn heidelberg_what_would_explain_it_can_be_tried() {
+    // An extra torque, by a ball whose centre is off the pivot; M g = 41.2 N.
+    let (_, fit) = heidelberg(
+        "heidelberg-precession",
+        &[MOMENT, "body.part.0.at_m.2"],
+        &|_| true,
+    );
+    is_near("chi^2", fit.quality.chi_squared.unwrap(), 3.4, 0.4);
+    is_near("I3, g m^2", 1e3 * fit.keys[0].value, 4.8, 0.1);
+    let torque = |height: f64| 1e3 * 4.2 * 9.81 * height;
+    is_near("torque, mN m", torque(fit.keys[1].value), 4.2, 0.2);
+    is_near(
+        "its uncertainty",
+        torque(fit.keys[1].sigma.unwrap()),
+        0.9,
+        0.15,
+    );
+    // Two weights that count as less than two.
+    let free = [MOMENT, "body.point.1.mass_kg"];
+    let (_, fit) = heidelberg("heidelberg-precession", &free, &|_| true);
+    is_near("chi^2", fit.quality.chi_squared.unwrap(), 3.0, 0.4);
+    is_near("I3, g m^2", 1e3 * fit.keys[0].value, 3.8, 0.05);
+    is_near("weights", 1.0 + fit.keys[1].value / 9.85e-3, 1.77, 0.03);
+}
+
+#[test]
+fn what_cannot_be_told_apart_is_named_and_has_no_uncertainty() {
+    let free = [MOMENT, "motion.gravity_m_per_s2"];
+    let (_, fit) = heidelberg("heidelberg-precession", &free, &|_| true);
+    assert!(fit.keys.iter().all(|key| key.sigma.is_none()));
+    assert_eq!(fit.quality.degrees_of_freedom, 15);
+    let remarks = fit.remarks();
+    assert_eq!(
+        remarks[0],
+        "The data cannot tell body.part.0.moments_kg_m2.2 and motion.gravity_m_per_s2 apart: changing body.part.0.moments_kg_m2.2 by +1.00 % and motion.gravity_m_per_s2 by +1.00 % together changes no measured number."
+    );
+    let free = [MOMENT, "start.turn_deg"];
+    let (_, fit) = heidelberg("heidelberg-precession", &free, &|_| true);
+    assert!(fit.keys[0].sigma.is_some() && fit.keys[1].sigma.is_none());
+    assert_eq!(
+        fit.remarks()[0],
+        "The data do not depend on start.turn_deg: they say nothing of it."
+    );
+}
+
+#[test]
+fn a_key_at_its_bound_is_said_to_be() {
+    let bounded = [
+        format!("{MOMENT}=0.003..0.0038"),
+        "motion.gravity_m_per_s2=9.0..9.82".to_owned(),
+    ];
+    let free: Vec<&str> = bounded.iter().map(String::as_str).collect();
+    let (model, fit) = heidelberg("heidelberg-precession", &free[..1], &|_| true);
+    assert_eq!(
+        (fit.keys[0].value, fit.keys[0].is_held, fit.keys[0].sigma),
+        (0.0038, true, None)
+    );
+    let report = Report {
+        fit: &fit,
+        model: &model,
+        scheme: "exact",
+    };
+    let told = report.to_string();
+    assert!(
+        told.contains("stands at its bound 0.0038: the fit would be better beyond it"),
+        "{told}"
+    );
+    // With one at its bound the other can be told.
+    let (_, fit) = heidelberg("heidelberg-precession", &free, &|_| true);
+    assert!(
+        fit.keys.iter().any(|key| key.is_held) && fit.keys.iter().any(|key| key.sigma.is_some())
+    );
+}
+
+#[test]
+fn data_without_uncertainties_are_weighed_by_their_scatter() {
+    let text: String = noisy(5)
+        .lines()
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            format!("{},{}\n", cells[0], cells[1])
+        })
+        .collect();
+    let mut document = Document::parse("top.toml", TOP).unwrap();
+    document.set("start.spin_rpm=2950").unwrap();
+    let free = FREE.iter().map(|key| Free::parse(key, &document).unwrap());
+    let free = free.collect();
+    let model = Model::new(&document, free, read("lab.csv", &text).unwrap()).unwrap();
+    let fit = fitted(&model);
+    // A dozen deviates of 0.1 degrees, of which two are taken up: their scatter is known to 22 %.
+    is_near("scatter", fit.quality.scatter.unwrap(), 0.1, 0.06);
+    assert_eq!((fit.quality.chi_squared, fit.quality.fits()), (None, None));
+    assert!(
+        fit.sentence(&model)
+            .contains("cannot be said, since the data have no uncertainties")
+    );
+    is_near(
+        "tilt",
+        fit.keys[0].value,
+        30.0,
+        4.0 * fit.keys[0].sigma.unwrap(),
+    );
+}
+
+#[test]
+fn two_keys_can_have_one_value() {
+    // Both moments across the axle, which must stay alike for the body to be symmetric.
+    let across = "body.part.0.moments_kg_m2.0+body.part.0.moments_kg_m2.1";
+    let (_, fit) = heidelberg("heidelberg-body-cone", &[across], &|_| true);
+    is_near("I1/I3", fit.keys[0].value / 3.75e-3, 1.0666, 5e-5);
+    let alone = |_: usize| true;
+    let mut measured = open("heidelberg-body-cone").unwrap();
+    measured.keep_rows(alone);
+    let set = ["body.point.0.at_m.2=0"];
+    let one = model(
+        "heidelberg",
+        &set,
+        &["body.part.0.moments_kg_m2.0"],
+        measured,
+    );
+    let told = found(&one).unwrap_err().to_string();
+    assert!(
+        told.contains("can be changed neither up nor down from 0.004: "),
+        "{told}"
+    );
+    let document = Document::open("heidelberg").unwrap();
+    let unlike = "body.part.0.moments_kg_m2.0+body.part.0.moments_kg_m2.2";
+    assert_eq!(
+        Free::parse(unlike, &document).unwrap_err().to_string(),
+        "--free body.part.0.moments_kg_m2.0+body.part.0.moments_kg_m2.2: body.part.0.moments_kg_m2.0 is 0.004 and body.part.0.moments_kg_m2.2 is 0.00375: keys that have one value must begin with it"
+    );
+}
+
+#[test]
+fn a_key_that_moves_nothing_leads_nowhere() {
+    let free = [MOMENT, "body.part.0.mass_kg"];
+    let (_, fit) = heidelberg("heidelberg-precession", &free, &|_| true);
+    assert_eq!((fit.keys[1].value, fit.keys[1].sigma), (4.2, None));
+    is_near("I3", fit.keys[0].value, 3.92e-3, 1e-5);
+}
+
+#[test]
+fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
+    use gyrolab::study::fit::table::{self, Asked};
+    let (model, fit) = heidelberg("heidelberg-precession", &[MOMENT], &|_| true);
+    let report = Report {
+        fit: &fit,
+        model: &model,
+        scheme: "exact",
+    };
+    let asked = Asked {
+        measured: "heidelberg-precession".to_owned(),
+        scenario: "heidelberg".to_owned(),
+        free: vec![MOMENT.to_owned()],
+        rows: None,
+        chi_squared: fit.quality.chi_squared,
+        degrees_of_freedom: 15,
+        scatter: None,
+        verdict: fit.sentence(&model),
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fit.csv");
+    let scenario = model.scenario(&[fit.keys[0].value]).unwrap();
+    let file = std::fs::File::create(&path).unwrap();
+    table::write(file, &report, &scenario, asked).unwrap();
+    let again = Document::read(&path).unwrap().scenario().unwrap();
+    assert_eq!(
+        again.file.body.part[0].moments_kg_m2.unwrap()[2],
+        fit.keys[0].value
+    );
+    let text = std::fs::read_to_string(&path).unwrap();
+    let header: String = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("# # "))
+        .flat_map(|line| [line, "\n"])
+        .collect();
+    let header: table::Header = toml::from_str(&header).unwrap();
+    assert_eq!(header.key[0].uncertainty, fit.keys[0].sigma);
+    assert_eq!(header.fit.chi_squared, fit.quality.chi_squared);
+    // Its figure has the values with their errors on the model, and below what is left of them.
+    let table = gyrolab::figure::table::Table::read(&path).unwrap().unwrap();
+    let chart = gyrolab::figure::of_table::chart(&table, &[], 240.0).unwrap();
+    let [values, residuals] = &chart.panels[..] else {
+        panic!("{} panels", chart.panels.len())
+    };
+    assert_eq!(values.series.len(), 8, "four settings, each with its model");
+    let points = |panel: &gyrolab::figure::chart::Panel| -> usize {
+        let marked = panel
+            .series
+            .iter()
+            .filter(|series| series.style.mark.is_some());
+        marked.map(|series| series.points.len()).sum()
+    };
+    assert_eq!((points(values), points(residuals)), (16, 16));
+    assert!(
+        values.series[1]
+            .errors
+            .iter()
+            .all(|error| (2.0..2.5).contains(error))
+    );
+    assert!(residuals.y.unit.contains('σ'));
+    assert_eq!(
+        gyrolab::study::verify::verify(&path, |_, _| std::ops::ControlFlow::Continue(()))
+            .unwrap_err()
+            .to_string()
+            .split(": ")
+            .nth(1),
+        Some("is the CSV of a fit, which is not verified")
+    );
+}
+
+#[test]
+fn what_cannot_be_fitted_is_refused_with_the_remedy() {
+    let told = |free: &[&str], text: &str| {
+        let document = Document::parse("top.toml", TOP).unwrap();
+        let free = free.iter().map(|key| Free::parse(key, &document).unwrap());
+        let free = free.collect();
+        let model = Model::new(&document, free, read("lab.csv", text).unwrap());
+        match model {
+            Err(problems) => problems.to_string(),
+            Ok(model) => found(&model).unwrap_err().to_string(),
+        }
+    };
+    assert_eq!(
+        told(&FREE, "t_s,tilt_deg\n0,30\n"),
+        "1 measured value cannot say 2 values: free fewer keys, or measure more"
+    );
+    assert_eq!(
+        told(
+            &FREE,
+            "start.spin_rpm,predicted_nutation_period_s\n3000,1\n3000,1\n"
+        ),
+        "--free: start.spin_rpm: is set by the column start.spin_rpm in every row: it cannot be free"
+    );
+    assert_eq!(
+        told(
+            &FREE[..1],
+            "start.spin_rpm,predicted_body_cone_period_s\n3000,1\n2000,2\n"
+        ),
+        "the model cannot be held against the data: predicted_body_cone_period_s is null in row 1 (line 2 of the data): the run of the scenario does not have this number (gyrolab readouts says when)"
+    );
+    assert_eq!(
+        told(
+            &FREE[..1],
+            "t_s,tilt_deg,tilt_uncertainty_deg\n0,30,1\n1,30,\n"
+        ),
+        "the model cannot be held against the data: tilt_deg has no uncertainty in row 2 (line 3 of the data), and others have: give all of them one, in tilt_uncertainty_deg, or none"
+    );
+    assert_eq!(
+        told(&FREE[..1], "t_s,tilt_deg,x_m\n0,30,1\n1,30,1\n"),
+        "the model cannot be held against the data: the measured columns have several units (deg, m) and no uncertainties: without these nothing says how much one counts against the other"
+    );
+    let refused = |argument: &str| {
+        let document = Document::parse("top.toml", TOP).unwrap();
+        Free::parse(argument, &document).unwrap_err().to_string()
+    };
+    for (argument, rule) in [
+        (
+            "start.spin_rp",
+            "--free start.spin_rp: unknown key: did you mean start.spin_rpm?",
+        ),
+        (
+            "body.part.0.at_m",
+            "--free body.part.0.at_m: is a vector, of which each number can be free: body.part.0.at_m.0, body.part.0.at_m.1, body.part.0.at_m.2",
+        ),
+        (
+            "motion.scheme",
+            "--free motion.scheme: is no number: it cannot be fitted",
+        ),
+        (
+            "view.speed",
+            "--free view.speed: no number of a run depends on this key: it cannot be fitted",
+        ),
+        (
+            "start.spin_rpm=1..2..3",
+            "--free start.spin_rpm=1..2..3: bounds must be FROM..TO, two numbers of which either may be left out, such as 0.1..0.5 or 0..",
+        ),
+        (
+            "start.spin_rpm=4000..5000",
+            "--free start.spin_rpm=4000..5000: begins at 3000, the scenario's value, outside of 4000..5000: give other bounds, or begin inside by --set start.spin_rpm=...",
+        ),
+        (
+            "start.spin_rpm=5..1",
+            "--free start.spin_rpm=5..1: the bounds leave no room: 5 must be below 1",
+        ),
+        (
+            "start.momentum_Js.2",
+            "--free start.momentum_Js.2: has no value in the scenario, from which the search would begin: give it one by --set start.momentum_Js.2=...",
+        ),
+    ] {
+        assert_eq!(refused(argument), rule);
+    }
+}
