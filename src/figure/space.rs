@@ -72,10 +72,9 @@ pub(super) fn scene(
     let (left, top, right, bottom) = extent(&items);
     let above = legend.height_above(width_pt) + EDGE;
     let shift = at(0.5 * (width_pt - left - right), above - top);
-    for item in &mut items.items {
-        let path = std::mem::take(&mut item.path);
-        item.path = path.mapped(|p| at(p.x + shift.x, p.y + shift.y));
-    }
+    let moved = std::mem::take(&mut items.items).into_iter();
+    let moved = moved.map(|item| item.mapped(|p| at(p.x + shift.x, p.y + shift.y)));
+    items.items = moved.collect();
     items.title = title.to_owned();
     items.width_pt = width_pt;
     items.height_pt = above + bottom - top + EDGE;

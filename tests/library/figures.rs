@@ -53,7 +53,7 @@ fn words(scene: &Scene) -> Vec<&str> {
     scene
         .items
         .iter()
-        .filter_map(|item| item.words.as_deref())
+        .filter_map(|item| item.words.as_ref().map(|words| words.text.as_str()))
         .collect()
 }
 
@@ -106,7 +106,8 @@ fn is_tidy(scene: &Scene) -> Result<(), String> {
         if !is_inside {
             return Err(format!("{:?} leaves the page: {here:?}", item.words));
         }
-        let Some(word) = &item.words else { continue };
+        let Some(words) = &item.words else { continue };
+        let word = words.text.as_str();
         for (other, there) in &texts {
             let apart =
                 right <= there[0] || there[2] <= left || bottom <= there[1] || there[3] <= top;

@@ -36,6 +36,21 @@ fn wrong_arguments_are_told_in_words() {
             &["run", "cusps", "--folder", "x"],
             "--folder is for the lab",
         ),
+        (
+            &["run", "cusps", "--dt", "0.1"],
+            "--time-step 0.05 holds the seconds",
+        ),
+        (
+            &[
+                "figure",
+                "cusps",
+                "-o",
+                "x.svg",
+                "--kind",
+                "measured_tilt_swing_deg",
+            ],
+            "is a readout, one number of a run, and no column",
+        ),
         (&["run", "cusps", "-o", "-", "--json"], "Usage: gyrolab run"),
     ] {
         let output = ground.run(args);
@@ -71,6 +86,54 @@ fn a_wrong_setting_is_named_without_a_file_that_nobody_named() {
         let said = stderr(&output);
         assert!(!said.contains("presets/"), "{said}");
     }
+}
+
+#[test]
+fn what_is_wrong_with_a_sweep_names_its_argument() {
+    let ground = Ground::new();
+    for (vary, words) in [
+        (
+            "motion.steps=10,x",
+            "motion.steps (\"x\") must be a whole number",
+        ),
+        (
+            "start.momentm=3",
+            "unknown key: did you mean start.momentum_Js?",
+        ),
+        ("body.rim.points=-1,2", "must be 1 or more"),
+    ] {
+        let output = ground.run(&["sweep", "method-2", "-o", "s.csv", "--vary", vary]);
+        failed(&output, &[&format!("gyrolab: --vary {vary}: "), words]);
+        let said = stderr(&output);
+        assert!(!said.contains("presets/"), "{said}");
+    }
+}
+
+#[test]
+fn a_file_is_what_its_name_says() {
+    let ground = Ground::new();
+    for command in [
+        &["run", "cusps", "-o", "x.xlsx"][..],
+        &["compare", "cusps", "-o", "x.XLS"],
+        &["sweep", "wobble-over-time-step", "-o", "x.ods"],
+    ] {
+        failed(&ground.run(command), &["let the name end in .csv"]);
+    }
+    let args = ["method-2", "--vary", "motion.steps=1,2", "-o", "s.csv"];
+    done(ground.run(&[&["sweep"][..], &args].concat()));
+    let whole = ground.read("s.csv");
+    ground.write("t.csv.part", &whole);
+    failed(
+        &ground.run(&["figure", "t.csv.part", "-o", "x.svg"]),
+        &["t.csv.part", "a sweep that is not whole yet"],
+    );
+    // Every number there is, of which a page holds a few.
+    failed(
+        &ground.run(&["figure", "s.csv", "-o", "x.svg"]),
+        &["do not fit on a page: choose some with --kind"],
+    );
+    let chosen = ["figure", "s.csv", "-o", "x.svg", "--kind", "z_m,tilt_deg"];
+    done(ground.run(&chosen));
 }
 
 #[test]

@@ -109,7 +109,7 @@ pub fn rounded(scene: &Scene) -> Result<Scene, Unwritable> {
 }
 
 fn rounded_item(item: &Item) -> Option<Item> {
-    let path = item.path.clone().mapped(hundredths_of);
+    let Item { path, words, .. } = item.clone().mapped(hundredths_of);
     let clip = item.clip.map(|corners| corners.map(hundredths_of));
     let paint = match &item.paint {
         Paint::Stroke(pen) => Paint::Stroke(rounded_pen(pen)?),
@@ -124,7 +124,7 @@ fn rounded_item(item: &Item) -> Option<Item> {
         path,
         paint,
         clip,
-        words: item.words.clone(),
+        words,
     })
 }
 

@@ -1,7 +1,7 @@
 //! Lines, marks and words, put on a page.
 
 use super::letters::{self, Label};
-use super::scene::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
+use super::scene::{Color, Item, Paint, Path, Pen, Point, Scene, Segment, Words};
 
 /// Size of the titles of axes, pt.
 pub const TITLE_PT: f64 = 8.0;
@@ -155,17 +155,17 @@ impl Scene {
 
     /// Fills `path`.
     pub fn fill(&mut self, path: Path, color: Color) {
-        self.put(path, Paint::Fill(color), None, None);
+        self.put(path, Paint::Fill(color), None);
     }
 
     /// Fills `path`, cut off outside of `clip`.
     pub fn fill_in(&mut self, path: Path, color: Color, clip: Option<&Frame>) {
-        self.put(path, Paint::Fill(color), clip.map(Frame::corners), None);
+        self.put(path, Paint::Fill(color), clip.map(Frame::corners));
     }
 
     /// Draws the line of `path`, cut off outside of `clip`.
     pub fn stroke(&mut self, path: Path, pen: Pen, clip: Option<&Frame>) {
-        self.put(path, Paint::Stroke(pen), clip.map(Frame::corners), None);
+        self.put(path, Paint::Stroke(pen), clip.map(Frame::corners));
     }
 
     /// Draws a straight line.
@@ -177,19 +177,29 @@ impl Scene {
     pub fn write(&mut self, markup: &str, size_pt: f64, place: Point, share: f64) {
         let label = letters::label(markup, size_pt);
         let left = place.x - share * label.width_pt;
-        self.letters(label, |p| at(left + p.x, place.y + p.y));
+        self.letters(label, false, |p| at(left + p.x, place.y + p.y));
     }
 
     /// Writes `markup` upwards, its middle at `middle`, which is on its baseline.
     pub fn write_up(&mut self, markup: &str, size_pt: f64, middle: Point) {
         let label = letters::label(markup, size_pt);
         let bottom = middle.y + 0.5 * label.width_pt;
-        self.letters(label, |p| at(middle.x + p.y, bottom - p.x));
+        self.letters(label, true, |p| at(middle.x + p.y, bottom - p.x));
     }
 
-    fn letters(&mut self, label: Label, to: impl Fn(Point) -> Point) {
-        let path = label.path.mapped(to);
-        self.put(path, Paint::Fill(BLACK), None, Some(label.words));
+    fn letters(&mut self, label: Label, is_upward: bool, to: impl Fn(Point) -> Point) {
+        let words = Words {
+            text: label.words,
+            letters: label.letters,
+            is_upward,
+        };
+        let item = Item {
+            path: label.path,
+            paint: Paint::Fill(BLACK),
+            clip: None,
+            words: Some(words),
+        };
+        self.items.push(item.mapped(to));
     }
 
     /// Puts a mark at `middle`.
@@ -226,12 +236,12 @@ impl Scene {
         }
     }
 
-    fn put(&mut self, path: Path, paint: Paint, clip: Option<[Point; 2]>, words: Option<String>) {
+    fn put(&mut self, path: Path, paint: Paint, clip: Option<[Point; 2]>) {
         self.items.push(Item {
             path,
             paint,
             clip,
-            words,
+            words: None,
         });
     }
 }

@@ -4,11 +4,12 @@
 //! Labels are written in a small markup: `*t* (s)` has a slanted t, `10^{-3}` a superscript and `*Ω*_{p}` a subscript. What
 //! users have written goes through [`escape`]. A hyphen stays a hyphen; a minus sign is U+2212 and the caller's to write.
 
+pub mod font;
 mod setter;
-mod table;
+pub mod table;
 
 use self::setter::Setter;
-use crate::figure::Path;
+use crate::figure::{Path, Point};
 use crate::text::printable::printable;
 
 /// Height of capital letters and digits, as a share of their size.
@@ -30,6 +31,21 @@ pub struct Label {
     pub descent_pt: f64,
     /// The text without markup: superscripts as characters or behind `^`, subscripts behind `_`.
     pub words: String,
+    /// Its letters, in the order in which they are drawn.
+    pub letters: Vec<Placed>,
+}
+
+/// A letter of a text, where it stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// The letter.
+    pub letter: char,
+    /// Whether it is slanted.
+    pub is_italic: bool,
+    /// Its place on its baseline, pt.
+    pub origin: Point,
+    /// Its size, pt.
+    pub size_pt: f64,
 }
 
 /// A text in markup as outlines. A character that the table does not have is drawn as a box. What is not closed ends with

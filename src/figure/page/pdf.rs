@@ -1,4 +1,6 @@
-//! A page as PDF 1.4: one page of paths, without a font, a date or an identifier.
+//! A page as PDF 1.4: one page of paths and words, without a font from elsewhere, a date or an identifier.
+
+mod words;
 
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
@@ -6,6 +8,7 @@ use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 use super::svg::MITER_LIMIT;
 use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
 use crate::text::printable::printable;
+use words::Fonts;
 
 const CATALOG: Ref = Ref::new(1);
 const PAGES: Ref = Ref::new(2);
@@ -17,8 +20,9 @@ const COMPRESSION: u8 = 9;
 
 /// A page whose places are whole hundredths of a point.
 pub fn written(scene: &Scene) -> Vec<u8> {
-    let content = content(scene);
-    let packed = miniz_oxide::deflate::compress_to_vec_zlib(&content, COMPRESSION);
+    let fonts = Fonts::of(scene);
+    let packed = |bytes: &[u8]| miniz_oxide::deflate::compress_to_vec_zlib(bytes, COMPRESSION);
+    let content = packed(&content(scene, &fonts));
     let mut pdf = Pdf::new();
     // The version which every pdflatex includes without a warning.
     pdf.set_version(1, 4);
@@ -27,9 +31,10 @@ pub fn written(scene: &Scene) -> Vec<u8> {
     let mut page = pdf.page(PAGE);
     let sheet = Rect::new(0.0, 0.0, scene.width_pt as f32, scene.height_pt as f32);
     page.media_box(sheet).parent(PAGES).contents(CONTENT);
-    page.resources();
+    fonts.name_in(&mut page.resources());
     page.finish();
-    pdf.stream(CONTENT, &packed).filter(Filter::FlateDecode);
+    pdf.stream(CONTENT, &content).filter(Filter::FlateDecode);
+    fonts.write(&mut pdf, packed);
     let mut information = pdf.document_info(INFORMATION);
     information.title(TextStr(&printable(&scene.title)));
     information.producer(TextStr(concat!("gyrolab ", env!("CARGO_PKG_VERSION"))));
@@ -38,19 +43,19 @@ pub fn written(scene: &Scene) -> Vec<u8> {
 }
 
 /// The drawing, not compressed.
-fn content(scene: &Scene) -> Vec<u8> {
+fn content(scene: &Scene, fonts: &Fonts) -> Vec<u8> {
     let mut content = Content::new();
     // The origin goes to the upper left corner, y down.
     content.transform([1.0, 0.0, 0.0, -1.0, 0.0, scene.height_pt as f32]);
     content.set_miter_limit(MITER_LIMIT as f32);
     for group in scene.groups() {
-        put_group(&mut content, group);
+        put_group(&mut content, group, fonts);
     }
     content.finish().into_vec()
 }
 
 /// Items that are drawn and cut off alike.
-fn put_group(content: &mut Content, items: &[Item]) {
+fn put_group(content: &mut Content, items: &[Item], fonts: &Fonts) {
     let Some(first) = items.first() else {
         return;
     };
@@ -65,19 +70,21 @@ fn put_group(content: &mut Content, items: &[Item]) {
         Paint::Stroke(pen) => put_pen(content, pen),
     }
     for item in items {
-        // Words as the text that the paths stand for.
         if let Some(words) = &item.words {
+            // A line of plain text for what is read aloud or copied: the letters alone do not say what is a power.
             let mut span = content.begin_marked_content_with_properties(Name(b"Span"));
-            span.properties().actual_text(TextStr(&printable(words)));
+            let text = printable(&words.text);
+            span.properties().actual_text(TextStr(&text));
+            drop(span);
+            fonts.put(words, content);
+            content.end_marked_content();
+            continue;
         }
         put_path(content, &item.path);
         match item.paint {
             Paint::Fill(_) => content.fill_nonzero(),
             Paint::Stroke(_) => content.stroke(),
         };
-        if item.words.is_some() {
-            content.end_marked_content();
-        }
     }
     content.restore_state();
 }

@@ -3,6 +3,8 @@
 //! Lengths are points (1/72 inch); the origin is the upper left corner, x to the right, y down. Text is a path too: the
 //! outlines of its letters, so that a page looks the same where no font is installed.
 
+use super::letters::Placed;
+
 /// A place on the page, pt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
@@ -128,7 +130,30 @@ pub struct Item {
     /// What it is cut off at: upper left and lower right corner; `None` for the page.
     pub clip: Option<[Point; 2]>,
     /// The words, where the path is a text.
-    pub words: Option<String>,
+    pub words: Option<Words>,
+}
+
+/// A text whose outline is a path.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Words {
+    /// The text in one line.
+    pub text: String,
+    /// Its letters.
+    pub letters: Vec<Placed>,
+    /// Whether it is written upwards.
+    pub is_upward: bool,
+}
+
+impl Item {
+    /// The item with each of its points moved to where `to` says; what it is cut off at stays.
+    #[must_use]
+    pub fn mapped(mut self, to: impl Fn(Point) -> Point) -> Self {
+        for letter in self.words.iter_mut().flat_map(|words| &mut words.letters) {
+            letter.origin = to(letter.origin);
+        }
+        self.path = self.path.mapped(to);
+        self
+    }
 }
 
 /// A page.

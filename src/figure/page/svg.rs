@@ -102,7 +102,7 @@ fn put_group(out: &mut String, items: &[Item]) {
         if let Some(words) = &item.words {
             put(
                 out,
-                format_args!(" role=\"img\" aria-label=\"{}\"", escaped(words)),
+                format_args!(" role=\"img\" aria-label=\"{}\"", escaped(&words.text)),
             );
         }
         put(out, format_args!(" d=\"{}\"/>\n", data(&item.path)));

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use super::Label;
 use super::table::{self, ITALIC, REGULAR, UNITS};
+use super::{Label, Placed};
 use crate::figure::{Path, Point};
 
 /// Size of a sub- or superscript, as a share of that of the text it belongs to.
@@ -70,7 +70,9 @@ impl Setter {
     /// Sets a letter, or a box where the table has none.
     pub fn letter(&mut self, letter: char) {
         let style = if self.is_italic { &*ITALIC } else { &*REGULAR };
-        let drawn = style.letter(letter).or_else(|| REGULAR.letter(letter));
+        let slanted = ITALIC.letter(letter).filter(|_| self.is_italic);
+        let is_italic = slanted.is_some();
+        let drawn = slanted.or_else(|| REGULAR.letter(letter));
         let drawn = drawn.unwrap_or_else(missing);
         let scale = self.size_pt / UNITS;
         self.x_pt += match self.before.take() {
@@ -105,6 +107,12 @@ impl Setter {
         self.ended = None;
         self.label.path.0.extend(outline.0);
         self.label.words.push(letter);
+        self.label.letters.push(Placed {
+            letter,
+            is_italic,
+            origin: Point { x, y },
+            size_pt: self.size_pt,
+        });
     }
 
     /// Whether a script has been begun and not ended.
