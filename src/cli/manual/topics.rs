@@ -11,6 +11,7 @@ const TOPICS: &[(&str, &str)] = &[
     ("class", include_str!("../topics/class.txt")),
     ("csv", include_str!("../topics/csv.txt")),
     ("fit", include_str!("../topics/fit.txt")),
+    ("friction", include_str!("../topics/friction.txt")),
     ("lab", include_str!("../topics/lab.txt")),
     ("numbers", include_str!("../topics/numbers.txt")),
     ("scenario", include_str!("../topics/scenario.txt")),
