@@ -64,10 +64,10 @@ impl Farthest {
     /// Computes to the last bit what has been kept; whether all of it is a number.
     pub fn settle(&mut self, truth: &mut Truth) -> bool {
         let kept = std::mem::take(&mut self.kept);
-        let distances = kept
-            .iter()
-            .map(|state| Deviation::distance_of(state, truth));
-        let are_numbers = distances.fold(true, |all, distance_m| self.take_in(distance_m) && all);
+        let mut are_numbers = true;
+        for state in &kept {
+            are_numbers &= self.take_in(Deviation::distance_of(state, truth));
+        }
         self.kept = kept;
         self.kept.clear();
         are_numbers

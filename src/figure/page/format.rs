@@ -120,7 +120,7 @@ fn rounded_item(item: &Item) -> Option<Item> {
         .points()
         .chain(clip.into_iter().flatten())
         .all(is_place);
-    is_sound.then(|| Item {
+    is_sound.then_some(Item {
         path,
         paint,
         clip,

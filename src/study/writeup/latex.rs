@@ -31,7 +31,7 @@ fn row(quantity: &Quantity) -> String {
     };
     let unit = match quantity.readout.unit {
         "" => String::new(),
-        name => format!(", {}", unit(name)),
+        name => format!("~({})", unit(name)),
     };
     format!(
         "\\raggedright {}{unit} & {measured} & {} \\\\\n",
