@@ -17,13 +17,18 @@ const MOST: f64 = 0.5;
 /// Swings that a proposed stretch shows.
 const SWINGS: f64 = 20.0;
 
-/// What is said of a chart of which a curve is solid black; `drawn` are the runs of its curves.
-pub(super) fn warning(chart: &Chart, drawn: &[Drawn], request: &Request) -> Option<String> {
+/// What is said of a chart of which a curve is solid black; `drawn` are the runs of its curves, of which `first` is its first.
+pub(super) fn warning(
+    chart: &Chart,
+    drawn: &[Drawn],
+    first: usize,
+    request: &Request,
+) -> Option<String> {
     let layout = Layout::new(chart, 0.0);
     let panels = chart.panels.iter().zip(&layout.panels).enumerate();
     let mut all = panels.flat_map(|(place, (panel, placed))| {
         drawn.iter().zip(&panel.series).map(move |(drawn, series)| {
-            let curve = &drawn.course.curves[place];
+            let curve = &drawn.course.curves[first + place];
             let (low, high) = placed.y.range;
             let columns = (placed.frame.width() / PART_PT).ceil() as usize;
             let mut turns = vec![0; columns + 1];

@@ -27,6 +27,14 @@ impl Kind {
         Self::OverTime(Curve::OF_POINT.into_iter().filter_map(column).collect())
     }
 
+    /// The columns that it shows over time.
+    pub fn columns(&self) -> &[&'static Column] {
+        match self {
+            Self::OverTime(columns) => columns,
+            Self::Above | Self::ThreeD => &[],
+        }
+    }
+
     /// The kind of that name: `traces`, `above`, `3d`, or columns with commas between them.
     ///
     /// # Errors

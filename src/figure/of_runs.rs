@@ -1,18 +1,16 @@
 //! Figures of runs: their curves over time, their paths from above and in space.
 
-use super::chart::layout::Layout;
+mod charts;
+
+use super::chart::Style;
 use super::chart::legend::longest_name;
-use super::chart::{Axis, Chart, Panel, Series, Style};
 use super::course::{self, Course, Wanted};
 use super::dense;
 use super::kind::Kind;
 use super::names::names;
 use super::page::letters;
 use super::page::scene::Scene;
-use super::quantity;
 use super::space;
-use crate::export::columns::Column;
-use crate::run::Truth;
 use crate::scenario::Scenario;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -59,6 +57,12 @@ pub(super) struct Drawn {
     pub course: Course,
 }
 
+/// The runs of a figure with their numbers.
+struct Played {
+    drawn: Vec<Drawn>,
+    broke: Option<String>,
+}
+
 /// The figure of `runs`, one at least. `watch` is told the step reached and the last one, and says whether to go on; `None`
 /// where it said no.
 ///
@@ -67,11 +71,58 @@ pub(super) struct Drawn {
 pub fn figure(
     runs: &[Run],
     request: &Request,
-    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Figure>, String> {
+    let figures = figures(runs, std::slice::from_ref(request), watch)?;
+    Ok(figures.and_then(|mut figures| figures.pop()))
+}
+
+/// As [`figure`], one for each of `requests`: for those of one stretch of time the runs are played once.
+///
+/// # Errors
+/// As [`figure`].
+pub fn figures(
+    runs: &[Run],
+    requests: &[Request],
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Vec<Figure>>, String> {
+    let mut figures: Vec<Option<Figure>> = vec![None; requests.len()];
+    for (first, request) in requests.iter().enumerate() {
+        if figures[first].is_some() {
+            continue;
+        }
+        let alike = |other: &(usize, &Request)| request.is_alike(other.1);
+        let group: Vec<_> = requests.iter().enumerate().filter(alike).collect();
+        let kinds: Vec<&Kind> = group.iter().map(|(_, request)| &request.kind).collect();
+        let Some(played) = play(runs, request, &kinds, &mut watch)? else {
+            return Ok(None);
+        };
+        let mut curve = 0;
+        for (index, request) in group {
+            figures[index] = Some(draw(runs, request, &played, curve));
+            curve += request.kind.columns().len();
+        }
+    }
+    Ok(Some(figures.into_iter().flatten().collect()))
+}
+
+impl Request {
+    /// Whether both are drawn from the same numbers under the same names.
+    fn is_alike(&self, other: &Self) -> bool {
+        let alike = |it: &Self| (it.from_s, it.to_s, it.exact, it.width_pt);
+        alike(self) == alike(other)
+    }
+}
+
+/// Plays `runs` for figures of those `kinds`.
+fn play(
+    runs: &[Run],
+    request: &Request,
+    kinds: &[&Kind],
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Played>, String> {
     check_range(runs, request)?;
-    let wanted = wanted(request);
-    let mut warnings = Vec::new();
+    let wanted = wanted(request, kinds);
     let mut broke = None;
     let mut drawn = Vec::new();
     let named = names(runs, request.exact, longest_name(request.width_pt));
@@ -111,39 +162,39 @@ pub fn figure(
             None => "there is no step of the run in that stretch of time".to_owned(),
         });
     }
-    let title = title(runs);
-    let scene = match &request.kind {
-        Kind::OverTime(columns) => {
-            let chart = over_time(title, columns, &drawn, request);
-            warnings.extend(dense::warning(&chart, &drawn, request));
-            chart.scene()
-        }
-        Kind::Above => {
-            let chart = above(title, runs, &drawn, request);
-            warnings.extend(path_warning(&chart, &drawn, request));
-            chart.scene()
-        }
-        Kind::ThreeD => {
-            let (scene, warning) = space::scene(&title, runs, &drawn, request);
-            warnings.extend(warning);
-            scene
-        }
-    };
-    Ok(Some(Figure {
-        scene,
-        warnings,
-        broke,
-    }))
+    Ok(Some(Played { drawn, broke }))
 }
 
-fn wanted(request: &Request) -> Wanted {
-    let (columns, path) = match &request.kind {
-        Kind::OverTime(columns) => (columns.clone(), false),
-        Kind::Above | Kind::ThreeD => (Vec::new(), true),
+/// The figure that `request` asks for; `curve` is the number of the first of its curves among those that were played.
+fn draw(runs: &[Run], request: &Request, played: &Played, curve: usize) -> Figure {
+    let (title, drawn) = (title(runs), &played.drawn);
+    let (scene, warning) = match &request.kind {
+        Kind::OverTime(columns) => {
+            let chart = charts::over_time(title, columns, drawn, curve, request);
+            let warning = dense::warning(&chart, drawn, curve, request);
+            (chart.scene(), warning)
+        }
+        Kind::Above => {
+            let chart = charts::above(title, runs, drawn, request);
+            let warning = charts::path_warning(&chart, drawn, request);
+            (chart.scene(), warning)
+        }
+        Kind::ThreeD => space::scene(&title, runs, drawn, request),
     };
+    Figure {
+        scene,
+        warnings: warning.into_iter().collect(),
+        broke: played.broke.clone(),
+    }
+}
+
+fn wanted(request: &Request, kinds: &[&Kind]) -> Wanted {
+    let columns = kinds.iter().flat_map(|kind| kind.columns());
     Wanted {
-        columns,
-        path,
+        columns: columns.copied().collect(),
+        path: kinds
+            .iter()
+            .any(|kind| matches!(kind, Kind::Above | Kind::ThreeD)),
         from_s: request.from_s,
         to_s: request.to_s,
     }
@@ -205,131 +256,4 @@ fn truths(runs: &[Run], room_pt: f64) -> Vec<(&Run, String)> {
         }
     };
     distinct.iter().map(|run| (*run, name(run))).collect()
-}
-
-fn over_time(
-    title: String,
-    columns: &[&'static Column],
-    drawn: &[Drawn],
-    request: &Request,
-) -> Chart {
-    let ends = drawn.iter().map(|drawn| drawn.course.end_s);
-    let end_s = ends.fold(0.0, f64::max);
-    let range = (end_s > request.from_s).then_some((request.from_s, end_s));
-    let panel = |(place, column): (usize, &&Column)| Panel {
-        y: quantity::axis(column.name),
-        series: drawn
-            .iter()
-            .map(|drawn| Series {
-                name: drawn.name.clone(),
-                points: drawn.course.curves[place].points(),
-                errors: Vec::new(),
-                style: drawn.style.clone(),
-            })
-            .collect(),
-        ..Panel::default()
-    };
-    let mut panels: Vec<Panel> = columns.iter().enumerate().map(panel).collect();
-    // Many swings beside each other are told apart by thin lines alone.
-    for panel in &mut panels {
-        for series in &mut panel.series {
-            if series.points.len() > 600 && columns.len() > 1 {
-                series.style.width_pt *= 0.75;
-            }
-        }
-    }
-    Chart {
-        title,
-        width_pt: request.width_pt,
-        x: Axis {
-            range,
-            ..quantity::axis("t_s")
-        },
-        panels,
-        is_true_to_scale: false,
-    }
-}
-
-fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Request) -> Chart {
-    let series = drawn.iter().map(|drawn| Series {
-        name: drawn.name.clone(),
-        points: drawn.course.path.iter().map(|at| [at[0], at[1]]).collect(),
-        errors: Vec::new(),
-        style: drawn.style.clone(),
-    });
-    let series: Vec<_> = series.collect();
-    let circles = match (request.exact, runs) {
-        (true, [run]) => circles(run),
-        _ => Vec::new(),
-    };
-    let (x, y) = both_ranges(&series, &circles);
-    Chart {
-        title,
-        width_pt: request.width_pt,
-        x: Axis {
-            range: Some(x),
-            ..quantity::axis("x_m")
-        },
-        panels: vec![Panel {
-            y: Axis {
-                range: Some(y),
-                ..quantity::axis("y_m")
-            },
-            series,
-            slope: None,
-            circles,
-        }],
-        is_true_to_scale: true,
-    }
-}
-
-/// What is said of a path from above that is solid black.
-fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) -> Option<String> {
-    let layout = Layout::new(chart, 0.0);
-    let placed = layout.panels.first()?;
-    let series = &chart.panels.first()?.series;
-    drawn.iter().zip(series).find_map(|(drawn, series)| {
-        let places: Vec<_> = series.points.iter().map(|at| placed.place(at)).collect();
-        dense::path_warning(&places, drawn.course.end_s, request)
-    })
-}
-
-/// The radii of the circles between which the exact motion of the traced point stays, from above, m; none where pushes or
-/// edits change the motion, or it has no closed form.
-fn circles(run: &Run) -> Vec<f64> {
-    const SAME: f64 = 0.01;
-    let scenario = &run.scenario;
-    let at = scenario.body.mechanics.points()[scenario.trace].at;
-    let is_on_axle = at.xy().norm() <= 1e-9 * at.norm();
-    let truth = Truth::new(Arc::clone(scenario));
-    let closed = truth.motion().closed_form();
-    let is_steady = scenario.pushes.is_empty() && scenario.edits.is_empty();
-    let is_heavy = scenario.motion.gravity > 0.0;
-    let Some(motion) = closed.filter(|_| is_steady && is_on_axle && is_heavy) else {
-        return Vec::new();
-    };
-    let (low, high) = motion.tilt_range();
-    let radius = |tilt: f64| at.norm() * libm::sin(tilt);
-    let (inner, outer) = (radius(low), radius(high));
-    if (outer - inner).abs() <= SAME * outer.max(inner) {
-        return vec![0.5 * (inner + outer)];
-    }
-    vec![inner, outer]
-}
-
-/// The stretches of both axes: one is never less than half of the other, so that a path along a line has a picture too.
-fn both_ranges(series: &[Series], circles: &[f64]) -> ((f64, f64), (f64, f64)) {
-    const LEAST: f64 = 0.5;
-    let ends = || circles.iter().flat_map(|radius| [-radius, *radius]);
-    let range = |index: usize| {
-        let values = series.iter().flat_map(|series| &series.points);
-        Axis::default().range_of(values.map(|point| point[index]).chain(ends()))
-    };
-    let (x, y) = (range(0), range(1));
-    let least = LEAST * (x.1 - x.0).max(y.1 - y.0);
-    let widened = |(low, high): (f64, f64)| {
-        let missing = (least - (high - low)).max(0.0);
-        (low - 0.5 * missing, high + 0.5 * missing)
-    };
-    (widened(x), widened(y))
 }

@@ -413,6 +413,35 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
 }
 
 #[test]
+fn figures_that_are_drawn_together_are_those_drawn_alone() {
+    let runs = [run("wobble-push", &[]), run("method-2", &[])];
+    let part = Request {
+        to_s: Some(20.0),
+        ..request("tilt_deg")
+    };
+    let requests = [
+        request("energy_J"),
+        part,
+        request("above"),
+        request("traces"),
+    ];
+    let mut ends = 0;
+    let watch = |step: u64, last: u64| {
+        ends += u32::from(step == last);
+        ControlFlow::Continue(())
+    };
+    let together = of_runs::figures(&runs, &requests, watch).unwrap().unwrap();
+    // Each run once for the whole of it, and once for its beginning.
+    assert!(ends <= 4, "{ends}");
+    assert_eq!(together.len(), requests.len());
+    for (figure, request) in together.iter().zip(&requests) {
+        let alone = drawn(&runs, request);
+        assert_eq!(figure.scene, alone.scene);
+        assert_eq!(figure.warnings, alone.warnings);
+    }
+}
+
+#[test]
 fn a_run_that_breaks_is_drawn_up_to_there() {
     let push = "push.0={point=\"top\", force_N=[1e300,0,0], first_step=25, steps=1}";
     let figure = drawn(&[run("method-2", &[push])], &request("traces"));

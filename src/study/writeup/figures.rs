@@ -3,7 +3,7 @@
 use crate::analysis::Readouts;
 use crate::analysis::cost::is_affordable;
 use crate::figure::kind::Kind;
-use crate::figure::of_runs::{self, Request, Run};
+use crate::figure::of_runs::{self, Figure, Request, Run};
 use crate::figure::{COLUMN_PT, Scene};
 use crate::run::Clock;
 use crate::scenario::Scenario;
@@ -38,7 +38,7 @@ const FEW_SWINGS: f64 = 8.0;
 pub fn figures(
     scenario: &Arc<Scenario>,
     readouts: &Readouts,
-    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Vec<Drawing>>, String> {
     let runs = [Run {
         scenario: Arc::clone(scenario),
@@ -80,25 +80,25 @@ pub fn figures(
         let caption = format!("Tilt in the first {} s{beside}", shortest(to_s));
         wanted.insert(1, ("swings", Kind::named("tilt_deg")?, Some(to_s), caption));
     }
-    let mut drawings = Vec::with_capacity(wanted.len());
-    for (name, kind, to_s, caption) in wanted {
-        let request = Request {
-            kind,
-            from_s: 0.0,
-            to_s,
-            exact,
-            width_pt: COLUMN_PT,
-        };
-        let Some(figure) = of_runs::figure(&runs, &request, &mut watch)? else {
-            return Ok(None);
-        };
-        drawings.push(Drawing {
+    let requests = wanted.iter().map(|(_, kind, to_s, _)| Request {
+        kind: kind.clone(),
+        from_s: 0.0,
+        to_s: *to_s,
+        exact,
+        width_pt: COLUMN_PT,
+    });
+    let requests: Vec<_> = requests.collect();
+    let drawn = of_runs::figures(&runs, &requests, watch)?;
+    let drawings = |drawn: Vec<Figure>| {
+        let each = wanted.into_iter().zip(drawn);
+        each.map(|((name, _, _, caption), figure)| Drawing {
             name,
             caption,
             scene: figure.scene,
-        });
-    }
-    Ok(Some(drawings))
+        })
+        .collect()
+    };
+    Ok(drawn.map(drawings))
 }
 
 /// Where the run has many swings, the time that a few of them take, s.

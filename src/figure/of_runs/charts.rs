@@ -1,0 +1,139 @@
+//! The charts of runs: their curves over time, their paths from above.
+
+use super::{Drawn, Request, Run};
+use crate::export::columns::Column;
+use crate::figure::chart::layout::Layout;
+use crate::figure::chart::{Axis, Chart, Panel, Series};
+use crate::figure::{dense, quantity};
+use crate::run::Truth;
+use std::sync::Arc;
+
+/// Columns of the runs over time, a panel each; `curve` is the number of the first of them among those that were played.
+pub(super) fn over_time(
+    title: String,
+    columns: &[&'static Column],
+    drawn: &[Drawn],
+    curve: usize,
+    request: &Request,
+) -> Chart {
+    let ends = drawn.iter().map(|drawn| drawn.course.end_s);
+    let end_s = ends.fold(0.0, f64::max);
+    let range = (end_s > request.from_s).then_some((request.from_s, end_s));
+    let panel = |(place, column): (usize, &&Column)| Panel {
+        y: quantity::axis(column.name),
+        series: drawn
+            .iter()
+            .map(|drawn| Series {
+                name: drawn.name.clone(),
+                points: drawn.course.curves[curve + place].points(),
+                errors: Vec::new(),
+                style: drawn.style.clone(),
+            })
+            .collect(),
+        ..Panel::default()
+    };
+    let mut panels: Vec<Panel> = columns.iter().enumerate().map(panel).collect();
+    // Many swings beside each other are told apart by thin lines alone.
+    for panel in &mut panels {
+        for series in &mut panel.series {
+            if series.points.len() > 600 && columns.len() > 1 {
+                series.style.width_pt *= 0.75;
+            }
+        }
+    }
+    Chart {
+        title,
+        width_pt: request.width_pt,
+        x: Axis {
+            range,
+            ..quantity::axis("t_s")
+        },
+        panels,
+        is_true_to_scale: false,
+    }
+}
+
+/// The paths from above.
+pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Request) -> Chart {
+    let series = drawn.iter().map(|drawn| Series {
+        name: drawn.name.clone(),
+        points: drawn.course.path.iter().map(|at| [at[0], at[1]]).collect(),
+        errors: Vec::new(),
+        style: drawn.style.clone(),
+    });
+    let series: Vec<_> = series.collect();
+    let circles = match (request.exact, runs) {
+        (true, [run]) => circles(run),
+        _ => Vec::new(),
+    };
+    let (x, y) = both_ranges(&series, &circles);
+    Chart {
+        title,
+        width_pt: request.width_pt,
+        x: Axis {
+            range: Some(x),
+            ..quantity::axis("x_m")
+        },
+        panels: vec![Panel {
+            y: Axis {
+                range: Some(y),
+                ..quantity::axis("y_m")
+            },
+            series,
+            slope: None,
+            circles,
+        }],
+        is_true_to_scale: true,
+    }
+}
+
+/// What is said of a path from above that is solid black.
+pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) -> Option<String> {
+    let layout = Layout::new(chart, 0.0);
+    let placed = layout.panels.first()?;
+    let series = &chart.panels.first()?.series;
+    drawn.iter().zip(series).find_map(|(drawn, series)| {
+        let places: Vec<_> = series.points.iter().map(|at| placed.place(at)).collect();
+        dense::path_warning(&places, drawn.course.end_s, request)
+    })
+}
+
+/// The radii of the circles between which the exact motion of the traced point stays, from above, m; none where pushes or
+/// edits change the motion, or it has no closed form.
+fn circles(run: &Run) -> Vec<f64> {
+    const SAME: f64 = 0.01;
+    let scenario = &run.scenario;
+    let at = scenario.body.mechanics.points()[scenario.trace].at;
+    let is_on_axle = at.xy().norm() <= 1e-9 * at.norm();
+    let truth = Truth::new(Arc::clone(scenario));
+    let closed = truth.motion().closed_form();
+    let is_steady = scenario.pushes.is_empty() && scenario.edits.is_empty();
+    let is_heavy = scenario.motion.gravity > 0.0;
+    let Some(motion) = closed.filter(|_| is_steady && is_on_axle && is_heavy) else {
+        return Vec::new();
+    };
+    let (low, high) = motion.tilt_range();
+    let radius = |tilt: f64| at.norm() * libm::sin(tilt);
+    let (inner, outer) = (radius(low), radius(high));
+    if (outer - inner).abs() <= SAME * outer.max(inner) {
+        return vec![0.5 * (inner + outer)];
+    }
+    vec![inner, outer]
+}
+
+/// The stretches of both axes: one is never less than half of the other, so that a path along a line has a picture too.
+fn both_ranges(series: &[Series], circles: &[f64]) -> ((f64, f64), (f64, f64)) {
+    const LEAST: f64 = 0.5;
+    let ends = || circles.iter().flat_map(|radius| [-radius, *radius]);
+    let range = |index: usize| {
+        let values = series.iter().flat_map(|series| &series.points);
+        Axis::default().range_of(values.map(|point| point[index]).chain(ends()))
+    };
+    let (x, y) = (range(0), range(1));
+    let least = LEAST * (x.1 - x.0).max(y.1 - y.0);
+    let widened = |(low, high): (f64, f64)| {
+        let missing = (least - (high - low)).max(0.0);
+        (low - 0.5 * missing, high + 0.5 * missing)
+    };
+    (widened(x), widened(y))
+}
