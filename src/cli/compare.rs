@@ -90,7 +90,7 @@ fn schemes(args: &CompareArgs, scenario: &Scenario) -> anyhow::Result<Vec<&'stat
         .filter(|name| seen.insert(name.as_str()))
         .filter_map(|name| SchemeInfo::find(name))
         .collect();
-    let able = scheme::true_to(friction).filter(|scheme| scheme.order.is_some());
+    let able = scheme::true_to(*friction).filter(|scheme| scheme.order.is_some());
     if chosen.is_empty() {
         return Ok(able.collect());
     }

@@ -108,8 +108,7 @@ pub const SCHEMES: &[SchemeInfo] = &[
 ];
 
 /// The schemes that can be true to `friction`, in the table's order.
-pub fn true_to(friction: &Friction) -> impl Iterator<Item = &'static SchemeInfo> + Clone {
-    let friction = *friction;
+pub fn true_to(friction: Friction) -> impl Iterator<Item = &'static SchemeInfo> + Clone {
     SCHEMES
         .iter()
         .filter(move |scheme| scheme.admits.objection(&friction).is_none())

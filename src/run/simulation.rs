@@ -34,6 +34,8 @@ pub struct Simulation {
     safe_below: f64,
     /// Whether the workings of every step are kept.
     keeps_workings: bool,
+    /// Whether there is friction.
+    rubs: bool,
 }
 
 /// The numbers of a run are no longer finite.
@@ -80,6 +82,7 @@ impl Simulation {
             replaced_at: None,
             safe_below: safe_below(&scenario, motion.gravity),
             keeps_workings: false,
+            rubs: !scenario.friction.is_none(),
             now: Step {
                 number: 0,
                 segment: 0,
@@ -244,7 +247,6 @@ impl Simulation {
     #[inline]
     fn take_part(&mut self, length_s: f64, workings: Option<&mut Workings>) {
         let state = &mut self.now.after;
-        let rubs = !self.now.loads.friction.is_none();
         match workings {
             None => self.scheme.step(length_s, state),
             Some(workings) => {
@@ -257,7 +259,7 @@ impl Simulation {
                 });
             }
         }
-        if rubs {
+        if self.rubs {
             self.now.energy.friction += self.scheme.friction_work();
         }
     }

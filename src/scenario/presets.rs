@@ -39,15 +39,15 @@ pub const PRESETS: &[Preset] = presets![
     "sleeping-unstable": "e, then |L|: at 40 J s it stays up."
     "falling": "e, then |L|: at 30 J s it falls less far, at 60 much less."
     "torque-free": "e, then gravity: at 9.8 m/s2 a torque acts, and the tilt no longer stays."
-    "life-of-a-top": "e, then viscous under friction: with ten times as much it wakes later still, as a part of its limit."
+    "life-of-a-top": "e, then viscous under friction: ten times as much, and how soon does it fall?"
     "first-dip": "e, then on swing under friction: at 0 the dips last, at 10 there is hardly one."
-    "lab-gyroscope": "e, then dry under friction: at 0.004 the wheel stops within the run, and the axle falls."
+    "lab-gyroscope": "e, then dry under friction: at 0.004 the wheel stops and the axle falls."
     "heavy-top": "e, then scheme; t draws the exact motion: which schemes keep to it at this dt?"
     "wing-nut": "e, then tilt: at 0.1 degrees it waits longer, and then turns over as fast."
     "phone": "e, then wy: at 0 nothing slips, and it comes round flat."
     "rugby-pass": "e, then wx: a larger slip of the wrist widens the circle, its time stays."
     "earth": "e, then tilt: does the pole go round faster when it leans less?"
-    "heidelberg": "gyrolab fit heidelberg-precession --in heidelberg --free body.part.0.moments_kg_m2.2 finds its moment."
+    "heidelberg": "gyrolab lesson a-real-gyroscope goes through what was measured on it."
     "poinsot": "o opens wing-nut: a free body again, about its middle axis."
 ];
 

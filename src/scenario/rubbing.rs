@@ -59,7 +59,7 @@ pub(super) fn objection(
     friction: &Friction,
 ) -> Option<Problem> {
     let why = scheme.admits.objection(friction)?;
-    let able = scheme::true_to(friction).map(|scheme| scheme.name);
+    let able = scheme::true_to(*friction).map(|scheme| scheme.name);
     let value = toml::Value::String(scheme.name.to_owned());
     let rule = format!(
         "cannot be true to this friction: it {why}; take one of {}",

@@ -33,6 +33,7 @@ pub const LESSONS: &[Shipped] = lessons![
     "kappa-and-the-scheme"
     "what-is-conserved"
     "halve-the-step"
+    "a-real-gyroscope"
 ];
 
 /// The lesson of that name.

@@ -222,7 +222,7 @@ fn group(place: &str, table: &Table) -> String {
 fn choices(key: &Key, names: &Names, scenario: &Scenario) -> Vec<String> {
     match (key.kind, key.path) {
         (_, "motion.scheme") => {
-            let able = scheme::true_to(&scenario.friction);
+            let able = scheme::true_to(scenario.friction);
             able.map(|scheme| scheme.name.to_owned()).collect()
         }
         (Kind::OneOf(words), _) => words.iter().map(|&word| word.to_owned()).collect(),

@@ -644,7 +644,7 @@ fn friction_sees_the_spin_of_the_rotor() {
     assert!((scenario.rotor.unwrap() - wheel).abs() < 1e-12);
     let mut simulation = Simulation::new(Arc::clone(&scenario));
     let first = spin_momentum(simulation.state());
-    simulation.step_to(10_000).unwrap();
+    simulation.step_to(4000).unwrap();
     let expected = first * (-3e-5 * 20.0 / wheel).exp();
     let found = spin_momentum(simulation.state());
     assert!(

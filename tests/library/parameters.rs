@@ -125,6 +125,7 @@ fn every_value_of_a_file_is_listed_in_groups() {
         "motion",
         "push 0",
         "push 1",
+        "friction",
         "view",
     ];
     assert_eq!(groups, all);

@@ -237,6 +237,12 @@ const TABLE: &[(usize, &str, usize, &str, &str)] = &[
     (7, "radius_m = 1e200", 5, "body: the inertia about the pivot leaves the range of numbers", ""),
     (27, "", 23, "push.0: does not say for how long: add steps", ""),
     (27, "for_s = 3", 23, "push.0: counts in steps and in seconds", "keep first_step and steps, or from_s and for_s"),
+    // friction
+    (13, "[friction]\nspin_dry_Nm = -1", 14, "friction.spin_dry_Nm (-1) must not be negative", ""),
+    (13, "[friction]\nspin_viscous_Nms = nan", 14, "friction.spin_viscous_Nms (nan) must be a finite number", ""),
+    (13, "[friction]\nspin_quadratic_Nms2 = \"1\"", 14, "friction.spin_quadratic_Nms2 (\"1\") must be a number, not text", ""),
+    (13, "[friction]\nswing_viscous_Nms = 1e200", 14, "friction.swing_viscous_Nms (", "is too large for this body, whose least moment is"),
+    (13, "[friction]\nspin_dry = 1", 14, "friction.spin_dry: unknown key", "spin_dry_Nm"),
     // parts
     (13, "[[body.part]]\nshape = \"egg\"", 14, "body.part.0.shape (\"egg\") must be one of ring, cylinder", ""),
     (13, "[[body.part]]\nname = 1", 14, "body.part.0.name (1) must be text", ""),
