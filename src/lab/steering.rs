@@ -187,7 +187,7 @@ impl Lab {
             Action::InField(edit) => self.on_top.edit_field(edit),
             Action::Accept => return self.accept(),
             Action::Help => self.on_top.toggle_help(),
-            Action::Close => return self.close(cleared.anything),
+            Action::Close => return self.close(&cleared),
             Action::Lesson(key) => return Some(Request::Lesson(key)),
             Action::Redraw => return Some(Request::Redraw),
             Action::Suspend if self.files.confined().is_some() => {
@@ -240,9 +240,9 @@ impl Lab {
     }
 
     /// Closes or stops one thing: what lies on top, the script, the steps asked for, the cursor, the pane that fills the
-    /// screen, the export. Then it turns from the parameters back to the run. If there is none of these, it says how to
+    /// screen; it turns from the parameters back to the run; it stops the export. If there is none of these, it says how to
     /// leave, unless the key has already removed a message or a count.
-    fn close(&mut self, has_cleared: bool) -> Option<Request> {
+    fn close(&mut self, cleared: &Cleared) -> Option<Request> {
         let is_found = self.on_top.mode() == Mode::Find;
         let is_filtered = self.on_top.mode() == Mode::Lab && self.view.focus == Pane::PARAMETERS;
         if (is_found || is_filtered) && self.values.forget_name() {
@@ -265,12 +265,12 @@ impl Lab {
             if !self.view.side_by_side.contains(&Pane::PARAMETERS) {
                 self.view.leave_parameters();
             }
-        } else if has_cleared {
+        } else if cleared.count.is_none() && self.view.leave_parameters() {
+            // Back to the run, whatever message was removed with it.
+        } else if cleared.anything {
             // The key has done something already.
         } else if self.files.is_exporting() {
             self.files.stop_export();
-        } else if self.view.leave_parameters() {
-            // Back to the run.
         } else if self.view.sheet.is_some() {
             return Some(Request::Lesson(LessonKey::Leave));
         } else {

@@ -99,16 +99,15 @@ fn a_long_message_has_the_line_above_it_on_a_small_screen() {
     stage.commands("pause = true\ngo_to = 100");
     stage.shows("strobed").press("e");
     stage
-        .shows("Up and Down choose a value, Left and")
-        .shows("nudge it, Enter types it");
+        .shows("Up, Down choose a value; Left, Right")
+        .shows("nudge it; Enter types it; u undoes");
     stage.shows_no("strobed").wait(6.0).shows("strobed");
 }
 
 #[test]
 fn esc_leaves_the_values_where_they_fill_the_screen() {
     let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, 40, 12));
-    stage.press("e").shows("parameters");
-    stage.press("\u{1b}").press("\u{1b}");
+    stage.press("e").shows("parameters").press("\u{1b}");
     assert_eq!(stage.focus(), "traces");
     stage.shows_no("parameters");
 }
