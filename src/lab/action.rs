@@ -140,6 +140,8 @@ pub enum Action {
 pub enum LessonKey {
     /// Opens the list of lessons, or closes it.
     List,
+    /// Closes the list of lessons; on a page it says how to leave.
+    Leave,
     /// Turns to the next page.
     Next,
     /// Turns to the page before.

@@ -1,10 +1,12 @@
 //! The browser: the list of presets and files, the filter, the selected entry and its preview.
 
-use super::preview::{Loader, Preview, read};
+use super::preview::{AT_ONCE, Loader, Preview, read};
+use super::sorting::Sorting;
 use crate::scenario::presets::PRESETS;
 use crate::text::printable::is_steering;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Files beyond this many are not listed.
 const MOST_FILES: usize = 1000;
@@ -25,6 +27,10 @@ pub struct Entry {
 #[derive(Debug, Default)]
 pub struct Browser {
     entries: Vec<Entry>,
+    /// How many files of the folder are left out because they hold no run.
+    others: usize,
+    /// The search for them, as long as it goes on.
+    sorting: Option<Sorting>,
     /// The name of the entry that is open in the lab.
     open: String,
     filter: String,
@@ -52,6 +58,8 @@ impl Browser {
         });
         let mut names = files(folder);
         names.retain(|name| may_be_read(Path::new(name)));
+        self.others = 0;
+        self.sorting = Some(Sorting::begin(&names));
         let files = names.into_iter().map(|name| Entry {
             name,
             is_file: true,
@@ -61,7 +69,32 @@ impl Browser {
         self.filter.clear();
         self.preview = None;
         self.is_chosen = false;
+        self.leave_out_others(AT_ONCE);
         self.refilter();
+    }
+
+    /// Takes the files that hold no run off the list, once they are known or are within `wait`. Returns whether there are
+    /// any. The selection stays on its entry.
+    fn leave_out_others(&mut self, wait: Duration) -> bool {
+        let Some(others) = self
+            .sorting
+            .as_ref()
+            .and_then(|sorting| sorting.others(wait))
+        else {
+            return false;
+        };
+        self.sorting = None;
+        self.others = others.len();
+        let choice = self.choice().cloned();
+        self.entries
+            .retain(|entry| !entry.is_file || !others.contains(&entry.name));
+        let kept = self
+            .shown()
+            .into_iter()
+            .position(|entry| Some(entry) == choice.as_ref());
+        let last = self.shown().len().saturating_sub(1);
+        self.selected = kept.unwrap_or(self.selected.min(last));
+        !others.is_empty()
     }
 
     /// Reads the selected file again and chooses it to be opened: [`take_chosen`](Self::take_chosen) gives what it holds.
@@ -103,6 +136,11 @@ impl Browser {
         self.entries.iter().filter(|entry| entry.is_file).count()
     }
 
+    /// How many TOML and CSV files of the folder are not listed, because they hold no run.
+    pub fn others(&self) -> usize {
+        self.others
+    }
+
     /// The number of the selected entry among those shown, from 0.
     pub fn selected(&self) -> usize {
         self.selected
@@ -120,11 +158,20 @@ impl Browser {
 
     /// Whether the selected entry is still being read.
     pub fn is_loading(&self) -> bool {
-        matches!(self.preview(), Some(Preview::Loading))
+        matches!(self.preview(), Some(Preview::Loading)) || self.sorting.is_some()
     }
 
-    /// Takes over the preview that has been read in the background; returns whether there was one.
+    /// Takes over what has been read in the background: the preview, and which files hold no run; returns whether there was
+    /// anything.
     pub fn take_news(&mut self) -> bool {
+        let is_shorter = self.leave_out_others(Duration::ZERO);
+        if is_shorter {
+            self.load_preview();
+        }
+        is_shorter | self.take_preview()
+    }
+
+    fn take_preview(&mut self) -> bool {
         match (&mut self.preview, self.loader.news()) {
             (Some((_, preview @ Preview::Loading)), Some(news)) => {
                 *preview = news;

@@ -23,9 +23,7 @@ impl Lab {
     /// Moves the focus to the values, and says which keys change them.
     pub(super) fn turn_to_parameters(&mut self) {
         self.view.turn_to(Pane::PARAMETERS);
-        self.say(
-            "Up and Down choose a value, Left and Right nudge it, Enter types it; u takes it back",
-        );
+        self.say("Up, Down choose a value; Left, Right nudge it; Enter types it; u undoes");
     }
 
     /// Moves the focus to the values of the push to come.

@@ -34,6 +34,7 @@ pub mod preview;
 mod rerun;
 mod script;
 pub mod sheet;
+mod sorting;
 mod steering;
 mod traces;
 mod travel;
@@ -58,12 +59,17 @@ use crate::storage::settings::Keeper;
 use crate::work::changed;
 use action::LessonKey;
 use player::halt_in_words;
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Duration;
 use view::{Pane, Part, View};
 
 /// What is said at the end of the scenario's run, before what to try next.
 const END_OF_RUN: &str = "end of the run: space goes on, r begins again";
+
+/// What a line about what to try says of the exact motion, and what it says where that is drawn.
+const ASKS_FOR_EXACT: &str = "t draws the exact motion";
+const HAS_EXACT: &str = "the exact motion is drawn in dashes";
 
 /// What the lab leaves to the rooms above it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -234,7 +240,7 @@ impl Lab {
 
     /// The line about what to try after the run: as a command or the scenario has it, or else the preset, as long as its
     /// motion is as it was opened.
-    fn next(&self) -> Option<&str> {
+    fn next(&self) -> Option<Cow<'_, str>> {
         let file = self.player.run().scenario().file.view.as_ref();
         let told = self.view.next.as_deref();
         let told = told.or_else(|| file?.next.as_deref());
@@ -242,7 +248,12 @@ impl Lab {
             None => presets::find(self.work.name()).map(|preset| preset.next),
             Some(_) => None,
         };
-        told.or_else(preset).filter(|next| !next.is_empty())
+        let next = told.or_else(preset).filter(|next| !next.is_empty())?;
+        // What is on the screen already is not to be asked for.
+        match self.player.run().overlay() {
+            Some(_) => Some(next.replace(ASKS_FOR_EXACT, HAS_EXACT).into()),
+            None => Some(next.into()),
+        }
     }
 
     /// From now on the run goes on at the scenario's end, until another is opened.
@@ -313,7 +324,9 @@ impl Lab {
 
     /// Reads the numbers of the run, and lists its values again if others are in force.
     fn read_now(&mut self) {
-        self.player.read(self.now, &self.view);
+        if let Some(said) = self.player.read(self.now, &self.view) {
+            self.say(said);
+        }
         self.turn_camera();
         self.changed = true;
         let step = self.player.playback.step_number();
@@ -397,9 +410,9 @@ impl Lab {
     }
 
     /// The line about what there is to see in the run.
-    pub fn note(&self) -> &str {
+    pub fn note(&self) -> Cow<'_, str> {
         if self.view.hides(Part::LookAt) {
-            return "";
+            return "".into();
         }
         let file = || changed::look_at(self.player.run().scenario());
         let told = self.view.look_at.as_deref();
@@ -411,10 +424,12 @@ impl Lab {
         let changed = self.work.changed_from_file();
         if told.is_none() && changed.is_some() && self.view.sheet.is_some() {
             // The page says what the run is. The file's line speaks of another one.
-            return "";
+            return "".into();
         }
         let note = told.or(changed).or_else(file);
-        note.unwrap_or("? lists the keys; the scenario's own line, view.look_at, would stand here")
+        let note = note
+            .unwrap_or("? lists the keys; the scenario's own line, view.look_at, would stand here");
+        note.into()
     }
 
     /// The message at the bottom of the screen: the steps that are being taken, the message, or the export's progress.

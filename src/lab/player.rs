@@ -16,6 +16,7 @@ use crate::observe::lookup;
 use crate::observe::pace::Speed;
 use crate::observe::playback::{Halt, Playback};
 use crate::observe::reading::{self, Reading};
+use crate::observe::recording::Curve;
 use crate::run::{Clock, Sample, Simulation};
 use crate::scenario::{Motion, Scenario};
 use crate::work::expression::Expression;
@@ -135,12 +136,15 @@ impl Player {
             || matches!(self.playback.speed(), Speed::Times(speed) if speed * passes_s > FAST * window_s)
     }
 
-    /// Reads the numbers, and begins to look for advice if they are doubtful.
-    pub(super) fn read(&mut self, now: Duration, view: &View) {
+    /// Reads the numbers, and begins to look for advice if they are doubtful. Returns what is to be said where another curve
+    /// of the same run has become the one of the fast motion.
+    pub(super) fn read(&mut self, now: Duration, view: &View) -> Option<&'static str> {
         self.reading = self.playback.read();
         self.read_at = now;
         self.read_off(view.cursor);
+        let of_this_run = self.has_detail.then_some(self.detail.curve);
         self.choose_detail(now, view);
+        let is_other = of_this_run.is_some_and(|before| before != self.detail.curve);
         self.explain(view);
         if self.is_advised
             && self.advisor.is_none()
@@ -148,6 +152,10 @@ impl Player {
         {
             self.advisor = Some(Advisor::ask(self.to_be_mended()));
         }
+        is_other.then_some(match self.detail.curve {
+            Curve::Tilt => "the upper strip shows the tilt again: it swings",
+            _ => "the upper strip shows x now: it swings, and the tilt does not",
+        })
     }
 
     /// Looks up the numbers at the cursor, unless they are known.
@@ -225,8 +233,18 @@ impl Player {
             Place::End => self.playback.end_step(),
         };
         self.heading = None;
+        let end = self.playback.end_step();
+        let is_beyond = step > end && step > self.run().furthest();
         self.playback.go_to(step);
-        Ok(Done::SILENT.going_on(UnderWay::Going))
+        let done = match is_beyond {
+            true => Done::saying(format!(
+                "step {} is beyond the end of the run, step {}: it is played on to there",
+                HumanCount(step),
+                HumanCount(end)
+            )),
+            false => Done::SILENT,
+        };
+        Ok(done.going_on(UnderWay::Going))
     }
 
     /// The step at `time_s`.

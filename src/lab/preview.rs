@@ -7,7 +7,7 @@ use std::time::Duration;
 
 /// How long a selection waits for its preview before the picture says that it is being read: what is read at once
 /// shows at once.
-const AT_ONCE: Duration = Duration::from_millis(15);
+pub(super) const AT_ONCE: Duration = Duration::from_millis(15);
 
 /// What is known of the selected entry.
 #[derive(Clone, Debug)]

@@ -1,14 +1,14 @@
 //! What the lab does with an action: it carries out the commands that the action stands for, or changes the interface,
 //! which no command does: dialogs, the browser, the focus, dots and colours.
 
-use super::action::{Action, Direction};
+use super::action::{Action, Direction, LessonKey};
 use super::carry_out::{Answer, Done};
 use super::command::{Command, CursorTo};
 use super::commands_of::{FAR, repeated};
 use super::dialog::Dialog;
 use super::on_top::{Cleared, Mode};
 use super::script::{GO_ON_WITH_IT, GO_ON_WITH_THEM};
-use super::view::Pane;
+use super::view::{Pane, Part};
 use super::{Lab, Request};
 
 /// Rows of a page in lists.
@@ -25,7 +25,10 @@ impl Lab {
             self.values.forget_nudge();
         }
         match self.commands_of(action, cleared.count) {
-            Ok(Some(commands)) => self.carry_out_all(&commands),
+            Ok(Some(commands)) => {
+                self.carry_out_all(&commands);
+                self.say_what_is_hidden(action);
+            }
             Ok(None) => {
                 let request = self.change_interface(action, cleared);
                 if request.is_some() {
@@ -37,6 +40,24 @@ impl Lab {
         self.view.keep_focus();
         self.read_now();
         None
+    }
+
+    /// Says what `action` has hidden, and the key that brings it back.
+    fn say_what_is_hidden(&mut self, action: Action) {
+        let (part, hidden, shown) = match action {
+            Action::ToggleHealth => (
+                Part::Health,
+                "the line about the numbers is hidden: H shows it again",
+                "the line about the numbers is shown",
+            ),
+            Action::TogglePredicted => (
+                Part::Predicted,
+                "what theory predicts is hidden: T shows it again",
+                "what theory predicts is shown",
+            ),
+            _ => return,
+        };
+        self.say(if self.view.hides(part) { hidden } else { shown });
     }
 
     /// Carries out `command` as a key does: what was said before goes, and its message is shown.
@@ -100,7 +121,7 @@ impl Lab {
             Action::Parameters | Action::GoToCursor => self.turn_to_parameters(),
             Action::Edit if self.view.focus != Pane::PARAMETERS => self.turn_to_parameters(),
             Action::Edit if self.values.selected().is_none() => {
-                self.say("no value has that in its name: Esc shows all of them");
+                self.say("no value to set has that in its name: Esc shows all of them");
             }
             Action::Edit => {
                 if let Some(dialog) = Dialog::value(&self.values) {
@@ -166,7 +187,7 @@ impl Lab {
             Action::InField(edit) => self.on_top.edit_field(edit),
             Action::Accept => return self.accept(),
             Action::Help => self.on_top.toggle_help(),
-            Action::Close => self.close(cleared.anything),
+            Action::Close => return self.close(&cleared),
             Action::Lesson(key) => return Some(Request::Lesson(key)),
             Action::Redraw => return Some(Request::Redraw),
             Action::Suspend if self.files.confined().is_some() => {
@@ -219,17 +240,17 @@ impl Lab {
     }
 
     /// Closes or stops one thing: what lies on top, the script, the steps asked for, the cursor, the pane that fills the
-    /// screen, the export. Then it turns from the parameters back to the run. If there is none of these, it says how to
+    /// screen; it turns from the parameters back to the run; it stops the export. If there is none of these, it says how to
     /// leave, unless the key has already removed a message or a count.
-    fn close(&mut self, has_cleared: bool) {
+    fn close(&mut self, cleared: &Cleared) -> Option<Request> {
         let is_found = self.on_top.mode() == Mode::Find;
         let is_filtered = self.on_top.mode() == Mode::Lab && self.view.focus == Pane::PARAMETERS;
         if (is_found || is_filtered) && self.values.forget_name() {
             self.on_top.close();
-            return;
+            return None;
         }
         if self.on_top.close() {
-            return;
+            return None;
         }
         if !self.script.is_done() {
             self.stop_script();
@@ -240,13 +261,22 @@ impl Lab {
         } else if self.view.filled {
             self.carry_out_all(&[Command::Fill(None)]);
             self.turn_to_sheet();
-        } else if has_cleared {
+            // The values fill a screen that has no place for them beside the run: they are left with it.
+            if !self.view.side_by_side.contains(&Pane::PARAMETERS) {
+                self.view.leave_parameters();
+            }
+        } else if cleared.count.is_none() && self.view.leave_parameters() {
+            // Back to the run, whatever message was removed with it.
+        } else if cleared.anything {
             // The key has done something already.
         } else if self.files.is_exporting() {
             self.files.stop_export();
-        } else if !self.view.leave_parameters() {
+        } else if self.view.sheet.is_some() {
+            return Some(Request::Lesson(LessonKey::Leave));
+        } else {
             self.say("nothing to close; q leaves");
         }
+        None
     }
 
     /// Turns to the values, to type a part of the name of one.

@@ -15,6 +15,9 @@ const MOST_SWINGS: f64 = 12.0;
 const FEWEST_SWINGS: f64 = 4.0;
 /// Where the run comes to the end of the window, this part of it is taken off its beginning.
 const PAGE: f64 = 0.25;
+/// x is shown where it turns so many times as often as the tilt, and no longer where it does not turn this often.
+const BECOMES_X: f64 = 3.0;
+const STAYS_X: f64 = 1.5;
 /// The least window, time steps.
 const LEAST_STEPS: f64 = 10.0;
 
@@ -69,9 +72,11 @@ impl Wanted {
 impl Detail {
     /// The window for `run` with these `readouts`; `before` is the last one.
     pub fn new(run: &LiveRun, readouts: &Readouts, wanted: &Wanted, before: Option<&Self>) -> Self {
-        let (curve, swing_s) = match readouts.swing_s() {
-            None => of_x(run.recording(), wanted.long_s),
-            some => (Curve::Tilt, some),
+        let swing_s = readouts.swing_s();
+        let was_x = before.is_some_and(|before| before.curve == Curve::X);
+        let (curve, swing_s) = match of_x(run.recording(), wanted.long_s, was_x) {
+            Some(of_x) if was_x || swing_s.is_none() => (Curve::X, Some(of_x)),
+            _ => (Curve::Tilt, swing_s),
         };
         let least_s = LEAST_STEPS * readouts.time_step_s;
         let window_s = wanted.window_s.unwrap_or_else(|| {
@@ -101,19 +106,18 @@ impl Detail {
     }
 }
 
-/// What is shown where the tilt does not swing: x with its period, s, where that is short beside `long_s` (s).
-fn of_x(recording: &Recording, long_s: f64) -> (Curve, Option<f64>) {
-    let Some(whole) = recording.whole() else {
-        return (Curve::Tilt, None);
-    };
+/// The period of x, s, where x swings while the tilt hardly does, in a time short beside `long_s` (s); with `was_x` it has
+/// done so before, and the tilt must swing more often to be taken instead.
+fn of_x(recording: &Recording, long_s: f64, was_x: bool) -> Option<f64> {
+    let whole = recording.whole()?;
     let since_s = (whole.end_s - long_s).max(0.0);
-    let blocks = recording.since(since_s);
-    let turns: u32 = blocks.map(|block| block.turns(Curve::X)).sum();
-    let swing_s = 2.0 * (whole.end_s - since_s) / f64::from(turns);
-    match turns > 2 && MOST_SWINGS * swing_s < long_s {
-        true => (Curve::X, Some(swing_s)),
-        false => (Curve::Tilt, None),
-    }
+    let turns = recording.since(since_s).fold([0, 0], |[x, tilt], block| {
+        [x + block.turns(Curve::X), tilt + block.turns(Curve::Tilt)]
+    });
+    let [x, tilt] = turns.map(f64::from);
+    let swing_s = 2.0 * (whole.end_s - since_s) / x;
+    let more_often = if was_x { STAYS_X } else { BECOMES_X };
+    (x > 2.0 && x > more_often * tilt && MOST_SWINGS * swing_s < long_s).then_some(swing_s)
 }
 
 /// A length of 1, 2 or 5 times a power of ten for swings of `swing_s`; `before_s` as long as that is right (all s).
@@ -176,6 +180,37 @@ mod tests {
                 (detail.begin_s..=detail.begin_s + detail.window_s).contains(&now_s),
                 "{preset}"
             );
+        }
+    }
+
+    #[test]
+    fn a_motion_keeps_to_one_curve() {
+        // The curve of a free body is x as soon as that is seen to swing; of the others the tilt all the time.
+        for (preset, most) in [
+            ("poinsot", 0),
+            ("method-2", 0),
+            ("wobble-push", 0),
+            ("wing-nut", 1),
+        ] {
+            let (mut run, _) = at(preset, 0);
+            let end_s = run.scenario().steps as f64 * run.scenario().motion.time_step_s;
+            let mut before: Option<Detail> = None;
+            let mut changes = 0;
+            for step in 0..run.scenario().steps.min(2500) {
+                run.step().unwrap();
+                if !step.is_multiple_of(20) {
+                    continue;
+                }
+                let wanted = Wanted::following(end_s);
+                let detail = {
+                    let readouts = run.readouts();
+                    Detail::new(&run, &readouts, &wanted, before.as_ref())
+                };
+                let is_other = |before: &Detail| before.curve != detail.curve;
+                changes += u32::from(before.as_ref().is_some_and(is_other));
+                before = Some(detail);
+            }
+            assert!(changes <= most, "{preset}: {changes} changes");
         }
     }
 

@@ -24,10 +24,10 @@ macro_rules! presets {
 /// Every preset: the report's first, in the report's order, then the textbook's, then famous motions of solid bodies.
 pub const PRESETS: &[Preset] = presets![
     "method-1": "o opens method-1-steeper: L further from the axle, and a wider circle."
-    "method-1-steeper": "t draws the exact motion beside it: how far apart are they at the end?"
+    "method-1-steeper": "t draws the exact motion: how far apart are the two at the end?"
     "method-2-slow": "o opens method-2: the same start at dt 0.1 s, where the precession shows."
     "method-2": "t draws the exact motion: how much of the swing in z is the time step's?"
-    "wobble-push": "t draws the exact motion of the same push: does it wobble?"
+    "wobble-push": "t draws the exact motion: does it wobble under the same push?"
     "wobble-push-accumulating": "o opens wobble-push: the same push, which does not grow."
     "fast-top": "e, then |L|: half of it doubles the precession and makes the nutation larger."
     "cusps": "o opens waves and loops: the same top, started with and against its precession."

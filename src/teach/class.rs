@@ -162,6 +162,15 @@ impl Class {
                 }
             }
             (_, LessonKey::List) => self.open_list(),
+            (Shown::List { .. }, LessonKey::Leave) => {
+                self.shown = Shown::Nothing;
+                lab.refuse(
+                    "the lessons are closed: L lists them again, each stands where it was left",
+                );
+            }
+            (_, LessonKey::Leave) => {
+                lab.refuse("nothing to close: L lists the lessons, Esc there leaves them; q quits");
+            }
             (Shown::List { selected, .. }, LessonKey::Move(direction)) => {
                 *selected = selected.saturating_add_signed(rows(direction));
             }
@@ -170,7 +179,7 @@ impl Class {
                 self.open_selected(selected, lab);
             }
             (Shown::List { .. }, _) => {
-                lab.refuse("Enter opens the selected lesson, L closes the list");
+                lab.refuse("Enter opens the selected lesson, L goes back, Esc leaves the lessons");
             }
             (Shown::Nothing, _) => lab.refuse("no lesson is open: L lists them"),
             (Shown::Lesson(taken), key) => scrolls = taken.act(key, lab),

@@ -263,7 +263,7 @@ impl Taken {
             }
             LessonKey::Move(direction) => return Some(direction),
             LessonKey::Take => self.take(lab),
-            LessonKey::List => {}
+            LessonKey::List | LessonKey::Leave => {}
         }
         None
     }

@@ -52,11 +52,12 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     }
     chrome::title(lab, layout.title, buf);
     timeline::draw(lab, layout.timeline, buf);
-    if !lab.view().hides(Part::Health) {
+    let hint = chrome::place_of_hint(lab, &layout);
+    if !lab.view().hides(Part::Health) && hint == layout.hint {
         chrome::health(lab, layout.health, buf);
     }
     if !lab.view().bare || chrome::has_message(lab) {
-        chrome::hint(lab, keys && layout.is_cramped, layout.hint, buf);
+        chrome::hint(lab, keys && layout.is_cramped, hint, buf);
     }
     chrome::keys(lab, layout.keys, buf);
     draw_on_top(lab, body(&layout), buf);

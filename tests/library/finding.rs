@@ -163,15 +163,33 @@ fn values_are_found_by_their_names() {
 }
 
 #[test]
+fn numbers_that_are_read_off_are_found_too() {
+    let mut stage = open(SMALL);
+    stage.press("/prec").shows("no value to set has it");
+    stage
+        .shows("not to be set")
+        .shows("precession")
+        .shows("predicted");
+    stage.shows_no("nutation");
+    stage
+        .press(ESC)
+        .press("/energy")
+        .shows("energy ")
+        .shows_no("precession");
+    let mut stage = open(LARGE);
+    stage.press("e").press("f").press("/turns").shows("/step");
+}
+
+#[test]
 fn a_name_that_no_value_has_is_said_and_cleared() {
     let mut stage = open(SMALL);
     stage
         .press("e/qz")
         .shows("/qz_ 0 of 0")
-        .shows("no value has that name");
+        .shows("no value to set has it");
     stage
         .press("\n")
-        .shows("no value has that in its name")
+        .shows("no value to set has that in its name")
         .press("→");
     stage.lab.paste("x\n");
     stage.shows("/qzx_");

@@ -1,7 +1,8 @@
 //! What the lab says, read by one who has never seen it.
 
-use crate::support::stage::{SMALL, Stage};
+use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::tui::keymap::Key;
+use ratatui::layout::Rect;
 use rustix::fs::{CWD, FileType, Mode, mknodat};
 use std::sync::mpsc;
 use std::thread;
@@ -35,7 +36,7 @@ fn what_was_changed_is_told_of_a_preset_as_of_a_file() {
 fn a_file_that_takes_long_to_read_does_not_hold_up_the_browser() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("tardy.toml");
-    std::fs::write(&path, "").unwrap();
+    std::fs::write(&path, "[motion]\n").unwrap();
     let (done, result) = mpsc::channel();
     thread::spawn(move || {
         let mut stage = Stage::open("method-2", &[], SMALL);
@@ -50,4 +51,104 @@ fn a_file_that_takes_long_to_read_does_not_hold_up_the_browser() {
     result
         .recv_timeout(patience)
         .expect("it waits for the file");
+}
+
+#[test]
+fn what_keys_do_without_a_picture_is_said() {
+    let mut stage = Stage::open("method-2", &[], LARGE);
+    stage.commands("pause = true\ngo_to = 100");
+    stage.press("H").shows("H shows it again");
+    stage
+        .press("H")
+        .shows("the line about the numbers is shown");
+    stage.press("T").shows("T shows it again");
+    stage.press("T").shows("what theory predicts is shown");
+    // Arrows say what they do in the pane that has the focus.
+    stage
+        .press("↓")
+        .shows("Left and Right move the cursor here");
+    stage.press("\t↓").shows("z and Z zoom here");
+    // A step beyond the end is said to be one; on the way to it as well as there.
+    stage.press("g2400\n").wait(2.0);
+    stage.shows("step 2,400 is beyond the end of the run, step 2,300");
+    stage
+        .press("g2350\n")
+        .wait(0.5)
+        .shows_no("is beyond the end");
+}
+
+#[test]
+fn what_to_try_next_is_not_on_the_screen_already() {
+    let mut stage = Stage::open("method-2", &[], LARGE);
+    stage
+        .commands("pause = true\ngo_to = 2290\nrun = true")
+        .wait(2.0);
+    stage.shows("Next: t draws the exact motion");
+    let mut stage = Stage::open("method-2", &[], LARGE);
+    stage
+        .commands("pause = true\nexact = true\ngo_to = 2290\nrun = true")
+        .wait(2.0);
+    stage
+        .shows("Next: the exact motion is drawn in dashes")
+        .shows_no("t draws");
+}
+
+#[test]
+fn a_long_message_has_the_line_above_it_on_a_small_screen() {
+    let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, 40, 12));
+    stage.commands("pause = true\ngo_to = 100");
+    stage.shows("strobed").press("e");
+    stage
+        .shows("Up, Down choose a value; Left, Right")
+        .shows("nudge it; Enter types it; u undoes");
+    stage.shows_no("strobed").wait(6.0).shows("strobed");
+}
+
+#[test]
+fn esc_leaves_the_values_where_they_fill_the_screen() {
+    let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, 40, 12));
+    stage.press("e").shows("parameters").press("\u{1b}");
+    assert_eq!(stage.focus(), "traces");
+    stage.shows_no("parameters");
+}
+
+#[test]
+fn esc_leads_out_of_the_lessons() {
+    let mut stage = Stage::open("method-2", &[], LARGE);
+    stage.lesson("halve-the-step", 1).wait(6.0);
+    // First it stops what the page is doing, and takes messages away.
+    for _ in 0..3 {
+        stage.press("\u{1b}");
+    }
+    stage.shows("L lists the lessons, Esc there leaves them");
+    stage.press("L").press("\u{1b}").press("\u{1b}");
+    assert!(stage.lab.view().sheet.is_none());
+}
+
+#[test]
+fn the_list_of_files_has_those_that_hold_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    let preset = gyrolab::scenario::presets::find("cusps").unwrap().text;
+    write("mine.toml", preset);
+    write("broken.toml", "[motion]\ntime_step_s = -1\n");
+    write("dotted.toml", "title = 'x'\nmotion.time_step_s = 1\n");
+    write("other.toml", "[package]\nname = 'motion'\n");
+    let header: String = preset.lines().map(|line| format!("# {line}\n")).collect();
+    write("run.csv", &format!("{header}step,t_s\n0,0\n"));
+    write("table.csv", "a,b\n1,2\n");
+    let mut browser = gyrolab::lab::browser::Browser::new(folder.path(), "method-2");
+    while browser.others() == 0 {
+        browser.take_news();
+        thread::sleep(Duration::from_millis(5));
+    }
+    let files = browser.shown().into_iter().filter(|entry| entry.is_file);
+    let names: Vec<_> = files
+        .map(|entry| entry.name.rsplit('/').next().unwrap())
+        .collect();
+    assert_eq!(
+        names,
+        ["broken.toml", "dotted.toml", "mine.toml", "run.csv"]
+    );
+    assert_eq!((browser.files(), browser.others()), (4, 2));
 }

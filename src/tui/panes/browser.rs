@@ -75,13 +75,30 @@ pub fn row_at(browser: &Browser, area: Rect, at: Position) -> Option<usize> {
     (is_in_list && row < browser.shown().len()).then_some(row)
 }
 
-/// What can be done with the list, and what is in it beside the presets.
-fn keys(files: usize) -> String {
-    match files {
-        0 => "/ filters by name, Enter opens".to_owned(),
-        1 => "/ filters by name, Enter opens; a file of this folder stands below".to_owned(),
-        _ => format!("/ filters by name, Enter opens; {files} files of this folder stand below"),
-    }
+/// What can be done with the list, and what is in it beside the presets, in as many words as `width` columns hold.
+fn keys(files: usize, others: usize, width: usize) -> String {
+    const KEYS: &str = "/ filters by name, Enter opens";
+    let files = match files {
+        0 => "no file of this folder holds a run".to_owned(),
+        1 => "below: a file of this folder".to_owned(),
+        _ => format!("below: {files} files of this folder"),
+    };
+    let others = match others {
+        0 => String::new(),
+        _ => format!(", {others} more hold no run"),
+    };
+    let forms = [
+        format!("{KEYS}; {files}{others}"),
+        format!("/ filters, Enter opens; {files}{others}"),
+        format!("{KEYS}; {files}"),
+        format!("/ filters, Enter opens; {files}"),
+    ];
+    let fits = |form: &&String| form.len() <= width;
+    forms
+        .iter()
+        .find(fits)
+        .map_or(KEYS, String::as_str)
+        .to_owned()
 }
 
 impl BrowserPane<'_> {
@@ -89,7 +106,11 @@ impl BrowserPane<'_> {
         let shown = self.browser.shown().len();
         let (text, role) = match (self.mode, self.browser.filter()) {
             (Mode::Filter, filter) => (format!("/{filter}_  ({shown})"), Role::Focus),
-            (_, "") => (keys(self.browser.files()), Role::Quiet),
+            (_, "") => {
+                let (files, others) = (self.browser.files(), self.browser.others());
+                let room = area.width.saturating_sub(2) as usize;
+                (keys(files, others, room), Role::Quiet)
+            }
             (_, filter) => (format!("/{filter}  ({shown})"), Role::Text),
         };
         write(area, (1, 0), &text, self.theme.style(role), buf);

@@ -6,7 +6,9 @@ use crate::lab::action::{Action, LessonKey};
 use crate::lab::{Lab, MOST_COUNTED};
 use crate::observe::reading::Reading;
 use crate::text::number::{fixed, shortest};
+use crate::text::wrap::wrapped;
 use crate::tui::keymap::{BINDINGS, Binding, Key, Mode};
+use crate::tui::layout::Layout;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -137,6 +139,27 @@ pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
 }
 
+/// Where the hint of `lab` stands: on its lines, or, for a message that has no room there, on the line above too, that
+/// about the numbers or on a bare screen the last of a pane, as long as the message stays.
+pub fn place_of_hint(lab: &Lab, layout: &Layout) -> Rect {
+    let place = layout.hint;
+    let width = place.width.saturating_sub(2) as usize;
+    let is_long = || wrapped(&said(lab).0, width).len() > place.height as usize;
+    if !has_message(lab) || !is_long() {
+        return place;
+    }
+    match lab.view().bare {
+        true if place.y > 1 => Rect {
+            y: place.y - 1,
+            height: place.height + 1,
+            ..place
+        },
+        true => place,
+        false if layout.health.is_empty() => place,
+        false => place.union(layout.health),
+    }
+}
+
 /// What is to be said now; else what there is to see. On a small screen, that there would be more, if there is room.
 pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
     let (text, role) = said(lab);
@@ -191,7 +214,7 @@ fn said_of_run(lab: &Lab) -> (String, Role) {
             Role::Focus,
         ),
         (None, Some(notice)) => (notice, Role::Focus),
-        (None, None) => (lab.note().to_owned(), Role::Text),
+        (None, None) => (lab.note().into_owned(), Role::Text),
     }
 }
 

@@ -142,7 +142,10 @@ impl Parameters<'_> {
             WATCHED_FROM.. => spare.max(height * 2 / 5),
             _ => 0,
         };
-        let read = read_rows(self.view, self.reading, room);
+        let read = match editor.name() {
+            "" => read_rows(self.view, self.reading, room),
+            name => self.found(name, room),
+        };
         let lower = read.len() as u16;
         let upper = Rect {
             height: area.height - lower,
@@ -163,8 +166,14 @@ impl Parameters<'_> {
         if count == 0 {
             return self.edited_above_read(editor, area, buf);
         }
-        let mut read = derived_rows(self.scenario);
-        read.extend(shown(self.view, now_rows(self.reading)));
+        let read = match editor.name() {
+            "" => {
+                let mut read = derived_rows(self.scenario);
+                read.extend(shown(self.view, now_rows(self.reading)));
+                read
+            }
+            name => self.found(name, usize::MAX),
+        };
         let edited = edited_rows(editor);
         let height = area.height.saturating_sub(1) as usize;
         let grouped = by_group(&edited, height).map_or(usize::MAX, |columns| columns.len());
@@ -182,6 +191,27 @@ impl Parameters<'_> {
         };
         let rows = fitting(read, right.height as usize);
         self.lines(&rows, right, buf);
+    }
+
+    /// The numbers that cannot be edited and have `name` in theirs, with what theory predicts for them, in `room` lines.
+    fn found(&self, name: &str, room: usize) -> Vec<Row> {
+        let mut rows = derived_rows(self.scenario);
+        rows.extend(shown(self.view, now_rows(self.reading)));
+        rows.extend(shown(self.view, further_rows(self.reading)));
+        let name = name.to_lowercase();
+        let mut is_found = false;
+        rows.retain(|row| {
+            let label = row.label.to_lowercase();
+            let is_of_row_above = is_found && row.label == PREDICTED;
+            is_found = !row.is_heading()
+                && (is_of_row_above || name.split_whitespace().all(|word| label.contains(word)));
+            is_found
+        });
+        if !rows.is_empty() {
+            rows.insert(0, heading("not to be set"));
+        }
+        rows.truncate(room);
+        rows
     }
 
     /// `rows` of `editor` in `count` columns, each `wide` columns of the screen: as many as there is room for around the

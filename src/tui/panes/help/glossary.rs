@@ -47,6 +47,10 @@ pub(super) const GLOSSARY: &[Word] = &[
         "the angle between axle and L; a scheme with too long a time step makes it too large, and the axle then swings about it",
     ),
     (
+        "lags",
+        "\"axle lags L 198 times too far\": the angle between axle and L is so many times that of the exact motion",
+    ),
+    (
         "run",
         "a scenario and what was done to it, played from step 0",
     ),
@@ -57,6 +61,10 @@ pub(super) const GLOSSARY: &[Word] = &[
     (
         "step",
         "the number of a time step, counted from 0, which is the start",
+    ),
+    (
+        "wobble",
+        "a fast swing of the axle after a push; one that the exact motion (t) does not have is the time step's",
     ),
     (
         "scheme",
@@ -171,8 +179,20 @@ pub(super) const GLOSSARY: &[Word] = &[
         "the upper strip of the traces: the tilt over about ten swings, enlarged; the others show a longer time",
     ),
     (
-        "· ═ : │ █",
-        "the line below the panes: what lies ahead, a push, an edit, the scenario's end, where the run stands",
+        "timeline",
+        "the line below the panes: the run from its start to its end; a click on it, or g, goes there",
+    ),
+    (
+        "─ · ═ : │ █",
+        "on the timeline: the way so far, what lies ahead, a push, an edit, the scenario's end, where the run stands",
+    ),
+    (
+        "┤",
+        "on the timeline: how far the pinned run has been; beside a strip of the traces: the height of the value before it",
+    ),
+    (
+        "~0",
+        "in the step pane: zero but for rounding, less than 4e-15 of the largest number beside it",
     ),
     (
         "×20",

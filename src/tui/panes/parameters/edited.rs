@@ -38,7 +38,7 @@ pub(super) fn edited_rows(editor: &Editor) -> Vec<Row> {
         }
     }
     if rows.is_empty() && !editor.name().is_empty() {
-        rows.push(heading("no value has that name"));
+        rows.push(heading("no value to set has it"));
     }
     rows
 }

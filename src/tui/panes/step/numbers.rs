@@ -14,6 +14,11 @@ const UNIT: usize = 6;
 const AROUND: usize = 4;
 /// Digits of a number, where there is room for so many.
 const DIGITS: std::ops::RangeInclusive<usize> = 3..=9;
+/// A number smaller than this part of the largest beside it is what rounding leaves of a zero: some units in the last
+/// place of the terms that it is made of.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// What stands for it: it is not exactly zero.
+const ALMOST_ZERO: &str = "~0";
 /// A component of which fewer digits than this would be seen is written with an exponent.
 const LEAST_SEEN: i32 = 3;
 
@@ -47,7 +52,8 @@ impl Format {
     }
 
     /// `numbers` with as many decimals as the largest needs, each as wide as a cell, the point in one column. A number
-    /// that is small beside it, but not zero, is written with an exponent: it shall not look like zero.
+    /// that is small beside it, but not zero, is written with an exponent: it shall not look like zero. One that is the
+    /// rounding of the others is written as almost zero.
     pub fn aligned(self, numbers: &[f64]) -> Vec<String> {
         let sizes = numbers.iter().map(|number| number.abs());
         let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
@@ -64,6 +70,9 @@ impl Format {
         }
         if number == 0.0 {
             return "0".to_owned();
+        }
+        if number.abs() <= ROUNDING * largest {
+            return ALMOST_ZERO.to_owned();
         }
         let digits = self.digits as i32;
         let power = libm::floor(libm::log10(largest)) as i32;
@@ -172,6 +181,14 @@ mod tests {
         assert_eq!(
             shown(&[1.5e9, -2e9, 0.001]),
             " 1.50000e9 -2.0000e9 1.0000e-3"
+        );
+        assert_eq!(
+            shown(&[8e-16, 220.9, -3e-12]),
+            "        ~0   220.900 -3.00e-12"
+        );
+        assert_eq!(
+            shown(&[8e-16, 0.0, 8e-16]),
+            " 8.000e-16         0 8.000e-16"
         );
         assert_eq!(shown(&[f64::NAN]), "       n/a");
         assert_eq!(shown(&[-0.0]), "         0");
