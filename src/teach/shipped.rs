@@ -33,6 +33,7 @@ pub const LESSONS: &[Shipped] = lessons![
     "kappa-and-the-scheme"
     "what-is-conserved"
     "halve-the-step"
+    "two-roads-and-a-poor-fit"
 ];
 
 /// The lesson of that name.
