@@ -12,14 +12,14 @@ use crate::scenario::{Document, Problem, Problems};
 use crate::study::fit::report::Report;
 use crate::study::fit::table::{self, Asked};
 use crate::study::fit::{Fit, Free, Model, NoFit, fit as fitted, free};
-use crate::text::number::significant;
+use crate::text::number::{NONE, significant};
 use crate::text::printable::{Shown, brief};
 use anyhow::{Context, anyhow};
 use clap::Args;
 use clap::error::ErrorKind;
-use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
 use toml::Value;
 
 #[derive(Debug, Args)]
@@ -110,18 +110,33 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     free::are_apart(&keys)?;
     let model = Model::new(&document, keys, measured)?;
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
-    let ticker = RefCell::new(Ticker::new());
+    let ticker = Mutex::new((Ticker::new(), String::new()));
+    let tick = |now: Option<String>| {
+        // Of several that have something to tell at once, one does.
+        if let Ok(mut locked) = ticker.try_lock() {
+            let (ticker, step) = &mut *locked;
+            *step = now.unwrap_or_else(|| std::mem::take(step));
+            ticker.show(&format!("{} runs{step}", model.runs()));
+        }
+    };
     let told = |step: u64, sum: f64| {
         let sum = if sum.is_finite() {
             significant(sum, 4)
         } else {
-            "n/a".to_owned()
+            NONE.to_owned()
         };
-        let text = format!("step {step}, {} runs, chi^2 {sum}", model.runs());
-        ticker.borrow_mut().show(&text);
+        tick(Some(format!(", step {step}, chi^2 {sum}")));
     };
-    let found = fitted(&model, &|| !interruption.has_come(), &told);
-    ticker.borrow().clear();
+    let goes_on = || {
+        tick(None);
+        !interruption.has_come()
+    };
+    let found = fitted(&model, &goes_on, &told);
+    ticker
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .0
+        .clear();
     let found = match found {
         Ok(found) => found,
         Err(NoFit::Interrupted) => return Ok(ExitCode::from(INTERRUPTED)),

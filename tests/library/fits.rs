@@ -177,9 +177,9 @@ fn the_scatter_of_fits_is_the_covariance_that_they_state() {
     let stated = fits[0].solution.correlation(0, 1).unwrap();
     // Of sixty pairs the correlation scatters by (1 - r^2)/sqrt(60) = 0.13 at most.
     is_near("correlation", correlation, stated, 0.4);
-    for index in 0..2 {
+    for (index, name) in FREE.into_iter().enumerate() {
         let ratio = covariance(index, index).sqrt() / fits[0].keys[index].sigma.unwrap();
-        is_near(FREE[index], ratio, 1.0, 0.35);
+        is_near(name, ratio, 1.0, 0.35);
     }
 }
 

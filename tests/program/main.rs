@@ -13,6 +13,7 @@ mod commands;
 mod compare;
 mod escapes;
 mod figures;
+mod fit;
 mod journeys;
 mod lessons;
 mod manual;

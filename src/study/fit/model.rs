@@ -3,7 +3,7 @@
 use super::free::Free;
 use super::levenberg::Stop;
 use crate::analysis::at_end;
-use crate::analysis::readouts::Readout;
+use crate::analysis::readouts::{self, Readout};
 use crate::measured::{
     Data, Measured, Point, Quantity, Residual, Series, Table, at_times, residuals,
 };
@@ -174,7 +174,7 @@ impl Model {
                 let read =
                     read.map_err(|why| Stop::Impossible(format!("in {}: {why}", self.row(row))))?;
                 let read = read.ok_or(Stop::Interrupted)?;
-                Ok(read.iter().map(|value| value.number()).collect())
+                Ok(read.iter().map(readouts::Value::number).collect())
             })
             .collect::<Result<_, Stop>>()?;
         let of = |datum: &Datum| self.finite(datum, rows[datum.point.row][datum.column]);

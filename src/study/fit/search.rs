@@ -153,13 +153,13 @@ pub fn fit(
             });
         }
         if !weights.count_settings {
-            return finished(model, minimum, weights, steps, go_on);
+            return finished(model, &minimum, weights, steps, go_on);
         }
         let next = Weights::at(model, &minimum.p, go_on)?;
         let change = next.change_from(&weights);
         p.clone_from(&minimum.p);
         if change <= SETTLED {
-            return finished(model, minimum, weights, steps, go_on);
+            return finished(model, &minimum, weights, steps, go_on);
         }
         weights = next;
     }
@@ -176,12 +176,12 @@ fn told(model: &Model, p: &[f64]) -> String {
 /// What the data say at `minimum`.
 fn finished(
     model: &Model,
-    minimum: Minimum,
+    minimum: &Minimum,
     weights: Weights,
     steps: u64,
     go_on: &(dyn Fn() -> bool + Sync),
 ) -> Result<Fit, NoFit> {
-    let solution = Solution::of(&minimum, &model.free);
+    let solution = Solution::of(minimum, &model.free);
     let values = model.values(&minimum.p, go_on)?;
     let mut residuals = model.residuals(&values);
     for (residual, sigma) in residuals.iter_mut().zip(&weights.sigma) {

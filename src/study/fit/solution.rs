@@ -78,7 +78,7 @@ impl Solution {
         }
         let is_known = |place: usize| {
             let in_unseen = |k: &usize| v_t[(*k, place)].abs() > PART;
-            !unseen.iter().any(|k| in_unseen(k))
+            !unseen.iter().any(in_unseen)
         };
         for i in (0..moving.len()).filter(|&place| is_known(place)) {
             for j in (0..moving.len()).filter(|&place| is_known(place)) {

@@ -1,0 +1,154 @@
+//! `gyrolab fit`: what it prints, its CSV, its figure, its exit codes, and what it refuses.
+
+use crate::support::ground::{GYROLAB, Ground, code};
+use std::fs;
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+const NUTATION: [&str; 7] = [
+    "fit",
+    "heidelberg-nutation",
+    "--in",
+    "heidelberg",
+    "--set",
+    "body.point.0.at_m.2=0",
+    "--free=body.part.0.moments_kg_m2.2",
+];
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+#[track_caller]
+fn refused(output: &Output, with: i32, words: &str) {
+    let told = text(&output.stderr);
+    assert_eq!(code(output), with, "{told}");
+    assert!(told.contains(words), "{words}: {told}");
+}
+
+#[test]
+fn it_says_the_value_with_its_uncertainty_and_whether_the_model_fits() {
+    let ground = Ground::new();
+    let output = ground.run(&NUTATION);
+    assert_eq!((code(&output), text(&output.stderr)), (0, String::new()));
+    let told = text(&output.stdout);
+    assert!(
+        told.contains("body.part.0.moments_kg_m2.2  0.003751(27)  0.00375"),
+        "{told}"
+    );
+    assert!(told.contains("\nThe model fits, but the uncertainties are too large: chi^2 0.718 at 9 degrees of freedom"), "{told}");
+}
+
+#[test]
+fn json_has_what_the_text_has() {
+    let ground = Ground::new();
+    let output = ground.run(&[&NUTATION[..], &["--json"]].concat());
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let near = |value: &serde_json::Value, wanted: f64| {
+        let value = value.as_f64().unwrap();
+        assert!((value / wanted - 1.0).abs() < 1e-3, "{value} {wanted}");
+    };
+    near(&json["keys"][0]["value"], 3.7515e-3);
+    near(&json["chi_squared"], 0.7183);
+    assert_eq!(json["degrees_of_freedom"], 9);
+    assert_eq!(json["fits"], true);
+    assert_eq!(json["correlation"][0][0], 1.0);
+    assert_eq!(json["residuals"].as_array().unwrap().len(), 10);
+}
+
+#[test]
+fn the_csv_is_drawn_and_runs_again() {
+    let ground = Ground::new();
+    let with = |more: &[&str]| ground.run(&[&NUTATION[..], more].concat());
+    let output = with(&["-o", "fit.csv"]);
+    assert_eq!((code(&output), text(&output.stdout)), (0, String::new()));
+    assert!(text(&output.stderr).ends_with("gyrolab: 10 rows in fit.csv\n"));
+    refused(
+        &with(&["-o", "fit.csv"]),
+        1,
+        "fit.csv exists; --force replaces it",
+    );
+    let drawn = ground.run(&["figure", "fit.csv", "-o", "fit.svg"]);
+    assert_eq!(code(&drawn), 0, "{}", text(&drawn.stderr));
+    let run = ground.run(&["run", "fit.csv", "--steps", "1"]);
+    assert_eq!(code(&run), 0, "{}", text(&run.stderr));
+    let on_stdout = with(&["-o", "-"]);
+    let csv = fs::read(ground.file("fit.csv")).unwrap();
+    assert_eq!(text(&on_stdout.stdout), text(&csv));
+}
+
+#[test]
+fn what_is_wrong_is_told_with_the_remedy() {
+    let ground = Ground::new();
+    let fit = |args: &[&str]| ground.run(&[&["fit"], args].concat());
+    fs::write(ground.file("lab.csv"), "t_min,tilt_deg\n0,1\n").unwrap();
+    refused(
+        &fit(&["lab.csv", "--in", "cusps", "--free", "start.tilt_deg"]),
+        1,
+        "lab.csv:1: t_min: is in min, and is wanted in s: name the column t_s, its values multiplied by 60",
+    );
+    fs::write(ground.file("lab.csv"), "t_s,tilt_deg\n0,20\n").unwrap();
+    refused(
+        &fit(&[
+            "lab.csv",
+            "--in",
+            "cusps",
+            "--free",
+            "start.tilt_deg,start.momentum_Js.2",
+        ]),
+        1,
+        "gyrolab: lab.csv in cusps: 1 measured value cannot say 2 values: free fewer keys, or measure more",
+    );
+    refused(&fit(&["lab.csv", "--in", "cusps"]), 2, "--free");
+    refused(
+        &fit(&[
+            "lab.csv",
+            "--in",
+            "cusps",
+            "--free",
+            "start.tilt_deg",
+            "--rows",
+            "2",
+        ]),
+        1,
+        "--rows 2: there is no row 2: the data have 1",
+    );
+    let full = ["-o", "/dev/full"];
+    refused(
+        &ground.run(&[&NUTATION[..], &full].concat()),
+        1,
+        "cannot write /dev/full",
+    );
+}
+
+#[test]
+fn ctrl_c_ends_it_with_130_and_leaves_no_file() {
+    let ground = Ground::new();
+    // A million seconds of a scheme that steps by milliseconds.
+    fs::write(ground.file("long.csv"), "t_s,tilt_deg\n0,20\n1000000,20\n").unwrap();
+    let mut fit = Command::new(GYROLAB)
+        .args([
+            "fit",
+            "long.csv",
+            "--in",
+            "cusps",
+            "--scheme",
+            "rk4",
+            "--free",
+            "start.tilt_deg",
+            "-o",
+            "fit.csv",
+        ])
+        .current_dir(ground.path())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    sleep(Duration::from_millis(500));
+    let ended = Command::new("kill")
+        .args(["-INT", &fit.id().to_string()])
+        .status();
+    assert!(ended.unwrap().success());
+    assert_eq!(fit.wait().unwrap().code(), Some(130));
+    assert_eq!(ground.files(), ["long.csv"]);
+}
