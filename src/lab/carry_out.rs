@@ -191,6 +191,8 @@ impl Lab {
             Command::Cursor(to) => self.set_cursor(*to),
             Command::Window(window_s) => self.set_window(*window_s),
             Command::Exact(shown) => Ok(self.player.set_exact(*shown)),
+            Command::Measured(name) => self.measure(name.as_deref()),
+            Command::Residuals(shown) => self.show_residuals(*shown),
             Command::TakeAdvice => self.follow_advice(),
             Command::Pin(pinned) => Ok(self.player.set_pinned(*pinned)),
             Command::Show(panes) => {
