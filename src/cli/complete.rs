@@ -195,6 +195,11 @@ fn columns(current: &OsStr) -> Vec<CompletionCandidate> {
     found
 }
 
+fn measured(current: &OsStr) -> Vec<CompletionCandidate> {
+    let shipped = named(current, SHIPPED.iter().map(|data| (data.name, "")));
+    with_files(current, shipped, &["csv"])
+}
+
 fn readouts(current: &OsStr) -> Vec<CompletionCandidate> {
     let readouts = READOUTS.iter();
     named(
@@ -204,10 +209,6 @@ fn readouts(current: &OsStr) -> Vec<CompletionCandidate> {
 }
 
 /// Measured data that come with the program, and files of such.
-fn measured(current: &OsStr) -> Vec<CompletionCandidate> {
-    let shipped = named(current, SHIPPED.iter().map(|data| (data.name, "")));
-    with_files(current, shipped, &["csv"])
-}
 
 /// Dotted keys that hold a number, behind those that are typed with commas between them; of vectors each number.
 fn free_keys(current: &OsStr) -> Vec<CompletionCandidate> {

@@ -5,13 +5,14 @@ use super::chart::legend::longest_name;
 use super::chart::{Axis, Chart, Panel, Series, Style};
 use super::course::{self, Course, Wanted};
 use super::dense;
-use super::kind::Kind;
+use super::kind::{Kind, Plotted};
+use super::measured;
 use super::names::names;
 use super::page::letters;
 use super::page::scene::Scene;
 use super::quantity;
 use super::space;
-use crate::export::columns::Column;
+use crate::measured::Measured;
 use crate::run::Truth;
 use crate::scenario::Scenario;
 use std::ops::ControlFlow;
@@ -28,6 +29,8 @@ pub struct Request {
     pub to_s: Option<f64>,
     /// Whether the exact motion is drawn beside them.
     pub exact: bool,
+    /// What was measured on a run, to be drawn with them.
+    pub measured: Option<Arc<Measured>>,
     /// Width of the page, pt.
     pub width_pt: f64,
 }
@@ -74,7 +77,14 @@ pub fn figure(
     let mut warnings = Vec::new();
     let mut broke = None;
     let mut drawn = Vec::new();
-    let named = names(runs, request.exact, longest_name(request.width_pt));
+    let is_beside = request.exact || request.measured.is_some();
+    let named = names(runs, is_beside, longest_name(request.width_pt));
+    if let Kind::Residuals = &request.kind {
+        let title = title(runs);
+        let name = |(run, name): (&Run, String)| (Arc::clone(&run.scenario), name);
+        let runs: Vec<_> = runs.iter().zip(named).map(name).collect();
+        return measured::residuals(title, &runs, request, watch);
+    }
     for (index, (run, name)) in runs.iter().zip(named).enumerate() {
         let Some(course) = course::play(&run.scenario, &wanted, &mut watch) else {
             return Ok(None);
@@ -114,20 +124,24 @@ pub fn figure(
     let title = title(runs);
     let scene = match &request.kind {
         Kind::OverTime(columns) => {
-            let chart = over_time(title, columns, &drawn, request);
+            let mut chart = over_time(title, columns, &drawn, request);
+            warnings.extend(measured::over_time(&mut chart, columns, runs, request)?);
             warnings.extend(dense::warning(&chart, &drawn, request));
             chart.scene()
         }
         Kind::Above => {
-            let chart = above(title, runs, &drawn, request);
+            let mut chart = above(title, runs, &drawn, request);
+            warnings.extend(measured::above(&mut chart, runs, request)?);
             warnings.extend(path_warning(&chart, &drawn, request));
             chart.scene()
         }
         Kind::ThreeD => {
             let (scene, warning) = space::scene(&title, runs, &drawn, request);
             warnings.extend(warning);
+            warnings.extend(measured::in_space(request));
             scene
         }
+        Kind::Residuals => return Ok(None), // drawn above
     };
     Ok(Some(Figure {
         scene,
@@ -140,6 +154,7 @@ fn wanted(request: &Request) -> Wanted {
     let (columns, path) = match &request.kind {
         Kind::OverTime(columns) => (columns.clone(), false),
         Kind::Above | Kind::ThreeD => (Vec::new(), true),
+        Kind::Residuals => (Vec::new(), false),
     };
     Wanted {
         columns,
@@ -207,24 +222,19 @@ fn truths(runs: &[Run], room_pt: f64) -> Vec<(&Run, String)> {
     distinct.iter().map(|run| (*run, name(run))).collect()
 }
 
-fn over_time(
-    title: String,
-    columns: &[&'static Column],
-    drawn: &[Drawn],
-    request: &Request,
-) -> Chart {
+fn over_time(title: String, columns: &[Plotted], drawn: &[Drawn], request: &Request) -> Chart {
     let ends = drawn.iter().map(|drawn| drawn.course.end_s);
     let end_s = ends.fold(0.0, f64::max);
     let range = (end_s > request.from_s).then_some((request.from_s, end_s));
-    let panel = |(place, column): (usize, &&Column)| Panel {
-        y: quantity::axis(column.name),
+    let panel = |(place, column): (usize, &Plotted)| Panel {
+        y: quantity::axis(column.name()),
         series: drawn
             .iter()
             .map(|drawn| Series {
                 name: drawn.name.clone(),
                 points: drawn.course.curves[place].points(),
-                errors: Vec::new(),
                 style: drawn.style.clone(),
+                ..Series::default()
             })
             .collect(),
         ..Panel::default()
@@ -254,8 +264,8 @@ fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Request) -> Cha
     let series = drawn.iter().map(|drawn| Series {
         name: drawn.name.clone(),
         points: drawn.course.path.iter().map(|at| [at[0], at[1]]).collect(),
-        errors: Vec::new(),
         style: drawn.style.clone(),
+        ..Series::default()
     });
     let series: Vec<_> = series.collect();
     let circles = match (request.exact, runs) {
@@ -318,7 +328,7 @@ fn circles(run: &Run) -> Vec<f64> {
 }
 
 /// The stretches of both axes: one is never less than half of the other, so that a path along a line has a picture too.
-fn both_ranges(series: &[Series], circles: &[f64]) -> ((f64, f64), (f64, f64)) {
+pub(super) fn both_ranges(series: &[Series], circles: &[f64]) -> ((f64, f64), (f64, f64)) {
     const LEAST: f64 = 0.5;
     let ends = || circles.iter().flat_map(|radius| [-radius, *radius]);
     let range = |index: usize| {

@@ -149,7 +149,10 @@ impl Lab {
             } => {
                 let scenario = self.run_up_to(*to_step, "draw")?;
                 let path = self.files.path_of(path);
-                self.files.draw(&scenario, &path, (kind, *exact), *force)
+                let beside = self.player.measured();
+                let measured = beside.map(|beside| Arc::clone(beside.measured()));
+                let what = (kind.as_str(), *exact);
+                self.files.draw(&scenario, &path, what, measured, *force)
             }
             Command::Save {
                 path,

@@ -7,22 +7,20 @@
 mod compared;
 mod opening;
 
-pub use compared::{Compared, Largest, Place, Shown, Sum};
+pub use compared::{Compared, Largest, Shown, Sum};
 
 use super::player::Player;
-use crate::measured::{Data, Measured, Quantity, Reader, Series};
+use crate::measured::{Measured, Quantity, Reader, Series};
 use crate::observe::ghost::Ghost;
 use crate::observe::recording::{Curve, Moment, Recording};
 use crate::run::Simulation;
-use crate::scenario::Scenario;
+use crate::scenario::{Problems, Scenario};
 use nalgebra::Vector3;
 use std::sync::Arc;
 use std::time::Duration;
 
 /// Quantities that a recording holds beside the tilt: in the places of x, y and z.
 const IN_A_RECORDING: usize = Curve::OF_POINT.len();
-/// What is said of a table of runs.
-const TABLE: &str = "is a table of runs: each of its rows is a run of its own, so it cannot stand beside a single one; gyrolab fit holds such a table against a scenario, and what stands beside a run has a column t_s";
 /// Steps between two looks at the clock.
 const BETWEEN_LOOKS: u64 = 32;
 
@@ -50,11 +48,8 @@ impl Beside {
         name: &str,
         measured: Measured,
         scenario: &Arc<Scenario>,
-    ) -> Result<Self, &'static str> {
-        let Data::Series(series) = &measured.data else {
-            return Err(TABLE);
-        };
-        let series = Arc::new(series.clone());
+    ) -> Result<Self, Problems> {
+        let series = Arc::new(measured.series()?.clone());
         let mut beside = Self {
             name: name.to_owned(),
             simulation: Simulation::new(Arc::clone(scenario)),
@@ -210,11 +205,7 @@ impl Player {
     ///
     /// # Errors
     /// Where they are a table of runs.
-    pub(super) fn set_measured(
-        &mut self,
-        name: &str,
-        measured: Measured,
-    ) -> Result<(), &'static str> {
+    pub(super) fn set_measured(&mut self, name: &str, measured: Measured) -> Result<(), Problems> {
         self.measured = Some(Beside::new(name, measured, self.run().scenario())?);
         Ok(())
     }
@@ -248,6 +239,10 @@ impl Player {
             Some(beside) if beside.is_behind(step) => {
                 let deadline = clock() + share;
                 beside.follow(step, || clock() >= deadline);
+                // While the run moves, numbers are read a few times a second.
+                if !self.is_moving() {
+                    self.compare();
+                }
                 true
             }
             _ => false,

@@ -306,6 +306,7 @@ fn no_mark_covers_the_word_for_a_push_straight_down() {
                 run: &now,
                 ghost: None,
                 pinned: None,
+                measured: None,
                 view: &view(&now, Marker::Braille),
                 reading: None,
             };

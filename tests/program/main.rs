@@ -16,6 +16,7 @@ mod figures;
 mod journeys;
 mod lessons;
 mod manual;
+mod measured;
 mod messages;
 mod mouse;
 mod readme;

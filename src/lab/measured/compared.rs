@@ -1,10 +1,7 @@
 //! Measured data held against a run: each value with what the run says of it, and all of them in a few numbers.
 
-use crate::measured::{Curve, Quantity, Series, residuals};
-use nalgebra::{Vector2, Vector3};
-
-/// A traced point that is nearer to the axle than this part of its distance from the pivot is on it.
-const ON_AXLE: f64 = 1e-9;
+use crate::measured::{Curve, Place, Quantity, Series, places, residuals};
+use nalgebra::Vector3;
 
 /// Measured data and what the run says of them.
 #[derive(Clone, Debug, Default)]
@@ -28,17 +25,6 @@ pub struct Shown {
     pub sigma: Option<f64>,
     /// What the run says; `None` for times that it has not reached.
     pub model: Option<f64>,
-}
-
-/// Where the traced point was measured to be, from above.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    /// When, s.
-    pub time_s: f64,
-    /// x and y, m.
-    pub at: Vector2<f64>,
-    /// One standard uncertainty of each, m, where it is stated.
-    pub sigmas: [Option<f64>; 2],
 }
 
 /// How far data and run are apart, in a few numbers.
@@ -162,70 +148,13 @@ impl Sum {
     }
 }
 
-/// Where the traced point was measured to be: by x and y, or else by tilt and azimuth, where it is on the axle.
-fn places(series: &Series, traced: &Vector3<f64>) -> Vec<Place> {
-    let of = |name: &str| {
-        let mut curves = series.curves.iter();
-        curves.find(|curve| curve.quantity.name == name)
-    };
-    let is_on_axle = traced.xy().norm() <= ON_AXLE * traced.norm();
-    let polar = || Some((of("tilt_deg")?, of("azimuth_deg")?)).filter(|_| is_on_axle);
-    let (pair, is_polar) = match (of("x_m").zip(of("y_m")), polar()) {
-        (Some(pair), _) => (pair, false),
-        (None, Some(pair)) => (pair, true),
-        (None, None) => return Vec::new(),
-    };
-    let mut second = pair.1.points.iter().peekable();
-    let mut places = Vec::new();
-    for first in &pair.0.points {
-        while second.next_if(|point| point.row < first.row).is_some() {}
-        let Some(other) = second.next_if(|point| point.row == first.row) else {
-            continue;
-        };
-        let (values, sigmas) = ([first.value, other.value], [first.sigma, other.sigma]);
-        let (at, sigmas) = match is_polar {
-            true => on_axle(traced.z, values, sigmas),
-            false => (values, sigmas),
-        };
-        places.push(Place {
-            time_s: series.times_s[first.row],
-            at: at.into(),
-            sigmas,
-        });
-    }
-    places
-}
-
-/// x and y, and their uncertainties, of a point on the axle `length_m` from the pivot, from tilt and azimuth, degrees, which
-/// are uncertain independently of each other.
-fn on_axle(
-    length_m: f64,
-    [tilt, azimuth]: [f64; 2],
-    [of_tilt, of_azimuth]: [Option<f64>; 2],
-) -> ([f64; 2], [Option<f64>; 2]) {
-    let (sin_tilt, cos_tilt) = libm::sincos(tilt.to_radians());
-    let (sin, cos) = libm::sincos(azimuth.to_radians());
-    let at = [length_m * sin_tilt * cos, length_m * sin_tilt * sin];
-    if (of_tilt, of_azimuth) == (None, None) {
-        return (at, [None, None]);
-    }
-    let radians = |sigma: Option<f64>| sigma.unwrap_or(0.0).to_radians();
-    let outwards = length_m * cos_tilt * radians(of_tilt);
-    let around = length_m * sin_tilt * radians(of_azimuth);
-    let sigma = |out: f64, round: f64| Some(libm::hypot(outwards * out, around * round));
-    (at, [sigma(cos, sin), sigma(sin, cos)])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measured::{Data, read};
+    use crate::measured::read;
 
     fn series(text: &str) -> Series {
-        match read("test.csv", text).unwrap().data {
-            Data::Series(series) => series,
-            Data::Table(_) => panic!("a series was expected"),
-        }
+        read("test.csv", text).unwrap().series().unwrap().clone()
     }
 
     fn up() -> Vector3<f64> {
@@ -253,23 +182,6 @@ mod tests {
             panic!("{:?}", late.scatter)
         };
         assert_eq!((quantity.name, scatter), ("tilt_deg", 5.0_f64.sqrt()));
-    }
-
-    #[test]
-    fn tilt_and_azimuth_tell_the_place_from_above() {
-        let series = series(
-            "t_s,tilt_deg,tilt_uncertainty_deg,azimuth_deg,azimuth_uncertainty_deg\n0,30,1,90,2\n1,,,90,2\n2,90,1,180,\n",
-        );
-        let none = [Vec::new(), Vec::new()];
-        let places = Compared::new(&series, &none, 0.0, &up()).places;
-        assert_eq!(places.len(), 2, "a row without a tilt is no place");
-        let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
-        assert!(near(places[0].at.x, 0.0) && near(places[0].at.y, 1.0));
-        let degree = 1_f64.to_radians();
-        assert!(near(places[0].sigmas[0].unwrap(), 2.0 * degree));
-        assert!(near(places[0].sigmas[1].unwrap(), 3_f64.sqrt() * degree));
-        let aside = Vector3::new(0.1, 0.0, 1.0);
-        assert!(Compared::new(&series, &none, 0.0, &aside).places.is_empty());
     }
 
     #[test]

@@ -48,8 +48,7 @@ impl Lab {
     /// Reads the measured data `name` and puts them beside the run.
     fn put_beside(&mut self, name: &str, may_wait: bool) -> Result<(), Problems> {
         let measured = self.files.open_measured(name, may_wait)?;
-        let put = self.player.set_measured(name, measured);
-        put.map_err(|rule| Problems::one(name, Problem::at("", rule)))?;
+        self.player.set_measured(name, measured)?;
         self.view.measured = true;
         self.player.catch_up_measured();
         self.read_now();

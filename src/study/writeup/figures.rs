@@ -87,6 +87,7 @@ pub fn figures(
             from_s: 0.0,
             to_s,
             exact,
+            measured: None,
             width_pt: COLUMN_PT,
         };
         let Some(figure) = of_runs::figure(&runs, &request, &mut watch)? else {

@@ -26,7 +26,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let room = area.width.saturating_sub(1) as usize;
     let mark = lab.view().marker.point().to_string();
     let what = match lab.view().residuals {
-        true => " measured less run: ",
+        true => " residuals: ",
         false => " measured: ",
     };
     let counts = [counted(beside, sum), format!("({})", points(sum.points))];

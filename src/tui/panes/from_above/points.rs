@@ -1,7 +1,7 @@
 //! Where the traced point was measured to be, from above.
 
 use super::{FromAbove, Plan};
-use crate::lab::measured::Place;
+use crate::measured::Place;
 use crate::tui::points::{Ends, Points};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
