@@ -36,7 +36,9 @@ fn data(scenario: &Scenario, columns: &[(&str, f64)], off: impl Fn(usize) -> f64
             write!(text, ",{:?},{sigma}", value + off(number) * sigma).unwrap();
         }
         text.push('\n');
-        (0..10).for_each(|_| drop(simulation.step().unwrap()));
+        (0..10).for_each(|_| {
+            simulation.step().unwrap();
+        });
     }
     text
 }
@@ -126,13 +128,9 @@ fn a_key_without_data_says_how_to_get_them() {
     stage.press("E");
     assert!(stage.picture().contains("gyrolab --measured FILE"));
     stage.commands("measured = 'heidelberg-spin-decay'");
-    assert!(
-        stage
-            .picture()
-            .contains("× measured: heidelberg-spin-decay (7 points)")
-    );
+    assert!(stage.picture().contains("× measured: heidelberg-"));
     stage.commands("measured = 'none'");
-    assert!(!stage.picture().contains("×"), "{}", stage.picture());
+    assert!(!stage.picture().contains("× measured"));
 }
 
 #[test]

@@ -8,8 +8,7 @@ fn one_key_shows_the_residuals() {
     let text = "t_s,x_m,x_uncertainty_m\n0,0.02,0.01\n1,0.04,0.01\n2,0.09,0.01\n";
     ground.write("bench.csv", text);
     let mut lab = ground.open(&["--paused", "--at", "15", "--measured", "bench.csv"]);
-    lab.wait_for("× measured: bench.csv (x: 3 points)");
-    lab.wait_for("at 2");
+    lab.wait_for("× measured: bench.csv (2 of 3 points)");
     lab.ask("E", "× residuals: bench.csv");
     lab.ask("E", "× measured: bench.csv");
     lab.press("q");

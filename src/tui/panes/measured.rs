@@ -3,6 +3,7 @@
 use super::{shortened, write};
 use crate::lab::Lab;
 use crate::lab::measured::{Beside, Sum};
+use crate::measured::Quantity;
 use crate::text::number::short;
 use crate::text::printable::printable;
 use crate::text::wrap::columns;
@@ -29,7 +30,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         true => " residuals: ",
         false => " measured: ",
     };
-    let counts = [counted(beside, sum), format!("({})", points(sum.points))];
+    let counts = counted(beside, sum);
     let parts = [parts(sum, false), parts(sum, true)];
     let name = file_name(beside.name());
     let length = |counts: &str, parts: &[String]| {
@@ -81,11 +82,18 @@ fn points(count: usize) -> String {
     }
 }
 
-/// What was measured, and how many values there are.
-fn counted(beside: &Beside, sum: &Sum) -> String {
-    let quantities = beside.quantities();
-    let names: Vec<_> = quantities.map(|quantity| quantity.words()).collect();
-    format!("({}: {})", names.join(", "), points(sum.points))
+/// What was measured, how many values there are, and how many of them the run has reached: at length and in short.
+fn counted(beside: &Beside, sum: &Sum) -> [String; 2] {
+    let names: Vec<_> = beside.quantities().map(Quantity::words).collect();
+    let (names, all) = (names.join(", "), points(sum.points));
+    match sum.compared {
+        0 => [format!("({names}: {all})"), format!("({all})")],
+        reached if reached == sum.points => [format!("({names}: {all})"), format!("({all})")],
+        reached => [
+            format!("({names}: {all}, {reached} reached so far)"),
+            format!("({reached} of {all})"),
+        ],
+    }
 }
 
 /// How far the data are from the run, the most important first: at length, or in short.
@@ -94,19 +102,13 @@ fn parts(sum: &Sum, in_short: bool) -> Vec<String> {
         return vec!["none of them reached yet".to_owned()];
     }
     let mut parts = Vec::new();
-    let reached = match (sum.compared == sum.points, in_short) {
-        (true, _) => String::new(),
-        (false, true) => format!(" at {}", sum.compared),
-        (false, false) => format!(" at the {} reached so far", sum.compared),
-    };
     if sum.weighed > 0 {
-        let of_some = sum.weighed < sum.compared;
-        let weighed = match (of_some, in_short) {
-            (false, _) => reached.clone(),
-            (true, true) => format!(" at {}", sum.weighed),
-            (true, false) => format!(" at the {} with an uncertainty", sum.weighed),
-        };
-        parts.push(format!("chi² {}{weighed}", short(sum.chi_squared)));
+        let chi = short(sum.chi_squared);
+        parts.push(match (sum.weighed < sum.compared, in_short) {
+            (false, _) => format!("chi² {chi}"),
+            (true, true) => format!("chi² {chi} at {}", sum.weighed),
+            (true, false) => format!("chi² {chi} at the {} with an uncertainty", sum.weighed),
+        });
     }
     if let Some(largest) = sum.largest {
         let (sigmas, words) = (short(largest.sigmas), largest.quantity.words());
@@ -119,11 +121,11 @@ fn parts(sum: &Sum, in_short: bool) -> Vec<String> {
         });
     }
     for (quantity, scatter) in &sum.scatter {
-        let off = format!("{} {}", short(*scatter), quantity.unit());
-        parts.push(match (in_short, sum.weighed > 0) {
-            (true, _) => format!("{} off {off}", quantity.words()),
-            (false, true) => format!("{} off by {off} (rms)", quantity.words()),
-            (false, false) => format!("{} off by {off} (rms){reached}", quantity.words()),
+        let (words, off) = (quantity.words(), short(*scatter));
+        let unit = quantity.unit();
+        parts.push(match in_short {
+            true => format!("{words} off {off} {unit}"),
+            false => format!("{words} off by {off} {unit} (rms)"),
         });
     }
     parts
