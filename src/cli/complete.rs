@@ -195,6 +195,7 @@ fn columns(current: &OsStr) -> Vec<CompletionCandidate> {
     found
 }
 
+/// Measured data that come with the program, and files of such.
 fn measured(current: &OsStr) -> Vec<CompletionCandidate> {
     let shipped = named(current, SHIPPED.iter().map(|data| (data.name, "")));
     with_files(current, shipped, &["csv"])
@@ -207,8 +208,6 @@ fn readouts(current: &OsStr) -> Vec<CompletionCandidate> {
         readouts.map(|readout| (readout.name, readout.meaning)),
     )
 }
-
-/// Measured data that come with the program, and files of such.
 
 /// Dotted keys that hold a number, behind those that are typed with commas between them; of vectors each number.
 fn free_keys(current: &OsStr) -> Vec<CompletionCandidate> {
