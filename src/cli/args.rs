@@ -146,6 +146,10 @@ pub(super) struct WorkbenchArgs {
     #[arg(long, value_name = "DIR")]
     pub(super) folder: Option<PathBuf>,
 
+    /// Put measured data beside the run: a CSV with a column t_s, or data that come with gyrolab (heidelberg-spin-decay)
+    #[arg(long, value_name = "FILE")]
+    pub(super) measured: Option<String>,
+
     /// Open with the run standing still
     #[arg(long)]
     pub(super) paused: bool,
@@ -226,6 +230,10 @@ pub(super) struct ShowArgs {
     /// Show what the commands in this file, [[do]] tables, or of stdin for -, lead to from step 0; gyrolab man lists them
     #[arg(long = "do", value_name = "FILE")]
     pub(super) commands: Option<PathBuf>,
+
+    /// Put measured data beside the run: a CSV with a column t_s, or data that come with gyrolab (heidelberg-spin-decay)
+    #[arg(long, value_name = "FILE")]
+    pub(super) measured: Option<String>,
 
     /// Columns and lines of the picture
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "80x24", value_parser = size)]

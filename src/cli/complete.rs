@@ -195,18 +195,18 @@ fn columns(current: &OsStr) -> Vec<CompletionCandidate> {
     found
 }
 
+/// Measured data that come with the program, and files of such.
+fn measured(current: &OsStr) -> Vec<CompletionCandidate> {
+    let shipped = named(current, SHIPPED.iter().map(|data| (data.name, "")));
+    with_files(current, shipped, &["csv"])
+}
+
 fn readouts(current: &OsStr) -> Vec<CompletionCandidate> {
     let readouts = READOUTS.iter();
     named(
         current,
         readouts.map(|readout| (readout.name, readout.meaning)),
     )
-}
-
-/// Measured data that come with the program, and files of such.
-fn measured(current: &OsStr) -> Vec<CompletionCandidate> {
-    let shipped = named(current, SHIPPED.iter().map(|data| (data.name, "")));
-    with_files(current, shipped, &["csv"])
 }
 
 /// Dotted keys that hold a number, behind those that are typed with commas between them; of vectors each number.

@@ -11,6 +11,7 @@ use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Figure, Request, Run};
 use crate::figure::table::Table;
 use crate::figure::{self, Format, PT_PER_MM, of_table};
+use crate::measured::{self, Measured};
 use crate::physics::scheme;
 use crate::scenario::Problems;
 use crate::text::number::shortest;
@@ -34,8 +35,8 @@ pub(super) struct FigureArgs {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
-    /// What to draw: traces (x, y, z over time), above, 3d, or columns of the CSV over time with commas between them
-    /// [default: traces]
+    /// What to draw: traces (x, y, z over time), above, 3d, columns of the CSV over time with commas between them, or
+    /// residuals (measured less run) [default: traces, or with --measured what was measured]
     #[arg(long, value_name = "KIND")]
     kind: Option<String>,
 
@@ -50,6 +51,10 @@ pub(super) struct FigureArgs {
     /// Draw the exact motion beside it, dashed
     #[arg(long)]
     exact: bool,
+
+    /// Draw measured data with it: a CSV with a column t_s, or data that come with gyrolab (heidelberg-spin-decay)
+    #[arg(long, value_name = "FILE")]
+    measured: Option<String>,
 
     /// Width of the page: 86mm for a column, 178mm for a page
     #[arg(long, value_name = "MM", default_value = "86mm", value_parser = width)]
@@ -126,7 +131,7 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
 
 /// What is drawn.
 enum Subject {
-    Runs(Vec<Run>, Kind),
+    Runs(Vec<Run>, Kind, Option<Arc<Measured>>),
     Table(Table),
 }
 
@@ -141,10 +146,14 @@ fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
         (None, _) => {
             let kind = args.kind.as_deref().map(Kind::named).transpose();
             let kind = kind.unwrap_or_else(|refusal| no_kind(args, &refusal));
-            Ok(Subject::Runs(
-                runs(args)?,
-                kind.unwrap_or_else(Kind::traces),
-            ))
+            let measured = args.measured.as_deref().map(measured::open).transpose()?;
+            let usual = match &measured {
+                Some(measured) => Kind::measured(measured.series()?),
+                None => Kind::traces(),
+            };
+            let kind = kind.unwrap_or(usual);
+            let measured = measured.map(Arc::new);
+            Ok(Subject::Runs(runs(args)?, kind, measured))
         }
         (Some(_), 2..) => {
             bail!("the table of a comparison, of a sweep or of a fit is drawn alone: give one file")
@@ -153,6 +162,7 @@ fn subject(args: &FigureArgs) -> anyhow::Result<Subject> {
             let is_changed = args.exact
                 || args.from.is_some()
                 || args.to.is_some()
+                || args.measured.is_some()
                 || !args.schemes.is_empty()
                 || args.changes.is_some()
                 || args.length.is_some();
@@ -210,8 +220,8 @@ fn drawn(
     args: &FigureArgs,
     interruption: &Interruption,
 ) -> anyhow::Result<Option<Figure>> {
-    let (runs, kind) = match subject {
-        Subject::Runs(runs, kind) => (runs, kind),
+    let (runs, kind, measured) = match subject {
+        Subject::Runs(runs, kind, measured) => (runs, kind, measured),
         Subject::Table(table) => {
             let columns = args
                 .kind
@@ -233,6 +243,7 @@ fn drawn(
         from_s: args.from.unwrap_or(0.0),
         to_s: args.to,
         exact: args.exact,
+        measured: measured.clone(),
         width_pt: args.width * PT_PER_MM,
     };
     for run in runs.iter().filter(|run| run.named.ends_with(".csv")) {

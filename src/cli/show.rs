@@ -24,6 +24,7 @@ pub(super) fn show(args: &ShowArgs) -> anyhow::Result<ExitCode> {
         changes: &args.changes,
         at: args.at,
         commands: args.commands.as_deref(),
+        measured: args.measured.as_deref(),
         size: args.size,
         markers: args.markers,
     })
@@ -37,6 +38,8 @@ pub(super) struct Picture<'a> {
     pub(super) changes: &'a Changes,
     pub(super) at: Option<u64>,
     pub(super) commands: Option<&'a Path>,
+    /// Measured data beside the run.
+    pub(super) measured: Option<&'a str>,
     /// Columns and lines.
     pub(super) size: (u16, u16),
     pub(super) markers: Option<Markers>,
@@ -52,6 +55,7 @@ pub(super) fn print_picture(wanted: Picture<'_>) -> anyhow::Result<ExitCode> {
     if let Some(folder) = wanted.confined {
         lab.files_mut().confine(folder);
     }
+    lab.begin_with_measured(wanted.measured)?;
     let end = match commands {
         Some(_) => 0,
         None => lab.player().run().scenario().steps,

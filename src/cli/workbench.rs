@@ -80,6 +80,7 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             changes: &args.changes,
             at: args.at,
             commands: args.commands.as_deref(),
+            measured: args.measured.as_deref(),
             size: (80, 24),
             markers: args.look.markers,
         });
@@ -116,6 +117,9 @@ fn open_at(
     }
     if let Some(folder) = confined {
         lab.files_mut().confine(folder);
+    }
+    if args.resume.is_none() || args.measured.is_some() {
+        lab.begin_with_measured(args.measured.as_deref())?;
     }
     lab.set_mouse(!args.look.no_mouse);
     lab.set_fps(args.fps.unwrap_or(FPS));

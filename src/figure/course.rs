@@ -1,7 +1,7 @@
 //! The numbers of a figure, from a run that is stepped through once more.
 
+use super::kind::Plotted;
 use super::over_time::OverTime;
-use crate::export::columns::Column;
 use crate::export::stream::{self, Ended};
 use crate::physics::State;
 use crate::physics::exact::LagrangeTop;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Wanted {
     /// The curves over time.
-    pub columns: Vec<&'static Column>,
+    pub columns: Vec<Plotted>,
     /// Whether the path of the traced point is wanted.
     pub path: bool,
     /// The stretch of time, s; `None`: to the end of the run.
@@ -59,11 +59,12 @@ impl Wanted {
         self.to_s.map_or(end_s, |to_s| to_s.min(end_s))
     }
 
-    fn course(&self, scenario: &Scenario) -> Recorder<'_> {
+    fn course<'a>(&'a self, scenario: &'a Scenario) -> Recorder<'a> {
         let edits = scenario.edits.iter().map(|edit| edit.motion.time_step_s);
         let least_s = edits.fold(scenario.motion.time_step_s, f64::min);
         Recorder {
             wanted: self,
+            scenario,
             end_s: self.end_s(scenario),
             places: Places::new(scenario.arm_m()),
             course: Course {
@@ -79,6 +80,7 @@ impl Wanted {
 /// Writes down what is asked for, step by step.
 struct Recorder<'a> {
     wanted: &'a Wanted,
+    scenario: &'a Scenario,
     end_s: f64,
     places: Places,
     course: Course,
@@ -100,7 +102,7 @@ impl Recorder<'_> {
         }
         let sample = sample();
         for (column, curve) in self.wanted.columns.iter().zip(&mut self.course.curves) {
-            curve.push(time_s, column.value(&sample).number());
+            curve.push(time_s, column.value(self.scenario, &sample));
         }
     }
 }
@@ -178,7 +180,7 @@ pub fn exact(
     let is_counted = wanted
         .columns
         .iter()
-        .any(|column| column.name == "azimuth_deg");
+        .any(|column| column.name() == "azimuth_deg");
     let begin_s = if is_counted {
         0.0
     } else {

@@ -2,40 +2,95 @@
 
 use crate::analysis::readouts;
 use crate::export::columns::{COLUMNS, Column};
+use crate::measured::quantity::QUANTITIES;
+use crate::measured::{Quantity, Series};
 use crate::observe::recording::Curve;
+use crate::run::Sample;
+use crate::scenario::Scenario;
 use crate::scenario::problem;
 use crate::scenario::screen::{ABOVE, THREE_D, TRACES};
 
 /// What a figure shows of a run.
 #[derive(Clone, Debug)]
 pub enum Kind {
-    /// Columns of its CSV over time, a panel each.
-    OverTime(Vec<&'static Column>),
+    /// Quantities over time, a panel each.
+    OverTime(Vec<Plotted>),
+    /// What was measured less what the run says, a panel for each quantity.
+    Residuals,
     /// The path of the traced point from above.
     Above,
     /// The same in space.
     ThreeD,
 }
 
+/// A quantity over time.
+#[derive(Clone, Copy, Debug)]
+pub enum Plotted {
+    /// A column of the run's CSV.
+    Column(&'static Column),
+    /// What can be measured and is no column.
+    Measurable(&'static Quantity),
+}
+
+/// The name of the figure of residuals.
+pub const RESIDUALS: &str = "residuals";
+
 /// The names that stand alone; a list of columns is the other way to name a figure.
-pub const NAMES: [&str; 3] = [TRACES, ABOVE, THREE_D];
+pub const NAMES: [&str; 4] = [TRACES, ABOVE, THREE_D, RESIDUALS];
+
+impl Plotted {
+    /// What is called `name`.
+    pub fn find(name: &str) -> Option<Self> {
+        let measurable = || Quantity::find(name).map(Self::Measurable);
+        Column::find(name).map(Self::Column).or_else(measurable)
+    }
+
+    /// The names of all there are.
+    fn names() -> impl Iterator<Item = &'static str> + Clone {
+        let others = QUANTITIES.iter().filter(|quantity| !quantity.is_column());
+        let columns = COLUMNS.iter().map(|column| column.name);
+        columns.chain(others.map(|quantity| quantity.name))
+    }
+
+    /// Its name, with the unit.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Column(column) => column.name,
+            Self::Measurable(quantity) => quantity.name,
+        }
+    }
+
+    /// Its value at `sample`, which is of a run of `scenario`.
+    pub fn value(self, scenario: &Scenario, sample: &Sample) -> f64 {
+        match self {
+            Self::Column(column) => column.value(sample).number(),
+            Self::Measurable(quantity) => quantity.of_sample(scenario, sample),
+        }
+    }
+}
 
 impl Kind {
     /// x, y and z of the traced point over time.
     pub fn traces() -> Self {
-        let column = |curve: Curve| Column::find(curve.column());
+        let column = |curve: Curve| Plotted::find(curve.column());
         Self::OverTime(Curve::OF_POINT.into_iter().filter_map(column).collect())
     }
 
-    /// The columns that it shows over time.
-    pub fn columns(&self) -> &[&'static Column] {
+    /// The quantities that it shows over time.
+    pub fn columns(&self) -> &[Plotted] {
         match self {
             Self::OverTime(columns) => columns,
-            Self::Above | Self::ThreeD => &[],
+            Self::Above | Self::ThreeD | Self::Residuals => &[],
         }
     }
 
-    /// The kind of that name: `traces`, `above`, `3d`, or columns with commas between them.
+    /// What was measured in `series`, over time.
+    pub fn measured(series: &Series) -> Self {
+        let names = series.curves.iter().map(|curve| curve.quantity.name);
+        Self::OverTime(names.filter_map(Plotted::find).collect())
+    }
+
+    /// The kind of that name: `traces`, `above`, `3d`, `residuals`, or columns with commas between them.
     ///
     /// # Errors
     /// When there is no such kind or column: what was meant, perhaps.
@@ -44,6 +99,7 @@ impl Kind {
             TRACES => return Ok(Self::traces()),
             ABOVE => return Ok(Self::Above),
             THREE_D => return Ok(Self::ThreeD),
+            RESIDUALS => return Ok(Self::Residuals),
             _ => {}
         }
         let names = name.split(',').map(str::trim);
@@ -54,18 +110,16 @@ impl Kind {
     }
 }
 
-fn column(name: &str) -> Result<&'static Column, String> {
+fn column(name: &str) -> Result<Plotted, String> {
     if NAMES.contains(&name) {
         return Err(format!(
             "{name} is a figure of its own: no columns can stand beside it"
         ));
     }
-    let known = NAMES
-        .into_iter()
-        .chain(COLUMNS.iter().map(|column| column.name));
-    Column::find(name).ok_or_else(|| match readouts::find(name) {
+    let known = NAMES.into_iter().chain(Plotted::names());
+    Plotted::find(name).ok_or_else(|| match readouts::find(name) {
         Some(_) => {
-            let columns: Vec<_> = COLUMNS.iter().map(|column| column.name).collect();
+            let columns: Vec<_> = Plotted::names().collect();
             format!(
                 "is a readout, one number of a run, and no column: a sweep's table is drawn by its readouts; over time there is {}",
                 columns.join(", ")
@@ -73,7 +127,7 @@ fn column(name: &str) -> Result<&'static Column, String> {
         }
         None => {
             let near = problem::nearest(name, known);
-            format!("is neither traces, above, 3d nor a column of the CSV: {near}")
+            format!("is neither traces, above, 3d, residuals nor a column of the CSV: {near}")
         }
     })
 }
@@ -84,8 +138,8 @@ mod tests {
 
     fn columns(kind: &Kind) -> Vec<&str> {
         match kind {
-            Kind::OverTime(columns) => columns.iter().map(|column| column.name).collect(),
-            Kind::Above | Kind::ThreeD => Vec::new(),
+            Kind::OverTime(columns) => columns.iter().map(|column| column.name()).collect(),
+            Kind::Above | Kind::ThreeD | Kind::Residuals => Vec::new(),
         }
     }
 

@@ -1,16 +1,18 @@
 //! Figures of runs: their curves over time, their paths from above and in space.
 
-mod charts;
+pub(super) mod charts;
 
 use super::chart::Style;
 use super::chart::legend::longest_name;
 use super::course::{self, Course, Wanted};
 use super::dense;
 use super::kind::Kind;
+use super::measured;
 use super::names::names;
 use super::page::letters;
 use super::page::scene::Scene;
 use super::space;
+use crate::measured::Measured;
 use crate::scenario::Scenario;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -26,6 +28,8 @@ pub struct Request {
     pub to_s: Option<f64>,
     /// Whether the exact motion is drawn beside them.
     pub exact: bool,
+    /// What was measured on a run, to be drawn with them.
+    pub measured: Option<Arc<Measured>>,
     /// Width of the page, pt.
     pub width_pt: f64,
 }
@@ -91,6 +95,13 @@ pub fn figures(
         if figures[first].is_some() {
             continue;
         }
+        if let Kind::Residuals = &request.kind {
+            let Some(figure) = residuals(runs, request, &mut watch)? else {
+                return Ok(None);
+            };
+            figures[first] = Some(figure);
+            continue;
+        }
         let alike = |other: &(usize, &Request)| request.is_alike(other.1);
         let group: Vec<_> = requests.iter().enumerate().filter(alike).collect();
         let kinds: Vec<&Kind> = group.iter().map(|(_, request)| &request.kind).collect();
@@ -99,7 +110,7 @@ pub fn figures(
         };
         let mut curve = 0;
         for (index, request) in group {
-            figures[index] = Some(draw(runs, request, &played, curve));
+            figures[index] = Some(draw(runs, request, &played, curve)?);
             curve += request.kind.columns().len();
         }
     }
@@ -107,10 +118,25 @@ pub fn figures(
 }
 
 impl Request {
-    /// Whether both are drawn from the same numbers under the same names.
+    /// Whether both are drawn from the same numbers of the runs under the same names.
     fn is_alike(&self, other: &Self) -> bool {
-        let alike = |it: &Self| (it.from_s, it.to_s, it.exact, it.width_pt);
+        let alike = |it: &Self| {
+            let is_of_runs = !matches!(it.kind, Kind::Residuals);
+            (
+                it.from_s,
+                it.to_s,
+                it.width_pt,
+                it.exact,
+                it.is_beside(),
+                is_of_runs,
+            )
+        };
         alike(self) == alike(other)
+    }
+
+    /// Whether something is drawn beside the runs, from which a single one is told by its name.
+    fn is_beside(&self) -> bool {
+        self.exact || self.measured.is_some()
     }
 }
 
@@ -125,7 +151,7 @@ fn play(
     let wanted = wanted(request, kinds);
     let mut broke = None;
     let mut drawn = Vec::new();
-    let named = names(runs, request.exact, longest_name(request.width_pt));
+    let named = names(runs, request.is_beside(), longest_name(request.width_pt));
     for (index, (run, name)) in runs.iter().zip(named).enumerate() {
         let Some(course) = course::play(&run.scenario, &wanted, &mut watch) else {
             return Ok(None);
@@ -166,26 +192,52 @@ fn play(
 }
 
 /// The figure that `request` asks for; `curve` is the number of the first of its curves among those that were played.
-fn draw(runs: &[Run], request: &Request, played: &Played, curve: usize) -> Figure {
+///
+/// # Errors
+/// When what was measured cannot be drawn so.
+fn draw(runs: &[Run], request: &Request, played: &Played, curve: usize) -> Result<Figure, String> {
     let (title, drawn) = (title(runs), &played.drawn);
-    let (scene, warning) = match &request.kind {
+    let mut warnings = Vec::new();
+    let scene = match &request.kind {
         Kind::OverTime(columns) => {
-            let chart = charts::over_time(title, columns, drawn, curve, request);
-            let warning = dense::warning(&chart, drawn, curve, request);
-            (chart.scene(), warning)
+            let mut chart = charts::over_time(title, columns, drawn, curve, request);
+            warnings.extend(measured::over_time(&mut chart, columns, runs, request)?);
+            warnings.extend(dense::warning(&chart, drawn, curve, request));
+            chart.scene()
         }
         Kind::Above => {
-            let chart = charts::above(title, runs, drawn, request);
-            let warning = charts::path_warning(&chart, drawn, request);
-            (chart.scene(), warning)
+            let mut chart = charts::above(title, runs, drawn, request);
+            warnings.extend(measured::above(&mut chart, runs, request)?);
+            warnings.extend(charts::path_warning(&chart, drawn, request));
+            chart.scene()
         }
-        Kind::ThreeD => space::scene(&title, runs, drawn, request),
+        Kind::ThreeD | Kind::Residuals => {
+            let (scene, warning) = space::scene(&title, runs, drawn, request);
+            warnings.extend(warning);
+            warnings.extend(measured::in_space(request));
+            scene
+        }
     };
-    Figure {
+    Ok(Figure {
         scene,
-        warnings: warning.into_iter().collect(),
+        warnings,
         broke: played.broke.clone(),
-    }
+    })
+}
+
+/// The figure of what was measured less what `runs` say.
+fn residuals(
+    runs: &[Run],
+    request: &Request,
+    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Figure>, String> {
+    check_range(runs, request)?;
+    let named = names(runs, request.is_beside(), longest_name(request.width_pt));
+    let named = runs.iter().zip(named);
+    let named: Vec<_> = named
+        .map(|(run, name)| (Arc::clone(&run.scenario), name))
+        .collect();
+    measured::residuals(title(runs), &named, request, watch)
 }
 
 fn wanted(request: &Request, kinds: &[&Kind]) -> Wanted {

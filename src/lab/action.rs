@@ -45,6 +45,8 @@ pub enum Action {
     Restart,
     /// Shows the exact motion beside the run, or hides it.
     ToggleExact,
+    /// Shows measured data less what the run says, or both again.
+    ToggleResiduals,
     /// Moves the focus to the next pane.
     NextPane,
     /// Moves the focus to the pane before.

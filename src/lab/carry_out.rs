@@ -149,7 +149,10 @@ impl Lab {
             } => {
                 let scenario = self.run_up_to(*to_step, "draw")?;
                 let path = self.files.path_of(path);
-                self.files.draw(&scenario, &path, (kind, *exact), *force)
+                let beside = self.player.measured();
+                let measured = beside.map(|beside| Arc::clone(beside.measured()));
+                let what = (kind.as_str(), *exact);
+                self.files.draw(&scenario, &path, what, measured, *force)
             }
             Command::Save {
                 path,
@@ -191,6 +194,8 @@ impl Lab {
             Command::Cursor(to) => self.set_cursor(*to),
             Command::Window(window_s) => self.set_window(*window_s),
             Command::Exact(shown) => Ok(self.player.set_exact(*shown)),
+            Command::Measured(name) => self.measure(name.as_deref()),
+            Command::Residuals(shown) => self.show_residuals(*shown),
             Command::TakeAdvice => self.follow_advice(),
             Command::Pin(pinned) => Ok(self.player.set_pinned(*pinned)),
             Command::Show(panes) => {

@@ -120,6 +120,10 @@ pub enum Command {
     Cursor(CursorTo),
     /// Whether the exact motion is drawn beside the run.
     Exact(bool),
+    /// Puts these measured data beside the run, or none.
+    Measured(Option<String>),
+    /// Whether measured data are shown less what the run says.
+    Residuals(bool),
     /// Begins the run anew with the time step or scheme that mends doubtful numbers.
     TakeAdvice,
     /// Whether the present run is pinned as the reference; false: no run is.

@@ -53,6 +53,7 @@ impl Lab {
             },
             Action::TogglePin => one(Command::Pin(!self.player.is_pinned())),
             Action::ToggleExact => one(Command::Exact(self.player.run().overlay().is_none())),
+            Action::ToggleResiduals => one(Command::Residuals(!self.view.residuals)),
             Action::ToggleHealth => one(Command::Hide(self.view.toggled(Part::Health))),
             Action::TogglePredicted => one(Command::Hide(self.view.toggled(Part::Predicted))),
             Action::ToggleBare => one(Command::Bare(!self.view.bare)),

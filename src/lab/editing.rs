@@ -198,8 +198,10 @@ impl Lab {
     /// Leaves the present run for that of `scenario`, opened as `name`, which is paused at step 0.
     pub(super) fn open(&mut self, name: &str, scenario: Arc<Scenario>) {
         self.leave();
+        let before = Arc::clone(self.player.run().scenario());
         self.work.open(name, &scenario);
         self.show_another(scenario);
+        self.measure_as_opened(&before);
     }
 
     /// Records where the present run stands, or is on its way back to, as it may be left now.

@@ -5,6 +5,7 @@ use crate::export::destination::DestinationError;
 use crate::export::{Destination, Layout};
 use crate::figure::Format;
 use crate::figure::kind::Kind;
+use crate::measured::Measured;
 use crate::scenario::Scenario;
 use crate::storage::confined::Confined;
 use crate::storage::exporting::{self, Drawn, Exporting, Written};
@@ -89,7 +90,8 @@ impl Files {
         Ok(Done::saying("the export goes on in the background").going_on(UnderWay::Exporting))
     }
 
-    /// Begins to draw a figure of that kind of `scenario`, beside the exact motion or without it.
+    /// Begins to draw a figure of that kind of `scenario`, beside the exact motion or without it, and with
+    /// what was measured.
     ///
     /// # Errors
     /// Where the kind is none, the file's name does not say in which form, or as for an export.
@@ -98,6 +100,7 @@ impl Files {
         scenario: &Arc<Scenario>,
         path: &Path,
         (kind, exact): (&str, bool),
+        measured: Option<Arc<Measured>>,
         force: bool,
     ) -> Answer {
         self.may_export_to(path)?;
@@ -106,6 +109,7 @@ impl Files {
         let drawn = Drawn {
             kind,
             exact,
+            measured,
             format,
         };
         let begun = Exporting::begin_figure(Arc::clone(scenario), path, drawn, force);

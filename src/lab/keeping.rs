@@ -103,6 +103,11 @@ struct KeptPlace {
     next: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     bare: Option<bool>,
+    /// The measured data beside the run, and whether they are shown less what it says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    measured: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    residuals: Option<bool>,
     /// The page of the step pane, and how many rows it adds up; `None` where they are as usual.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     phase: Option<Choice>,
@@ -230,6 +235,8 @@ impl Lab {
             look_at: self.view.look_at.clone(),
             next: self.view.next.clone(),
             bare: self.view.bare.then_some(true),
+            measured: self.measured_to_keep(),
+            residuals: self.view.residuals.then_some(true),
             phase: (self.view.page != Page::default()).then(|| self.view.page.choice()),
             sum_to: self.view.sum_to,
             next_push: self.values.next_push().clone(),
@@ -318,6 +325,7 @@ impl Lab {
         }
         (view.look_at, view.next) = (place.look_at, place.next);
         view.bare = place.bare.unwrap_or(false);
+        view.residuals = place.residuals.unwrap_or(false);
         view.page = place.phase.as_ref().and_then(Page::of).unwrap_or_default();
         view.sum_to = place.sum_to;
         if let Some(KeptCamera { yaw_deg, pitch_deg }) = place.camera
@@ -379,6 +387,9 @@ impl Lab {
             Some(Err(problems)) => {
                 told += &format!("; the pinned run is lost: {}", problems.in_one_line());
             }
+        }
+        if let Some(name) = &place.measured {
+            told += &lab.measure_as_kept(name).unwrap_or_default();
         }
         lab.lessons = place.lessons;
         lab.tell(told);

@@ -25,6 +25,7 @@ pub mod explained;
 mod files;
 pub mod form;
 mod keeping;
+pub mod measured;
 pub mod notice;
 pub mod numbers;
 mod on_top;
@@ -178,6 +179,7 @@ impl Lab {
     pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
         let arrived = self.player.playback.begin_at(step);
         self.player.playback.catch_up_exact();
+        self.player.catch_up_measured();
         self.read_now();
         arrived
     }

@@ -4,6 +4,7 @@ use super::advised::Offer;
 use super::carry_out::{Answer, Done, UnderWay};
 use super::command::Place;
 use super::explained::Explained;
+use super::measured::Beside;
 use super::numbers::{self, Numbers};
 use super::rerun::{Heading, Pinned, Replay};
 use crate::analysis::health::Advice;
@@ -40,6 +41,8 @@ pub struct Player {
     /// The run before, where an edit has begun this one anew.
     pub(super) ghost: Option<Ghost>,
     pub(super) pinned: Option<Pinned>,
+    /// The measured data beside the run.
+    pub(super) measured: Option<Beside>,
     /// Whether to look for a scheme or time step that would make doubtful numbers right.
     pub(super) is_advised: bool,
     pub(super) advisor: Option<Advisor>,
@@ -84,6 +87,7 @@ impl Player {
             explained: None,
             read_at: Duration::ZERO,
             pinned: None,
+            measured: None,
             heading: None,
             replay: None,
         }
@@ -96,6 +100,7 @@ impl Player {
         self.keep_pinned();
         (self.ghost, self.heading, self.replay) = (None, None, None);
         self.has_detail = false;
+        self.measure_again(&scenario);
         self.playback = Playback::new(scenario, false);
         self.playback.set_exact(exact);
     }
@@ -120,6 +125,7 @@ impl Player {
             self.playback.follow_exact(clock);
             is_new = true;
         }
+        is_new |= self.follow_measured(clock);
         is_new |= self.take_advice_news() | self.take_pinned_news();
         (halt, is_new)
     }
@@ -141,6 +147,7 @@ impl Player {
     pub(super) fn read(&mut self, now: Duration, view: &View) -> Option<&'static str> {
         self.reading = self.playback.read();
         self.read_at = now;
+        self.compare();
         self.read_off(view.cursor);
         let of_this_run = self.has_detail.then_some(self.detail.curve);
         self.choose_detail(now, view);

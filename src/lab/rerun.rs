@@ -69,6 +69,7 @@ impl Player {
     pub(super) fn begin(&mut self, scenario: Arc<Scenario>, is_again: bool) {
         let to = self.to_be_played_to(is_again);
         self.leave_ghost(is_again && self.replay.is_some());
+        self.measure_again(&scenario);
         self.playback.begin(scenario);
         self.replay(to, is_again);
     }
@@ -80,6 +81,7 @@ impl Player {
             ..self.to_be_played_to(is_again)
         };
         self.leave_ghost(is_again && self.replay.is_some());
+        self.measure_again(scenario);
         self.playback.continue_at(0, scenario);
         self.replay(to, is_again);
     }
@@ -88,6 +90,7 @@ impl Player {
     pub(super) fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
         self.keep_pinned();
         (self.heading, self.replay) = (None, None);
+        self.measure_on(self.playback.step_number(), scenario);
         self.playback.go_on_in(scenario);
     }
 
@@ -98,6 +101,7 @@ impl Player {
             _ => self.keep_pinned(),
         }
         (self.heading, self.replay) = (None, None);
+        self.measure_on(step, scenario);
         self.playback.continue_at(step, scenario);
     }
 
@@ -107,6 +111,7 @@ impl Player {
         self.ghost = None;
         self.leave_ghost(false);
         (self.heading, self.replay) = (None, None);
+        self.measure_again(&scenario);
         self.playback.begin(scenario);
     }
 

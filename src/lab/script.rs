@@ -201,6 +201,7 @@ impl Lab {
             self.go_on_with_script(halt);
         }
         self.player.playback.catch_up_exact();
+        self.player.catch_up_measured();
         self.read_now();
         match self.script.failed.take() {
             Some(text) => {

@@ -210,6 +210,7 @@ impl Lab {
             | Action::Redo
             | Action::Push
             | Action::ToggleExact
+            | Action::ToggleResiduals
             | Action::TogglePin
             | Action::TakeAdvice
             | Action::FillScreen

@@ -13,17 +13,20 @@ mod cells;
 mod names;
 mod numbers;
 pub mod of_run;
+pub mod places;
 pub mod quantity;
 mod reading;
 pub mod residual;
 pub mod shipped;
 
 pub use of_run::{Reader, at_times};
+pub use places::{Place, places};
 pub use quantity::Quantity;
 pub use reading::{open, read};
 pub use residual::{Residual, residuals};
 
 use crate::analysis::readouts::Readout;
+use crate::scenario::{Problem, Problems};
 use toml::Value;
 
 /// A file of measured data.
@@ -108,7 +111,21 @@ pub struct Point {
     pub sigma: Option<f64>,
 }
 
+/// What is said of a table of runs where one run is shown.
+const TABLE: &str = "is a table of runs: each of its rows is a run of its own, so it cannot stand beside a single one. gyrolab fit holds such a table against a scenario; what stands beside a run has a column t_s";
+
 impl Measured {
+    /// The data as quantities over the time of one run.
+    ///
+    /// # Errors
+    /// Where they are a table of runs: what can be done with it.
+    pub fn series(&self) -> Result<&Series, Problems> {
+        match &self.data {
+            Data::Series(series) => Ok(series),
+            Data::Table(_) => Err(Problems::one(&self.origin, Problem::at("", TABLE))),
+        }
+    }
+
     /// How many rows there are.
     pub fn rows(&self) -> usize {
         match &self.data {

@@ -7,35 +7,49 @@
 use super::Series;
 use crate::run::{NotFinite, Simulation};
 use crate::scenario::{Scenario, Window};
+use std::borrow::Borrow;
 use std::sync::Arc;
 
 /// Steps that are taken without asking whether to go on.
 const BLOCK: u64 = 4096;
 
-/// Reads a run at the times of a series while it is stepped.
+/// Reads a run at the times of a series, which it borrows or shares, while the run is stepped.
 #[derive(Clone, Debug)]
-pub struct Reader<'a> {
-    series: &'a Series,
+pub struct Reader<S> {
+    series: S,
     /// Where in the points of each curve the next one to be read stands.
     next: Vec<usize>,
     values: Vec<Vec<f64>>,
 }
 
-impl<'a> Reader<'a> {
+impl<S: Borrow<Series>> Reader<S> {
     /// A reader at the beginning of a run.
-    pub fn new(series: &'a Series) -> Self {
+    pub fn new(series: S) -> Self {
+        let curves = series.borrow().curves.len();
         Self {
-            next: vec![0; series.curves.len()],
-            values: vec![Vec::new(); series.curves.len()],
+            next: vec![0; curves],
+            values: vec![Vec::new(); curves],
             series,
+        }
+    }
+
+    /// Forgets what it has read later than `time_s`: the run has been changed from there on.
+    pub fn forget_after(&mut self, time_s: f64) {
+        let series = self.series.borrow();
+        let curves = series.curves.iter().zip(&mut self.next);
+        for ((curve, next), values) in curves.zip(&mut self.values) {
+            let read = &curve.points[..*next];
+            *next = read.partition_point(|point| series.times_s[point.row] <= time_s);
+            values.truncate(*next);
         }
     }
 
     /// The earliest time that has not been read, s.
     pub fn next_time_s(&self) -> Option<f64> {
-        let curves = self.series.curves.iter().zip(&self.next);
+        let series = self.series.borrow();
+        let curves = series.curves.iter().zip(&self.next);
         let rows = curves.filter_map(|(curve, &next)| Some(curve.points.get(next)?.row));
-        rows.min().map(|row| self.series.times_s[row])
+        rows.min().map(|row| series.times_s[row])
     }
 
     /// Reads `simulation` at every time from the one at which it stands up to, and without, that of its next step.
@@ -58,11 +72,12 @@ impl<'a> Reader<'a> {
 
     /// Reads what was measured at `time_s` off `simulation`, which stands there.
     fn read(&mut self, simulation: &Simulation, time_s: f64) {
-        let curves = self.series.curves.iter().zip(&mut self.next);
+        let series = self.series.borrow();
+        let curves = series.curves.iter().zip(&mut self.next);
         for ((curve, next), values) in curves.zip(&mut self.values) {
             let is_now = |next: usize| {
                 let point = curve.points.get(next);
-                point.is_some_and(|point| self.series.times_s[point.row] == time_s)
+                point.is_some_and(|point| series.times_s[point.row] == time_s)
             };
             while is_now(*next) {
                 values.push(curve.quantity.of(simulation.now()));

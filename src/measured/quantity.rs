@@ -2,8 +2,10 @@
 
 use crate::analysis::readouts::{self, Readout};
 use crate::export::columns::Column;
-use crate::run::Step;
-use crate::scenario::start;
+use crate::physics::State;
+use crate::run::{Sample, Step};
+use crate::scenario::{Scenario, start};
+use crate::text::unit::Unit;
 
 /// The column of the time.
 pub const TIME: &str = "t_s";
@@ -26,7 +28,7 @@ enum Read {
     /// A column of the run's CSV.
     Column,
     /// A readout that has no column.
-    Step(fn(&Step) -> f64),
+    State(fn(&Scenario, &State) -> f64),
 }
 
 const fn column(name: &'static str) -> Quantity {
@@ -37,11 +39,11 @@ const fn column(name: &'static str) -> Quantity {
     }
 }
 
-const fn live(name: &'static str, read: fn(&Step) -> f64) -> Quantity {
+const fn live(name: &'static str, read: fn(&Scenario, &State) -> f64) -> Quantity {
     Quantity {
         name,
         is_direction: false,
-        read: Read::Step(read),
+        read: Read::State(read),
     }
 }
 
@@ -62,13 +64,10 @@ pub static QUANTITIES: [Quantity; 14] = [
         ..column("azimuth_deg")
     },
     column("energy_J"),
-    live("spin_rpm", |step| {
-        start::rpm(step.scenario().spin_rad_per_s(step.after()))
+    live("spin_rpm", |scenario, state| {
+        start::rpm(scenario.spin_rad_per_s(state))
     }),
-    live("L_axle_Js", |step| {
-        let state = step.after();
-        state.momentum.dot(&state.axle())
-    }),
+    live("L_axle_Js", |_, state| state.momentum.dot(&state.axle())),
 ];
 
 impl Quantity {
@@ -82,13 +81,45 @@ impl Quantity {
         readouts::find(self.name)
     }
 
+    /// Its name without the unit, in words.
+    pub fn words(&self) -> String {
+        let end = Unit::of(self.name).map_or("", |unit| unit.end);
+        self.name[..self.name.len() - end.len()].replace('_', " ")
+    }
+
+    /// Its unit, as it is written after numbers.
+    pub fn unit(&self) -> &'static str {
+        self.readout().map_or("", |readout| readout.unit)
+    }
+
     /// Its value after `step`, in the unit of its name.
     pub fn of(&self, step: &Step) -> f64 {
         match self.read {
-            Read::Step(read) => read(step),
-            Read::Column => Column::find(self.name)
-                .map_or(f64::NAN, |column| column.value(&step.sample()).number()),
+            Read::State(read) => read(step.scenario(), step.after()),
+            Read::Column => self.of_sample(step.scenario(), &step.sample()),
         }
+    }
+
+    /// Its value at `sample`, which is of a run of `scenario`, in the unit of its name.
+    pub fn of_sample(&self, scenario: &Scenario, sample: &Sample) -> f64 {
+        match self.read {
+            Read::Column => {
+                Column::find(self.name).map_or(f64::NAN, |column| column.value(sample).number())
+            }
+            Read::State(read) => {
+                let state = State {
+                    time_s: sample.time_s,
+                    orientation: sample.orientation,
+                    momentum: sample.momentum,
+                };
+                read(scenario, &state)
+            }
+        }
+    }
+
+    /// Whether it is a column of the run's CSV.
+    pub fn is_column(&self) -> bool {
+        matches!(self.read, Read::Column)
     }
 }
 

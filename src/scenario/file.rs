@@ -213,6 +213,10 @@ pub struct ViewFile {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bare: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub residuals: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraFile>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub zoom: Option<ZoomFile>,

@@ -234,6 +234,8 @@ pub static KEYS: &[Key] = &[
     may("view.phase", WholeOr(MOST_PHASES, &PHASES), "the phase that the pane step shows: its number or name, last, or why: why sideways, not down? (default: 1)"),
     may("view.sum_to", WholeOr(MOST_POINTS, &[ALL_ROWS]), "how many rows of a phase's table the pane step adds up (default: all)"),
     may("view.bare", Flag, "whether the screen is bare: two panes, or one, and nothing around them but title and time (default: false)"),
+    may("view.measured", Line, "measured data beside the run: data that come with gyrolab (heidelberg-spin-decay), or a CSV file (default: none)"),
+    may("view.residuals", Flag, "whether measured data are shown less what the run says (default: false)"),
     may("view.camera.yaw_deg", Number(Any), "from where the 3-D view is seen: angle of the eye about +z, from -y, degrees"),
     may("view.camera.pitch_deg", Number(Any), "height of the eye above the horizontal, degrees, -90 to 90"),
     may("view.zoom.above", Number(Range::Zoom), "how much larger than the whole the path from above is shown, 0.5 to 100 (default: 1)"),

@@ -91,6 +91,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('u')], Action::Undo, "undo", "take back what was done last"),
     row(&[Lab], &[Char('U'), Ctrl('r')], Action::Redo, "", "do it again"),
     row(&[Lab], &[Char('t')], Action::ToggleExact, "exact", "the exact motion beside the run, and how far apart they are"),
+    row(&[Lab], &[Char('E')], Action::ToggleResiduals, "residuals", "residuals: measured data less the run, or both again; --measured FILE puts data beside a run"),
     row(&[Lab], &[Char('i')], Action::TogglePin, "", "pin this run as the reference beside every other, or take it away"),
     row(&[Lab], &[Char('a')], Action::TakeAdvice, "", "take the advice about the numbers: the run from the start with what mends them"),
     row(&[Lab], &[Char('x')], Action::Export, "export", "write the run up to here as CSV"),
@@ -255,6 +256,7 @@ mod tests {
             A::Redo,
             A::Push,
             A::TogglePin,
+            A::ToggleResiduals,
             A::TakeAdvice,
             A::ChoosePush,
             A::Parameters,
@@ -335,6 +337,7 @@ mod tests {
                 | A::Redo
                 | A::Push
                 | A::TogglePin
+                | A::ToggleResiduals
                 | A::TakeAdvice
                 | A::ChoosePush
                 | A::Parameters

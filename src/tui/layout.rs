@@ -35,6 +35,8 @@ pub struct Layout {
     pub panes: Vec<(Pane, Rect)>,
     /// The line of the whole run.
     pub timeline: Rect,
+    /// The line about the measured data beside the run.
+    pub measured: Rect,
     /// The line about the numbers' health.
     pub health: Rect,
     /// The lines that say what to look at: one, or two where the screen is narrow.
@@ -63,11 +65,13 @@ impl Layout {
         // The values have all the lines where they fill a screen that has no more than they need.
         let is_full = area.height == HEIGHT && view.is_filled_by(Pane::PARAMETERS);
         let timeline = cut(&mut rest, area.height >= HEIGHT && !is_full, true);
+        let measured = cut(&mut rest, view.measured && area.height >= 8, true);
         let is_cramped = area.width < WIDTH || area.height < HEIGHT;
         Self {
             title,
             panes: panes(rest, view),
             timeline,
+            measured,
             health,
             hint,
             keys,
@@ -85,6 +89,7 @@ impl Layout {
             title,
             panes: panes(rest, view),
             timeline: none,
+            measured: none,
             health: none,
             hint,
             keys: none,

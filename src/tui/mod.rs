@@ -12,7 +12,7 @@
 //! - [`keymap`] is the one table of keys.
 //! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`layout`] says which
 //!   places those are, [`theme`] and [`markers`] what colours and dots look like, [`dots`] sets the dots,
-//!   [`trail`] those of a path that fades, [`dashes`] of those of other runs some, [`scene`] those of lines in space.
+//!   [`points`] what was measured, [`trail`] those of a path that fades, [`dashes`] of those of other runs some, [`scene`] those of lines in space.
 //! - [`recorder`] draws the lab into memory.
 
 pub mod app;
@@ -28,6 +28,7 @@ pub mod markers;
 pub mod mouse;
 pub mod pacing;
 pub mod panes;
+pub mod points;
 pub mod recorder;
 pub mod scene;
 pub mod screen;

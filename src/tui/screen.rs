@@ -6,6 +6,7 @@ use super::panes::chrome;
 use super::panes::form::FormPane;
 use super::panes::help::Help;
 use super::panes::lesson;
+use super::panes::measured;
 use super::panes::timeline;
 use crate::lab::Lab;
 use crate::lab::action::Direction;
@@ -52,6 +53,7 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     }
     chrome::title(lab, layout.title, buf);
     timeline::draw(lab, layout.timeline, buf);
+    measured::draw(lab, layout.measured, buf);
     let hint = chrome::place_of_hint(lab, &layout);
     if !lab.view().hides(Part::Health) && hint == layout.hint {
         chrome::health(lab, layout.health, buf);

@@ -39,6 +39,8 @@ pub enum Role {
     Ghost,
     /// The pinned run.
     Pinned,
+    /// What was measured.
+    Measured,
     /// Pushes and their times.
     Push,
     /// What has the focus.
@@ -63,7 +65,12 @@ impl Theme {
 
 fn modifier(role: Role) -> Modifier {
     match role {
-        Role::Heading | Role::Focus | Role::Push | Role::Warning | Role::Recent => Modifier::BOLD,
+        Role::Heading
+        | Role::Focus
+        | Role::Push
+        | Role::Warning
+        | Role::Recent
+        | Role::Measured => Modifier::BOLD,
         Role::Quiet | Role::Ghost | Role::Old | Role::OldTrack => Modifier::DIM,
         Role::Selected => Modifier::REVERSED,
         _ => Modifier::empty(),
@@ -93,11 +100,13 @@ mod tests {
     #[test]
     fn nothing_else_on_the_traces_has_the_colour_of_the_exact_motion() {
         use Role::{
-            Exact, Ghost, Old, OldTrack, Path, Pinned, Push, Quiet, Recent, Track, Warning, X, Y, Z,
+            Exact, Ghost, Measured, Old, OldTrack, Path, Pinned, Push, Quiet, Recent, Track,
+            Warning, X, Y, Z,
         };
         for background in [Background::Dark, Background::Light] {
             for role in [
                 X, Y, Z, Path, Recent, Old, Track, OldTrack, Push, Warning, Ghost, Pinned, Quiet,
+                Measured,
             ] {
                 assert_ne!(
                     colour(role, background),

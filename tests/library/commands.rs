@@ -241,6 +241,8 @@ fn every_row_of_the_table_is_written_under_its_name() {
         magnify = 4
         cursor = 'next turn'
         exact = true
+        measured = 'heidelberg-spin-decay'
+        residuals = true
         pin = true
         take_advice = true
         show = ['traces', '3d']

@@ -36,6 +36,7 @@ fn request(kind: &str) -> Request {
         from_s: 0.0,
         to_s: None,
         exact: false,
+        measured: None,
         width_pt: COLUMN_PT,
     }
 }
@@ -591,6 +592,7 @@ proptest! {
             name: gyrolab::figure::page::letters::shortened(&names.1, 7.0, gyrolab::figure::chart::legend::longest_name(width_mm * 72.0 / 25.4) - 6.0) + &index.to_string(),
             points: points.clone(),
             errors: errors.iter().map(|error| error.abs()).collect(),
+            errors_across: Vec::new(),
             style: if index % 2 == 0 { Style::curve(index) } else { Style::marked_line(index) },
         });
         let chart = Chart {

@@ -25,6 +25,7 @@ mod lessons_taken;
 mod limits;
 mod mangled;
 mod measured;
+mod measured_beside;
 mod messages;
 mod mouse;
 mod parameters;

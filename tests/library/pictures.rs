@@ -70,6 +70,7 @@ fn traces(run: &LiveRun, ghost: Option<&Ghost>, window_s: Option<f64>, marker: M
             run,
             ghost,
             pinned: None,
+            measured: None,
             view,
             detail,
             cursor: None,
@@ -96,6 +97,7 @@ fn from_above(run: &LiveRun, ghost: Option<&Ghost>, marker: Marker) -> String {
         run,
         ghost,
         pinned: None,
+        measured: None,
         view,
         reading,
     };
@@ -259,6 +261,7 @@ fn fast_and_slow_motion_are_both_seen() {
                 run: &now,
                 ghost: None,
                 pinned: None,
+                measured: None,
                 view,
                 detail,
                 cursor: None,
@@ -303,6 +306,7 @@ fn no_mark_covers_the_word_for_a_push_straight_down() {
                 run: &now,
                 ghost: None,
                 pinned: None,
+                measured: None,
                 view: &view(&now, Marker::Braille),
                 reading: None,
             };
@@ -396,6 +400,7 @@ fn a_circle_is_round_to_a_dot() {
                 run: &run,
                 ghost: None,
                 pinned: None,
+                measured: None,
                 view: &view,
                 reading: None,
             };
@@ -440,6 +445,7 @@ fn the_point_stays_in_the_picture_however_large_it_is() {
                 run: &run,
                 ghost: None,
                 pinned: None,
+                measured: None,
                 view: &view,
                 reading: None,
             };
@@ -754,11 +760,11 @@ proptest! {
         for pane in 0..3 {
             let mut buf = Buffer::filled(around, Cell::new("#"));
             match pane {
-                0 => Traces { run, ghost, pinned: None, view, detail, cursor: None }.render(inside, &mut buf),
+                0 => Traces { run, ghost, pinned: None, measured: None, view, detail, cursor: None }.render(inside, &mut buf),
                 1 => FromAbove {
                     run,
                     ghost,
-                    pinned: None,
+                    pinned: None, measured: None,
                     view,
                     reading,
                 }

@@ -17,6 +17,7 @@ mod fit;
 mod journeys;
 mod lessons;
 mod manual;
+mod measured;
 mod messages;
 mod mouse;
 mod readme;

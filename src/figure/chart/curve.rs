@@ -46,7 +46,14 @@ impl Placed {
             let bar = ends.map(|end| self.place(&[point[0], end]));
             clipped(bar.into_iter(), frame)
         });
-        series.style.mark.is_some() && bars.into_iter().any(|bar| !bar.is_empty())
+        let across = series.points.iter().zip(&series.errors_across);
+        let mut across = across.map(|(point, &error)| {
+            let error = if error.is_finite() { error } else { 0.0 };
+            let bar = [-1.0, 1.0].map(|sign| self.place(&[point[0] + sign * error, point[1]]));
+            clipped(bar.into_iter(), frame)
+        });
+        series.style.mark.is_some()
+            && (bars.into_iter().any(|bar| !bar.is_empty()) || across.any(|bar| !bar.is_empty()))
     }
 }
 

@@ -115,6 +115,23 @@ impl Placed {
     }
 }
 
+impl Placed {
+    /// The level error bars of `series` that its marks do not cover: their ends, and at which height.
+    fn bars_across<'a>(&'a self, series: &'a Series) -> impl Iterator<Item = (f64, f64, f64)> + 'a {
+        let points = series.points.iter().zip(&series.errors_across);
+        let points = points
+            .filter(|(point, error)| error.is_finite() && self.frame.holds(self.place(point)));
+        let bars = points.map(|(point, error)| {
+            let x = |sign: f64| {
+                let x = self.x.place(point[0] + sign * error);
+                x.clamp(self.frame.left, self.frame.right)
+            };
+            (x(-1.0), x(1.0), self.y.place(point[1]))
+        });
+        bars.filter(|(left, right, _)| right - left >= 2.0 * MARK_PT + 0.6)
+    }
+}
+
 impl Panel {
     fn draw(&self, placed: &Placed, layout: &Layout, scene: &mut Scene) {
         let frame = &placed.frame;
@@ -124,6 +141,12 @@ impl Panel {
             let ring = circle(middle, to_page(radius));
             scene.stroke(ring, pen(0.4, grey(165)), Some(frame));
         }
+        let points = |is_behind: bool, scene: &mut Scene| {
+            let series = self.series.iter();
+            let series = series.filter(|series| series.style.is_behind == is_behind);
+            series.for_each(|series| draw_points(series, placed, scene));
+        };
+        points(true, scene);
         for series in self
             .series
             .iter()
@@ -132,9 +155,7 @@ impl Panel {
             placed.draw_line(series, scene);
         }
         draw_frame(placed, layout, scene);
-        for series in &self.series {
-            draw_points(series, placed, scene);
-        }
+        points(false, scene);
         let (title, size) = &placed.title;
         let middle = at(layout.titles_at, 0.5 * (frame.top + frame.bottom));
         scene.write_up(title, *size, middle);
@@ -178,6 +199,14 @@ fn draw_points(series: &Series, placed: &Placed, scene: &mut Scene) {
         return;
     };
     let color = series.style.color;
+    for (left, right, y) in placed.bars_across(series) {
+        let mut line = |a: (f64, f64), b: (f64, f64)| {
+            scene.line([at(a.0, a.1), at(b.0, b.1)], FRAME_PT, color);
+        };
+        line((left, y), (right, y));
+        line((left, y - BAR_END), (left, y + BAR_END));
+        line((right, y - BAR_END), (right, y + BAR_END));
+    }
     for bar in placed.bars(series).filter(|bar| !bar.is_hidden) {
         let mut line = |a: (f64, f64), b: (f64, f64)| {
             scene.line([at(a.0, a.1), at(b.0, b.1)], FRAME_PT, color);

@@ -65,6 +65,8 @@ pub struct Series {
     pub points: Vec<[f64; 2]>,
     /// One standard error of each point's second number; empty where there are none, NaN where one is not known.
     pub errors: Vec<f64>,
+    /// The same of each point's first number.
+    pub errors_across: Vec<f64>,
     /// How it is drawn.
     pub style: Style,
 }
@@ -80,6 +82,8 @@ pub struct Style {
     pub dash_pt: &'static [f64],
     /// What is at its points.
     pub mark: Option<Mark>,
+    /// Whether its points are drawn behind all lines.
+    pub is_behind: bool,
 }
 
 impl Default for Style {
@@ -89,6 +93,7 @@ impl Default for Style {
             width_pt: 0.7,
             dash_pt: &[],
             mark: None,
+            is_behind: false,
         }
     }
 }
@@ -129,6 +134,7 @@ impl Style {
             dash_pt: DASHES[index % DASHES.len()],
             width_pt: if index == 0 { 0.7 } else { 0.85 },
             mark: None,
+            is_behind: false,
         }
     }
 
@@ -139,6 +145,7 @@ impl Style {
             width_pt: 0.8,
             dash_pt: DASHES[1],
             mark: None,
+            is_behind: false,
         }
     }
 
@@ -160,6 +167,21 @@ impl Style {
             width_pt: 0.0,
             dash_pt: &[],
             mark: Some(MARKS[index % MARKS.len()]),
+            is_behind: false,
+        }
+    }
+
+    /// What was measured, so many points of it: empty circles, which no run has, over the run's line. Many of them would
+    /// hide that line: they are grey and behind it.
+    pub fn measured(count: usize) -> Self {
+        const MANY: usize = 150;
+        let are_many = count > MANY;
+        Self {
+            color: if are_many { grey(160) } else { BLACK },
+            width_pt: 0.0,
+            mark: Some(Mark::Ring),
+            is_behind: are_many,
+            ..Self::default()
         }
     }
 
@@ -174,6 +196,7 @@ impl Style {
             width_pt: 0.7,
             dash_pt: DASHES[index % DASHES.len()],
             mark: None,
+            is_behind: false,
         }
     }
 

@@ -1,9 +1,9 @@
 //! The charts of runs: their curves over time, their paths from above.
 
 use super::{Drawn, Request, Run};
-use crate::export::columns::Column;
 use crate::figure::chart::layout::Layout;
 use crate::figure::chart::{Axis, Chart, Panel, Series};
+use crate::figure::kind::Plotted;
 use crate::figure::{dense, quantity};
 use crate::run::Truth;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Columns of the runs over time, a panel each; `curve` is the number of the first of them among those that were played.
 pub(super) fn over_time(
     title: String,
-    columns: &[&'static Column],
+    columns: &[Plotted],
     drawn: &[Drawn],
     curve: usize,
     request: &Request,
@@ -19,15 +19,15 @@ pub(super) fn over_time(
     let ends = drawn.iter().map(|drawn| drawn.course.end_s);
     let end_s = ends.fold(0.0, f64::max);
     let range = (end_s > request.from_s).then_some((request.from_s, end_s));
-    let panel = |(place, column): (usize, &&Column)| Panel {
-        y: quantity::axis(column.name),
+    let panel = |(place, column): (usize, &Plotted)| Panel {
+        y: quantity::axis(column.name()),
         series: drawn
             .iter()
             .map(|drawn| Series {
                 name: drawn.name.clone(),
                 points: drawn.course.curves[curve + place].points(),
-                errors: Vec::new(),
                 style: drawn.style.clone(),
+                ..Series::default()
             })
             .collect(),
         ..Panel::default()
@@ -58,8 +58,8 @@ pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Requ
     let series = drawn.iter().map(|drawn| Series {
         name: drawn.name.clone(),
         points: drawn.course.path.iter().map(|at| [at[0], at[1]]).collect(),
-        errors: Vec::new(),
         style: drawn.style.clone(),
+        ..Series::default()
     });
     let series: Vec<_> = series.collect();
     let circles = match (request.exact, runs) {
@@ -122,7 +122,10 @@ fn circles(run: &Run) -> Vec<f64> {
 }
 
 /// The stretches of both axes: one is never less than half of the other, so that a path along a line has a picture too.
-fn both_ranges(series: &[Series], circles: &[f64]) -> ((f64, f64), (f64, f64)) {
+pub(in crate::figure) fn both_ranges(
+    series: &[Series],
+    circles: &[f64],
+) -> ((f64, f64), (f64, f64)) {
     const LEAST: f64 = 0.5;
     let ends = || circles.iter().flat_map(|radius| [-radius, *radius]);
     let range = |index: usize| {

@@ -44,6 +44,7 @@ pub(super) fn drawn(
                 name: letters::shortened(scheme, LABEL_PT, room) + &slope,
                 points,
                 errors: Vec::new(),
+                errors_across: Vec::new(),
                 style: Style::marked_line(index),
             }
         });

@@ -172,6 +172,7 @@ impl Drawing<'_> {
         for (index, (group, rows)) in groups.iter().enumerate() {
             let (points, _) = self.points("model", "uncertainty", rows)?;
             panel.series.push(Series {
+                errors_across: Vec::new(),
                 name: if is_alone {
                     "model".to_owned()
                 } else {
@@ -187,6 +188,7 @@ impl Drawing<'_> {
             let (points, errors) = self.points("measured", "uncertainty", rows)?;
             let own = letters::shortened(&letters::escape(group), LABEL_PT, self.room_pt);
             panel.series.push(Series {
+                errors_across: Vec::new(),
                 name: if is_alone { "measured".to_owned() } else { own },
                 points,
                 errors,
@@ -225,6 +227,7 @@ impl Drawing<'_> {
         for (index, (_, rows)) in groups.iter().enumerate() {
             let (points, errors) = self.points(column, "uncertainty", rows)?;
             panel.series.push(Series {
+                errors_across: Vec::new(),
                 name: String::new(),
                 errors: match are_stated {
                     true => vec![1.0; points.len()],

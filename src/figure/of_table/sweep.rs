@@ -237,6 +237,7 @@ impl Part {
                 true => Vec::new(),
                 false => rows.iter().map(|&row| errors[row].abs()).collect(),
             },
+            errors_across: Vec::new(),
             style,
         })
     }

@@ -81,6 +81,16 @@ pub(super) fn exact(value: &Value) -> Read {
     Ok(Command::Exact(shown))
 }
 
+pub(super) fn measured(value: &Value) -> Read {
+    let name = text_in(of_view("measured", value)?);
+    Ok(Command::Measured((name != NONE).then(|| name.to_owned())))
+}
+
+pub(super) fn residuals(value: &Value) -> Read {
+    let shown = of_view("residuals", value)?.as_bool();
+    Ok(Command::Residuals(shown.unwrap_or_default()))
+}
+
 pub(super) fn pin(value: &Value) -> Read {
     let pinned = checked(Kind::Flag, value)?.as_bool().unwrap_or_default();
     Ok(Command::Pin(pinned))

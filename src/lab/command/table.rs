@@ -3,8 +3,8 @@
 use super::Command;
 use super::exporting::{export, figure};
 use super::looking::{
-    bare, camera, cursor, detail, exact, fill, hide, look_at, magnify, next, phase, pin, point_at,
-    show, since, speed, sum_to, window, zoom,
+    bare, camera, cursor, detail, exact, fill, hide, look_at, magnify, measured, next, phase, pin,
+    point_at, residuals, show, since, speed, sum_to, window, zoom,
 };
 use super::reading::{
     Read, chapter, count, go_to, next_push, nudge, open, push, run_until, save, set, step, told,
@@ -77,6 +77,8 @@ pub static COMMANDS: &[Row] = &[
     row("magnify", "4", "how many times the values of the traces are magnified, 1 to 1000000", magnify),
     row("cursor", "400, \"60 s\", \"next turn\", \"turn before\" or \"none\"", "the step at which the traces are read off; turns are those of the tilt", cursor),
     row("exact", "true or false", "whether the exact motion is drawn beside the run", exact),
+    row("measured", "\"heidelberg-spin-decay\", \"data.csv\" or \"none\"", "put measured data beside the run: data that come with gyrolab, or a CSV file with a column t_s", measured),
+    row("residuals", "true or false", "whether measured data are shown less what the run says", residuals),
     row("pin", "true or false", "pin the present run as the reference, which stays in view; false: none is pinned", pin),
     row("take_advice", "true", "begin the run anew at the time step, or by the scheme, that mends doubtful numbers, up to the same time", |value| told(value, Command::TakeAdvice)),
     row("show", "[\"traces\", \"3d\"]", "the panes that share the screen, of traces, above, 3d, parameters, step; none: as many as there is room for, without step", show),

@@ -78,6 +78,8 @@ pub(super) fn written(command: &Command) -> (&'static str, Value) {
         Command::Cursor(to) => ("cursor", cursor_written(*to)),
         Command::Window(window_s) => ("window_s", (*window_s).into()),
         Command::Exact(shown) => ("exact", (*shown).into()),
+        Command::Measured(name) => ("measured", name.as_deref().unwrap_or(NONE).into()),
+        Command::Residuals(shown) => ("residuals", (*shown).into()),
         Command::TakeAdvice => ("take_advice", true.into()),
         Command::Pin(pinned) => ("pin", (*pinned).into()),
         Command::Show(panes) => ("show", words(panes.iter().map(|pane| pane.id()))),

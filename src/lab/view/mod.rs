@@ -86,6 +86,10 @@ pub struct View {
     pub sheet: Option<Arc<Sheet>>,
     /// The first row of it that is shown; `None`: as its paragraph that is to be seen wants it.
     pub sheet_scrolled: Option<usize>,
+    /// Whether measured data stand beside the run: a line then tells of them.
+    pub measured: bool,
+    /// Whether what was measured is shown less what the run says.
+    pub residuals: bool,
     /// Frames a second at most.
     pub fps: u32,
     /// Whether the lab listens to the mouse; otherwise the terminal has it, to select text.
@@ -124,6 +128,8 @@ impl View {
             beside: None,
             sheet: None,
             sheet_scrolled: None,
+            measured: false,
+            residuals: false,
             fps: FPS,
             mouse: true,
             side_by_side: panes.to_vec(),
@@ -146,6 +152,7 @@ impl View {
         self.hidden = parts.filter_map(|id| Part::named(id)).collect();
         (self.look_at, self.next) = (None, None);
         self.bare = file.bare.unwrap_or(self.bare);
+        self.residuals = file.residuals.unwrap_or(self.residuals);
         if !self.may_show(self.focus) {
             self.keep_focus_among(&self.to_show());
         }

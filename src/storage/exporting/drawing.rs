@@ -5,6 +5,7 @@ use crate::export::destination::{Destination, DestinationError};
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Request, Run};
 use crate::figure::{self, Format};
+use crate::measured::Measured;
 use crate::scenario::Scenario;
 use std::io::Write;
 use std::ops::ControlFlow;
@@ -28,6 +29,8 @@ pub struct Drawn {
     pub kind: Kind,
     /// Whether the exact motion stands beside the run.
     pub exact: bool,
+    /// What was measured, to be drawn with the run.
+    pub measured: Option<Arc<Measured>>,
     /// The form of the file.
     pub format: Format,
 }
@@ -56,6 +59,7 @@ impl Exporting {
                 from_s: 0.0,
                 to_s: None,
                 exact: drawn.exact,
+                measured: drawn.measured,
                 width_pt: figure::COLUMN_PT,
             },
         };

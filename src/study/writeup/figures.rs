@@ -85,6 +85,7 @@ pub fn figures(
         from_s: 0.0,
         to_s: *to_s,
         exact,
+        measured: None,
         width_pt: COLUMN_PT,
     });
     let requests: Vec<_> = requests.collect();

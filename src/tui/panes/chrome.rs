@@ -264,7 +264,8 @@ fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
     let is_new = |row: &&Binding| of_mode.clone().all(|other| other.keys[0] != row.keys[0]);
     let rows = of_pane
         .chain(BINDINGS.iter().filter(is_new))
-        .filter(|row| row.modes.contains(&mode) && !row.footer.is_empty());
+        .filter(|row| row.modes.contains(&mode) && !row.footer.is_empty())
+        .filter(|row| row.action != Action::ToggleResiduals || lab.player().measured().is_some());
     let mut words: Vec<_> = rows
         .map(|row| {
             let word = if row.footer == "pause" && !is_running {
@@ -312,12 +313,14 @@ enum Worth {
 fn worth(action: Action, lab: &Lab) -> Worth {
     use Action::{
         Accept, Browse, Choose, Export, Help, Lesson, NarrowerWindow, NextPhase, Pan, Parameters,
-        PhaseBack, Push, Quit, Step, ToggleExact, TogglePause, WholeView, Why, ZoomIn,
+        PhaseBack, Push, Quit, Step, ToggleExact, TogglePause, ToggleResiduals, WholeView, Why,
+        ZoomIn,
     };
     match action {
         ToggleExact | Export => Worth::Useful,
         Browse => Worth::Open,
         NarrowerWindow | Pan(_) => Worth::Look,
+        ToggleResiduals => Worth::Kept,
         Lesson(LessonKey::Take | LessonKey::Next)
         | TogglePause
         | Step

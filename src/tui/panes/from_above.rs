@@ -4,8 +4,10 @@
 //! and all that came before, dotted more and more sparsely, denser where the point dwelt.
 
 mod legend;
+mod points;
 
 use super::{PaneRow, Width, frame, round_title, write};
+use crate::lab::measured::Beside;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, View};
 use crate::observe::ages::{Age, Ages};
@@ -66,6 +68,7 @@ pub const ROW: PaneRow = PaneRow {
             run: lab.player().run(),
             ghost: lab.player().ghost(),
             pinned: lab.player().pinned(),
+            measured: lab.player().measured(),
             view: lab.view(),
             reading: Some(lab.player().reading()),
         }
@@ -82,6 +85,8 @@ pub struct FromAbove<'a> {
     pub ghost: Option<&'a Ghost>,
     /// The run that was pinned as the reference, unless it is the present one.
     pub pinned: Option<&'a Ghost>,
+    /// The measured data beside the run.
+    pub measured: Option<&'a Beside>,
     /// How it is looked at.
     pub view: &'a View,
     /// The latest reading of the run, if it is read at all: by it the path is recent or old.
@@ -106,6 +111,7 @@ impl Widget for FromAbove<'_> {
         let picture = above(lines);
         let plan = self.plan(picture);
         self.path(&plan, picture, buf);
+        self.points(&plan, picture, buf);
         let forces = self.pushes(&plan, picture, buf);
         let mut places = self.marks(&plan, picture, buf);
         // Words keep off the marks; heads of arrows stand where they point.
@@ -140,7 +146,9 @@ impl FromAbove<'_> {
             true => path.radius(),
             false => path.radius_about(middle.x, middle.y).max(middle.norm()),
         };
-        let radius = paths.into_iter().flatten().map(about).fold(LEAST, f64::max);
+        let radii = paths.into_iter().flatten().map(about);
+        let away = self.places().iter().map(|place| (place.at - middle).norm());
+        let radius = radii.chain(away).fold(LEAST, f64::max);
         // In steps of 5 %: the picture shall not breathe with every millimetre.
         let radius = libm::exp((libm::log(radius) / STEP).ceil() * STEP) * 1.02;
         let zoom = self.view.zoom.above;

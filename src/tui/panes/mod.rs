@@ -9,6 +9,7 @@ pub mod form;
 pub mod from_above;
 pub mod help;
 pub mod lesson;
+pub mod measured;
 pub mod parameters;
 pub mod step;
 pub mod three_d;

@@ -2,8 +2,11 @@
 //! as it is; those below show x, y and z over a longer time, so that slow motion is.
 
 mod axis;
+mod content;
 mod curve;
+mod groups;
 mod pointing;
+mod points;
 mod pushes;
 mod range;
 mod title;
@@ -12,33 +15,35 @@ mod uprights;
 use super::{PaneRow, Width, frame, write};
 use crate::lab::Lab;
 use crate::lab::action::{Action, Direction};
+use crate::lab::measured::Beside;
 use crate::lab::view::{Pane, View};
 use crate::observe::detail::Detail;
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::marks::Marks;
-use crate::observe::recording::{Curve, Recording};
 use crate::observe::scale::Scale;
-use crate::observe::strip::Strip;
+use crate::observe::strip::{Column, Strip};
 use crate::run::Sample;
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
+use content::Content;
 use curve::{Stroke, draw};
+use groups::Group;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 
 /// Fewest rows of a strip: its label and one row of dots.
 const STRIP: u16 = 2;
-/// From this width on the values stand beside the strips, and not on a line above each.
-const BESIDE_FROM: u16 = 48;
 /// A strip that shows less than this part of the time of the others shows the fast motion alone.
 const ALL: f64 = 0.999;
 /// What marks the strip that shows less time than the others.
 const ZOOM: &str = "zoom";
 /// What it says while that strip stands still, because its time would pass before anyone had seen it.
 const STILL: &str = "still";
+/// What follows the name of what was measured where it is shown less what the run says.
+const LESS_RUN: &str = " less run";
 /// Columns of a strip's name beside it.
 const NAME: u16 = 5;
 
@@ -82,21 +87,14 @@ pub struct Traces<'a> {
     pub ghost: Option<&'a Ghost>,
     /// The run that was pinned as the reference, unless it is the present one.
     pub pinned: Option<&'a Ghost>,
+    /// The measured data beside the run.
+    pub measured: Option<&'a Beside>,
     /// How it is looked at.
     pub view: &'a View,
     /// The time that the strip of the fast motion shows.
     pub detail: &'a Detail,
     /// The numbers at the cursor, where there is one.
     pub cursor: Option<&'a Sample>,
-}
-
-/// Strips one above the other over the same time, and the axis below them.
-struct Group {
-    curves: Vec<Curve>,
-    area: Rect,
-    /// Columns beside the strips for their values; none where these stand on a line above each.
-    beside: u16,
-    strip: Strip,
 }
 
 impl<'a> Traces<'a> {
@@ -106,6 +104,7 @@ impl<'a> Traces<'a> {
             run: lab.player().run(),
             ghost: lab.player().ghost(),
             pinned: lab.player().pinned(),
+            measured: lab.player().measured(),
             view: lab.view(),
             detail: lab.player().detail(),
             cursor: lab.player().cursor(),
@@ -140,101 +139,14 @@ impl Widget for Traces<'_> {
 }
 
 impl Traces<'_> {
-    /// Columns for the values beside the strips.
-    fn beside(&self, inside: Rect) -> u16 {
-        if inside.width < BESIDE_FROM {
-            return 0;
-        }
-        let labels = Curve::ALL.map(|curve| {
-            let scale = self.magnified(curve, self.scale(curve, None));
-            let mut labels = axis::values(&scale, 2);
-            labels.extend(axis::values(&scale, inside.height as usize));
-            labels
-        });
-        let widest = labels.iter().flatten().map(|(_, label)| label.len()).max();
-        NAME + widest.unwrap_or(0) as u16 + 1
-    }
-
-    /// The strips that there is room for, and where they stand.
-    fn groups(&self, inside: Rect, beside: u16) -> Vec<Group> {
-        let across = self.view.marker.dots().0;
-        let columns = (inside.width - beside) as usize * across;
-        let long = match self.view.since_s {
-            Some(since_s) => Strip::new(since_s, self.view.window_s, columns),
-            None => Strip::following(self.run.now().time_s, self.view.window_s, columns),
-        };
-        let detail = Strip::new(self.detail.begin_s, self.detail.window_s, columns);
-        let is_magnified = self.is_detail(&detail);
-        let least = if beside > 0 { 1 } else { STRIP };
-        let axes = 1 + u16::from(is_magnified);
-        let strips = inside.height.saturating_sub(axes) / least;
-        let shown = self.shown(strips as usize);
-        let split = usize::from(is_magnified).min(shown.len());
-        let (upper, lower) = shown.split_at(split);
-        let parts = [(upper, detail), (lower, long)];
-        let rows = inside.height.saturating_sub(axes);
-        let mut y = inside.y;
-        let mut groups = Vec::new();
-        for (curves, strip) in parts.into_iter().filter(|(curves, _)| !curves.is_empty()) {
-            let is_last = curves.last() == shown.last();
-            let share = (rows * curves.len() as u16).div_ceil(shown.len() as u16);
-            let height = match is_last {
-                true => inside.bottom() - y,
-                false => share + 1,
-            };
-            let area = Rect {
-                y,
-                height,
-                ..inside
-            };
-            y += height;
-            groups.push(Group {
-                curves: curves.to_vec(),
-                area,
-                beside,
-                strip,
-            });
-        }
-        groups
-    }
-
-    /// The curves that are shown where there is room for `most` strips, from the top: the one of the fast motion, and then
-    /// the others in their order. Where there is no room for all, z goes before y, and x before both.
-    fn shown(&self, most: usize) -> Vec<Curve> {
-        let first = self.detail.curve;
-        let by_worth = [Curve::X, Curve::Z, Curve::Tilt, Curve::Y];
-        let others = by_worth.into_iter().filter(|curve| *curve != first);
-        let chosen: Vec<_> = others.take(most.saturating_sub(1)).collect();
-        let others = Curve::ALL
-            .into_iter()
-            .filter(|curve| chosen.contains(curve));
-        std::iter::once(first).take(most).chain(others).collect()
-    }
-
-    /// Whether `strip` shows less time than the others: the fast motion.
-    fn is_detail(&self, strip: &Strip) -> bool {
-        strip.window_s < ALL * self.view.window_s
-    }
-
     fn group(&self, group: &Group, marks: &Marks, buf: &mut Buffer) {
-        let count = group.curves.len() as u16;
-        let rows = group.area.height.saturating_sub(1);
-        let (share, spare) = (rows / count, rows % count);
-        let mut y = group.area.y;
-        for (&curve, index) in group.curves.iter().zip(0..) {
-            let height = share + u16::from(index < spare);
-            let place = Rect {
-                y,
-                height,
-                ..group.area
-            };
-            self.strip(curve, group, marks, place, buf);
-            y += height;
+        for &(content, place) in &group.strips {
+            self.strip(content, group, marks, place, buf);
         }
         let axis = Rect {
             x: group.area.x + group.beside,
             width: group.area.width - group.beside,
-            y,
+            y: group.area.bottom().saturating_sub(1),
             height: 1,
         };
         let style = self.view.theme.style(Role::Quiet);
@@ -244,77 +156,116 @@ impl Traces<'_> {
     }
 
     /// One strip with its name and its values.
-    fn strip(&self, curve: Curve, group: &Group, marks: &Marks, area: Rect, buf: &mut Buffer) {
+    fn strip(&self, content: Content, group: &Group, marks: &Marks, area: Rect, buf: &mut Buffer) {
         let is_detail = self.is_detail(&group.strip);
-        let scale = self.magnified(curve, self.scale(curve, is_detail.then_some(&group.strip)));
-        let theme = &self.view.theme;
-        let (name, quiet) = (theme.style(role(curve)), theme.style(Role::Quiet));
-        let sheet = if group.beside > 0 {
-            write(area, (0, 0), curve.name(), name, buf);
-            if area.height > 1 {
-                write(area, (0, 1), curve.unit(), quiet, buf);
-            }
-            if area.height > 2 && is_detail {
-                write(area, (0, 2), ZOOM, quiet, buf);
-                if self.detail.is_snapshot && area.height > 3 {
-                    write(area, (0, 3), STILL, quiet, buf);
-                }
-            }
-            for (row, label) in axis::values(&scale, area.height as usize) {
-                let x = group.beside.saturating_sub(1 + label.len() as u16);
-                write(area, (x, row as u16), &label, quiet, buf);
-                write(area, (group.beside - 1, row as u16), "┤", quiet, buf);
-            }
-            Rect {
-                x: area.x + group.beside,
-                width: area.width - group.beside,
-                ..area
-            }
-        } else {
-            let after = write(area, (0, 0), curve.name(), name, buf);
-            let room = area.width.saturating_sub(after) as usize;
-            let value = self.at_cursor(curve, &group.strip);
-            let (text, style) = match value {
-                Some((_, value)) => {
-                    let value = format!(" {value}");
-                    let rest = room.saturating_sub(value.len() + " ()".len());
-                    if let Some(range) = scale.in_words_within(rest) {
-                        let x = after + value.len() as u16;
-                        write(area, (x, 0), &format!(" ({range})"), quiet, buf);
-                    }
-                    (value, theme.style(Role::Focus))
-                }
-                None => {
-                    let unit = curve.unit();
-                    let rest = room.saturating_sub(unit.len() + 2);
-                    let range = scale.in_words_within(rest).unwrap_or_default();
-                    let range = format!(" {range} {unit}");
-                    let zoom = match (is_detail, self.detail.is_snapshot) {
-                        (false, _) => [""; 3],
-                        (true, false) => [ZOOM; 3],
-                        (true, true) => ["zoom, stands still", "zoom, still", STILL],
-                    };
-                    let fits = |zoom: &&str| range.chars().count() + zoom.len() < room;
-                    let zoom = zoom.into_iter().find(fits).unwrap_or_default();
-                    (format!("{range} {zoom}"), quiet)
-                }
-            };
-            write(area, (after, 0), &text, style, buf);
-            Rect {
-                y: area.y + 1,
-                height: area.height.saturating_sub(1),
-                ..area
-            }
+        let is_residual = self.is_residual(content, is_detail);
+        let scale = match is_residual {
+            true => self.residual_scale(content),
+            false => self.scale(content, is_detail.then_some(&group.strip)),
         };
-        self.curves(curve, &group.strip, &scale, marks, sheet, buf);
-        self.cursor(curve, group, sheet, buf);
+        let sheet = match group.beside > 0 {
+            true => self.beside_strip(content, group, &scale, area, buf),
+            false => self.above_strip(content, group, &scale, area, buf),
+        };
+        match is_residual {
+            true => self.draw_zero(&scale, sheet, buf),
+            false => self.curves(content, &group.strip, &scale, marks, sheet, buf),
+        }
+        self.draw_points(content, &group.strip, &scale, is_residual, sheet, buf);
+        self.cursor(content, group, sheet, buf);
         self.pen(&group.strip, sheet, buf);
         self.edits(marks, &group.strip, sheet, buf);
     }
 
+    /// The name of a strip and its values, beside it; gives the area of its curves.
+    fn beside_strip(
+        &self,
+        content: Content,
+        group: &Group,
+        scale: &Scale,
+        area: Rect,
+        buf: &mut Buffer,
+    ) -> Rect {
+        let is_detail = self.is_detail(&group.strip);
+        let theme = &self.view.theme;
+        let quiet = theme.style(Role::Quiet);
+        let (name, unit) = self.named(content);
+        write(area, (0, 0), &name, theme.style(Self::role(content)), buf);
+        let further = match (is_detail, self.detail.is_snapshot) {
+            (true, true) => [unit, ZOOM, STILL],
+            (true, false) => [unit, ZOOM, ""],
+            (false, _) if self.is_residual(content, is_detail) => [unit, "less", "run"],
+            (false, _) => [unit, "", ""],
+        };
+        for (text, y) in further.into_iter().zip(1..area.height) {
+            write(area, (0, y), text, quiet, buf);
+        }
+        for (row, label) in axis::values(scale, area.height as usize) {
+            let x = group.beside.saturating_sub(1 + label.len() as u16);
+            write(area, (x, row as u16), &label, quiet, buf);
+            write(area, (group.beside - 1, row as u16), "┤", quiet, buf);
+        }
+        Rect {
+            x: area.x + group.beside,
+            width: area.width - group.beside,
+            ..area
+        }
+    }
+
+    /// The name of a strip and its values on a line above it; gives the area of its curves.
+    fn above_strip(
+        &self,
+        content: Content,
+        group: &Group,
+        scale: &Scale,
+        area: Rect,
+        buf: &mut Buffer,
+    ) -> Rect {
+        let is_detail = self.is_detail(&group.strip);
+        let theme = &self.view.theme;
+        let quiet = theme.style(Role::Quiet);
+        let (name, unit) = self.named(content);
+        let mut after = write(area, (0, 0), &name, theme.style(Self::role(content)), buf);
+        if self.is_residual(content, is_detail) {
+            after = write(area, (after, 0), LESS_RUN, quiet, buf);
+        }
+        let room = area.width.saturating_sub(after) as usize;
+        let value = self.at_cursor(content, &group.strip);
+        let (text, style) = match value {
+            Some((_, value)) => {
+                let value = format!(" {value}");
+                let rest = room.saturating_sub(value.len() + " ()".len());
+                if let Some(range) = scale.in_words_within(rest) {
+                    let x = after + value.len() as u16;
+                    write(area, (x, 0), &format!(" ({range})"), quiet, buf);
+                }
+                (value, theme.style(Role::Focus))
+            }
+            None => {
+                let rest = room.saturating_sub(unit.len() + 2);
+                let range = scale.in_words_within(rest).unwrap_or_default();
+                let range = format!(" {range} {unit}");
+                let zoom = match (is_detail, self.detail.is_snapshot) {
+                    (false, _) => [""; 3],
+                    (true, false) => [ZOOM; 3],
+                    (true, true) => ["zoom, stands still", "zoom, still", STILL],
+                };
+                let fits = |zoom: &&str| range.chars().count() + zoom.len() < room;
+                let zoom = zoom.into_iter().find(fits).unwrap_or_default();
+                (format!("{range} {zoom}"), quiet)
+            }
+        };
+        write(area, (after, 0), &text, style, buf);
+        Rect {
+            y: area.y + 1,
+            height: area.height.saturating_sub(1),
+            ..area
+        }
+    }
+
     fn curves(
         &self,
-        curve: Curve,
+        content: Content,
         strip: &Strip,
         scale: &Scale,
         marks: &Marks,
@@ -323,51 +274,33 @@ impl Traces<'_> {
     ) {
         let mut dots = Dots::new(area, self.view.marker);
         // Where swings are shown one by one, few columns are no reason for a band.
-        let columns = |recording: &Recording, cuts: &[f64]| {
-            let mut columns = strip.columns(recording, curve, cuts);
+        let without_bands = |mut columns: Vec<Option<Column>>| {
             if self.is_detail(strip) {
                 let columns = columns.iter_mut().flatten();
                 columns.for_each(|column| column.band = None);
             }
             columns
         };
-        if let Some(ghost) = self.ghost {
-            let before = columns(ghost.recording(), &ghost.marks().edits);
+        if let (Some(ghost), Some((recording, curve))) = (self.ghost, self.recorded_before(content))
+        {
+            let before = strip.columns(recording, curve, &ghost.marks().edits);
+            let before = without_bands(before);
             draw(&mut dots, &before, scale, Stroke::Dotted, Ink::Ghost);
         }
-        if let Some(pinned) = self.pinned {
-            let kept = columns(pinned.recording(), &pinned.marks().edits);
+        if let (Some(pinned), Content::Curve(curve)) = (self.pinned, content) {
+            let kept = strip.columns(pinned.recording(), curve, &pinned.marks().edits);
+            let kept = without_bands(kept);
             let ink = Ink::Faint(Role::Pinned);
             draw(&mut dots, &kept, scale, Stroke::LongAndShort, ink);
         }
-        if let Some(overlay) = self.run.overlay() {
-            let exact = columns(overlay.recording(), &[]);
-            draw(
-                &mut dots,
-                &exact,
-                scale,
-                Stroke::Dashed,
-                Ink::Faint(Role::Exact),
-            );
+        if let (Some(overlay), Content::Curve(curve)) = (self.run.overlay(), content) {
+            let exact = without_bands(strip.columns(overlay.recording(), curve, &[]));
+            let ink = Ink::Faint(Role::Exact);
+            draw(&mut dots, &exact, scale, Stroke::Dashed, ink);
         }
-        let run = columns(self.run.recording(), &marks.edits);
-        draw(
-            &mut dots,
-            &run,
-            scale,
-            Stroke::Full,
-            Ink::Strong(role(curve)),
-        );
+        let run = without_bands(self.columns_of_run(content, strip, &marks.edits));
+        let ink = Ink::Strong(Self::role(content));
+        draw(&mut dots, &run, scale, Stroke::Full, ink);
         dots.render(&self.view.theme, buf);
-    }
-}
-
-/// The colour of a curve.
-fn role(curve: Curve) -> Role {
-    match curve {
-        Curve::X => Role::X,
-        Curve::Y => Role::Y,
-        Curve::Z => Role::Z,
-        Curve::Tilt => Role::Path,
     }
 }

@@ -1,6 +1,7 @@
 //! What a metre is on the picture from above, and what its marks and lines are.
 
 use super::{FromAbove, Plan, write};
+use crate::lab::view::markers::Marker;
 use crate::text::ladder::at_or_below;
 use crate::text::wrap::columns;
 use crate::tui::theme::Role;
@@ -72,6 +73,12 @@ impl FromAbove<'_> {
         }
         if self.ghost.is_some() {
             words.push(["dotted: other run", "dotted: other"]);
+        }
+        if !self.places().is_empty() {
+            words.push(match self.view.marker {
+                Marker::Ascii => ["X measured"; 2],
+                _ => ["× measured"; 2],
+            });
         }
         if words.len() == 1 {
             words.push(["dotted: before"; 2]);

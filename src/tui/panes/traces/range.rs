@@ -1,6 +1,7 @@
 //! The range of values that a strip shows.
 
 use super::Traces;
+use super::content::Content;
 use crate::observe::ghost::Ghost;
 use crate::observe::overlay::Overlay;
 use crate::observe::recording::{Curve, Extent, Recording};
@@ -11,45 +12,60 @@ use crate::observe::strip::Strip;
 const Z_LEAST: f64 = 0.05;
 /// Least range of the tilt, degrees: below it there is rounding to see, and no end to the digits of its ends.
 const TILT_LEAST: f64 = 0.02;
+/// Least range of other quantities, of their size.
+const SHARE_LEAST: f64 = 1e-3;
 /// Least reach of x and y, of the same distance.
 const PLANE_LEAST: f64 = 1e-4;
 
 impl Traces<'_> {
-    /// `scale`, magnified as it is looked at.
-    pub(super) fn magnified(&self, curve: Curve, scale: Scale) -> Scale {
+    /// The range of values of a strip, magnified as it is looked at: that of the whole run, or of the time of `strip` alone.
+    pub(super) fn scale(&self, content: Content, strip: Option<&Strip>) -> Scale {
+        let scale = self.whole_scale(content, strip);
         if self.view.magnified <= 1.0 {
             return scale;
         }
-        let about = match self.cursor {
-            Some(cursor) => curve.at(cursor),
-            None => self.run.now().value(curve),
+        let about = match (self.cursor, content) {
+            (Some(cursor), Content::Curve(curve)) => curve.at(cursor),
+            _ => self.value_now(content),
         };
         scale.zoomed(self.view.magnified, about)
     }
 
-    /// The range of values a strip shows: x and y share one about 0, z and tilt have their own. It is that of the whole
-    /// run, or of the time of `strip` alone.
-    pub(super) fn scale(&self, curve: Curve, strip: Option<&Strip>) -> Scale {
-        let extent = |curve| self.extent(curve, strip);
+    /// The same without magnification: x and y share one about 0, the others have their own.
+    fn whole_scale(&self, content: Content, strip: Option<&Strip>) -> Scale {
+        let extent = |curve| self.extent(Content::Curve(curve), strip);
         let arm_m = self.run.scenario().arm_m();
-        match curve {
-            Curve::X | Curve::Y => {
+        match content {
+            Content::Curve(Curve::X | Curve::Y) => {
                 let both = extent(Curve::X).and(extent(Curve::Y));
                 Scale::about_zero(both.max.max(-both.min).max(PLANE_LEAST * arm_m))
             }
-            Curve::Z => Scale::around(extent(curve), Z_LEAST * arm_m),
-            Curve::Tilt => Scale::around(extent(curve), TILT_LEAST),
+            Content::Curve(Curve::Z) => Scale::around(extent(Curve::Z), Z_LEAST * arm_m),
+            Content::Curve(Curve::Tilt) => Scale::around(extent(Curve::Tilt), TILT_LEAST),
+            Content::Measured(_) => {
+                let extent = self.extent(content, strip);
+                let size = extent.max.abs().max(extent.min.abs());
+                Scale::around(extent, (SHARE_LEAST * size).max(f64::MIN_POSITIVE))
+            }
         }
     }
 
-    /// Everything the strip of `curve` has to show: the run, and where they are shown the exact motion, the run before
-    /// and the pinned one: the whole of it at once, so that the picture stays while the run comes after it.
-    fn extent(&self, curve: Curve, strip: Option<&Strip>) -> Extent {
+    /// Everything the strip of `content` has to show: the run, the points, and where they are shown the exact motion, the
+    /// run before and the pinned one: the whole of it at once, so that the picture stays while the run comes after it.
+    fn extent(&self, content: Content, strip: Option<&Strip>) -> Extent {
+        let of_every_run = |recording| match content {
+            Content::Curve(curve) => Some((recording, curve)),
+            Content::Measured(_) => None,
+        };
         let exact = self.run.overlay().map(Overlay::recording);
-        let before = self.ghost.map(Ghost::recording);
         let pinned = self.pinned.map(Ghost::recording);
-        let recordings = [Some(self.run.recording()), exact, before, pinned];
-        let extent = |recording: &Recording| match strip {
+        let recordings = [
+            self.recorded(content),
+            self.recorded_before(content),
+            exact.and_then(of_every_run),
+            pinned.and_then(of_every_run),
+        ];
+        let extent = |(recording, curve): (&Recording, Curve)| match strip {
             Some(strip) => recording
                 .between(strip.begin_s, strip.end_s())
                 .map(|block| block.extent(curve))
@@ -57,6 +73,7 @@ impl Traces<'_> {
             None => recording.whole().map(|block| block.extent(curve)),
         };
         let extents = recordings.into_iter().flatten().filter_map(extent);
+        let extents = extents.chain(self.extent_of_points(content, strip));
         extents.reduce(Extent::and).unwrap_or(Extent::of(0.0))
     }
 }

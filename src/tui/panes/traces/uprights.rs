@@ -1,10 +1,9 @@
 //! Lines from the top of a strip to its bottom: the cursor, the time where the run stands, and the edits.
 
+use super::content::Content;
 use super::{Group, Traces, write};
 use crate::observe::marks::Marks;
-use crate::observe::recording::Curve;
 use crate::observe::strip::Strip;
-use crate::text::number::fixed;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -15,13 +14,11 @@ const EDIT: char = ':';
 const PEN: char = '│';
 /// What marks the cursor.
 const CURSOR: char = '┃';
-/// Digits after the point of a value at the cursor.
-const DECIMALS: usize = 6;
 
 impl Traces<'_> {
     /// The cursor: a line at its time, and the value there where it does not stand above the strip.
-    pub(super) fn cursor(&self, curve: Curve, group: &Group, area: Rect, buf: &mut Buffer) {
-        let Some((column, value)) = self.at_cursor(curve, &group.strip) else {
+    pub(super) fn cursor(&self, content: Content, group: &Group, area: Rect, buf: &mut Buffer) {
+        let Some((column, value)) = self.at_cursor(content, &group.strip) else {
             return;
         };
         let style = self.view.theme.style(Role::Focus);
@@ -39,12 +36,10 @@ impl Traces<'_> {
         }
     }
 
-    /// The column (of dots) of the cursor on `strip`, and what `curve` has there.
-    pub(super) fn at_cursor(&self, curve: Curve, strip: &Strip) -> Option<(usize, String)> {
-        let cursor = self.cursor?;
-        let column = strip.column(cursor.time_s)?;
-        let value = fixed(curve.at(cursor), DECIMALS);
-        Some((column, format!("{value} {}", curve.unit())))
+    /// The column (of dots) of the cursor on `strip`, and what `content` has there.
+    pub(super) fn at_cursor(&self, content: Content, strip: &Strip) -> Option<(usize, String)> {
+        let column = strip.column(self.cursor?.time_s)?;
+        Some((column, self.words_at_cursor(content).unwrap_or_default()))
     }
 
     /// The pen: a line where the run stands.

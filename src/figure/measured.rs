@@ -1,0 +1,268 @@
+//! What was measured, drawn with runs: points with error bars over time and from above, and their residuals.
+
+use super::chart::legend::longest_name;
+use super::chart::{Axis, Chart, Panel, Series, Style};
+use super::kind::Plotted;
+use super::of_runs::{Figure, Request, Run, charts::both_ranges};
+use super::page::ink::LABEL_PT;
+use super::page::letters;
+use super::quantity;
+use crate::measured::{self, Curve, Measured, Point, at_times, places, residuals as held_against};
+use crate::run::Clock;
+use crate::scenario::Scenario;
+use std::cell::RefCell;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The room before the first and after the last residual, of the time between them.
+const MARGIN: f64 = 0.02;
+
+/// Adds the points to the panels of `columns`, and the time in which they were measured to the axis of the time. Returns
+/// what is to be said where no panel shows what was measured.
+///
+/// # Errors
+/// Where the data are no series, or the numbers of a run stop being finite.
+pub(super) fn over_time(
+    chart: &mut Chart,
+    columns: &[Plotted],
+    runs: &[Run],
+    request: &Request,
+) -> Result<Option<String>, String> {
+    let Some(measured) = &request.measured else {
+        return Ok(None);
+    };
+    let series = series(measured)?;
+    let mut is_shown = false;
+    for (panel, column) in chart.panels.iter_mut().zip(columns) {
+        let is_this = |curve: &&Curve| curve.quantity.name == column.name();
+        let Some(curve) = series.curves.iter().find(is_this) else {
+            continue;
+        };
+        let points = match curve.quantity.is_direction {
+            true => turned(series, curve, runs)?,
+            false => curve.points.clone(),
+        };
+        let shown = drawn(series, &points, request);
+        if let (Some(range), None) = (&mut chart.x.range, request.to_s) {
+            let last = shown.last().map_or(range.1, |(at, _)| at[0]);
+            range.1 = range.1.max(last);
+        }
+        is_shown |= !shown.is_empty();
+        let (points, errors): (Vec<_>, Vec<_>) = shown.into_iter().unzip();
+        panel.series.push(Series {
+            name: name(measured, request),
+            style: Style::measured(points.len()),
+            points,
+            errors,
+            ..Series::default()
+        });
+    }
+    let columns: Vec<_> = names(series).collect();
+    Ok((!is_shown).then(|| {
+        format!(
+            "no point of {} is in this figure: it has {}; --kind {} shows them",
+            measured.origin,
+            columns.join(", "),
+            columns.join(",")
+        )
+    }))
+}
+
+/// Adds the places from above. Returns what is to be said where the data do not tell any.
+///
+/// # Errors
+/// Where the data are no series.
+pub(super) fn above(
+    chart: &mut Chart,
+    runs: &[Run],
+    request: &Request,
+) -> Result<Option<String>, String> {
+    let (Some(measured), Some(run)) = (&request.measured, runs.first()) else {
+        return Ok(None);
+    };
+    let scenario = &run.scenario;
+    let traced = scenario.body.mechanics.points()[scenario.trace].at;
+    let all = places(series(measured)?, &traced);
+    let shown: Vec<_> = all
+        .iter()
+        .filter(|place| is_wanted(place.time_s, request))
+        .collect();
+    if shown.is_empty() {
+        let origin = &measured.origin;
+        return Ok(Some(format!(
+            "no point of {origin} is in this figure: from above are x_m and y_m, or tilt_deg and azimuth_deg of a point on the axle"
+        )));
+    }
+    let errors = |part: usize| {
+        let sigmas = shown.iter().map(|place| place.sigmas[part]);
+        sigmas.map(|sigma| sigma.unwrap_or(f64::NAN)).collect()
+    };
+    let added = Series {
+        name: name(measured, request),
+        points: shown.iter().map(|place| [place.at.x, place.at.y]).collect(),
+        errors: errors(1),
+        errors_across: errors(0),
+        style: Style::measured(shown.len()),
+    };
+    if let [panel] = &mut chart.panels[..] {
+        panel.series.push(added);
+        let (x, y) = both_ranges(&panel.series, &panel.circles);
+        (chart.x.range, panel.y.range) = (Some(x), Some(y));
+    }
+    Ok(None)
+}
+
+/// What is said where measured points are asked for in space.
+pub(super) fn in_space(request: &Request) -> Option<String> {
+    let measured = request.measured.as_ref()?;
+    Some(format!(
+        "the points of {} are not drawn in space: --kind above or columns show them",
+        measured.origin
+    ))
+}
+
+/// The figure of what was measured less what each of `runs`, which have names, says.
+///
+/// # Errors
+/// Where there is nothing measured, or the numbers of a run stop being finite.
+pub(super) fn residuals(
+    title: String,
+    runs: &[(Arc<Scenario>, String)],
+    request: &Request,
+    watch: impl FnMut(u64, u64) -> ControlFlow<()>,
+) -> Result<Option<Figure>, String> {
+    let Some(measured) = &request.measured else {
+        return Err("residuals are of measured data: --measured FILE".to_owned());
+    };
+    let series = series(measured)?;
+    let watch = RefCell::new(watch);
+    let ends = runs.iter().map(|(scenario, _)| Clock::end_s(scenario));
+    let last_s = series.times_s.last().copied().unwrap_or(0.0);
+    let end_s = request.to_s.unwrap_or(ends.fold(last_s, f64::max));
+    let axis = |curve: &Curve| {
+        let axis = quantity::axis(curve.quantity.name);
+        Axis::new(format!("{}, measured − run", axis.name), axis.unit)
+    };
+    let margin_s = MARGIN * (end_s - request.from_s);
+    let range = (request.from_s - margin_s, end_s + margin_s);
+    let zero = || Series {
+        points: vec![[range.0, 0.0], [range.1, 0.0]],
+        style: Style::theory(0),
+        ..Series::default()
+    };
+    let panel = |curve: &Curve| Panel {
+        y: axis(curve),
+        series: vec![zero()],
+        ..Panel::default()
+    };
+    let mut panels: Vec<Panel> = series.curves.iter().map(panel).collect();
+    for (index, (scenario, name)) in runs.iter().enumerate() {
+        let go_on = || watch.borrow_mut()(0, scenario.steps).is_continue();
+        let model = at_times(series, scenario, &go_on).map_err(|error| error.to_string())?;
+        let Some(model) = model else {
+            return Ok(None);
+        };
+        let style = match runs.len() {
+            1 => Style::measured(0),
+            _ => Style::points(index),
+        };
+        for ((panel, curve), model) in panels.iter_mut().zip(&series.curves).zip(&model) {
+            let held = held_against(Some(curve.quantity), &curve.points, model);
+            let less = |held: &measured::Residual| Point {
+                row: held.row,
+                value: held.value(),
+                sigma: held.sigma,
+            };
+            let points: Vec<Point> = held.iter().map(less).collect();
+            let (points, errors) = drawn(series, &points, request).into_iter().unzip();
+            panel.series.push(Series {
+                name: match runs.len() {
+                    1 => self::name(measured, request),
+                    _ => name.clone(),
+                },
+                points,
+                errors,
+                style: style.clone(),
+                ..Series::default()
+            });
+        }
+    }
+    let chart = Chart {
+        title,
+        width_pt: request.width_pt,
+        x: Axis {
+            range: Some(range),
+            ..quantity::axis("t_s")
+        },
+        panels,
+        is_true_to_scale: false,
+    };
+    Ok(Some(Figure {
+        scene: chart.scene(),
+        warnings: Vec::new(),
+        broke: None,
+    }))
+}
+
+/// The data as a series.
+fn series(measured: &Measured) -> Result<&measured::Series, String> {
+    let series = measured.series();
+    series.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))
+}
+
+fn names(series: &measured::Series) -> impl Iterator<Item = &'static str> + '_ {
+    series.curves.iter().map(|curve| curve.quantity.name)
+}
+
+/// The name of the data in the legend, as markup.
+fn name(measured: &Measured, request: &Request) -> String {
+    let file = Path::new(&measured.origin).file_stem();
+    let file = file.map_or(measured.origin.as_str().into(), |file| {
+        file.to_string_lossy()
+    });
+    let count = match measured.count() {
+        1 => "1 point".to_owned(),
+        count => format!("{count} points"),
+    };
+    let name = format!("measured: {file} ({count})");
+    letters::shortened(&name, LABEL_PT, longest_name(request.width_pt))
+}
+
+fn is_wanted(time_s: f64, request: &Request) -> bool {
+    time_s >= request.from_s && request.to_s.is_none_or(|to_s| time_s <= to_s)
+}
+
+/// `points` in the stretch of time that is drawn, each with its error: NaN where none is stated.
+fn drawn(series: &measured::Series, points: &[Point], request: &Request) -> Vec<([f64; 2], f64)> {
+    let at = |point: &Point| {
+        let time_s = series.times_s[point.row];
+        ([time_s, point.value], point.sigma.unwrap_or(f64::NAN))
+    };
+    let all = points.iter().map(at);
+    all.filter(|(at, _)| is_wanted(at[0], request)).collect()
+}
+
+/// The directions of `curve`, each with the number of full turns at which it is nearest to the first of `runs`.
+fn turned(series: &measured::Series, curve: &Curve, runs: &[Run]) -> Result<Vec<Point>, String> {
+    let Some(run) = runs.first() else {
+        return Ok(curve.points.clone());
+    };
+    let alone = measured::Series {
+        curves: vec![curve.clone()],
+        ..series.clone()
+    };
+    let model = at_times(&alone, &run.scenario, &|| true).map_err(|error| error.to_string())?;
+    let model = model.and_then(|model| model.into_iter().next());
+    let held = held_against(
+        Some(curve.quantity),
+        &curve.points,
+        &model.unwrap_or_default(),
+    );
+    let turned = held.iter().map(|held| Point {
+        row: held.row,
+        value: held.measured,
+        sigma: held.sigma,
+    });
+    Ok(turned.collect())
+}

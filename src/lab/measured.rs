@@ -1,0 +1,271 @@
+//! Measured data beside the run: what the run says of the same quantities at the same times, and how far they are off.
+//!
+//! A second simulation of the run's scenario follows the run, like the exact motion does, and reads it at the measured
+//! times. It also records the quantities that were measured and that the run's own recording does not have, so that their
+//! curves can be drawn. [`Compared`] holds the two against each other.
+
+mod compared;
+mod opening;
+
+pub use compared::{Compared, Largest, Shown, Sum};
+
+use super::player::Player;
+use crate::measured::{Measured, Quantity, Reader, Series};
+use crate::observe::ghost::Ghost;
+use crate::observe::recording::{Curve, Moment, Recording};
+use crate::run::Simulation;
+use crate::scenario::{Problems, Scenario};
+use nalgebra::Vector3;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Quantities that a recording holds beside the tilt: in the places of x, y and z.
+const IN_A_RECORDING: usize = Curve::OF_POINT.len();
+/// Steps between two looks at the clock.
+const BETWEEN_LOOKS: u64 = 32;
+
+/// Measured data, and what the run says of them so far.
+pub struct Beside {
+    name: String,
+    measured: Arc<Measured>,
+    series: Arc<Series>,
+    simulation: Simulation,
+    reader: Reader<Arc<Series>>,
+    recorded: Vec<Recording>,
+    /// What was recorded of the run before.
+    before: Vec<Recording>,
+    /// Whether the run's numbers stopped being finite on the way.
+    has_broken: bool,
+    compared: Compared,
+}
+
+impl Beside {
+    /// `measured` beside the run of `scenario`, of which nothing has been read yet.
+    ///
+    /// # Errors
+    /// Where they are a table of runs: what to do with it.
+    pub(super) fn new(
+        name: &str,
+        measured: Measured,
+        scenario: &Arc<Scenario>,
+    ) -> Result<Self, Problems> {
+        let series = Arc::new(measured.series()?.clone());
+        let mut beside = Self {
+            name: name.to_owned(),
+            simulation: Simulation::new(Arc::clone(scenario)),
+            reader: Reader::new(Arc::clone(&series)),
+            recorded: Vec::new(),
+            before: Vec::new(),
+            has_broken: false,
+            compared: Compared::default(),
+            series,
+            measured: Arc::new(measured),
+        };
+        beside.begin(scenario);
+        Ok(beside)
+    }
+
+    /// The data.
+    pub fn measured(&self) -> &Arc<Measured> {
+        &self.measured
+    }
+
+    /// The name of the data or of their file, as the user gave it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What was measured, in the order of the file.
+    pub fn quantities(&self) -> impl Iterator<Item = &'static Quantity> + Clone + '_ {
+        self.series.curves.iter().map(|curve| curve.quantity)
+    }
+
+    /// The data against the run, as far as that had come when it was last read.
+    pub fn compared(&self) -> &Compared {
+        &self.compared
+    }
+
+    /// The curve of the quantity of this index where it is recorded here: the recording, and in which place of it.
+    pub fn recorded(&self, index: usize) -> Option<(&Recording, Curve)> {
+        self.place_of(index, &self.recorded)
+    }
+
+    /// The same of the run before.
+    pub fn recorded_before(&self, index: usize) -> Option<(&Recording, Curve)> {
+        self.place_of(index, &self.before)
+    }
+
+    fn place_of<'a>(
+        &self,
+        index: usize,
+        recordings: &'a [Recording],
+    ) -> Option<(&'a Recording, Curve)> {
+        let place = self.recorded_here().position(|(other, _)| other == index)?;
+        let recording = recordings.get(place / IN_A_RECORDING)?;
+        Some((recording, Curve::OF_POINT[place % IN_A_RECORDING]))
+    }
+
+    /// The quantities that the run's own recording does not have, each with its index.
+    fn recorded_here(&self) -> impl Iterator<Item = (usize, &'static Quantity)> + '_ {
+        let quantities = self.quantities().enumerate();
+        quantities.filter(|(_, quantity)| {
+            Curve::ALL
+                .iter()
+                .all(|curve| curve.column() != quantity.name)
+        })
+    }
+
+    /// Begins again with the run of `scenario`. What was recorded of the run before stays, where `keeps` says so.
+    pub(super) fn begin_again(&mut self, scenario: &Arc<Scenario>, keeps: bool) {
+        if keeps {
+            self.before = std::mem::take(&mut self.recorded);
+        }
+        self.begin(scenario);
+    }
+
+    fn begin(&mut self, scenario: &Arc<Scenario>) {
+        self.simulation = Simulation::new(Arc::clone(scenario));
+        self.reader = Reader::new(Arc::clone(&self.series));
+        let recordings = self.recorded_here().count().div_ceil(IN_A_RECORDING);
+        self.recorded = vec![Recording::default(); recordings];
+        self.has_broken = false;
+        self.record();
+    }
+
+    /// Goes on with `scenario`, which has the same motion up to `step`.
+    pub(super) fn go_on_in(&mut self, scenario: &Arc<Scenario>, step: u64) {
+        if self.simulation.step_number() > step || self.has_broken {
+            return self.begin(scenario);
+        }
+        self.simulation.go_on_in(Arc::clone(scenario));
+        self.reader.forget_after(self.simulation.now().time_s());
+    }
+
+    /// Whether it has not come as far as a run at `step`.
+    pub(super) fn is_behind(&self, step: u64) -> bool {
+        let has_to_go_on = !self.recorded.is_empty() || self.reader.next_time_s().is_some();
+        has_to_go_on && !self.has_broken && self.simulation.step_number() < step
+    }
+
+    /// Follows a run to `step`, or until `enough` returns true.
+    pub(super) fn follow(&mut self, step: u64, mut enough: impl FnMut() -> bool) {
+        while self.is_behind(step) {
+            let gone_on = self.reader.take(&self.simulation);
+            if gone_on.is_err() || self.simulation.step().is_err() {
+                self.has_broken = true;
+                return;
+            }
+            self.record();
+            if self.simulation.step_number().is_multiple_of(BETWEEN_LOOKS) && enough() {
+                return;
+            }
+        }
+        if !self.has_broken && self.simulation.step_number() <= step {
+            // What was measured at the very step. Where the next step breaks down, the run says so.
+            self.has_broken = self.reader.take(&self.simulation).is_err();
+        }
+    }
+
+    fn record(&mut self) {
+        let now = self.simulation.now();
+        let values: Vec<f64> = self
+            .recorded_here()
+            .map(|(_, quantity)| quantity.of(now))
+            .collect();
+        let (time_s, axle_height) = (now.time_s(), now.after().axle().z);
+        for (values, recording) in values.chunks(IN_A_RECORDING).zip(&mut self.recorded) {
+            let value = |place, _| values.get(place).copied().unwrap_or_default();
+            recording.push(&Moment {
+                time_s,
+                position: Vector3::from_fn(value),
+                axle_height,
+            });
+        }
+    }
+
+    /// Holds the data against the run up to `now_s`.
+    pub(super) fn compare(&mut self, now_s: f64) {
+        let scenario = self.simulation.scenario();
+        let traced = &scenario.body.mechanics.points()[scenario.trace].at;
+        self.compared = Compared::new(&self.series, self.reader.values(), now_s, traced);
+    }
+}
+
+/// Computing time for following the run in each round of the loop, while the run moves and while it stands still.
+const FOLLOWING: Duration = Duration::from_millis(6);
+const CATCHING_UP: Duration = Duration::from_millis(40);
+
+impl Player {
+    /// The measured data beside the run.
+    pub fn measured(&self) -> Option<&Beside> {
+        self.measured.as_ref()
+    }
+
+    /// Puts `measured`, called `name`, beside the run.
+    ///
+    /// # Errors
+    /// Where they are a table of runs.
+    pub(super) fn set_measured(&mut self, name: &str, measured: Measured) -> Result<(), Problems> {
+        self.measured = Some(Beside::new(name, measured, self.run().scenario())?);
+        Ok(())
+    }
+
+    /// Begins to read the run of `scenario` from its start. To be called where it takes the place of the present one.
+    pub(super) fn measure_again(&mut self, scenario: &Arc<Scenario>) {
+        if let Some(beside) = &mut self.measured {
+            // What the ghost shows is kept beside it.
+            let is_ghost =
+                |ghost: &Ghost| Arc::ptr_eq(ghost.scenario(), self.playback.run().scenario());
+            beside.begin_again(scenario, self.ghost.as_ref().is_some_and(is_ghost));
+        }
+    }
+
+    /// Goes on reading in the run of `scenario`, which has the same motion as the present one up to `step`.
+    pub(super) fn measure_on(&mut self, step: u64, scenario: &Arc<Scenario>) {
+        if let Some(beside) = &mut self.measured {
+            beside.go_on_in(scenario, step);
+        }
+    }
+
+    /// Reads the run on to the present step, for at most its share of the computing time. Returns whether there was
+    /// something to do.
+    pub(super) fn follow_measured(&mut self, clock: &mut dyn FnMut() -> Duration) -> bool {
+        let step = self.playback.step_number();
+        let share = match self.is_moving() {
+            true => FOLLOWING,
+            false => CATCHING_UP,
+        };
+        match &mut self.measured {
+            Some(beside) if beside.is_behind(step) => {
+                let deadline = clock() + share;
+                beside.follow(step, || clock() >= deadline);
+                // While the run moves, numbers are read a few times a second.
+                if !self.is_moving() {
+                    self.compare();
+                }
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Reads the run on to the present step, however long that takes.
+    pub(super) fn catch_up_measured(&mut self) {
+        let step = self.playback.step_number();
+        if let Some(beside) = &mut self.measured {
+            beside.follow(step, || false);
+        }
+    }
+
+    /// Holds the data against the run as far as it has come.
+    pub(super) fn compare(&mut self) {
+        let step = self.playback.step_number();
+        let now_s = self.playback.run().now().time_s;
+        if let Some(beside) = &mut self.measured {
+            if !beside.is_behind(step) {
+                beside.follow(step, || true);
+            }
+            beside.compare(now_s);
+        }
+    }
+}

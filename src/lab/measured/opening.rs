@@ -1,0 +1,132 @@
+//! Putting measured data beside the run, and taking them away.
+
+use super::Beside;
+use crate::export::Destination;
+use crate::lab::Lab;
+use crate::lab::carry_out::{Answer, Done};
+use crate::lab::files::Files;
+use crate::measured::{self, Measured, shipped};
+use crate::scenario::{Problem, Problems, Scenario};
+use crate::text::printable::printable;
+use std::path::Path;
+
+impl Files {
+    /// Reads the measured data `name`: those that come with the program, or a file. `may_wait` says whether it may be a
+    /// FIFO or a device, which is read for any length of time.
+    ///
+    /// # Errors
+    /// Why it may not be read, or what is wrong with it.
+    fn open_measured(&self, name: &str, may_wait: bool) -> Result<Measured, Problems> {
+        if shipped::find(name).is_none() {
+            let refused = |rule: String| Problems::one(name, Problem::at("", rule));
+            let path = Path::new(name);
+            self.admit(path).map_err(refused)?;
+            if !may_wait && Destination::may_wait(path) {
+                let rule = "is not a regular file: gyrolab --measured can read it";
+                return Err(refused(rule.to_owned()));
+            }
+        }
+        measured::open(name)
+    }
+}
+
+impl Lab {
+    /// Puts the measured data `name` beside the run, as the command line wants it, or else those that the scenario's
+    /// `[view]` names.
+    ///
+    /// # Errors
+    /// Why they cannot be read, or have no place beside a run.
+    pub fn begin_with_measured(&mut self, name: Option<&str>) -> Result<(), Problems> {
+        let file = self.player.run().scenario().file.view.as_ref();
+        let of_file = file.and_then(|view| view.measured.clone());
+        let Some(name) = name.map(str::to_owned).or(of_file) else {
+            return Ok(());
+        };
+        self.put_beside(&name, true)
+    }
+
+    /// Reads the measured data `name` and puts them beside the run.
+    fn put_beside(&mut self, name: &str, may_wait: bool) -> Result<(), Problems> {
+        let measured = self.files.open_measured(name, may_wait)?;
+        self.player.set_measured(name, measured)?;
+        self.view.measured = true;
+        self.player.catch_up_measured();
+        self.read_now();
+        Ok(())
+    }
+
+    /// Puts the measured data `name` beside the run, or takes away those that are there.
+    pub(in crate::lab) fn measure(&mut self, name: Option<&str>) -> Answer {
+        let Some(name) = name else {
+            let had = self.player.measured.take().is_some();
+            self.view.measured = false;
+            return Ok(Done::saying(match had {
+                true => "the measured data are taken away",
+                false => "there are no measured data beside the run",
+            }));
+        };
+        let put = self.put_beside(name, false);
+        put.map_err(|problems| format!("{}: {}", problems.origin, problems.in_one_line()))?;
+        Ok(Done::SILENT)
+    }
+
+    pub(in crate::lab) fn show_residuals(&mut self, shown: bool) -> Answer {
+        if self.player.measured.is_none() {
+            return Err(
+                "there are no measured data beside the run: gyrolab --measured FILE".into(),
+            );
+        }
+        self.view.residuals = shown;
+        Ok(Done::saying(match shown {
+            true => "measured less run, where something was measured; E shows both again",
+            false => "measured values and the run",
+        }))
+    }
+
+    /// After another scenario has been opened in place of `before`: puts the data beside its run that its `[view]` names,
+    /// and takes those away that the `[view]` of the one before named.
+    pub(in crate::lab) fn measure_as_opened(&mut self, before: &Scenario) {
+        let named = |scenario: &Scenario| scenario.file.view.as_ref()?.measured.clone();
+        let scenario = self.player.run().scenario();
+        let shown = self
+            .player
+            .measured()
+            .map(|beside| beside.name().to_owned());
+        match named(scenario) {
+            Some(name) if Some(&name) == shown.as_ref() => {}
+            Some(name) => {
+                self.player.measured = None;
+                self.view.measured = false;
+                if let Err(problems) = self.put_beside(&name, false) {
+                    let why = format!("{}: {}", problems.origin, problems.in_one_line());
+                    self.tell(printable(&why));
+                }
+            }
+            None if shown.is_some() && shown == named(before) => {
+                self.player.measured = None;
+                self.view.measured = false;
+            }
+            None => {}
+        }
+    }
+
+    /// The measured data beside the run, as a session keeps them: by name, and a file's name with all of its folders where
+    /// the lab is not confined to one.
+    pub(in crate::lab) fn measured_to_keep(&self) -> Option<String> {
+        let name = self.player.measured().map(Beside::name)?;
+        let is_whole = shipped::find(name).is_some() || self.files.confined().is_some();
+        let whole = std::path::absolute(name).ok().filter(|_| !is_whole);
+        let whole = whole.and_then(|path| path.to_str().map(str::to_owned));
+        Some(whole.unwrap_or_else(|| name.to_owned()))
+    }
+
+    /// Puts the measured data back that a session has kept; what is to be told where that cannot be.
+    pub(in crate::lab) fn measure_as_kept(&mut self, name: &str) -> Option<String> {
+        let problems = self.put_beside(name, false).err()?;
+        let why = problems.in_one_line();
+        Some(format!(
+            "; the measured data {} are not beside it: {why}",
+            printable(name)
+        ))
+    }
+}

@@ -1,0 +1,132 @@
+//! The line about the measured data beside the run: their mark and their file, and how far they are from the run.
+
+use super::{shortened, write};
+use crate::lab::Lab;
+use crate::lab::measured::{Beside, Sum};
+use crate::measured::Quantity;
+use crate::text::number::short;
+use crate::text::printable::printable;
+use crate::text::wrap::columns;
+use crate::tui::theme::Role;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use std::path::Path;
+
+/// Between two parts of the line.
+const SEPARATOR: &str = " · ";
+/// The fewest columns of a file's name.
+const LEAST_NAME: usize = 12;
+
+/// Draws the line about the data in `lab`, if there are any.
+pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let Some(beside) = lab.player().measured() else {
+        return;
+    };
+    let theme = &lab.view().theme;
+    let sum = &beside.compared().sum;
+    let room = area.width.saturating_sub(1) as usize;
+    let mark = lab.view().marker.point().to_string();
+    let what = match lab.view().residuals {
+        true => " residuals: ",
+        false => " measured: ",
+    };
+    let counts = counted(beside, sum);
+    let parts = [parts(sum, false), parts(sum, true)];
+    let name = file_name(beside.name());
+    let length = |counts: &str, parts: &[String]| {
+        let parts = parts.iter().map(|part| columns(SEPARATOR) + columns(part));
+        columns(&mark) + columns(what) + 1 + columns(counts) + parts.sum::<usize>()
+    };
+    // Short forms make room for the rest, then a shorter name, then the last parts.
+    let mut forms = vec![(&counts[0], &parts[0][..]), (&counts[0], &parts[1][..])];
+    forms.extend(
+        (0..=parts[1].len())
+            .rev()
+            .map(|count| (&counts[1], &parts[1][..count])),
+    );
+    let (whole, least) = (columns(&name), columns(&name).min(LEAST_NAME));
+    let fits =
+        |name: usize, &(counts, parts): &(&String, &[String])| length(counts, parts) + name <= room;
+    let with_all = forms.iter().take(3).find(|form| fits(whole, form));
+    let found = with_all.or_else(|| forms.iter().find(|form| fits(least, form)));
+    let &(counts, parts) = found.unwrap_or(&forms[forms.len() - 1]);
+    let rest = room.saturating_sub(length(counts, parts));
+    let mut x = write(area, (1, 0), &mark, theme.style(Role::Measured), buf);
+    let quiet = theme.style(Role::Quiet);
+    x = write(area, (x, 0), what, quiet, buf);
+    x = write(
+        area,
+        (x, 0),
+        &shortened(&name, rest.max(least)),
+        theme.style(Role::Text),
+        buf,
+    );
+    x = write(area, (x, 0), &format!(" {counts}"), quiet, buf);
+    for part in parts {
+        x = write(area, (x, 0), SEPARATOR, quiet, buf);
+        x = write(area, (x, 0), part, theme.style(Role::Text), buf);
+    }
+}
+
+/// The name of data, or of a file without its folders.
+fn file_name(name: &str) -> String {
+    let last = Path::new(name).file_name();
+    let last = last.map_or(name.into(), |last| last.to_string_lossy());
+    printable(&last).into_owned()
+}
+
+fn points(count: usize) -> String {
+    match count {
+        1 => "1 point".to_owned(),
+        _ => format!("{count} points"),
+    }
+}
+
+/// What was measured, how many values there are, and how many of them the run has reached: at length and in short.
+fn counted(beside: &Beside, sum: &Sum) -> [String; 2] {
+    let names: Vec<_> = beside.quantities().map(Quantity::words).collect();
+    let (names, all) = (names.join(", "), points(sum.points));
+    match sum.compared {
+        0 => [format!("({names}: {all})"), format!("({all})")],
+        reached if reached == sum.points => [format!("({names}: {all})"), format!("({all})")],
+        reached => [
+            format!("({names}: {all}, {reached} reached so far)"),
+            format!("({reached} of {all})"),
+        ],
+    }
+}
+
+/// How far the data are from the run, the most important first: at length, or in short.
+fn parts(sum: &Sum, in_short: bool) -> Vec<String> {
+    if sum.compared == 0 {
+        return vec!["none of them reached yet".to_owned()];
+    }
+    let mut parts = Vec::new();
+    if sum.weighed > 0 {
+        let chi = short(sum.chi_squared);
+        parts.push(match (sum.weighed < sum.compared, in_short) {
+            (false, _) => format!("chi² {chi}"),
+            (true, true) => format!("chi² {chi} at {}", sum.weighed),
+            (true, false) => format!("chi² {chi} at the {} with an uncertainty", sum.weighed),
+        });
+    }
+    if let Some(largest) = sum.largest {
+        let (sigmas, words) = (short(largest.sigmas), largest.quantity.words());
+        parts.push(match in_short {
+            true => format!("largest {sigmas} sigma"),
+            false => format!(
+                "largest {sigmas} sigma ({words} at {} s)",
+                short(largest.time_s)
+            ),
+        });
+    }
+    for (quantity, scatter) in &sum.scatter {
+        let (words, off) = (quantity.words(), short(*scatter));
+        let unit = quantity.unit();
+        parts.push(match in_short {
+            true => format!("{words} off {off} {unit}"),
+            false => format!("{words} off by {off} {unit} (rms)"),
+        });
+    }
+    parts
+}

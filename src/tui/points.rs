@@ -1,0 +1,229 @@
+//! Measured points on a picture: a mark in the cell of each, and a bar where its uncertainty is larger than the cell.
+//!
+//! Nothing else on a picture has the shape of the mark. Bars do not cover the curve that the points are held against. Where
+//! marks stand close together, they would hide it: beside a mark that covers the curve, the next cell shows the curve.
+
+use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Theme;
+use crate::tui::theme::Role;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+impl Marker {
+    /// What marks a measured point.
+    pub fn point(self) -> char {
+        match self {
+            Self::Ascii => 'X', // the name of an axis is a small one
+            _ => '×',
+        }
+    }
+
+    /// An upright bar: its upper end, what is between, its lower end; and a level one: its left end, what is between, its
+    /// right end.
+    fn bars(self) -> [[char; 3]; 2] {
+        match self {
+            Self::Ascii => [['-', '|', '-'], ['|', '-', '|']],
+            _ => [['┬', '│', '┴'], ['├', '─', '┤']],
+        }
+    }
+}
+
+/// What stands in a cell, the least first: what comes later in this list covers what comes earlier.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Sign {
+    Nothing,
+    Bar(char),
+    End(char),
+    Mark,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    sign: Sign,
+    role: Role,
+}
+
+/// Points on an area of cells.
+pub struct Points {
+    area: Rect,
+    marker: Marker,
+    cells: Vec<Cell>,
+}
+
+/// The ends of a bar, in cells from the upper left, which may lie outside of the picture.
+pub type Ends = (f64, f64);
+
+impl Points {
+    /// No points on `area`.
+    pub fn new(area: Rect, marker: Marker) -> Self {
+        let nothing = Cell {
+            sign: Sign::Nothing,
+            role: Role::Measured,
+        };
+        Self {
+            area,
+            marker,
+            cells: vec![nothing; area.width as usize * area.height as usize],
+        }
+    }
+
+    /// A point at `x` and `y`, in cells from the upper left, with the ends of its bars across and upright. Its mark is left
+    /// out where it lies outside of the picture.
+    pub fn add(
+        &mut self,
+        (x, y): (f64, f64),
+        level: Option<Ends>,
+        upright: Option<Ends>,
+        role: Role,
+    ) {
+        let [up, across] = self.marker.bars();
+        if let Some(ends) = upright {
+            self.bar(y, ends, self.area.height, up, |row| (x, row), role);
+        }
+        if let Some(ends) = level {
+            self.bar(x, ends, self.area.width, across, |column| (column, y), role);
+        }
+        self.set((x, y), Sign::Mark, role);
+    }
+
+    /// The cells of a bar about `middle` on a side of so many `cells`; `place` is where a cell of it stands. A bar that
+    /// ends in the cell of its mark is none.
+    fn bar(
+        &mut self,
+        middle: f64,
+        (begin, end): Ends,
+        cells: u16,
+        [first, between, last]: [char; 3],
+        place: impl Fn(f64) -> (f64, f64),
+        role: Role,
+    ) {
+        let (begin, end) = (begin.min(end).floor(), begin.max(end).floor());
+        let inside = |cell: f64| cell.clamp(0.0, f64::from(cells) - 1.0);
+        let shown = [begin, end, middle.floor()];
+        if shown.iter().any(|cell| cell.is_nan()) || end < 0.0 || begin >= f64::from(cells) {
+            return;
+        }
+        let mut cell = inside(begin);
+        while cell <= inside(end) {
+            let sign = match cell {
+                _ if cell == begin && begin < middle.floor() => Sign::End(first),
+                _ if cell == end && end > middle.floor() => Sign::End(last),
+                _ => Sign::Bar(between),
+            };
+            if cell != middle.floor() {
+                self.set(place(cell), sign, role);
+            }
+            cell += 1.0;
+        }
+    }
+
+    fn set(&mut self, (x, y): (f64, f64), sign: Sign, role: Role) {
+        let is_inside = x >= 0.0
+            && y >= 0.0
+            && x < f64::from(self.area.width)
+            && y < f64::from(self.area.height);
+        if !is_inside {
+            return; // so is NaN
+        }
+        let cell = &mut self.cells[y as usize * self.area.width as usize + x as usize];
+        if sign >= cell.sign {
+            *cell = Cell { sign, role };
+        }
+    }
+
+    /// Draws the points over what is there.
+    pub fn render(&self, theme: &Theme, buf: &mut Buffer) {
+        let width = usize::from(self.area.width.max(1));
+        for (cells, y) in self.cells.chunks(width).zip(self.area.y..) {
+            let mut has_covered = false;
+            for (cell, x) in cells.iter().zip(self.area.x..) {
+                let Some(target) = buf.cell_mut((x, y)) else {
+                    continue;
+                };
+                let is_free = target.symbol() == " ";
+                let (symbol, is_shown) = match cell.sign {
+                    Sign::Nothing => (' ', false),
+                    Sign::Bar(symbol) | Sign::End(symbol) => (symbol, is_free),
+                    Sign::Mark => (self.marker.point(), is_free || !has_covered),
+                };
+                if is_shown {
+                    target.set_char(symbol).set_style(theme.style(cell.role));
+                }
+                has_covered = is_shown && !is_free;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::view::theme::Background;
+
+    const AREA: Rect = Rect {
+        x: 0,
+        y: 0,
+        width: 7,
+        height: 5,
+    };
+
+    fn drawn(points: &Points, behind: &str) -> Vec<String> {
+        let theme = Theme {
+            colour: false,
+            background: Background::Dark,
+        };
+        let mut buf = Buffer::empty(AREA);
+        for y in 0..AREA.height {
+            buf.set_string(0, y, behind, theme.style(Role::Text));
+        }
+        points.render(&theme, &mut buf);
+        let lines = buf.content.chunks(AREA.width.into());
+        let text = |line: &[ratatui::buffer::Cell]| {
+            let line: String = line.iter().map(ratatui::buffer::Cell::symbol).collect();
+            line.trim_end().to_owned()
+        };
+        lines.map(text).collect()
+    }
+
+    #[test]
+    fn a_bar_is_drawn_where_it_is_larger_than_the_cell_of_its_mark() {
+        let mut points = Points::new(AREA, Marker::Braille);
+        points.add((1.5, 2.5), None, Some((0.5, 4.5)), Role::Measured);
+        points.add(
+            (4.5, 2.5),
+            Some((3.2, 5.9)),
+            Some((2.1, 2.9)),
+            Role::Measured,
+        );
+        assert_eq!(drawn(&points, ""), [" ┬", " │", " × ├×┤", " │", " ┴"]);
+        let mut points = Points::new(AREA, Marker::Ascii);
+        points.add(
+            (1.5, 1.5),
+            Some((0.0, 2.5)),
+            Some((-3.0, 2.5)),
+            Role::Measured,
+        );
+        assert_eq!(drawn(&points, ""), [" |", "|X|", " -", "", ""]);
+    }
+
+    #[test]
+    fn a_mark_outside_is_left_out_and_its_bar_is_cut_off() {
+        let mut points = Points::new(AREA, Marker::Braille);
+        points.add((2.0, -3.0), None, Some((-5.0, 1.5)), Role::Measured);
+        points.add((f64::NAN, 2.0), None, None, Role::Measured);
+        points.add((6.5, 9.0), None, Some((8.0, 10.0)), Role::Measured);
+        assert_eq!(drawn(&points, ""), ["  │", "  ┴", "", "", ""]);
+    }
+
+    #[test]
+    fn the_curve_is_seen_between_points_that_stand_close_together() {
+        let mut points = Points::new(AREA, Marker::Braille);
+        (0..7).for_each(|x| points.add((f64::from(x), 0.0), None, None, Role::Measured));
+        assert_eq!(drawn(&points, ".......")[0], "×.×.×.×");
+        assert_eq!(drawn(&points, "")[0], "×××××××");
+        assert_eq!(drawn(&points, "... ...")[0], "×.×××.×");
+        let mut points = Points::new(AREA, Marker::Braille);
+        points.add((2.0, 0.0), Some((1.0, 4.0)), None, Role::Measured);
+        assert_eq!(drawn(&points, ".. . ..")[0], "..×.┤..");
+    }
+}

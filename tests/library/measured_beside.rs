@@ -1,0 +1,329 @@
+//! Measured data beside a run in the lab, and drawn with runs on paper.
+
+use crate::support::desk::Desk;
+use crate::support::scenarios::{preset, view};
+use crate::support::stage::{LARGE, SMALL, Stage};
+use gyrolab::figure::kind::Kind;
+use gyrolab::figure::of_runs::{self, Figure, Request, Run};
+use gyrolab::figure::{Item, Paint};
+use gyrolab::lab::Lab;
+use gyrolab::lab::measured::Sum;
+use gyrolab::lab::view::markers::Marker;
+use gyrolab::measured::{self, Measured, Quantity};
+use gyrolab::run::Simulation;
+use gyrolab::scenario::Scenario;
+use gyrolab::storage::confined::Confined;
+use std::fmt::Write;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A file of what the run of `scenario` has of `columns` at every tenth step of 200, each value higher than that by so many
+/// of its uncertainties as `off` says of its number.
+fn data(scenario: &Scenario, columns: &[(&str, f64)], off: impl Fn(usize) -> f64) -> String {
+    let mut text = "t_s".to_owned();
+    for (name, _) in columns {
+        let (stem, unit) = name.rsplit_once('_').unwrap();
+        write!(text, ",{name},{stem}_uncertainty_{unit}").unwrap();
+    }
+    text.push('\n');
+    let mut simulation = Simulation::new(Arc::new(scenario.clone()));
+    for number in 0..20 {
+        write!(text, "{:?}", simulation.now().time_s()).unwrap();
+        for (name, sigma) in columns {
+            let value = Quantity::find(name).unwrap().of(simulation.now());
+            write!(text, ",{:?},{sigma}", value + off(number) * sigma).unwrap();
+        }
+        text.push('\n');
+        (0..10).for_each(|_| {
+            simulation.step().unwrap();
+        });
+    }
+    text
+}
+
+fn file(text: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bench.csv");
+    fs::write(&path, text).unwrap();
+    (folder, path)
+}
+
+fn sum(lab: &Lab) -> Sum {
+    lab.player().measured().unwrap().compared().sum.clone()
+}
+
+#[test]
+fn what_a_run_says_is_what_it_is_compared_with() {
+    let scenario = preset("method-2", &[]);
+    let columns = [("x_m", 0.01), ("tilt_deg", 0.1), ("spin_rpm", 1.0)];
+    let (_folder, path) = file(&data(&scenario, &columns, |_| 0.0));
+    let mut desk = Desk::with("method-2", scenario);
+    desk.commands(&format!("measured = '{}'\ngo_to = 95", path.display()));
+    let early = sum(&desk.lab);
+    assert_eq!((early.points, early.compared), (60, 30));
+    assert_eq!(early.chi_squared, 0.0);
+    desk.commands("go_to = 200");
+    assert_eq!(sum(&desk.lab).compared, 60);
+    assert_eq!(sum(&desk.lab).chi_squared, 0.0);
+    // An edit of the start begins the run anew, and undo goes back to the one before.
+    desk.commands("set = { 'start.tilt_deg' = 46 }");
+    assert_eq!(sum(&desk.lab).compared, 60, "played to the same time");
+    let largest = sum(&desk.lab).largest.unwrap();
+    assert!(largest.sigmas > 9.0, "{largest:?}");
+    desk.commands("undo = 1\ngo_to = 200");
+    assert_eq!(sum(&desk.lab).chi_squared, 0.0);
+    // The run goes on from the present step with an act; what came before stays as it was.
+    desk.commands("go_to = 95\nset = { 'motion.gravity_m_per_s2' = 20 }\ngo_to = 200");
+    let edited = desk.lab.player().measured().unwrap().compared().clone();
+    let shown = &edited.curves[0];
+    assert!(
+        shown[..10]
+            .iter()
+            .all(|shown| shown.residual() == Some(0.0))
+    );
+    assert!(shown[19].residual().unwrap().abs() > 0.01);
+}
+
+#[test]
+fn the_numbers_are_those_of_the_residuals() {
+    let scenario = preset("method-2", &[]);
+    let off = |number: usize| if number == 7 { -3.0 } else { 0.5 };
+    let (_folder, path) = file(&data(&scenario, &[("z_m", 0.01)], off));
+    let mut desk = Desk::with("method-2", scenario);
+    desk.commands(&format!("measured = '{}'\ngo_to = 200", path.display()));
+    let sum = sum(&desk.lab);
+    assert!(
+        (sum.chi_squared - (9.0 + 19.0 * 0.25)).abs() < 1e-9,
+        "{sum:?}"
+    );
+    let largest = sum.largest.unwrap();
+    assert!((largest.sigmas - 3.0).abs() < 1e-9 && (largest.time_s - 7.0).abs() < 1e-9);
+}
+
+#[test]
+fn points_stand_on_strips_and_from_above_and_residuals_about_zero() {
+    let scenario = preset("method-2", &[]);
+    let off = |number: usize| [0.0, 2.0, -1.0][number % 3];
+    let columns = [("x_m", 0.05), ("y_m", 0.05), ("spin_rpm", 1.0)];
+    let (_folder, path) = file(&data(&scenario, &columns, off));
+    for (name, size) in [("small", SMALL), ("large", LARGE)] {
+        let mut stage = Stage::open("method-2", &["motion.steps=200"], size);
+        stage.commands(&format!(
+            "measured = '{}'\npause = true\ngo_to = 120",
+            path.display()
+        ));
+        stage.wait(1.0);
+        insta::assert_snapshot!(format!("points_{name}"), stage.picture());
+        stage.press("E").wait(6.0);
+        insta::assert_snapshot!(format!("residuals_{name}"), stage.picture());
+    }
+}
+
+#[test]
+fn a_key_without_data_says_how_to_get_them() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    assert!(!stage.picture().contains("E residuals"));
+    stage.press("E");
+    assert!(stage.picture().contains("gyrolab --measured FILE"));
+    stage.commands("measured = 'heidelberg-spin-decay'");
+    assert!(stage.picture().contains("× measured: heidelberg-"));
+    stage.commands("measured = 'none'");
+    assert!(!stage.picture().contains("× measured"));
+}
+
+#[test]
+fn a_table_of_runs_and_what_is_outside_of_the_folder_are_refused() {
+    let mut desk = Desk::open("method-2");
+    let refused = |desk: &mut Desk, name: &str| {
+        let command = crate::support::desk::commands(&format!("measured = '{name}'"));
+        desk.carry_out(&command[0]).unwrap_err().to_string()
+    };
+    let why = refused(&mut desk, "heidelberg-nutation");
+    assert!(
+        why.contains("table of runs") && why.contains("gyrolab fit"),
+        "{why}"
+    );
+    let (folder, path) = file("t_s,x_m\n0,1\n");
+    let inside = folder.path().join("inside");
+    fs::create_dir(&inside).unwrap();
+    desk.lab
+        .files_mut()
+        .confine(Confined::within(&inside).unwrap());
+    let why = refused(&mut desk, path.to_str().unwrap());
+    assert!(why.contains("stays in its folder"), "{why}");
+    assert!(desk.lab.player().measured().is_none());
+    desk.commands("measured = 'heidelberg-spin-decay'");
+}
+
+#[test]
+fn a_session_keeps_them_by_name() {
+    let scenario = preset("method-2", &[]);
+    let (folder, path) = file(&data(&scenario, &[("z_m", 0.01)], |_| 1.0));
+    let mut desk = Desk::with("method-2", scenario);
+    desk.commands(&format!(
+        "measured = '{}'\nresiduals = true\ngo_to = 200",
+        path.display()
+    ));
+    let content = desk.lab.content();
+    Lab::check(&content).unwrap();
+    let resumed = || Lab::resumed(&content, |scenario| view(scenario, Marker::Braille, false));
+    let mut again = Desk::of(resumed().unwrap());
+    again.wait(3);
+    assert_eq!(sum(&again.lab).compared, 20);
+    assert!(again.lab.view().residuals);
+    drop(folder);
+    let without = resumed().unwrap();
+    assert!(without.player().measured().is_none());
+    let notice = without.notice().unwrap();
+    assert!(
+        notice.contains("bench.csv") && notice.contains("no such file"),
+        "{notice}"
+    );
+}
+
+#[test]
+fn a_scenario_names_the_data_beside_its_run() {
+    let scenario = preset("method-2", &["view.measured=\"heidelberg-spin-decay\""]);
+    let mut desk = Desk::with("method-2", scenario);
+    desk.lab.begin_with_measured(None).unwrap();
+    assert_eq!(sum(&desk.lab).points, 7);
+    desk.commands("open = 'cusps'");
+    assert!(
+        desk.lab.player().measured().is_none(),
+        "they were of the other run"
+    );
+    desk.commands("measured = 'heidelberg-spin-decay'\nopen = 'loops'");
+    assert!(
+        desk.lab.player().measured().is_some(),
+        "they were chosen by hand"
+    );
+}
+
+fn figure(kind: Option<&str>, text: &str) -> Figure {
+    let measured: Measured = measured::read("bench.csv", text).unwrap();
+    let kind = match kind {
+        Some(kind) => Kind::named(kind).unwrap(),
+        None => Kind::measured(measured.series().unwrap()),
+    };
+    let request = Request {
+        kind,
+        from_s: 0.0,
+        to_s: None,
+        exact: false,
+        measured: Some(Arc::new(measured)),
+        width_pt: 250.0,
+    };
+    let run = Run {
+        scenario: Arc::new(preset("method-2", &["motion.steps=200"])),
+        named: "method-2".to_owned(),
+    };
+    let figure = of_runs::figure(&[run], &request, |_, _| ControlFlow::Continue(()));
+    figure.unwrap().unwrap()
+}
+
+/// The middles of the empty circles, without that of the legend.
+fn rings(figure: &Figure) -> Vec<[f64; 2]> {
+    let middle = |item: &Item| {
+        let points: Vec<_> = item.path.points().collect();
+        let mean = |part: &dyn Fn(usize) -> f64| {
+            let all = (0..points.len()).map(part);
+            0.5 * (all.clone().fold(f64::INFINITY, f64::min)
+                + all.fold(f64::NEG_INFINITY, f64::max))
+        };
+        let wide = points
+            .iter()
+            .map(|at| at.x)
+            .fold(f64::NEG_INFINITY, f64::max)
+            - points.iter().map(|at| at.x).fold(f64::INFINITY, f64::min);
+        let is_ring = matches!(item.paint, Paint::Fill(color) if color.0 == [255; 3]) && wide < 4.0;
+        is_ring.then(|| [mean(&|i| points[i].x), mean(&|i| points[i].y)])
+    };
+    let mut rings: Vec<_> = figure.scene.items.iter().filter_map(middle).collect();
+    rings.pop();
+    rings
+}
+
+#[test]
+fn points_are_drawn_at_their_places_on_paper() {
+    let scenario = preset("method-2", &[]);
+    let off = |number: usize| number as f64 % 4.0;
+    let text = data(&scenario, &[("x_m", 0.05), ("y_m", 0.05)], off);
+    let read = measured::read("bench.csv", &text).unwrap();
+    let series = read.series().unwrap().clone();
+    // Of one panel after the other, each a line from values to the page.
+    let all = rings(&figure(None, &text));
+    assert_eq!(all.len(), 40);
+    for (rings, curve) in all.chunks(20).zip(&series.curves) {
+        let values: Vec<_> = curve.points.iter().map(|point| point.value).collect();
+        is_in_proportion(&series.times_s, rings, 0);
+        is_in_proportion(&values, rings, 1);
+    }
+    let above = rings(&figure(Some("above"), &text));
+    assert_eq!(above.len(), 20);
+    for part in [0, 1] {
+        let values: Vec<_> = series.curves[part]
+            .points
+            .iter()
+            .map(|point| point.value)
+            .collect();
+        is_in_proportion(&values, &above, part);
+    }
+    let residuals = rings(&figure(Some("residuals"), &text));
+    let off: Vec<f64> = (0..20).map(off).collect();
+    is_in_proportion(&off, &residuals[..20], 1);
+}
+
+/// Whether the numbers `part` of `places` stand in proportion to `values`: up where that is 1.
+#[track_caller]
+fn is_in_proportion(values: &[f64], places: &[[f64; 2]], part: usize) {
+    let least = (0..values.len())
+        .min_by(|a, b| values[*a].total_cmp(&values[*b]))
+        .unwrap();
+    let most = (0..values.len())
+        .max_by(|a, b| values[*a].total_cmp(&values[*b]))
+        .unwrap();
+    let scale = (places[most][part] - places[least][part]) / (values[most] - values[least]);
+    assert!(if part == 0 { scale > 0.0 } else { scale < 0.0 }, "{scale}");
+    for (value, place) in values.iter().zip(places) {
+        let wanted = places[least][part] + scale * (value - values[least]);
+        assert!(
+            (place[part] - wanted).abs() < 0.02,
+            "{value} at {place:?}, not {wanted}"
+        );
+    }
+}
+
+#[test]
+fn a_point_without_uncertainty_has_no_bar() {
+    // The ends of a bar are 3.4 pt long, and no tick is.
+    let ends = |figure: &Figure| {
+        let is_end = |item: &&Item| {
+            let points: Vec<_> = item.path.points().collect();
+            matches!(points[..], [a, b] if a.y == b.y && ((a.x - b.x).abs() - 3.4).abs() < 1e-6)
+        };
+        figure.scene.items.iter().filter(is_end).count()
+    };
+    let with = figure(None, "t_s,x_m,x_uncertainty_m\n5,0.5,0.3\n10,0,0.3\n");
+    let one = figure(None, "t_s,x_m,x_uncertainty_m\n5,0.5,0.3\n10,0,\n");
+    assert_eq!((ends(&with), ends(&one)), (4, 2));
+    assert_eq!(rings(&one).len(), 2);
+}
+
+#[test]
+fn a_figure_that_shows_no_point_says_so() {
+    let warned = |kind: &str| {
+        figure(Some(kind), "t_s,spin_rpm\n0,5\n1,6\n")
+            .warnings
+            .join("; ")
+    };
+    assert!(
+        warned("traces").contains("--kind spin_rpm"),
+        "{}",
+        warned("traces")
+    );
+    assert!(warned("above").contains("tilt_deg and azimuth_deg"));
+    assert!(warned("3d").contains("not drawn in space"));
+    assert_eq!(warned("spin_rpm"), "");
+}

@@ -1,0 +1,30 @@
+//! Measured data beside a run in the real program.
+
+use crate::support::ground::{Ground, code, stderr, stdout};
+
+#[test]
+fn one_key_shows_the_residuals() {
+    let ground = Ground::new();
+    let text = "t_s,x_m,x_uncertainty_m\n0,0.02,0.01\n1,0.04,0.01\n2,0.09,0.01\n";
+    ground.write("bench.csv", text);
+    let mut lab = ground.open(&["--paused", "--at", "15", "--measured", "bench.csv"]);
+    lab.wait_for("× measured: bench.csv (2 of 3 points)");
+    lab.ask("E", "× residuals: bench.csv");
+    lab.ask("E", "× measured: bench.csv");
+    lab.press("q");
+}
+
+#[test]
+fn broken_data_are_refused_before_the_screen_opens() {
+    let ground = Ground::new();
+    ground.write("bad.csv", "t_s,tilt_deg\n0,1\n1,high\n");
+    for command in [&["method-2"][..], &["show", "method-2"]] {
+        let ran = ground.run(&[command, &["--measured", "bad.csv"]].concat());
+        assert_eq!((code(&ran), stdout(&ran)), (1, ""));
+        assert!(
+            stderr(&ran).contains("bad.csv:3: tilt_deg"),
+            "{}",
+            stderr(&ran)
+        );
+    }
+}
