@@ -90,23 +90,19 @@ impl Report {
         pushes.fold(weight, |sum, push| sum + self.push_torque(push))
     }
 
-    /// Friction takes its part of L. It stands apart so that a step without it keeps its numbers in registers.
+    /// A step with friction. It stands apart from the step itself, which without it keeps its numbers in registers.
     #[cold]
     #[inline(never)]
-    fn rub<L: Listener>(
-        &mut self,
-        dt: f64,
-        angular_velocity: &Vector3<f64>,
-        torque: &Vector3<f64>,
-        state: &mut State,
-        listener: &mut L,
-    ) {
+    fn rub<L: Listener>(&mut self, dt: f64, state: &mut State, listener: &mut L) {
+        let angular_velocity = self.inertia.solve(&state.momentum);
+        self.advance(dt, state, listener);
         let Some(damping) = &self.damping else {
             return;
         };
+        let torque = self.torque(&Moments::of_all(&self.points[..self.massive]).first());
         let q = &state.orientation;
-        let omega = q.tr_mul(angular_velocity);
-        let action = damping.act(&omega, &q.tr_mul(torque), dt);
+        let omega = q.tr_mul(&angular_velocity);
+        let action = damping.act(&omega, &q.tr_mul(&torque), dt);
         let impulse = q * action.impulse;
         state.momentum += impulse;
         self.work = action.work;
@@ -138,9 +134,6 @@ impl Report {
         let momentum = state.momentum;
         state.momentum += dt * torque;
         listener.hear(|| phases::momentum_phase(dt, &torque, &momentum, &state.momentum));
-        if self.damping.is_some() {
-            self.rub(dt, &angular_velocity, &torque, state, listener);
-        }
         self.inertia = Inertia::of_points(&moments);
     }
 }
@@ -175,11 +168,17 @@ impl Scheme for Report {
     }
 
     fn step(&mut self, dt: f64, state: &mut State) {
-        self.advance(dt, state, &mut Nobody);
+        match self.damping.is_some() {
+            true => self.rub(dt, state, &mut Nobody),
+            false => self.advance(dt, state, &mut Nobody),
+        }
     }
 
     fn explain(&mut self, dt: f64, state: &mut State, phases: &mut Vec<Phase>) {
-        self.advance(dt, state, phases);
+        match self.damping.is_some() {
+            true => self.rub(dt, state, phases),
+            false => self.advance(dt, state, phases),
+        }
     }
 
     fn boxed(&self) -> Box<dyn Scheme> {
