@@ -29,15 +29,22 @@ fn of_key(key: &str) -> Axis {
     let last = key.rsplit('.').next().unwrap_or(key);
     let readout = readouts::find(last).filter(|readout| !readout.symbol.is_empty());
     if let Some(readout) = readout {
-        let is_start = key.starts_with("start.");
-        let index = if is_start { "_{0}" } else { "" };
-        return Axis::new(
-            format!("{}{index}", readout.symbol),
-            unit_markup(readout.unit),
-        );
+        let symbol = match key.starts_with("start.") {
+            true => at_start(readout.symbol),
+            false => readout.symbol.to_owned(),
+        };
+        return Axis::new(symbol, unit_markup(readout.unit));
     }
     let (name, unit) = words(key);
     Axis::new(name, unit_markup(unit))
+}
+
+/// The symbol of a quantity's value at the start: with the index 0, behind the one that it may have.
+fn at_start(symbol: &str) -> String {
+    match symbol.strip_suffix('}') {
+        Some(indexed) => format!("{indexed},0}}"),
+        None => format!("{symbol}_{{0}}"),
+    }
 }
 
 /// A name as words in markup, and its unit.
@@ -100,6 +107,7 @@ mod tests {
         };
         let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
         assert_eq!(written("Lx_Js"), pair("*L*_{*x*}", "J s"));
+        assert_eq!(written("start.spin_rpm"), pair("*ω*_{3,0}", "rpm"));
         assert_eq!(written("wz_rad_per_s"), pair("*ω*_{*z*}", "rad s^{−1}"));
         assert_eq!(written("tilt_deg"), pair("*θ*", "°"));
         assert_eq!(
