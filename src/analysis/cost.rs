@@ -1,6 +1,6 @@
 //! What the exact motion of a scenario costs: nothing in closed form, the turning of the body where it is integrated.
 
-use crate::physics::{SymmetricTop, observables};
+use crate::physics::{Damping, SymmetricTop, observables};
 use crate::run::Clock;
 use crate::scenario::{Edit, Scenario};
 
@@ -22,7 +22,10 @@ pub fn integration_rad(scenario: &Scenario) -> f64 {
     // A body at rest will swing and turn under its weight, at about this rate.
     let weight = scenario.motion.gravity.abs() * body.first_moment().norm();
     let swing = (weight * body.inverse_inertia().trace()).sqrt();
-    (spin + swing) * Clock::end_s(scenario)
+    // Strong friction makes the steps of the integration as short as fast turning does.
+    let damping = Damping::new(body, &scenario.friction);
+    let slowing = damping.map_or(0.0, |damping| damping.rate(spin));
+    (spin + swing + slowing) * Clock::end_s(scenario)
 }
 
 /// Whether there is no friction, the body is symmetric and every push, those of edits too, acts on its axle.
@@ -51,6 +54,18 @@ mod tests {
             document.set(&set).unwrap();
         }
         document.scenario().unwrap()
+    }
+
+    #[test]
+    fn strong_friction_is_as_dear_as_fast_turning() {
+        let rubbed = |coefficient: f64| {
+            let mut document = Document::open("first-dip").unwrap();
+            let set = format!("friction.spin_viscous_Nms={coefficient:e}");
+            document.set(&set).unwrap();
+            document.scenario().unwrap()
+        };
+        assert!(is_affordable(&rubbed(10.0)));
+        assert!(!is_affordable(&rubbed(1e6)));
     }
 
     #[test]

@@ -104,6 +104,13 @@ impl Damping {
         first.min(second).min(self.along / self.gear)
     }
 
+    /// The rate at which friction slows spin and swing together where the body turns by `omega` rad/s, 1/s.
+    pub fn rate(&self, omega: f64) -> f64 {
+        let (friction, least) = (&self.friction, self.least_moment());
+        let spin = friction.spin_viscous + friction.spin_quadratic * self.gear * omega.abs();
+        (spin + friction.swing_viscous) / least
+    }
+
     /// The spin that rubs over ω3.
     pub fn gear(&self) -> f64 {
         self.gear
