@@ -58,7 +58,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ),
     (
         "fit",
-        "  gyrolab fit heidelberg-nutation --in heidelberg --free body.part.0.moments_kg_m2.2
+        "  gyrolab fit heidelberg-precession --in heidelberg --free body.part.0.moments_kg_m2.2
   gyrolab fit lab.csv --in mine.toml --free start.spin_rpm,start.tilt_deg=10..40
   gyrolab fit lab.csv --in mine.toml --free start.spin_rpm -o fit.csv && gyrolab figure fit.csv -o fit.pdf
   gyrolab man fit                                   how files of measured data are written",

@@ -619,6 +619,8 @@ fn theory_under_friction_is_of_the_moment_and_predicts_no_motion() {
         "predicted_precession_rad_per_s",
         "predicted_nutation_period_s",
         "predicted_precession_period_s",
+        "measured_precession_rad_per_s",
+        "measured_nutation_period_s",
     ] {
         let of = |readouts: &Readouts| find(name).unwrap().of(readouts);
         assert_eq!(of(&rubbed), Value::Nothing, "{name}");
