@@ -259,7 +259,7 @@ fn what_friction_does_is_the_energy_that_goes() {
             ("exact", all, 1e-11),
             ("exact", smooth, 1e-11),
             ("rk4", smooth, 1e-8),
-            ("strang", all, 2e-4),
+            ("strang", all, 2e-6),
         ] {
             let loads = weight(friction);
             let begin = start(&body, [0.4, -0.3, 20.0]);
