@@ -1,11 +1,8 @@
 //! The player: the run on the screen with its speed, the reading of its numbers, its ghost, and the advice about it.
 
 use super::advised::Offer;
-use super::carry_out::{Answer, Done, UnderWay};
-use super::command::Place;
 use super::explained::Explained;
 use super::measured::Beside;
-use super::numbers::{self, Numbers};
 use super::rerun::{Heading, Pinned, Replay};
 use crate::analysis::health::Advice;
 use crate::lab::view::View;
@@ -18,18 +15,14 @@ use crate::observe::pace::Speed;
 use crate::observe::playback::{Halt, Playback};
 use crate::observe::reading::{self, Reading};
 use crate::observe::recording::Curve;
-use crate::run::{Clock, Sample, Simulation};
+use crate::run::{Clock, Sample};
 use crate::scenario::{Motion, Scenario};
-use crate::work::expression::Expression;
-use crate::work::restart::{in_force, scenario_from};
-use indicatif::HumanCount;
+use crate::work::restart::in_force;
 use std::sync::Arc;
 use std::time::Duration;
 
 /// The share of the traces' window that may pass between two readings; a faster run is read for every frame.
 const FAST: f64 = 0.1;
-/// If a step takes longer than this at the chosen speed, s, a message says so.
-const LONG_STEP_S: f64 = 3.0;
 /// A window of the fast motion that passes in less than this, s, stands still meanwhile.
 const PASSES_S: f64 = 8.0;
 /// How long it stands still.
@@ -218,139 +211,6 @@ impl Player {
         &self.detail
     }
 
-    pub(super) fn step(&mut self, steps: i64) -> Answer {
-        let here = self.playback.step_number();
-        self.heading = None;
-        match steps {
-            1 => self.take_one_step(),
-            0.. => self.playback.take_steps(steps.unsigned_abs()),
-            _ if here == 0 => return Err("the run begins here".into()),
-            _ => self
-                .playback
-                .go_to(here.saturating_sub(steps.unsigned_abs())),
-        }
-        Ok(Done::SILENT.going_on(UnderWay::Going))
-    }
-
-    pub(super) fn go_to(&mut self, place: Place) -> Answer {
-        let step = match place {
-            Place::Step(step) => step,
-            Place::Time(time_s) => self.step_at(time_s)?,
-            Place::Start => 0,
-            Place::End => self.playback.end_step(),
-        };
-        self.heading = None;
-        let end = self.playback.end_step();
-        let is_beyond = step > end && step > self.run().furthest();
-        self.playback.go_to(step);
-        let done = match is_beyond {
-            true => Done::saying(format!(
-                "step {} is beyond the end of the run, step {}: it is played on to there",
-                HumanCount(step),
-                HumanCount(end)
-            )),
-            false => Done::SILENT,
-        };
-        Ok(done.going_on(UnderWay::Going))
-    }
-
-    /// The step at `time_s`.
-    ///
-    /// # Errors
-    /// If the time is negative or not finite.
-    pub(super) fn step_at(&self, time_s: f64) -> Result<u64, String> {
-        match time_s >= 0.0 && time_s.is_finite() {
-            true => Ok(Simulation::step_at(self.run().scenario(), time_s)),
-            false => Err("must be a time from 0 s on: the run begins there".to_owned()),
-        }
-    }
-
-    pub(super) fn run_until(&mut self, condition: &Expression) -> Answer {
-        let run = self.run();
-        let bound = condition
-            .bind(|name| Ok(numbers::find(name)?.of(run)))
-            .map_err(|fault| fault.to_string())?;
-        self.heading = None;
-        let mut numbers = Numbers::default();
-        let holds = move |run: &mut LiveRun| {
-            let mut now = numbers.at(run);
-            bound.holds(|source| now.value(source))
-        };
-        Ok(match self.playback.run_until(Box::new(holds)) {
-            true => Done::SILENT.going_on(UnderWay::Playing),
-            false => Done::saying("it holds already, at this step"),
-        })
-    }
-
-    /// Whether it plays, or takes steps that were asked for.
-    pub(super) fn is_moving(&self) -> bool {
-        self.playback.is_running() || self.playback.steps_to_go().is_some()
-    }
-
-    /// The speed `notches` places higher, or lower, in the list of speeds.
-    ///
-    /// # Errors
-    /// In words, if there is no other speed in that direction.
-    pub(super) fn other_speed(&self, notches: i32) -> Result<Speed, String> {
-        let now = self.playback.speed();
-        match now.shifted(notches) {
-            next if next != now => Ok(next),
-            Speed::Top => Err("this is the top speed".to_owned()),
-            Speed::Times(_) if notches > 0 => Err("this is the top speed".to_owned()),
-            Speed::Times(_) => Err("this is the lowest speed; . takes a single step".to_owned()),
-        }
-    }
-
-    /// The scenario that starts from the present state, as TOML.
-    ///
-    /// # Errors
-    /// Why there is none.
-    pub(super) fn present_as_text(&self) -> Result<String, String> {
-        let run = self.run().simulation();
-        let scenario = scenario_from(run.scenario(), run.state(), run.step_number())
-            .map_err(|problems| problems.in_one_line())?;
-        toml::to_string(&scenario.file).map_err(|error| error.to_string())
-    }
-
-    /// Lets the run go on.
-    pub(super) fn play(&mut self) {
-        self.heading = None;
-        self.playback.set_running(true);
-    }
-
-    pub(super) fn pause(&mut self) -> Done {
-        let to_go = self.playback.steps_to_go();
-        self.heading = None;
-        self.playback.set_running(false);
-        to_go.map_or(Done::SILENT, |left| {
-            Done::saying(format!("stopped with {} steps to go", HumanCount(left)))
-        })
-    }
-
-    pub(super) fn set_speed(&mut self, speed: Speed) -> Done {
-        self.playback.set_speed(speed);
-        let Speed::Times(speed) = speed else {
-            return Done::SILENT;
-        };
-        let wall_s = self.run().simulation().motion().time_step_s / speed;
-        match wall_s > LONG_STEP_S {
-            true => Done::saying(format!(
-                "a step takes {wall_s:.0} s at this speed; . takes one now"
-            )),
-            false => Done::SILENT,
-        }
-    }
-
-    pub(super) fn set_exact(&mut self, shown: bool) -> Done {
-        if shown != self.run().overlay().is_some() {
-            self.playback.set_exact(shown);
-        }
-        Done::saying(match shown {
-            true => "the exact motion of the same start is drawn in dashes; t takes it away",
-            false => "without the exact motion",
-        })
-    }
-
     /// The run with its speed and its pauses.
     pub fn playback(&self) -> &Playback {
         &self.playback
@@ -381,36 +241,6 @@ impl Player {
         let simulation = self.run().simulation();
         in_force(simulation.scenario(), simulation.step_number()).0
     }
-
-    /// The message while steps are taken.
-    pub(super) fn in_words(&self) -> Option<String> {
-        let left = self.playback.steps_to_go()?;
-        if self.is_replaying() {
-            return Some(format!(
-                "playing the new run to the same time: {} steps to go, Esc stops",
-                HumanCount(left)
-            ));
-        }
-        Some(format!("stepping: {} to go, Esc stops", HumanCount(left)))
-    }
-}
-
-/// The message about a run that has stopped by itself, if it needs one.
-pub(super) fn halt_in_words(halt: Halt) -> Option<String> {
-    match halt {
-        Halt::StepsTaken | Halt::Fulfilled => None,
-        Halt::NotFulfilled(steps) => Some(format!(
-            "what the run was played to did not come true in {} steps",
-            HumanCount(steps)
-        )),
-        Halt::EndOfRun => {
-            Some("end of the scenario's run: space goes on, r begins again".to_owned())
-        }
-        Halt::NotFinite(error) => Some(format!(
-            "the numbers are no longer finite at step {}",
-            error.step
-        )),
-    }
 }
 
 fn begins_with_exact(scenario: &Scenario) -> Option<bool> {
@@ -425,25 +255,6 @@ mod tests {
     fn scenario() -> Arc<Scenario> {
         let document = Document::open("method-2").unwrap();
         Arc::new(document.scenario().unwrap())
-    }
-
-    #[test]
-    fn steps_and_places_lead_where_they_say() {
-        let mut player = Player::new(scenario(), false);
-        assert!(player.step(-1).is_err());
-        player.step(7).unwrap();
-        assert_eq!(player.playback.step_number(), 7);
-        for (place, step) in [
-            (Place::Time(1.5), 15),
-            (Place::Step(3), 3),
-            (Place::End, 2300),
-            (Place::Start, 0),
-        ] {
-            player.go_to(place).unwrap();
-            player.playback.finish();
-            assert_eq!(player.playback.step_number(), step, "{place:?}");
-        }
-        assert!(player.step_at(-1.0).is_err() && player.step_at(f64::NAN).is_err());
     }
 
     #[test]
@@ -482,21 +293,5 @@ mod tests {
         player.pause();
         assert_eq!(player.step_to_keep(), player.playback.step_number());
         assert_eq!(player.in_words(), None);
-    }
-
-    #[test]
-    fn a_condition_that_holds_already_begins_nothing() {
-        let mut player = Player::new(scenario(), false);
-        let holding = Expression::condition("measured_highest_tilt_deg > 1").unwrap();
-        let done = player.run_until(&holding).unwrap();
-        assert_eq!(
-            (done.under_way, player.playback.is_running()),
-            (None, false)
-        );
-        let later = Expression::condition("steps >= 9").unwrap();
-        let done = player.run_until(&later).unwrap();
-        assert_eq!(done.under_way, Some(UnderWay::Playing));
-        assert_eq!(player.playback.finish(), Some(Halt::Fulfilled));
-        assert_eq!(player.playback.step_number(), 9);
     }
 }
