@@ -3,7 +3,7 @@
 use super::args::CompareArgs;
 use super::progress::{self, Meter};
 use super::scenario::scenario_of;
-use super::{INTERRUPTED, print, refuse};
+use super::{INTERRUPTED, one_on_stdout, print};
 use crate::analysis::compare::{Row, Table, compare as table_of};
 use crate::analysis::cost::is_affordable;
 use crate::export::Destination;
@@ -14,22 +14,13 @@ use crate::scenario::Scenario;
 use crate::scenario::rescale::MOST_STEPS;
 use crate::text::number::{short, shortest};
 use anyhow::{Context, bail};
-use clap::error::ErrorKind;
 use std::collections::HashSet;
 use std::io::Write;
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 
 pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
-    let on_stdout = args
-        .output
-        .as_deref()
-        .is_some_and(Destination::is_for_stdout);
-    if args.json && on_stdout {
-        let message =
-            "--json and -o - both claim stdout: write the CSV to a file, or leave --json out";
-        refuse("compare", ErrorKind::ArgumentConflict, message);
-    }
+    let on_stdout = one_on_stdout("compare", args.output.as_deref(), args.json);
     let scenario = scenario_of(&args.scenario, &args.length)?;
     if !is_affordable(&scenario) {
         bail!(

@@ -3,7 +3,7 @@
 use super::args::Changes;
 use super::progress::{self, Ticker};
 use super::scenario::change;
-use super::{INTERRUPTED, print, refuse, tell};
+use super::{INTERRUPTED, one_on_stdout, print, tell};
 use crate::export::Destination;
 use crate::measured::{self, Measured};
 use crate::physics::SchemeInfo;
@@ -16,7 +16,6 @@ use crate::text::number::{NONE, significant};
 use crate::text::printable::{Shown, brief};
 use anyhow::{Context, anyhow};
 use clap::Args;
-use clap::error::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
@@ -90,15 +89,7 @@ impl std::str::FromStr for Rows {
 const SCHEME: &str = "exact";
 
 pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
-    let on_stdout = args
-        .output
-        .as_deref()
-        .is_some_and(Destination::is_for_stdout);
-    if args.json && on_stdout {
-        let message =
-            "--json and -o - both claim stdout: write the CSV to a file, or leave --json out";
-        refuse("fit", ErrorKind::ArgumentConflict, message);
-    }
+    one_on_stdout("fit", args.output.as_deref(), args.json);
     let measured = measured::open(&args.measured)?;
     let measured = chosen(measured, args.rows.as_ref())?;
     let document = scenario(args)?;

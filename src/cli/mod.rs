@@ -26,6 +26,7 @@ mod verify;
 mod workbench;
 mod writeup;
 
+use crate::export::destination::Destination;
 use crate::scenario::presets;
 use crate::text::printable::{is_steering, printable, printable_lines};
 use anyhow::Context;
@@ -36,6 +37,7 @@ use clap::{CommandFactory, FromArgMatches};
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Ended by the user's Ctrl-C, as shells count it.
@@ -183,6 +185,17 @@ fn misused(error: Refused) -> ExitCode {
         }
         _ => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
     }
+}
+
+/// Refuses the command `name` whose `output` and whose JSON would both go to stdout. Returns whether the output goes there.
+fn one_on_stdout(name: &str, output: Option<&Path>, json: bool) -> bool {
+    let is_on_stdout = output.is_some_and(Destination::is_for_stdout);
+    if json && is_on_stdout {
+        let message =
+            "--json and -o - both claim stdout: write the CSV to a file, or leave --json out";
+        refuse(name, ErrorKind::ArgumentConflict, message);
+    }
+    is_on_stdout
 }
 
 /// Ends the process as clap does where it refuses: `message` is about the command `name`.

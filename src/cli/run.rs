@@ -3,17 +3,16 @@
 use super::args::RunArgs;
 use super::progress::{self, Interruption, Meter};
 use super::scenario::scenario_of;
-use super::{INTERRUPTED, complain, print, refuse, tell};
+use super::{INTERRUPTED, complain, one_on_stdout, print, tell};
 use crate::analysis::health::{Advice, advise};
 use crate::analysis::{Health, Monitor, Readouts};
 use crate::export::stream::{self, Ended};
-use crate::export::{CsvWriter, Destination, Summary};
+use crate::export::{CsvWriter, Summary};
 use crate::run::{Clock, Simulation, Step};
 use crate::scenario::Scenario;
 use crate::text::number::shortest;
 use crate::text::printable::Shown;
 use anyhow::{Context, bail};
-use clap::error::ErrorKind;
 use std::cell::RefCell;
 use std::io::{self, Write};
 use std::path::Path;
@@ -22,15 +21,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
-    let to_stdout = args
-        .output
-        .as_deref()
-        .is_some_and(Destination::is_for_stdout);
-    if args.json && to_stdout {
-        let message =
-            "--json and -o - both claim stdout: write the CSV to a file, or leave --json out";
-        refuse("run", ErrorKind::ArgumentConflict, message);
-    }
+    let to_stdout = one_on_stdout("run", args.output.as_deref(), args.json);
     let layout = args.layout.layout();
     let scenario = Arc::new(scenario_of(&args.scenario, &args.length)?);
     if layout.begins_after(&scenario) {
