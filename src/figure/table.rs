@@ -29,7 +29,7 @@ pub enum Subject {
 }
 
 /// The columns of a fit, behind those that say where each value was measured.
-const OF_FIT: [&str; 6] = [
+pub const OF_FIT: [&str; 6] = [
     "quantity",
     "measured",
     "uncertainty",

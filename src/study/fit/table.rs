@@ -5,20 +5,11 @@
 
 use super::report::Report;
 use crate::export::csv::commented;
+use crate::figure::table::OF_FIT;
 use crate::measured::{Data, Residual};
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
-
-/// The columns behind the row's number and its time or settings.
-pub const COLUMNS: [&str; 6] = [
-    "quantity",
-    "measured",
-    "uncertainty",
-    "model",
-    "residual",
-    "residual_sigmas",
-];
 
 /// What stands above the run file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -97,7 +88,7 @@ pub fn write(
     let data = &report.model.measured.data;
     let mut names = vec!["row"];
     names.extend(at_names(data));
-    names.extend(COLUMNS);
+    names.extend(OF_FIT);
     rows.write_record(&names).map_err(io::Error::other)?;
     for (residual, datum) in report.fit.residuals.iter().zip(&report.model.data) {
         let quantity = report.model.columns[datum.column].readout.name;
