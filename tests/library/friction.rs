@@ -640,19 +640,26 @@ fn theory_under_friction_is_of_the_moment_and_predicts_no_motion() {
 /// The wheel's bearing and the air take the spin of the wheel alone: its moment counts, and not that of all that turns.
 #[test]
 fn friction_sees_the_spin_of_the_rotor() {
-    let sets = ["friction.spin_dry_Nm=0", "friction.spin_quadratic_Nms2=0"];
-    let scenario = preset("lab-gyroscope", &sets).unwrap();
     let wheel = 0.5 * 1.8 * 0.12 * 0.12;
-    assert!((scenario.rotor.unwrap() - wheel).abs() < 1e-12);
-    let mut simulation = Simulation::new(Arc::clone(&scenario));
-    let first = spin_momentum(simulation.state());
-    simulation.step_to(4000).unwrap();
-    let expected = first * (-3e-5 * 20.0 / wheel).exp();
-    let found = spin_momentum(simulation.state());
-    assert!(
-        (found / expected - 1.0).abs() < 1e-9,
-        "{found} for {expected}"
-    );
+    for name in TRUE_TO_SPIN {
+        let scheme = format!("motion.scheme={name}");
+        let sets = [
+            "friction.spin_dry_Nm=0",
+            "friction.spin_quadratic_Nms2=0",
+            &scheme,
+        ];
+        let scenario = preset("lab-gyroscope", &sets).unwrap();
+        assert!((scenario.rotor.unwrap() - wheel).abs() < 1e-12);
+        let mut simulation = Simulation::new(scenario);
+        let first = spin_momentum(simulation.state());
+        simulation.step_to(4000).unwrap();
+        let expected = first * (-3e-5 * 20.0 / wheel).exp();
+        let found = spin_momentum(simulation.state());
+        assert!(
+            (found / expected - 1.0).abs() < 1e-9,
+            "{name}: {found} for {expected}"
+        );
+    }
 }
 
 #[test]
