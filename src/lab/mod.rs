@@ -21,7 +21,6 @@ mod commands_of;
 mod course;
 mod dialog;
 mod editing;
-pub mod editor;
 pub mod explained;
 mod files;
 pub mod form;
@@ -40,7 +39,7 @@ mod sorting;
 mod steering;
 mod traces;
 mod travel;
-mod values;
+pub mod values;
 pub mod view;
 mod work;
 

@@ -1,14 +1,16 @@
 //! The values that the user can edit: those of the scenario, as they are at the present step, and those of the push to
 //! come. One of them is selected.
 
+pub mod list;
+
 use super::command::{Command, Force, PushChoice};
-use super::editor::{Editor, Line};
 use super::on_top::type_into;
 use crate::observe::live::LiveRun;
 use crate::scenario::Scenario;
 use crate::work::journal::{Journal, number_of_push};
 use crate::work::next_push::{Field, NextPush, Toward};
 use crate::work::parameters::{self, Parameter, parameters};
+use list::{Editor, Line};
 use nalgebra::Vector3;
 use std::time::Duration;
 use toml::Table;

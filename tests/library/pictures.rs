@@ -1,8 +1,8 @@
 //! Pictures of single panes: the previous run, pushes, edits, parameters and forms.
 
 use crate::support::scenarios::view as seen;
-use gyrolab::lab::editor::{Editor, Line};
 use gyrolab::lab::form::{Field, Form};
+use gyrolab::lab::values::list::{Editor, Line};
 use gyrolab::lab::view::markers::Marker;
 use gyrolab::lab::view::theme::{Background, Theme};
 use gyrolab::lab::view::{Pane, View};

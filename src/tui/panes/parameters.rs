@@ -7,7 +7,7 @@ mod rows;
 
 use super::{PaneRow, Width, frame, shortened, write};
 use crate::lab::action::Action;
-use crate::lab::editor::Editor;
+use crate::lab::values::list::Editor;
 use crate::lab::view::{Pane, Part, View};
 use crate::observe::reading::Reading;
 use crate::scenario::{Motion, Scenario};

@@ -2,7 +2,7 @@
 
 use super::ROW;
 use super::rows::{COLUMN, Row, VALUE_END, heading};
-use crate::lab::editor::{Editor, Line};
+use crate::lab::values::list::{Editor, Line};
 use crate::text::printable::printable;
 use crate::text::wrap::columns;
 use crate::tui::theme::Role;
