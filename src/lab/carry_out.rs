@@ -2,6 +2,7 @@
 
 use super::Lab;
 use super::command::{Command, Force, PushChoice};
+use super::values::listed::ListedValue;
 use super::work::Way;
 use crate::scenario::problem::nearest;
 use crate::scenario::{Scenario, keys};
@@ -264,10 +265,8 @@ impl Lab {
 
     fn nudge(&mut self, key: &str, times: i32) -> Answer {
         let Some(parameter) = self.values.parameter(key).cloned() else {
-            let known = self.values.editor().lines().iter();
-            let known = known
-                .map(|line| line.key.as_str())
-                .filter(|key| !key.is_empty());
+            let listed = self.values.list().values().iter();
+            let known = listed.filter_map(ListedValue::key);
             return Err(format!(
                 "{key} is no value of this scenario: {}",
                 nearest(key, known)

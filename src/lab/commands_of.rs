@@ -4,7 +4,7 @@ use super::Lab;
 use super::action::{Action, Direction};
 use super::command::{Command, CursorTo, Place, PushChoice};
 use super::on_top::Mode;
-use super::values::Target;
+use super::values::listed::ListedValue;
 use super::view::{Pane, Part};
 use crate::observe::camera::Zoom;
 
@@ -144,14 +144,14 @@ impl Lab {
 
     /// The command that nudges the selected value `times` times.
     fn nudged(&self, times: i32) -> Result<Option<Vec<Command>>, String> {
-        Ok(match self.values.selected() {
+        Ok(match self.values.list().selected() {
             None => None,
             Some(_) if times == 0 => None,
-            Some(Target::Parameter(parameter)) => Some(vec![Command::Nudge {
+            Some(ListedValue::OfScenario(parameter)) => Some(vec![Command::Nudge {
                 key: parameter.key.clone(),
                 times,
             }]),
-            Some(Target::NextPush(field)) => {
+            Some(ListedValue::OfNextPush { field, .. }) => {
                 let scenario = self.player.run().scenario();
                 let next = self.values.next_push().nudged(*field, times, scenario)?;
                 Some(vec![Command::NextPush(PushChoice::field(*field, &next))])

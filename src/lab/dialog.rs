@@ -4,7 +4,8 @@ use super::action::FieldEdit;
 use super::carry_out::Refusal;
 use super::form::{Field, Form};
 use super::travel::WHERE;
-use super::values::{Target, Values};
+use super::values::Values;
+use super::values::listed::ListedValue;
 use crate::scenario::Scenario;
 use crate::scenario::keys::Effect;
 use crate::storage::exporting::{self, Estimate};
@@ -56,26 +57,26 @@ impl Dialog {
         Self::new(Question::GoTo, "go to a step or a time", &fields, &[WHERE])
     }
 
-    /// Asks for the value of the selected line of `values`; `None` if there is no line.
+    /// Asks for the selected one of `values`; `None` if none is shown.
     pub(super) fn value(values: &Values) -> Option<Self> {
-        let line = values.editor().selected()?;
-        let title = match line.key.is_empty() {
-            true => format!("{} {}", line.group, line.label),
-            false => line.key.clone(),
+        let value = values.list().selected()?;
+        let title = match value.key() {
+            Some(key) => key.to_owned(),
+            None => format!("{} {}", value.group(), value.label()),
         };
-        let label = match line.unit.is_empty() {
-            true => line.label.clone(),
-            false => format!("{}, {}", line.label, line.unit),
+        let label = match value.unit() {
+            "" => value.label().into_owned(),
+            unit => format!("{}, {unit}", value.label()),
         };
-        let about = match values.selected()? {
-            Target::Parameter(parameter) => about(parameter),
-            Target::NextPush(field) => vec![
+        let about = match value {
+            ListedValue::OfScenario(parameter) => about(parameter),
+            ListedValue::OfNextPush { field, .. } => vec![
                 field.about().to_owned(),
                 "it acts when p gives the push".to_owned(),
             ],
         };
         let about: Vec<_> = about.iter().map(String::as_str).collect();
-        let fields = [(label.as_str(), line.value.clone())];
+        let fields = [(label.as_str(), value.text())];
         Some(Self::new(Question::Value, &title, &fields, &about))
     }
 

@@ -17,7 +17,8 @@ use toml::Table;
 impl Lab {
     /// Lists the values that can be edited, as they are now.
     pub(super) fn list_parameters(&mut self) {
-        self.values.list(self.player.run(), self.work.journal());
+        self.values
+            .list_again(self.player.run(), self.work.journal());
     }
 
     /// Moves the focus to the values, and says which keys change them.

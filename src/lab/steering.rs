@@ -120,7 +120,7 @@ impl Lab {
             Action::ChoosePush => self.turn_to_next_push(),
             Action::Parameters | Action::GoToCursor => self.turn_to_parameters(),
             Action::Edit if self.view.focus != Pane::PARAMETERS => self.turn_to_parameters(),
-            Action::Edit if self.values.selected().is_none() => {
+            Action::Edit if self.values.list().selected().is_none() => {
                 self.say("no value to set has that in its name: Esc shows all of them");
             }
             Action::Edit => {

@@ -2,6 +2,7 @@
 //! come. One of them is selected.
 
 pub mod list;
+pub mod listed;
 
 use super::command::{Command, Force, PushChoice};
 use super::on_top::type_into;
@@ -10,7 +11,8 @@ use crate::scenario::Scenario;
 use crate::work::journal::{Journal, number_of_push};
 use crate::work::next_push::{Field, NextPush, Toward};
 use crate::work::parameters::{self, Parameter, parameters};
-use list::{Editor, Line};
+use list::ValueList;
+use listed::ListedValue;
 use nalgebra::Vector3;
 use std::time::Duration;
 use toml::Table;
@@ -21,28 +23,13 @@ const BELONGS: Duration = Duration::from_secs(3);
 /// The heading over the values of the push to come.
 const NEXT_PUSH: &str = "next push (p)";
 
-/// The start's momentum, and the frame in which it is given.
-const MOMENTUM: &str = "start.momentum_Js";
-const MOMENTUM_FRAME: &str = "start.momentum_frame";
-
 /// The order of the groups in the list. The scenario's pushes come after the start, its points after the body.
 const ORDER: [&str; 6] = ["motion", "start", NEXT_PUSH, "body", "view", "scenario"];
-
-/// The value that a line of the list shows and that typing and nudging change.
-#[derive(Clone)]
-pub(super) enum Target {
-    /// A value of the scenario.
-    Parameter(Box<Parameter>),
-    /// A value of the push to come.
-    NextPush(Field),
-}
 
 /// The list of values, the push to come, and the value that was nudged last.
 #[derive(Clone)]
 pub struct Values {
-    /// The value of each line of the editor, in the same order.
-    targets: Vec<Target>,
-    editor: Editor,
+    list: ValueList,
     next_push: NextPush,
     /// How many entries of the journal had acted when the list was made.
     entries_listed: usize,
@@ -54,16 +41,15 @@ impl Values {
     /// An empty list, and a first push to come that is possible in `scenario`.
     pub(super) fn new(scenario: &Scenario) -> Self {
         Self {
-            targets: Vec::new(),
-            editor: Editor::default(),
+            list: ValueList::default(),
             next_push: NextPush::of(scenario),
             entries_listed: 0,
             last_nudged: None,
         }
     }
 
-    /// Makes the list of the values of `run`, whose journal is `journal`, at its present step.
-    pub(super) fn list(&mut self, run: &LiveRun, journal: &Journal) {
+    /// Lists the values of `run`, whose journal is `journal`, at its present step.
+    pub(super) fn list_again(&mut self, run: &LiveRun, journal: &Journal) {
         let step = run.simulation().step_number();
         self.entries_listed = journal.count_by(step);
         let scenario = run.scenario();
@@ -75,17 +61,11 @@ impl Values {
             number_of_push(&parameter.key)
                 .is_none_or(|number| number < pushes || number >= first_added)
         };
-        let values = parameters(&table, scenario).into_iter().filter(is_given);
-        let values = values.map(|parameter| Target::Parameter(Box::new(parameter)));
-        let mut targets: Vec<_> = values.chain(Field::ALL.map(Target::NextPush)).collect();
-        targets.sort_by_key(|target| rank(target.group())); // stable: within a group nothing moves
-        let frame = frame_of_momentum(&targets);
-        let lines = targets
-            .iter()
-            .map(|target| target.line(&self.next_push, &frame))
-            .collect();
-        self.editor.set_lines(lines);
-        self.targets = targets;
+        let parameters = parameters(&table, scenario).into_iter().filter(is_given);
+        let values = parameters.map(|parameter| ListedValue::OfScenario(Box::new(parameter)));
+        let mut values: Vec<_> = values.chain(ListedValue::of(&self.next_push)).collect();
+        values.sort_by_key(|value| rank(value.group())); // stable: within a group nothing moves
+        self.list.set(values);
     }
 
     /// Whether the list must be made again, as other entries of `journal` have acted at `step`.
@@ -93,65 +73,59 @@ impl Values {
         journal.count_by(step) != self.entries_listed
     }
 
-    /// The lines of the list, and the selected one.
-    pub fn editor(&self) -> &Editor {
-        &self.editor
+    /// The list, and the selected value.
+    pub fn list(&self) -> &ValueList {
+        &self.list
     }
 
-    /// Adds `text` to the part of a name that the listed lines have.
+    /// Adds `text` to what is searched for.
     pub(super) fn type_name(&mut self, text: &str) {
-        let mut name = self.editor.name().to_owned();
+        let mut name = self.list.name().to_owned();
         type_into(&mut name, text);
-        self.editor.filter(name);
+        self.list.filter(name);
     }
 
-    /// Removes the last character of that part.
+    /// Removes the last character of what is searched for.
     pub(super) fn erase_name(&mut self) {
-        let mut name = self.editor.name().to_owned();
+        let mut name = self.list.name().to_owned();
         name.pop();
-        self.editor.filter(name);
+        self.list.filter(name);
     }
 
-    /// Lists all values again; returns whether some were left out.
+    /// Shows all values again; returns whether some were left out.
     pub(super) fn forget_name(&mut self) -> bool {
-        let was_filtered = !self.editor.name().is_empty();
-        self.editor.filter(String::new());
+        let was_filtered = !self.list.name().is_empty();
+        self.list.filter(String::new());
         was_filtered
     }
 
-    /// Moves the selection by `rows` lines.
+    /// Moves the selection by `rows` values.
     pub(super) fn shift(&mut self, rows: isize) {
-        self.editor.shift(rows);
+        self.list.shift(rows);
     }
 
     /// Selects the size of the push to come.
     pub(super) fn select_next_push(&mut self) {
-        self.editor.filter(String::new());
-        self.editor.select(NEXT_PUSH, Field::Size.label().0);
+        self.list.filter(String::new());
+        self.list.select(NEXT_PUSH, Field::Size.label().0);
     }
 
-    /// The value of the selected line.
-    pub(super) fn selected(&self) -> Option<&Target> {
-        self.editor.selected()?;
-        self.targets.get(self.editor.selected_index())
-    }
-
-    /// The listed value with the dotted `key`.
+    /// The listed value of the scenario with the dotted `key`.
     pub(super) fn parameter(&self, key: &str) -> Option<&Parameter> {
-        self.targets.iter().find_map(|target| match target {
-            Target::Parameter(parameter) if parameter.key == key => Some(&**parameter),
+        self.list.values().iter().find_map(|value| match value {
+            ListedValue::OfScenario(parameter) if parameter.key == key => Some(&**parameter),
             _ => None,
         })
     }
 
     /// The value of `key` with its label and unit; the key alone where it is not listed.
     pub(super) fn in_words(&self, key: &str) -> String {
-        let line = self.editor.lines().iter().find(|line| line.key == key);
-        let value = match line {
-            Some(line) => format!("{} {} {}", line.label, line.value, line.unit),
+        let mut values = self.list.values().iter();
+        let words = match values.find(|value| value.key() == Some(key)) {
+            Some(value) => format!("{} {} {}", value.label(), value.text(), value.unit()),
             None => key.to_owned(),
         };
-        value.trim_end().to_owned()
+        words.trim_end().to_owned()
     }
 
     /// Whether a nudge of `key` at `now` joins the nudge before into one act.
@@ -176,7 +150,7 @@ impl Values {
         &self.next_push
     }
 
-    /// Sets the push to come. The list shows it after the next [`list`](Self::list).
+    /// Sets the push to come. The list shows it after the next [`list_again`](Self::list_again).
     pub(super) fn set_next_push(&mut self, push: NextPush) {
         self.next_push = push;
     }
@@ -213,7 +187,7 @@ impl Values {
         push.checked()
     }
 
-    /// The command that gives the selected line the value `text`; `None` if it already has that value.
+    /// The command that gives the selected value what `text` says; `None` if it already has that value.
     ///
     /// # Errors
     /// Why `text` is refused.
@@ -223,9 +197,9 @@ impl Values {
         scenario: &Scenario,
         time_step_s: f64,
     ) -> Result<Option<Command>, String> {
-        match self.selected() {
+        match self.list.selected() {
             None => Ok(None),
-            Some(Target::Parameter(parameter)) => {
+            Some(ListedValue::OfScenario(parameter)) => {
                 let value = parameter
                     .typed(text)
                     .map_err(|reason| format!("{} {reason}", parameter.label))?;
@@ -233,7 +207,7 @@ impl Values {
                 let table = Table::from_iter([(parameter.key.clone(), value)]);
                 Ok(is_new.then_some(Command::Set(table)))
             }
-            Some(Target::NextPush(field)) => {
+            Some(ListedValue::OfNextPush { field, .. }) => {
                 let next = self.next_push.typed(*field, text, scenario, time_step_s)?;
                 let choice = PushChoice::field(*field, &next);
                 Ok(Some(Command::NextPush(choice)))
@@ -254,50 +228,6 @@ impl PushChoice {
         }
         choice
     }
-}
-
-impl Target {
-    fn group(&self) -> &str {
-        match self {
-            Self::Parameter(parameter) => &parameter.group,
-            Self::NextPush(_) => NEXT_PUSH,
-        }
-    }
-
-    /// Its line; `frame` is the frame in which the start's momentum is given.
-    fn line(&self, push: &NextPush, frame: &str) -> Line {
-        let group = self.group().to_owned();
-        match self {
-            Self::Parameter(parameter) => Line {
-                key: parameter.key.clone(),
-                group,
-                label: match parameter.spec.path {
-                    MOMENTUM => format!("{} {frame}", parameter.label),
-                    _ => parameter.label.clone(),
-                },
-                value: parameter.shown(),
-                unit: parameter.unit().to_owned(),
-                is_default: parameter.is_default,
-            },
-            Self::NextPush(field) => Line {
-                key: String::new(),
-                group,
-                label: field.label().0.to_owned(),
-                value: push.shown(*field),
-                unit: field.label().1.to_owned(),
-                is_default: false,
-            },
-        }
-    }
-}
-
-/// The frame in which the start's momentum is given among `targets`.
-fn frame_of_momentum(targets: &[Target]) -> String {
-    let frame = targets.iter().find_map(|target| match target {
-        Target::Parameter(parameter) if parameter.key == MOMENTUM_FRAME => Some(parameter.shown()),
-        _ => None,
-    });
-    frame.unwrap_or_default()
 }
 
 /// The place of a group in the list; groups with a smaller number come first.
@@ -324,7 +254,7 @@ mod tests {
         let run = LiveRun::new(Arc::clone(&scenario));
         let history = History::new("method-2", &scenario);
         let mut values = Values::new(&scenario);
-        values.list(&run, &history.present().journal);
+        values.list_again(&run, &history.present().journal);
         assert!(!values.is_outdated(0, &history.present().journal));
         (values, scenario)
     }
@@ -332,13 +262,9 @@ mod tests {
     #[test]
     fn groups_stand_in_their_order() {
         let (values, _) = listed();
-        let ranks: Vec<_> = values
-            .targets
-            .iter()
-            .map(|target| rank(target.group()))
-            .collect();
+        let listed = values.list().values().iter();
+        let ranks: Vec<_> = listed.map(|value| rank(value.group())).collect();
         assert!(ranks.is_sorted() && !ranks.is_empty());
-        assert_eq!(values.editor().lines().len(), values.targets.len());
     }
 
     #[test]
@@ -383,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_typed_becomes_a_command_for_the_selected_line() {
+    fn what_is_typed_becomes_a_command_for_the_selected_value() {
         let (mut values, scenario) = listed();
         values.select_next_push();
         let command = values.value_typed("70", &scenario, 0.1).unwrap();

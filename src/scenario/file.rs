@@ -134,6 +134,16 @@ pub enum Frame {
     Body,
 }
 
+impl Frame {
+    /// Its name, as a file has it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::World => "world",
+            Self::Body => "body",
+        }
+    }
+}
+
 /// `[motion]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

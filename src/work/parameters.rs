@@ -16,6 +16,9 @@ use toml::{Table, Value};
 /// The most points, and the most pushes, that are listed.
 const MOST_LISTED: usize = 50;
 
+/// The key of the start's momentum.
+const MOMENTUM: &str = "start.momentum_Js";
+
 /// One value of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
@@ -28,6 +31,8 @@ pub struct Parameter {
     pub group: String,
     /// Short name of at most 12 characters.
     pub label: String,
+    /// The frame in which it is given, `world` or `body`; `None` but for the components of the start's momentum.
+    pub frame: Option<&'static str>,
     /// The value in the file, or the default where the file has none. Numbers are floats, whole numbers integers.
     pub value: Value,
     /// Whether the file has no value.
@@ -190,6 +195,10 @@ fn rows(
         spec: key,
         group: group(place, table),
         label: lab.label.to_owned(),
+        frame: (key.path == MOMENTUM).then(|| {
+            let frame = scenario.file.start.momentum_frame;
+            frame.unwrap_or_default().name()
+        }),
         size: size(&value),
         value: as_kind(value, key.kind),
         is_default: written.is_none(),

@@ -156,8 +156,8 @@ fn values_are_found_by_their_names() {
         .shows_no("/grav")
         .shows("parameters ");
     assert_eq!(stage.focus(), "parameters");
-    let selected = stage.lab.values().editor().selected().unwrap();
-    assert_eq!(selected.label, "gravity");
+    let selected = stage.lab.values().list().selected().unwrap();
+    assert_eq!(selected.label(), "gravity");
     stage.press(ESC);
     assert_eq!(stage.focus(), "traces");
 }

@@ -1,8 +1,9 @@
 //! Pictures of single panes: the previous run, pushes, edits, parameters and forms.
 
-use crate::support::scenarios::view as seen;
+use crate::support::scenarios::{preset, view as seen};
 use gyrolab::lab::form::{Field, Form};
-use gyrolab::lab::values::list::{Editor, Line};
+use gyrolab::lab::values::list::ValueList;
+use gyrolab::lab::values::listed::ListedValue;
 use gyrolab::lab::view::markers::Marker;
 use gyrolab::lab::view::theme::{Background, Theme};
 use gyrolab::lab::view::{Pane, View};
@@ -20,6 +21,7 @@ use gyrolab::tui::panes::parameters::Parameters;
 use gyrolab::tui::panes::three_d::ThreeD;
 use gyrolab::tui::panes::traces::Traces;
 use gyrolab::tui::theme::Role;
+use gyrolab::work::parameters::{parameters, table_of};
 use proptest::prelude::*;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
@@ -499,108 +501,52 @@ fn the_nearer_mass_is_drawn_over_the_farther_one() {
     assert_eq!(above.matches('·').count(), 4, "{above}");
 }
 
-/// Parameters similar to those of method-2: key, group, label, value, unit, whether it is a default.
-const LINES: [(&str, &str, &str, &str, &str, bool); 22] = [
-    (
-        "title",
-        "scenario",
-        "title",
-        "Method 2, as the report has it",
-        "",
-        false,
-    ),
-    ("trace", "scenario", "traced point", "top", "", true),
-    ("body.rim.points", "body", "rim points", "10", "", false),
-    ("body.rim.radius_m", "body", "rim radius", "0.8", "m", false),
-    (
-        "body.rim.height_m",
-        "body",
-        "rim height",
-        "0.565685424949238",
-        "m",
-        false,
-    ),
-    (
-        "body.rim.point_mass_kg",
-        "body",
-        "mass each",
-        "0.5",
-        "kg",
-        false,
-    ),
-    ("body.point.0.name", "point top", "name", "top", "", false),
-    (
-        "body.point.0.at_m.2",
-        "point top",
-        "at z",
-        "1.131370849898476",
-        "m",
-        false,
-    ),
-    (
-        "body.point.0.mass_kg",
-        "point top",
-        "mass",
-        "0.0",
-        "kg",
-        true,
-    ),
-    ("start.tilt_deg", "start", "tilt", "45.0", "deg", false),
-    ("start.momentum_Js.0", "start", "Lx", "0.0", "J s", false),
-    ("start.momentum_Js.1", "start", "Ly", "0.0", "J s", false),
-    ("start.momentum_Js.2", "start", "Lz", "1000.0", "J s", false),
-    (
-        "start.momentum_frame",
-        "start",
-        "L given in",
-        "body",
-        "",
-        false,
-    ),
-    (
-        "motion.gravity_m_per_s2",
-        "motion",
-        "gravity",
-        "9.8",
-        "m/s2",
-        true,
-    ),
-    ("motion.scheme", "motion", "scheme", "report", "", true),
-    ("motion.time_step_s", "motion", "dt", "0.1", "s", false),
-    ("motion.steps", "motion", "steps", "2300", "", false),
-    ("push.0.point", "push 0", "point", "top", "", false),
-    ("push.0.force_N.2", "push 0", "Fz", "-100.0", "N", false),
-    ("view.speed", "view", "speed", "20.0", "", false),
-    (
-        "view.look_at",
-        "view",
-        "look at",
-        "the path:\nalmost a circle",
-        "",
-        false,
-    ),
+/// Some values of wobble-push, with texts of many lengths: the key, the text, and whether it is a default.
+const VALUES: [(&str, &str, bool); 22] = [
+    ("title", "Method 2, as the report has it", false),
+    ("trace", "top", true),
+    ("body.rim.points", "10", false),
+    ("body.rim.radius_m", "0.8", false),
+    ("body.rim.height_m", "0.565685424949238", false),
+    ("body.rim.point_mass_kg", "0.5", false),
+    ("body.point.0.name", "top", false),
+    ("body.point.0.at_m.2", "1.131370849898476", false),
+    ("body.point.0.mass_kg", "0.0", true),
+    ("start.tilt_deg", "45.0", false),
+    ("start.momentum_Js.0", "0.0", false),
+    ("start.momentum_Js.1", "0.0", false),
+    ("start.momentum_Js.2", "1000.0", false),
+    ("start.momentum_frame", "body", false),
+    ("motion.gravity_m_per_s2", "9.8", true),
+    ("motion.scheme", "report", true),
+    ("motion.time_step_s", "0.1", false),
+    ("motion.steps", "2300", false),
+    ("push.0.point", "top", false),
+    ("push.0.force_N.2", "-100.0", false),
+    ("view.speed", "20.0", false),
+    ("view.look_at", "the path: almost a circle", false),
 ];
 
-fn editor(group: &str, label: &str) -> Editor {
-    let line =
-        |&(key, group, label, value, unit, is_default): &(&str, &str, &str, &str, &str, bool)| {
-            Line {
-                key: key.to_owned(),
-                group: group.to_owned(),
-                label: label.to_owned(),
-                value: value.to_owned(),
-                unit: unit.to_owned(),
-                is_default,
-            }
-        };
-    let mut editor = Editor::default();
-    editor.set_lines(LINES.iter().map(line).collect());
-    assert!(editor.select(group, label));
-    editor
+/// The list of these values, that of `key` selected.
+fn list(key: &str) -> ValueList {
+    let scenario = preset("wobble-push", &[]);
+    let parameters = parameters(&table_of(&scenario.file), &scenario);
+    let listed = |&(key, text, is_default): &(&str, &str, bool)| {
+        let mut own = parameters.iter();
+        let mut parameter = own.find(|own| own.key == key).unwrap().clone();
+        (parameter.value, parameter.is_default) = (text.into(), is_default);
+        parameter.frame = None;
+        ListedValue::OfScenario(Box::new(parameter))
+    };
+    let mut list = ValueList::default();
+    list.set(VALUES.iter().map(listed).collect());
+    list.shift(VALUES.iter().position(|value| value.0 == key).unwrap() as isize);
+    assert_eq!(list.selected().and_then(ListedValue::key), Some(key));
+    list
 }
 
-/// The parameters pane with `editor`, drawn at this size, with or without the focus, filling the screen or not.
-fn parameters(editor: &Editor, (focus, filled): (bool, bool), size: (u16, u16)) -> Buffer {
+/// The parameters pane with `list`, drawn at this size, with or without the focus, filling the screen or not.
+fn drawn_parameters(list: &ValueList, (focus, filled): (bool, bool), size: (u16, u16)) -> Buffer {
     let mut now = run("wobble-push", &[], "", 500);
     let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
     let mut view = view(&now, Marker::Braille);
@@ -615,7 +561,7 @@ fn parameters(editor: &Editor, (focus, filled): (bool, bool), size: (u16, u16)) 
         scenario: now.scenario(),
         motion: now.simulation().motion(),
         reading,
-        editor,
+        list,
         is_searched: false,
         view: &view,
     }
@@ -626,15 +572,15 @@ fn parameters(editor: &Editor, (focus, filled): (bool, bool), size: (u16, u16)) 
 #[test]
 fn the_parameters_are_an_editor_when_in_focus() {
     let size = (26, 19);
-    let dt = editor("motion", "dt");
-    let shown = |editor, how, size| text(&parameters(editor, how, size));
+    let dt = list("motion.time_step_s");
+    let shown = |list, how, size| text(&drawn_parameters(list, how, size));
     insta::assert_snapshot!("editor_small", shown(&dt, (true, false), size));
     insta::assert_snapshot!("editor_tall", shown(&dt, (true, false), (26, 45)));
     insta::assert_snapshot!("editor_fills_80", shown(&dt, (true, true), (80, 19)));
     insta::assert_snapshot!("editor_fills_200", shown(&dt, (true, true), (200, 45)));
-    let first = editor("scenario", "title");
+    let first = list("title");
     insta::assert_snapshot!("editor_first", shown(&first, (true, false), size));
-    let last = editor("view", "look at");
+    let last = list("view.look_at");
     insta::assert_snapshot!("editor_last", shown(&last, (true, false), size));
     // Without the focus it is the plain list.
     let away = shown(&dt, (false, false), size);
@@ -657,13 +603,15 @@ fn the_selected_line_is_seen_at_every_place_and_size() {
         (80, 19),
         (120, 40),
     ] {
-        for (_, group, label, ..) in LINES {
+        for (key, ..) in VALUES {
             for filled in [false, true] {
-                let buf = parameters(&editor(group, label), (true, filled), size);
+                let list = list(key);
+                let label = list.selected().unwrap().label();
+                let buf = drawn_parameters(&list, (true, filled), size);
                 let shown = text(&buf);
                 let marked: Vec<_> = shown.split('►').skip(1).collect();
-                assert_eq!(marked.len(), 1, "{group} {label} at {size:?}\n{shown}");
-                assert!(marked[0].starts_with(label), "{group} {label}\n{shown}");
+                assert_eq!(marked.len(), 1, "{key} at {size:?}\n{shown}");
+                assert!(marked[0].starts_with(&*label), "{key}\n{shown}");
                 let reversed = Theme {
                     colour: true,
                     background: Background::Dark,
@@ -796,8 +744,8 @@ proptest! {
         (0..left).for_each(|_| form.left());
         (form.complaint, form.info) = (complaint, vec![typed.clone(); infos]);
         let theme = &Theme { colour: false, background: Background::Dark };
-        let mut lines = editor("motion", "dt");
-        lines.shift(selected - 16);
+        let mut values = list("motion.time_step_s");
+        values.shift(selected - 16);
         let mut now = run("wobble-push", &[], "", 3);
         let reading = &Reading::new(&mut now, &Pace::new(1.0, false));
         let mut view = view(&now, Marker::Ascii);
@@ -806,7 +754,7 @@ proptest! {
             scenario: now.scenario(),
             motion: now.simulation().motion(),
             reading,
-            editor: &lines,
+            list: &values,
             is_searched: false,
             view: &view,
         };

@@ -49,19 +49,19 @@ fn a_push_that_an_edit_of_the_file_adds_is_listed() {
         !desk
             .lab
             .values()
-            .editor()
-            .lines()
+            .list()
+            .values()
             .iter()
-            .any(|l| l.group == "push 0")
+            .any(|value| value.group() == "push 0")
     );
     desk.commands("go_to = 10");
     assert!(
         desk.lab
             .values()
-            .editor()
-            .lines()
+            .list()
+            .values()
             .iter()
-            .any(|l| l.group == "push 0")
+            .any(|value| value.group() == "push 0")
     );
 }
 
@@ -73,8 +73,8 @@ fn steps_of_a_push_to_come_are_those_of_now() {
     desk.press(&[Key::Char('P'), Key::Down, Key::Down, Key::Enter]);
     desk.type_text("20 steps");
     desk.press(&[Key::Enter]);
-    let line = desk.lab.values().editor().selected().unwrap();
-    assert_eq!((line.label.as_str(), line.value.as_str()), ("for", "1"));
+    let value = desk.lab.values().list().selected().unwrap();
+    assert_eq!((&*value.label(), &*value.text()), ("for", "1"));
 }
 
 #[test]

@@ -7,7 +7,7 @@ mod rows;
 
 use super::{PaneRow, Width, frame, shortened, write};
 use crate::lab::action::Action;
-use crate::lab::values::list::Editor;
+use crate::lab::values::list::ValueList;
 use crate::lab::view::{Pane, Part, View};
 use crate::observe::reading::Reading;
 use crate::scenario::{Motion, Scenario};
@@ -46,7 +46,7 @@ pub const ROW: PaneRow = PaneRow {
             scenario: lab.player().run().scenario(),
             motion: &lab.player().motion(),
             reading: lab.player().reading(),
-            editor: lab.values().editor(),
+            list: lab.values().list(),
             is_searched: lab.on_top().mode() == Mode::Find,
             view: lab.view(),
         }
@@ -69,8 +69,8 @@ pub struct Parameters<'a> {
     pub motion: &'a Motion,
     /// The latest reading of its run.
     pub reading: &'a Reading,
-    /// What can be edited.
-    pub editor: &'a Editor,
+    /// The values that can be edited.
+    pub list: &'a ValueList,
     /// Whether a part of a name is being typed, to find a value.
     pub is_searched: bool,
     /// How it is looked at.
@@ -80,9 +80,9 @@ pub struct Parameters<'a> {
 impl Widget for Parameters<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let focus = self.view.focus == ROW.id;
-        let editor = Some(self.editor).filter(|_| focus);
+        let list = Some(self.list).filter(|_| focus);
         let inside = frame(
-            &title(editor, self.is_searched),
+            &title(list, self.is_searched),
             area,
             focus,
             &self.view.theme,
@@ -91,9 +91,9 @@ impl Widget for Parameters<'_> {
         if inside.is_empty() {
             return;
         }
-        match (editor, self.view.filled) {
-            (Some(editor), true) => self.edited_and_read(editor, inside, buf),
-            (Some(editor), false) => self.edited_above_read(editor, inside, buf),
+        match (list, self.view.filled) {
+            (Some(list), true) => self.edited_and_read(list, inside, buf),
+            (Some(list), false) => self.edited_above_read(list, inside, buf),
             (None, _) => self.most_important(inside, buf),
         }
     }
@@ -134,15 +134,15 @@ impl Parameters<'_> {
     }
 
     /// The values to edit above, the key of the selected one, and the readouts to watch below.
-    fn edited_above_read(&self, editor: &Editor, area: Rect, buf: &mut Buffer) {
+    fn edited_above_read(&self, list: &ValueList, area: Rect, buf: &mut Buffer) {
         let height = area.height as usize;
-        let edited = edited_rows(editor);
+        let edited = edited_rows(list);
         let spare = height.saturating_sub(edited.len() + 1);
         let room = match height {
             WATCHED_FROM.. => spare.max(height * 2 / 5),
             _ => 0,
         };
-        let read = match editor.name() {
+        let read = match list.name() {
             "" => read_rows(self.view, self.reading, room),
             name => self.found(name, room),
         };
@@ -151,7 +151,7 @@ impl Parameters<'_> {
             height: area.height - lower,
             ..area
         };
-        self.edited(&edited, editor, upper, (1, COLUMN), buf);
+        self.edited(&edited, list, upper, (1, COLUMN), buf);
         let lower = Rect {
             y: upper.bottom(),
             height: lower,
@@ -161,12 +161,12 @@ impl Parameters<'_> {
     }
 
     /// The values to edit in columns, and the readouts in one more.
-    fn edited_and_read(&self, editor: &Editor, area: Rect, buf: &mut Buffer) {
+    fn edited_and_read(&self, list: &ValueList, area: Rect, buf: &mut Buffer) {
         let count = (area.width / COLUMN).saturating_sub(1).min(MOST_EDITED);
         if count == 0 {
-            return self.edited_above_read(editor, area, buf);
+            return self.edited_above_read(list, area, buf);
         }
-        let read = match editor.name() {
+        let read = match list.name() {
             "" => {
                 let mut read = derived_rows(self.scenario);
                 read.extend(shown(self.view, now_rows(self.reading)));
@@ -174,7 +174,7 @@ impl Parameters<'_> {
             }
             name => self.found(name, usize::MAX),
         };
-        let edited = edited_rows(editor);
+        let edited = edited_rows(list);
         let height = area.height.saturating_sub(1) as usize;
         let grouped = by_group(&edited, height).map_or(usize::MAX, |columns| columns.len());
         let count = grouped.min(count as usize) as u16;
@@ -183,7 +183,7 @@ impl Parameters<'_> {
         let wide = wide.clamp(COLUMN, most.max(COLUMN));
         let width = wide * count;
         let place = Rect { width, ..area };
-        self.edited(&edited, editor, place, (count, wide), buf);
+        self.edited(&edited, list, place, (count, wide), buf);
         let right = Rect {
             x: area.x + width,
             width: area.width - width,
@@ -214,20 +214,20 @@ impl Parameters<'_> {
         rows
     }
 
-    /// `rows` of `editor` in `count` columns, each `wide` columns of the screen: as many as there is room for around the
+    /// `rows` of `list` in `count` columns, each `wide` columns of the screen: as many as there is room for around the
     /// selected one, and below them what `--set` takes for it, with all its digits.
     fn edited(
         &self,
         rows: &[Row],
-        editor: &Editor,
+        list: &ValueList,
         area: Rect,
         (count, wide): (u16, u16),
         buf: &mut Buffer,
     ) {
         let mut lines = area;
-        let notes = editor
+        let notes = list
             .selected()
-            .map(|line| key_lines(line, area.width as usize));
+            .map(|value| key_lines(value, area.width as usize));
         for note in notes.into_iter().flatten().rev() {
             if lines.height > 1 {
                 let (above, last) = above_last(lines);

@@ -2,23 +2,24 @@
 
 use super::ROW;
 use super::rows::{COLUMN, Row, VALUE_END, heading};
-use crate::lab::values::list::{Editor, Line};
+use crate::lab::values::list::ValueList;
+use crate::lab::values::listed::ListedValue;
 use crate::text::printable::printable;
 use crate::text::wrap::columns;
 use crate::tui::theme::Role;
 use std::borrow::Cow;
 
-/// The pane's title, which tells where in the list the selected line is, and what is searched for.
-pub(super) fn title(editor: Option<&Editor>, is_searched: bool) -> String {
-    let Some(editor) = editor else {
+/// The pane's title, which says where in the list the selected value is, and what is searched for.
+pub(super) fn title(list: Option<&ValueList>, is_searched: bool) -> String {
+    let Some(list) = list else {
         return ROW.title.to_owned();
     };
-    let shown = editor.shown();
+    let shown = list.shown();
     let at = shown
         .iter()
-        .position(|(index, _)| *index == editor.selected_index());
+        .position(|(index, _)| *index == list.selected_index());
     let at = at.map_or(0, |at| at + 1);
-    match (editor.name(), is_searched, shown.len()) {
+    match (list.name(), is_searched, shown.len()) {
         (name, true, count) => format!("/{name}_ {at} of {count}"),
         ("", false, 0) => ROW.title.to_owned(),
         ("", false, count) => format!("{} {at} of {count}", ROW.title),
@@ -26,36 +27,36 @@ pub(super) fn title(editor: Option<&Editor>, is_searched: bool) -> String {
     }
 }
 
-/// The lines of `editor` that are shown, its groups with their headings.
-pub(super) fn edited_rows(editor: &Editor) -> Vec<Row> {
-    let shown = editor.shown();
+/// The lines of the values of `list` that are shown, each group under its heading.
+pub(super) fn edited_rows(list: &ValueList) -> Vec<Row> {
+    let shown = list.shown();
     let mut rows = Vec::with_capacity(2 * shown.len());
-    for group in shown.chunk_by(|(_, a), (_, b)| a.group == b.group) {
+    for group in shown.chunk_by(|(_, a), (_, b)| a.group() == b.group()) {
         let first = group.first();
-        rows.extend(first.map(|(_, line)| heading(on_one_line(&line.group))));
-        for (index, line) in group {
-            rows.push(edited_row(line, *index == editor.selected_index()));
+        rows.extend(first.map(|(_, value)| heading(on_one_line(value.group()))));
+        for (index, value) in group {
+            rows.push(edited_row(value, *index == list.selected_index()));
         }
     }
-    if rows.is_empty() && !editor.name().is_empty() {
+    if rows.is_empty() && !list.name().is_empty() {
         rows.push(heading("no value to set has it"));
     }
     rows
 }
 
-fn edited_row(line: &Line, is_selected: bool) -> Row {
-    let value_role = if line.is_default {
+fn edited_row(value: &ListedValue, is_selected: bool) -> Row {
+    let value_role = if value.is_default() {
         Role::Quiet
     } else {
         Role::Text
     };
     Row {
         rank: 0,
-        label: on_one_line(&line.label).into(),
+        label: on_one_line(&value.label()).into(),
         label_role: Role::Quiet,
-        value: on_one_line(&line.value),
+        value: on_one_line(&value.text()),
         value_role,
-        unit: line.unit.clone().into(),
+        unit: value.unit().into(),
         is_selected,
     }
 }
@@ -65,18 +66,20 @@ fn on_one_line(text: &str) -> String {
     printable(&text.replace('\n', " ")).into_owned()
 }
 
-/// What `--set` takes for `line`: on one line of `width` columns, or else the key on one and a number on the next; a text
-/// is shown whole by the dialog.
-pub(super) fn key_lines(line: &Line, width: usize) -> Vec<String> {
-    let value = on_one_line(&line.value);
-    let whole = format!("{}={value}", line.key);
+/// What `--set` takes for `value`: on one line of `width` columns, or else the key on one and a number on the next; a text
+/// is shown whole by the dialog. Empty for the push to come.
+pub(super) fn key_lines(value: &ListedValue, width: usize) -> Vec<String> {
+    let Some(key) = value.key() else {
+        return vec![String::new()];
+    };
+    let text = on_one_line(&value.text());
+    let whole = format!("{key}={text}");
     let is_short = columns(&whole) <= width;
-    let is_number = value.parse::<f64>().is_ok();
-    match (line.key.is_empty(), is_short, is_number) {
-        (true, ..) => vec![String::new()],
-        (false, true, _) => vec![whole],
-        (false, false, true) => vec![line.key.clone(), format!("={value}")],
-        (false, false, false) => vec![line.key.clone()],
+    let is_number = text.parse::<f64>().is_ok();
+    match (is_short, is_number) {
+        (true, _) => vec![whole],
+        (false, true) => vec![key.to_owned(), format!("={text}")],
+        (false, false) => vec![key.to_owned()],
     }
 }
 

@@ -118,10 +118,7 @@ pub(super) fn start_rows(scenario: &Scenario) -> Vec<Row> {
     let momentum = scenario.file.start.momentum_Js;
     let [x, y, z] = momentum.unwrap_or(scenario.start.momentum.into());
     let size = scenario.start.momentum.norm();
-    let frame = match scenario.file.start.momentum_frame {
-        Some(crate::scenario::file::Frame::Body) => "body",
-        _ => "world",
-    };
+    let frame = scenario.file.start.momentum_frame.unwrap_or_default();
     vec![
         heading("start"),
         given(2, "tilt", tilt, 3, "deg"),
@@ -129,7 +126,7 @@ pub(super) fn start_rows(scenario: &Scenario) -> Vec<Row> {
         given(5, "Lx", x, 3, "J s"),
         given(5, "Ly", y, 3, "J s"),
         given(5, "Lz", z, 3, "J s"),
-        value(5, "L given in", frame.to_owned(), ""),
+        value(5, "L given in", frame.name().to_owned(), ""),
     ]
 }
 
