@@ -3,7 +3,7 @@
 //! In focus it is an editor: the values one by one above, one of them selected, and the readouts to watch below.
 
 mod edited;
-mod rows;
+mod lines;
 
 use super::{PaneRow, Width, frame, shortened, write};
 use crate::lab::action::Action;
@@ -15,13 +15,13 @@ use crate::text::wrap::columns;
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
 use edited::{around_selected, edited_rows, fewer_digits, key_lines, needed, title};
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-use ratatui::widgets::Widget;
-use rows::{
+use lines::{
     COLUMN, PREDICTED, Row, VALUE_END, body_rows, derived_rows, further_rows, heading, motion_rows,
     now_rows, start_rows, watched_rows,
 };
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::widgets::Widget;
 
 /// Column of units.
 const UNIT: u16 = 19;
@@ -395,7 +395,7 @@ fn without_empty_groups(rows: Vec<Row>) -> Vec<Row> {
 
 #[cfg(test)]
 mod tests {
-    use super::rows::value;
+    use super::lines::value;
     use super::*;
 
     #[test]

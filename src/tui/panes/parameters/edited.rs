@@ -1,7 +1,7 @@
 //! The lines of the values that can be edited: all of them or those that are found, and the selected one in full.
 
 use super::ROW;
-use super::rows::{COLUMN, Row, VALUE_END, heading};
+use super::lines::{COLUMN, Row, VALUE_END, heading};
 use crate::lab::values::list::ValueList;
 use crate::lab::values::listed::ListedValue;
 use crate::text::printable::printable;
