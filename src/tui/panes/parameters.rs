@@ -14,10 +14,10 @@ use crate::scenario::{Motion, Scenario};
 use crate::text::wrap::columns;
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
-use edited::{around_selected, edited_rows, fewer_digits, key_lines, needed, title};
+use edited::{around_selected, edited_lines, fewer_digits, key_lines, needed, title};
 use lines::{
-    COLUMN, PREDICTED, Row, VALUE_END, body_rows, derived_rows, further_rows, heading, motion_rows,
-    now_rows, start_rows, watched_rows,
+    COLUMN, Line, PREDICTED, VALUE_END, body_lines, derived_lines, further_lines, heading,
+    motion_lines, now_lines, start_lines, watched_lines,
 };
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -100,50 +100,50 @@ impl Widget for Parameters<'_> {
 }
 
 impl Parameters<'_> {
-    /// Columns of lines, each `wide` columns of the screen.
+    /// Draws columns of lines side by side, each `wide` columns of the screen.
     fn columns<'r>(
         &self,
-        columns: impl Iterator<Item = &'r [Row]>,
+        columns: impl Iterator<Item = &'r [Line]>,
         wide: u16,
         area: Rect,
         buf: &mut Buffer,
     ) {
-        for (rows, column) in columns.zip(0..MOST_EDITED) {
+        for (lines, column) in columns.zip(0..MOST_EDITED) {
             let place = Rect {
                 x: area.x + column * wide,
                 width: area.width.saturating_sub(column * wide).min(wide),
                 ..area
             };
-            self.lines_of(rows, wide, place, buf);
+            self.draw_in(lines, wide, place, buf);
         }
     }
 
     /// The lines there is room for, and how to see the others.
     fn most_important(&self, area: Rect, buf: &mut Buffer) {
-        let mut rows = self.rows();
-        if rows.len() <= area.height as usize {
-            let further = without_dashes(further_rows(self.reading));
-            rows.extend(shown(self.view, further));
-            let rows = fitting(rows, area.height as usize);
-            return self.lines(&rows, area, buf);
+        let mut lines = self.lines();
+        if lines.len() <= area.height as usize {
+            let further = without_dashes(further_lines(self.reading));
+            lines.extend(shown(self.view, further));
+            let lines = fitting(lines, area.height as usize);
+            return self.draw(&lines, area, buf);
         }
-        let (lines, note) = above_last(area);
-        let rows = fitting(rows, lines.height as usize);
-        self.lines(&rows, lines, buf);
+        let (place, note) = above_last(area);
+        let lines = fitting(lines, place.height as usize);
+        self.draw(&lines, place, buf);
         self.note("e, then f: all of them", note, buf);
     }
 
     /// The values to edit above, the key of the selected one, and the readouts to watch below.
     fn edited_above_read(&self, list: &ValueList, area: Rect, buf: &mut Buffer) {
         let height = area.height as usize;
-        let edited = edited_rows(list);
+        let edited = edited_lines(list);
         let spare = height.saturating_sub(edited.len() + 1);
         let room = match height {
             WATCHED_FROM.. => spare.max(height * 2 / 5),
             _ => 0,
         };
         let read = match list.name() {
-            "" => read_rows(self.view, self.reading, room),
+            "" => read_lines(self.view, self.reading, room),
             name => self.found(name, room),
         };
         let lower = read.len() as u16;
@@ -157,7 +157,7 @@ impl Parameters<'_> {
             height: lower,
             ..area
         };
-        self.lines(&read, lower, buf);
+        self.draw(&read, lower, buf);
     }
 
     /// The values to edit in columns, and the readouts in one more.
@@ -168,13 +168,13 @@ impl Parameters<'_> {
         }
         let read = match list.name() {
             "" => {
-                let mut read = derived_rows(self.scenario);
-                read.extend(shown(self.view, now_rows(self.reading)));
+                let mut read = derived_lines(self.scenario);
+                read.extend(shown(self.view, now_lines(self.reading)));
                 read
             }
             name => self.found(name, usize::MAX),
         };
-        let edited = edited_rows(list);
+        let edited = edited_lines(list);
         let height = area.height.saturating_sub(1) as usize;
         let grouped = by_group(&edited, height).map_or(usize::MAX, |columns| columns.len());
         let count = grouped.min(count as usize) as u16;
@@ -189,67 +189,67 @@ impl Parameters<'_> {
             width: area.width - width,
             ..area
         };
-        let rows = fitting(read, right.height as usize);
-        self.lines(&rows, right, buf);
+        let lines = fitting(read, right.height as usize);
+        self.draw(&lines, right, buf);
     }
 
     /// The numbers that cannot be edited and have `name` in theirs, with what theory predicts for them, in `room` lines.
-    fn found(&self, name: &str, room: usize) -> Vec<Row> {
-        let mut rows = derived_rows(self.scenario);
-        rows.extend(shown(self.view, now_rows(self.reading)));
-        rows.extend(shown(self.view, further_rows(self.reading)));
+    fn found(&self, name: &str, room: usize) -> Vec<Line> {
+        let mut lines = derived_lines(self.scenario);
+        lines.extend(shown(self.view, now_lines(self.reading)));
+        lines.extend(shown(self.view, further_lines(self.reading)));
         let name = name.to_lowercase();
         let mut is_found = false;
-        rows.retain(|row| {
-            let label = row.label.to_lowercase();
-            let is_of_row_above = is_found && row.label == PREDICTED;
-            is_found = !row.is_heading()
-                && (is_of_row_above || name.split_whitespace().all(|word| label.contains(word)));
+        lines.retain(|line| {
+            let label = line.label.to_lowercase();
+            let is_of_line_above = is_found && line.label == PREDICTED;
+            is_found = !line.is_heading()
+                && (is_of_line_above || name.split_whitespace().all(|word| label.contains(word)));
             is_found
         });
-        if !rows.is_empty() {
-            rows.insert(0, heading("not to be set"));
+        if !lines.is_empty() {
+            lines.insert(0, heading("not to be set"));
         }
-        rows.truncate(room);
-        rows
+        lines.truncate(room);
+        lines
     }
 
-    /// `rows` of `list` in `count` columns, each `wide` columns of the screen: as many as there is room for around the
+    /// `lines` of `list` in `count` columns, each `wide` columns of the screen: as many as there is room for around the
     /// selected one, and below them what `--set` takes for it, with all its digits.
     fn edited(
         &self,
-        rows: &[Row],
+        lines: &[Line],
         list: &ValueList,
         area: Rect,
         (count, wide): (u16, u16),
         buf: &mut Buffer,
     ) {
-        let mut lines = area;
+        let mut place = area;
         let notes = list
             .selected()
             .map(|value| key_lines(value, area.width as usize));
         for note in notes.into_iter().flatten().rev() {
-            if lines.height > 1 {
-                let (above, last) = above_last(lines);
+            if place.height > 1 {
+                let (above, last) = above_last(place);
                 self.note(&note, last, buf);
-                lines = above;
+                place = above;
             }
         }
-        let height = lines.height as usize;
-        let grouped = by_group(rows, height).filter(|columns| columns.len() <= count as usize);
+        let height = place.height as usize;
+        let grouped = by_group(lines, height).filter(|columns| columns.len() <= count as usize);
         if let Some(columns) = grouped {
-            return self.columns(columns.into_iter(), wide, lines, buf);
+            return self.columns(columns.into_iter(), wide, place, buf);
         }
         let room = height * count as usize;
-        let (shown, above, below) = around_selected(rows, room);
-        self.columns(shown.chunks(height.max(1)), wide, lines, buf);
+        let (shown, above, below) = around_selected(lines, room);
+        self.columns(shown.chunks(height.max(1)), wide, place, buf);
         // On the frame, or where columns of lines are empty.
         let x = match self.view.filled && area.width == count * wide {
             true => area.right() - 1,
             false => area.right(),
         };
-        self.hint(above, (x, lines.y), ABOVE, buf);
-        self.hint(below, (x, lines.bottom().saturating_sub(1)), BELOW, buf);
+        self.hint(above, (x, place.y), ABOVE, buf);
+        self.hint(below, (x, place.bottom().saturating_sub(1)), BELOW, buf);
     }
 
     /// Says at `place` that a list goes on, where it does.
@@ -264,32 +264,32 @@ impl Parameters<'_> {
         write(area, (0, 0), text, self.view.theme.style(Role::Quiet), buf);
     }
 
-    fn lines(&self, rows: &[Row], area: Rect, buf: &mut Buffer) {
-        self.lines_of(rows, COLUMN, area, buf);
+    fn draw(&self, lines: &[Line], area: Rect, buf: &mut Buffer) {
+        self.draw_in(lines, COLUMN, area, buf);
     }
 
-    /// `rows` in lines that are `wide` columns.
-    fn lines_of(&self, rows: &[Row], wide: u16, area: Rect, buf: &mut Buffer) {
-        for (row, y) in rows.iter().zip(0..area.height) {
-            let line = Rect {
+    /// Draws `lines` one below the other, each `wide` columns of the screen.
+    fn draw_in(&self, lines: &[Line], wide: u16, area: Rect, buf: &mut Buffer) {
+        for (line, y) in lines.iter().zip(0..area.height) {
+            let place = Rect {
                 y: area.y + y,
                 height: 1,
                 ..area
             };
-            self.line(row, VALUE_END + wide - COLUMN, line, buf);
+            self.draw_line(line, VALUE_END + wide - COLUMN, place, buf);
         }
     }
 
     /// One line; `value_end` is the column of the last character of its value.
-    fn line(&self, row: &Row, value_end: u16, area: Rect, buf: &mut Buffer) {
+    fn draw_line(&self, line: &Line, value_end: u16, area: Rect, buf: &mut Buffer) {
         let theme = &self.view.theme;
-        let indent = u16::from(!row.is_heading());
-        let label = theme.style(row.label_role);
-        let end = write(area, (indent, 0), &row.label, label, buf);
+        let indent = u16::from(!line.is_heading());
+        let label = theme.style(line.label_role);
+        let end = write(area, (indent, 0), &line.label, label, buf);
         let room = value_end.saturating_sub(end + 1) as usize;
-        let value = fewer_digits(&row.value, room);
-        let style = theme.style(row.value_role);
-        if row.unit.is_empty() && columns(&value) > room {
+        let value = fewer_digits(&line.value, room);
+        let style = theme.style(line.value_role);
+        if line.unit.is_empty() && columns(&value) > room {
             // Words have no unit beside them.
             write(area, (end + 1, 0), &value, style, buf);
         } else {
@@ -298,42 +298,42 @@ impl Parameters<'_> {
             write(area, (begin, 0), &value, style, buf);
         }
         let unit = value_end + UNIT - VALUE_END;
-        write(area, (unit, 0), &row.unit, theme.style(Role::Quiet), buf);
-        if row.is_selected {
+        write(area, (unit, 0), &line.unit, theme.style(Role::Quiet), buf);
+        if line.is_selected {
             write(area, (0, 0), SELECTED, theme.style(Role::Focus), buf);
             buf.set_style(area, theme.style(Role::Selected));
         }
     }
 
-    fn rows(&self) -> Vec<Row> {
-        let mut rows = Vec::with_capacity(32);
-        rows.extend(body_rows(self.scenario));
-        rows.extend(start_rows(self.scenario));
-        rows.extend(motion_rows(self.scenario, self.motion));
-        rows.extend(shown(self.view, now_rows(self.reading)));
-        rows
+    fn lines(&self) -> Vec<Line> {
+        let mut lines = Vec::with_capacity(32);
+        lines.extend(body_lines(self.scenario));
+        lines.extend(start_lines(self.scenario));
+        lines.extend(motion_lines(self.scenario, self.motion));
+        lines.extend(shown(self.view, now_lines(self.reading)));
+        lines
     }
 }
 
 /// The readouts for `room` lines: all of them, or those to watch.
-fn read_rows(view: &View, reading: &Reading, room: usize) -> Vec<Row> {
-    let all = shown(view, now_rows(reading));
+fn read_lines(view: &View, reading: &Reading, room: usize) -> Vec<Line> {
+    let all = shown(view, now_lines(reading));
     if all.len() <= room {
         return all;
     }
     let mut watched = vec![heading("now")];
-    watched.extend(shown(view, watched_rows(reading).into()));
-    let mut rows = fitting(watched, room);
-    rows.truncate(room);
-    rows
+    watched.extend(shown(view, watched_lines(reading).into()));
+    let mut lines = fitting(watched, room);
+    lines.truncate(room);
+    lines
 }
 
-/// `rows` without those that are hidden.
-fn shown(view: &View, mut rows: Vec<Row>) -> Vec<Row> {
+/// `lines` without those that are hidden.
+fn shown(view: &View, mut lines: Vec<Line>) -> Vec<Line> {
     if view.hides(Part::Predicted) {
-        rows.retain(|row| row.label != PREDICTED);
+        lines.retain(|line| line.label != PREDICTED);
     }
-    rows
+    lines
 }
 
 /// `area` without its last line, and that line.
@@ -347,50 +347,51 @@ fn above_last(area: Rect) -> (Rect, Rect) {
     (Rect { height, ..area }, last)
 }
 
-/// `rows` in columns of at most `height` that begin with a heading; `None` where a group is higher than that.
-fn by_group(rows: &[Row], height: usize) -> Option<Vec<&[Row]>> {
+/// `lines` in columns of at most `height` that begin with a heading; `None` where a group is higher than that.
+fn by_group(lines: &[Line], height: usize) -> Option<Vec<&[Line]>> {
     let mut columns = Vec::new();
     let (mut begin, mut end) = (0, 0);
-    for group in rows.chunk_by(|_, next| !next.is_heading()) {
+    for group in lines.chunk_by(|_, next| !next.is_heading()) {
         if end + group.len() - begin > height {
-            columns.push(&rows[begin..end]);
+            columns.push(&lines[begin..end]);
             begin = end;
         }
         end += group.len();
     }
-    columns.push(&rows[begin..]);
+    columns.push(&lines[begin..]);
     columns
         .iter()
-        .all(|rows| rows.len() <= height)
+        .all(|lines| lines.len() <= height)
         .then_some(columns)
 }
 
 /// The lines for which there is room, the least important left out.
-fn fitting(mut rows: Vec<Row>, room: usize) -> Vec<Row> {
-    while rows.len() > room {
-        let ranks = rows.iter().map(|row| row.rank).enumerate();
+fn fitting(mut lines: Vec<Line>, room: usize) -> Vec<Line> {
+    while lines.len() > room {
+        let ranks = lines.iter().map(|line| line.rank).enumerate();
         match ranks.max_by_key(|&(_, rank)| rank) {
-            Some((index, 1..)) => drop(rows.remove(index)),
+            Some((index, 1..)) => drop(lines.remove(index)),
             _ => break, // all of it matters: the rest is cut off
         }
-        rows = without_empty_groups(rows);
+        lines = without_empty_groups(lines);
     }
-    rows
+    lines
 }
 
-/// `rows` without those that have no value, the headings kept.
-fn without_dashes(mut rows: Vec<Row>) -> Vec<Row> {
-    rows.retain(|row| row.is_heading() || row.value != "-");
-    without_empty_groups(rows)
+/// `lines` without those that have no value, the headings kept.
+fn without_dashes(mut lines: Vec<Line>) -> Vec<Line> {
+    lines.retain(|line| line.is_heading() || line.value != "-");
+    without_empty_groups(lines)
 }
 
 /// No heading stands alone.
-fn without_empty_groups(rows: Vec<Row>) -> Vec<Row> {
-    let alone =
-        |index: usize| rows[index].is_heading() && rows.get(index + 1).is_none_or(Row::is_heading);
-    let keep: Vec<bool> = (0..rows.len()).map(|index| !alone(index)).collect();
-    let kept = rows.into_iter().zip(keep).filter(|&(_, keep)| keep);
-    kept.map(|(row, _)| row).collect()
+fn without_empty_groups(lines: Vec<Line>) -> Vec<Line> {
+    let alone = |index: usize| {
+        lines[index].is_heading() && lines.get(index + 1).is_none_or(Line::is_heading)
+    };
+    let keep: Vec<bool> = (0..lines.len()).map(|index| !alone(index)).collect();
+    let kept = lines.into_iter().zip(keep).filter(|&(_, keep)| keep);
+    kept.map(|(line, _)| line).collect()
 }
 
 #[cfg(test)]
@@ -400,9 +401,9 @@ mod tests {
 
     #[test]
     fn groups_stay_together_where_they_fit() {
-        let row = |label| value(0, label, String::new(), "");
-        let rows = [heading("a"), row("1"), heading("b"), row("2"), row("3")];
-        let columns = |height| by_group(&rows, height).map(|columns| columns.len());
+        let line = |label| value(0, label, String::new(), "");
+        let lines = [heading("a"), line("1"), heading("b"), line("2"), line("3")];
+        let columns = |height| by_group(&lines, height).map(|columns| columns.len());
         assert_eq!(columns(5), Some(1));
         assert_eq!(columns(3), Some(2));
         assert_eq!(columns(2), None);

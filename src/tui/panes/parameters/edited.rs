@@ -1,7 +1,7 @@
 //! The lines of the values that can be edited: all of them or those that are found, and the selected one in full.
 
 use super::ROW;
-use super::lines::{COLUMN, Row, VALUE_END, heading};
+use super::lines::{COLUMN, Line, VALUE_END, heading};
 use crate::lab::values::list::ValueList;
 use crate::lab::values::listed::ListedValue;
 use crate::text::printable::printable;
@@ -28,29 +28,29 @@ pub(super) fn title(list: Option<&ValueList>, is_searched: bool) -> String {
 }
 
 /// The lines of the values of `list` that are shown, each group under its heading.
-pub(super) fn edited_rows(list: &ValueList) -> Vec<Row> {
+pub(super) fn edited_lines(list: &ValueList) -> Vec<Line> {
     let shown = list.shown();
-    let mut rows = Vec::with_capacity(2 * shown.len());
+    let mut lines = Vec::with_capacity(2 * shown.len());
     for group in shown.chunk_by(|(_, a), (_, b)| a.group() == b.group()) {
         let first = group.first();
-        rows.extend(first.map(|(_, value)| heading(on_one_line(value.group()))));
+        lines.extend(first.map(|(_, value)| heading(on_one_line(value.group()))));
         for (index, value) in group {
-            rows.push(edited_row(value, *index == list.selected_index()));
+            lines.push(edited_line(value, *index == list.selected_index()));
         }
     }
-    if rows.is_empty() && !list.name().is_empty() {
-        rows.push(heading("no value to set has it"));
+    if lines.is_empty() && !list.name().is_empty() {
+        lines.push(heading("no value to set has it"));
     }
-    rows
+    lines
 }
 
-fn edited_row(value: &ListedValue, is_selected: bool) -> Row {
+fn edited_line(value: &ListedValue, is_selected: bool) -> Line {
     let value_role = if value.is_default() {
         Role::Quiet
     } else {
         Role::Text
     };
-    Row {
+    Line {
         rank: 0,
         label: on_one_line(&value.label()).into(),
         label_role: Role::Quiet,
@@ -83,29 +83,29 @@ pub(super) fn key_lines(value: &ListedValue, width: usize) -> Vec<String> {
     }
 }
 
-/// Columns that `row` needs to show its number with all its digits.
-pub(super) fn needed(row: &Row) -> u16 {
-    let is_number = row.value.parse::<f64>().is_ok();
-    let words = columns(&row.label) + columns(&row.value) + 2;
+/// Columns that `line` needs to show its number with all its digits.
+pub(super) fn needed(line: &Line) -> u16 {
+    let is_number = line.value.parse::<f64>().is_ok();
+    let words = columns(&line.label) + columns(&line.value) + 2;
     let behind = COLUMN - VALUE_END;
     if is_number { words as u16 + behind } else { 0 }
 }
 
-/// The `room` rows around the selected one, its group's heading kept on top; whether there are more above and below.
-pub(super) fn around_selected(rows: &[Row], room: usize) -> (Vec<Row>, bool, bool) {
-    let selected = rows.iter().position(|row| row.is_selected).unwrap_or(0);
-    let most = rows.len().saturating_sub(room);
+/// The `room` lines around the selected one, its group's heading kept on top; whether there are more above and below.
+pub(super) fn around_selected(lines: &[Line], room: usize) -> (Vec<Line>, bool, bool) {
+    let selected = lines.iter().position(|line| line.is_selected).unwrap_or(0);
+    let most = lines.len().saturating_sub(room);
     let first = selected.saturating_sub(room / 2).min(most);
-    let end = (first + room).min(rows.len());
-    let mut shown = rows[first..end].to_vec();
-    let before = rows.get(..=first).unwrap_or(rows);
-    let heading = before.iter().rfind(|row| row.is_heading());
+    let end = (first + room).min(lines.len());
+    let mut shown = lines[first..end].to_vec();
+    let before = lines.get(..=first).unwrap_or(lines);
+    let heading = before.iter().rfind(|line| line.is_heading());
     if let (Some(top), Some(heading)) = (shown.first_mut(), heading)
         && !top.is_selected
     {
         top.clone_from(heading);
     }
-    (shown, first > 0, end < rows.len())
+    (shown, first > 0, end < lines.len())
 }
 
 /// `text`, or with fewer decimals where it is a number that is wider than `room`.

@@ -21,7 +21,7 @@ pub(super) const PREDICTED: &str = "predicted";
 
 /// One line: a heading, or a value.
 #[derive(Clone)]
-pub(super) struct Row {
+pub(super) struct Line {
     /// Lines with larger numbers go first where there is no room for all.
     pub(super) rank: u8,
     pub(super) label: Cow<'static, str>,
@@ -32,22 +32,22 @@ pub(super) struct Row {
     pub(super) is_selected: bool,
 }
 
-impl Row {
+impl Line {
     pub(super) fn is_heading(&self) -> bool {
         self.label_role == Role::Heading
     }
 }
 
-pub(super) fn heading(label: impl Into<Cow<'static, str>>) -> Row {
-    Row {
+pub(super) fn heading(label: impl Into<Cow<'static, str>>) -> Line {
+    Line {
         label: label.into(),
         label_role: Role::Heading,
         ..value(0, "", String::new(), "")
     }
 }
 
-pub(super) fn value(rank: u8, label: &'static str, value: String, unit: &'static str) -> Row {
-    Row {
+pub(super) fn value(rank: u8, label: &'static str, value: String, unit: &'static str) -> Line {
+    Line {
         rank,
         label: label.into(),
         label_role: Role::Quiet,
@@ -59,7 +59,7 @@ pub(super) fn value(rank: u8, label: &'static str, value: String, unit: &'static
 }
 
 /// A number, with as many of `digits` decimals as stand beside its label.
-fn number(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'static str) -> Row {
+fn number(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'static str) -> Line {
     value(rank, label, fixed(label, Some(number), digits), unit)
 }
 
@@ -71,7 +71,7 @@ fn sized(
     size: f64,
     digits: usize,
     unit: &'static str,
-) -> Row {
+) -> Line {
     /// What is smaller than this part of the size is its rounding.
     const ROUNDING: f64 = 1e-9;
     let is_small = size > 0.0 && size < 0.1;
@@ -82,7 +82,7 @@ fn sized(
 }
 
 /// A number of the scenario: with `digits` decimals where these are all it has, else with as many as stand beside its label.
-fn given(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'static str) -> Row {
+fn given(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'static str) -> Line {
     let usual = fixed(label, Some(number), digits);
     let is_whole = usual.parse() == Ok(number);
     let room = (VALUE_END as usize).saturating_sub(label.len() + 2);
@@ -94,7 +94,7 @@ fn given(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'stat
 }
 
 /// What follows from the body's values.
-pub(super) fn derived_rows(scenario: &Scenario) -> Vec<Row> {
+pub(super) fn derived_lines(scenario: &Scenario) -> Vec<Line> {
     let body: &Body = &scenario.body.mechanics;
     let height = body.first_moment().z / body.mass();
     vec![
@@ -104,16 +104,16 @@ pub(super) fn derived_rows(scenario: &Scenario) -> Vec<Row> {
     ]
 }
 
-pub(super) fn body_rows(scenario: &Scenario) -> Vec<Row> {
-    let mut rows = derived_rows(scenario);
+pub(super) fn body_lines(scenario: &Scenario) -> Vec<Line> {
+    let mut lines = derived_lines(scenario);
     if let Some(rim) = &scenario.file.body.rim {
-        rows.push(given(4, "rim radius", rim.radius_m, 4, "m"));
-        rows.push(value(6, "rim points", rim.points.to_string(), ""));
+        lines.push(given(4, "rim radius", rim.radius_m, 4, "m"));
+        lines.push(value(6, "rim points", rim.points.to_string(), ""));
     }
-    rows
+    lines
 }
 
-pub(super) fn start_rows(scenario: &Scenario) -> Vec<Row> {
+pub(super) fn start_lines(scenario: &Scenario) -> Vec<Line> {
     let tilt = scenario.file.start.tilt_deg.unwrap_or(0.0);
     let momentum = scenario.file.start.momentum_Js;
     let [x, y, z] = momentum.unwrap_or(scenario.start.momentum.into());
@@ -131,7 +131,7 @@ pub(super) fn start_rows(scenario: &Scenario) -> Vec<Row> {
 }
 
 /// The friction, where there is one: its coefficient, or how many there are.
-fn friction_row(friction: &Friction) -> Option<Row> {
+fn friction_line(friction: &Friction) -> Option<Line> {
     let coefficients = [
         (friction.spin_dry, "N m"),
         (friction.spin_viscous, "N m s"),
@@ -149,13 +149,13 @@ fn friction_row(friction: &Friction) -> Option<Row> {
     }
 }
 
-pub(super) fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
+pub(super) fn motion_lines(scenario: &Scenario, motion: &Motion) -> Vec<Line> {
     let pushes = match (scenario.pushes.len(), scenario.pushes.first()) {
         (0, _) => "none".to_owned(),
         (1, Some(push)) => format!("{} N", decimals_of(push.force.norm(), 0)),
         (more, _) => more.to_string(),
     };
-    let mut rows = vec![
+    let mut lines = vec![
         heading("motion"),
         value(0, "dt", shortest(motion.time_step_s), "s"),
         value(3, "scheme", motion.scheme.name.to_owned(), ""),
@@ -168,7 +168,7 @@ pub(super) fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
             "",
         ),
     ];
-    rows.extend(friction_row(&scenario.friction));
+    lines.extend(friction_line(&scenario.friction));
     if let (1, Some(push)) = (scenario.pushes.len(), scenario.pushes.first()) {
         let (when, unit) = match push.window {
             Window::Steps { first, count } => (
@@ -180,32 +180,32 @@ pub(super) fn motion_rows(scenario: &Scenario, motion: &Motion) -> Vec<Row> {
                 (format!("{from} to {to}"), "s")
             }
         };
-        rows.push(value(3, "acts", when, unit));
+        lines.push(value(3, "acts", when, unit));
     }
-    rows
+    lines
 }
 
-pub(super) fn now_rows(reading: &Reading) -> Vec<Row> {
+pub(super) fn now_lines(reading: &Reading) -> Vec<Line> {
     let sample = &reading.readouts.sample;
     let momentum = sample.momentum.norm();
     let kinetic = 0.5 * sample.momentum.dot(&sample.angular_velocity);
     // What a scheme that has broken down leaves is no place and no energy of a body.
     let of_body = |number: f64| reading.readouts.health.is_a_rotation.then_some(number);
-    let axis = |label, role, metres: f64| Row {
+    let axis = |label, role, metres: f64| Line {
         label_role: role,
         ..measured(0, label, of_body(metres), 4, "m")
     };
-    let mut rows = vec![
+    let mut lines = vec![
         heading("now"),
         axis("x", Role::X, sample.position.x),
         axis("y", Role::Y, sample.position.y),
         axis("z", Role::Z, sample.position.z),
     ];
-    rows.extend(watched_rows(reading));
-    let after_nutation = rows.len() - 1;
+    lines.extend(watched_lines(reading));
+    let after_nutation = lines.len() - 1;
     let predicted = reading.readouts.number("predicted_nutation_period_s");
-    rows.insert(after_nutation, measured(1, PREDICTED, predicted, 5, "s"));
-    rows.extend([
+    lines.insert(after_nutation, measured(1, PREDICTED, predicted, 5, "s"));
+    lines.extend([
         sized(3, "|L|", momentum, momentum, 3, "J s"),
         sized(4, "Lz", sample.momentum.z, momentum, 3, "J s"),
         match of_body(sample.energy) {
@@ -213,11 +213,11 @@ pub(super) fn now_rows(reading: &Reading) -> Vec<Row> {
             None => measured(4, "energy", None, 2, "J"),
         },
     ]);
-    rows
+    lines
 }
 
 /// What is shown beside them where there is room: the extremes so far, and how the wheel turns.
-pub(super) fn further_rows(reading: &Reading) -> Vec<Row> {
+pub(super) fn further_lines(reading: &Reading) -> Vec<Line> {
     let readouts = &reading.readouts;
     let told = |rank, label, name, digits, unit| {
         measured(rank, label, readouts.number(name), digits, unit)
@@ -246,7 +246,7 @@ pub(super) fn further_rows(reading: &Reading) -> Vec<Row> {
 }
 
 /// The readouts to watch while values are edited; the last is the energy's drift.
-pub(super) fn watched_rows(reading: &Reading) -> [Row; 5] {
+pub(super) fn watched_lines(reading: &Reading) -> [Line; 5] {
     let readouts = &reading.readouts;
     let precession = reading.precession_deg_per_s();
     let predicted = readouts.number("predicted_precession_rad_per_s");
@@ -294,7 +294,7 @@ fn measured(
     number: Option<f64>,
     digits: usize,
     unit: &'static str,
-) -> Row {
+) -> Line {
     value(rank, label, fixed(label, number, digits), unit)
 }
 
