@@ -25,7 +25,7 @@ pub struct FormPane<'a> {
 }
 
 /// One line of a form.
-enum Row<'a> {
+enum Line<'a> {
     Field(usize, &'a Field),
     Text(String, Role),
 }
@@ -43,8 +43,8 @@ impl Widget for FormPane<'_> {
         }
         let is_framed = area.height >= LEAST_FRAMED && width >= LEAST_FRAMED;
         let border = if is_framed { 2 } else { 0 };
-        let rows = self.rows(width - border, (area.height - border) as usize);
-        let height = rows.len() as u16 + border;
+        let lines = self.lines(width - border, (area.height - border) as usize);
+        let height = lines.len() as u16 + border;
         let place = Rect {
             y: area.bottom() - height,
             height,
@@ -57,8 +57,8 @@ impl Widget for FormPane<'_> {
                 place
             }
         };
-        for (row, y) in rows.iter().zip(0..inside.height) {
-            self.row(row, y, inside, buf);
+        for (line, y) in lines.iter().zip(0..inside.height) {
+            self.draw_line(line, y, inside, buf);
         }
     }
 }
@@ -66,7 +66,7 @@ impl Widget for FormPane<'_> {
 impl FormPane<'_> {
     /// What there is room for in `height` lines: the selected field first and a line of why it was refused, then the
     /// other fields, the rest of the reason, the keys, and what is known.
-    fn rows(&self, width: u16, height: usize) -> Vec<Row<'_>> {
+    fn lines(&self, width: u16, height: usize) -> Vec<Line<'_>> {
         let form = self.form;
         let mut room = height;
         let reserved = usize::from(form.complaint.is_some() && height > 1);
@@ -85,13 +85,13 @@ impl FormPane<'_> {
         // The selected field is among those that are shown.
         let first = (form.selected + 1).saturating_sub(fields);
         let fields = form.fields.iter().enumerate().skip(first).take(fields);
-        let mut rows: Vec<_> = fields.map(|(at, field)| Row::Field(at, field)).collect();
-        let quiet = |text: &str| Row::Text(text.to_owned(), Role::Quiet);
-        rows.extend(info.iter().map(|text| quiet(text)));
+        let mut lines: Vec<_> = fields.map(|(at, field)| Line::Field(at, field)).collect();
+        let quiet = |text: &str| Line::Text(text.to_owned(), Role::Quiet);
+        lines.extend(info.iter().map(|text| quiet(text)));
         let complaint = complaint.into_iter();
-        rows.extend(complaint.map(|line| Row::Text(line, Role::Warning)));
-        rows.extend((keys == 1).then(|| quiet(form.keys)));
-        rows
+        lines.extend(complaint.map(|text| Line::Text(text, Role::Warning)));
+        lines.extend((keys == 1).then(|| quiet(form.keys)));
+        lines
     }
 
     fn complaint(&self, width: u16, height: usize) -> Vec<String> {
@@ -101,18 +101,18 @@ impl FormPane<'_> {
         }
     }
 
-    fn row(&self, row: &Row<'_>, y: u16, area: Rect, buf: &mut Buffer) {
-        match row {
-            Row::Text(text, role) => {
+    fn draw_line(&self, line: &Line<'_>, y: u16, area: Rect, buf: &mut Buffer) {
+        match line {
+            Line::Text(text, role) => {
                 write(area, (0, y), text, self.theme.style(*role), buf);
             }
-            Row::Field(index, field) => {
-                let line = Rect {
+            Line::Field(index, field) => {
+                let place = Rect {
                     y: area.y + y,
                     height: 1,
                     ..area
                 };
-                self.field(*index == self.form.selected, field, line, buf);
+                self.field(*index == self.form.selected, field, place, buf);
             }
         }
     }
