@@ -9,9 +9,9 @@ const PARTS: usize = 48;
 /// Lines along a round solid, from end to end.
 const SIDES: usize = 4;
 
-/// One line of a part.
+/// A line of several points along a part.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct Polyline {
     /// The points that it goes through, body frame, m; at least two.
     pub points: Vec<Vector3<f64>>,
     /// Whether it is the one line that tells a round part from itself turned about its axis.
@@ -19,7 +19,7 @@ pub struct Line {
 }
 
 /// The lines of `part`. Of a part that is given by its moments those of the thin ellipsoid that has them.
-pub fn lines(part: &Part) -> Vec<Line> {
+pub fn lines(part: &Part) -> Vec<Polyline> {
     let mut lines = own_lines(part);
     for line in &mut lines {
         for point in &mut line.points {
@@ -30,7 +30,7 @@ pub fn lines(part: &Part) -> Vec<Line> {
 }
 
 /// The lines of a solid in its own frame.
-fn own_lines(part: &Part) -> Vec<Line> {
+fn own_lines(part: &Part) -> Vec<Polyline> {
     match part.shape {
         Shape::Ring { radius } => vec![circle(radius, 0.0), mark(0.0, radius, 0.0)],
         Shape::Cylinder { radius, length } => {
@@ -65,9 +65,9 @@ fn own_lines(part: &Part) -> Vec<Line> {
 }
 
 /// The equator and two meridians.
-fn ellipsoid([x, y, z]: [f64; 3]) -> Vec<Line> {
+fn ellipsoid([x, y, z]: [f64; 3]) -> Vec<Polyline> {
     let round = circle(1.0, 0.0);
-    let turned = |turn: &dyn Fn(&Vector3<f64>) -> Vector3<f64>| Line {
+    let turned = |turn: &dyn Fn(&Vector3<f64>) -> Vector3<f64>| Polyline {
         points: round.points.iter().map(turn).collect(),
         is_mark: false,
     };
@@ -79,7 +79,7 @@ fn ellipsoid([x, y, z]: [f64; 3]) -> Vec<Line> {
 }
 
 /// A round solid between two circles, radius and height of each; of a flat one the circle alone, and none of radius 0.
-fn round(ends: [(f64, f64); 2]) -> Vec<Line> {
+fn round(ends: [(f64, f64); 2]) -> Vec<Polyline> {
     let [(lower, bottom), (upper, top)] = ends;
     let is_flat = bottom == top;
     let circles = ends.into_iter().skip(usize::from(is_flat));
@@ -98,35 +98,35 @@ fn round(ends: [(f64, f64); 2]) -> Vec<Line> {
     lines
 }
 
-fn circle(radius: f64, z: f64) -> Line {
+fn circle(radius: f64, z: f64) -> Polyline {
     let point = |part: usize| {
         let (sin, cos) = libm::sincos(TAU * (part % PARTS) as f64 / PARTS as f64);
         Vector3::new(radius * cos, radius * sin, z)
     };
-    Line {
+    Polyline {
         points: (0..=PARTS).map(point).collect(),
         is_mark: false,
     }
 }
 
-fn mark(inner: f64, outer: f64, z: f64) -> Line {
-    Line {
+fn mark(inner: f64, outer: f64, z: f64) -> Polyline {
+    Polyline {
         is_mark: true,
         ..straight([Vector3::new(inner, 0.0, z), Vector3::new(outer, 0.0, z)])
     }
 }
 
-fn straight(ends: [Vector3<f64>; 2]) -> Line {
-    Line {
+fn straight(ends: [Vector3<f64>; 2]) -> Polyline {
+    Polyline {
         points: ends.to_vec(),
         is_mark: false,
     }
 }
 
 /// The edges of a block; a thin one has the four of its middle.
-fn block(size: &Vector3<f64>) -> Vec<Line> {
+fn block(size: &Vector3<f64>) -> Vec<Polyline> {
     let half = 0.5 * size;
-    let level = |z: f64| Line {
+    let level = |z: f64| Polyline {
         points: [
             (1.0, 1.0),
             (-1.0, 1.0),

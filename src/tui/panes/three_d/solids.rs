@@ -1,7 +1,7 @@
 //! The solid parts in the scene, seen as what they are.
 
 use super::Subject;
-use crate::observe::outline::{self, Line};
+use crate::observe::outline::{self, Polyline};
 use crate::physics::{Part, State};
 use crate::tui::dots::Ink;
 use crate::tui::scene::{Scene, Stroke};
@@ -20,7 +20,7 @@ pub struct Solid {
     centre: Vector3<f64>,
     /// The greatest distance of a line from the centre, m.
     size: f64,
-    lines: Vec<Line>,
+    lines: Vec<Polyline>,
 }
 
 impl Solid {
@@ -89,7 +89,7 @@ impl Subject<'_> {
 }
 
 /// The straight pieces of a line, in the world at `state`.
-fn pieces(line: &Line, state: &State) -> Vec<(Vector3<f64>, Vector3<f64>)> {
+fn pieces(line: &Polyline, state: &State) -> Vec<(Vector3<f64>, Vector3<f64>)> {
     let turned: Vec<_> = line
         .points
         .iter()
