@@ -1,7 +1,7 @@
 //! A symmetric top whose time steps are short enough to follow it: its turning points, found between the rows.
 
 use super::swing::{Interpolation, Swing};
-use super::turns::{Line, Measured, ROUNDING, Turn, Turns};
+use super::turns::{Measured, ROUNDING, StraightLine, Turn, Turns};
 use crate::physics::observables::Azimuth;
 use crate::physics::{LagrangeTop, SymmetricTop};
 use crate::run::Step;
@@ -339,14 +339,14 @@ impl Between {
         self.missed += ((way - seen) / TAU).round() as i64;
     }
 
-    fn line(&self) -> Option<Line> {
+    fn line(&self) -> Option<StraightLine> {
         let (number, crossing) = self.last.as_ref()?;
         self.turns.line_to(*number, self.turn(crossing))
     }
 
     /// What the error of a scheme may do to a single turning point, s. Where the scheme lets the tilt drift, highest points
     /// come late and lowest ones early, so that half nutations have another length than whole ones have halves.
-    fn lag_s(&self, line: &Line) -> f64 {
+    fn lag_s(&self, line: &StraightLine) -> f64 {
         if line.between >= 3 || self.is_exact {
             return 0.0; // more of them show it
         }

@@ -1,7 +1,7 @@
 //! A run as its rows show it, for a lopsided body, a load aside, or time steps too long for the motion: the highest points
 //! of the axle by parabolas through three rows.
 
-use super::turns::{Line, Measured, ROUNDING, Turn, Turns};
+use super::turns::{Measured, ROUNDING, StraightLine, Turn, Turns};
 use crate::physics::SymmetricTop;
 use crate::physics::observables::Azimuth;
 use crate::run::Step;
@@ -155,7 +155,7 @@ impl Rows {
 
     /// The line through the highest points, with what a parabola may be off by at its ends: through three steps of a
     /// swing's top, ψ apart, up to (2/3√3) ψ²/12 of a step.
-    fn line(&self) -> Option<Line> {
+    fn line(&self) -> Option<StraightLine> {
         let (number, last) = self.last.filter(|(number, _)| *number >= self.fewest)?;
         let mut line = self.turns.line_to(number, last)?;
         let step = self.looks[2].time_s - self.looks[1].time_s;

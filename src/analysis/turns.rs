@@ -60,9 +60,9 @@ pub(super) struct Turns {
     stride: u64,
 }
 
-/// What the turning points say: from the first to the last, and how far those between are off a steady rate.
+/// The straight line of time and azimuth from the first turning point to the last, and how far those between are off it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
+pub(super) struct StraightLine {
     pub first: Turn,
     pub last: Turn,
     /// How many intervals between two turning points there are from the first to the last.
@@ -99,7 +99,7 @@ impl Turns {
     }
 
     /// The line from the first turning point to `last`, which has this number; `None` if they are the same.
-    pub fn line_to(&self, number: u64, last: Turn) -> Option<Line> {
+    pub fn line_to(&self, number: u64, last: Turn) -> Option<StraightLine> {
         let (_, first) = *self.kept.first().filter(|_| number > 0)?;
         let (mut times, mut azimuths, mut between) = (0.0, 0.0, 0);
         // What the interpolation is known to be off by does not count twice.
@@ -114,7 +114,7 @@ impl Turns {
             between += 1;
         }
         let mean = |sum: f64| (sum / between.max(1) as f64).sqrt();
-        Some(Line {
+        Some(StraightLine {
             first,
             last,
             intervals: number,
@@ -125,7 +125,7 @@ impl Turns {
     }
 }
 
-impl Line {
+impl StraightLine {
     pub fn time_s(&self) -> f64 {
         self.last.time_s - self.first.time_s
     }
