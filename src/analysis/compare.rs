@@ -15,9 +15,9 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// One row: a scheme at a time step, over the whole scenario.
+/// A scheme at one time step, over the whole scenario.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct ComparisonRow {
     /// The scheme's name.
     pub scheme: &'static str,
     /// Time step, s.
@@ -66,7 +66,7 @@ pub fn compare(
     schemes: &[&'static SchemeInfo],
     time_steps: &[f64],
     watch: impl Fn(u64, u64) -> ControlFlow<()> + Sync,
-) -> Option<Vec<Row>> {
+) -> Option<Vec<ComparisonRow>> {
     let cells: Vec<Arc<Scenario>> = schemes
         .iter()
         .flat_map(|scheme| {
@@ -87,17 +87,17 @@ pub fn compare(
             before = step;
             watch(now, total)
         });
-        trial.map(|trial| Row::new(cell, &trial))
+        trial.map(|trial| ComparisonRow::new(cell, &trial))
     };
     // Not rayon's own threads, without which it would panic.
-    let rows: Option<Vec<Row>> = match ThreadPoolBuilder::new().build() {
+    let rows: Option<Vec<ComparisonRow>> = match ThreadPoolBuilder::new().build() {
         Ok(pool) => pool.install(|| cells.par_iter().map(row).collect()),
         Err(_) => cells.iter().map(row).collect(),
     };
     rows.map(|rows| with_orders(rows, ROUNDING * scenario.arm_m()))
 }
 
-impl Row {
+impl ComparisonRow {
     fn new(cell: &Scenario, trial: &Trial) -> Self {
         let wall_s = trial.stepping.as_secs_f64();
         let known = |error: f64| (trial.broke.is_none() && error.is_finite()).then_some(error);
@@ -123,7 +123,7 @@ impl Row {
 /// An error below this part of the traced point's arm tells of rounding and not of the scheme.
 const ROUNDING: f64 = 1e-12;
 
-fn with_orders(mut rows: Vec<Row>, least_m: f64) -> Vec<Row> {
+fn with_orders(mut rows: Vec<ComparisonRow>, least_m: f64) -> Vec<ComparisonRow> {
     for index in 1..rows.len() {
         let (coarse, fine) = (&rows[index - 1], &rows[index]);
         rows[index].order = (coarse.scheme == fine.scheme)
@@ -133,7 +133,7 @@ fn with_orders(mut rows: Vec<Row>, least_m: f64) -> Vec<Row> {
     rows
 }
 
-fn order(coarse: &Row, fine: &Row, least_m: f64) -> Option<f64> {
+fn order(coarse: &ComparisonRow, fine: &ComparisonRow, least_m: f64) -> Option<f64> {
     let (larger, smaller) = (coarse.error_m?, fine.error_m?);
     let order = (larger / smaller).ln() / (coarse.time_step_s / fine.time_step_s).ln();
     (smaller > least_m && order.is_finite()).then_some(order)
@@ -143,7 +143,7 @@ fn order(coarse: &Row, fine: &Row, least_m: f64) -> Option<f64> {
 #[derive(Clone, Copy, Debug)]
 pub struct Table<'a> {
     /// The rows.
-    pub rows: &'a [Row],
+    pub rows: &'a [ComparisonRow],
     /// What the energy drifts are measured in; `None` where there is nothing to measure them by.
     pub energy_unit: Option<EnergyUnit>,
 }
@@ -155,7 +155,7 @@ impl Table<'_> {
     /// # Errors
     /// Never, unless memory runs out.
     pub fn json(&self, title: &str, duration_s: f64, truth: &str) -> serde_json::Result<Value> {
-        let row = |row: &Row| {
+        let row = |row: &ComparisonRow| {
             let mut value = serde_json::to_value(row)?;
             for field in value.as_object_mut().into_iter().flat_map(Map::values_mut) {
                 if field == NONE {

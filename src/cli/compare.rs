@@ -4,7 +4,7 @@ use super::args::CompareArgs;
 use super::progress::{self, Meter};
 use super::scenario::scenario_of;
 use super::{INTERRUPTED, one_on_stdout, print};
-use crate::analysis::compare::{Row, Table, compare as table_of};
+use crate::analysis::compare::{ComparisonRow, Table, compare as table_of};
 use crate::analysis::cost::is_affordable;
 use crate::export::Destination;
 use crate::export::csv::commented;
@@ -136,7 +136,11 @@ fn kind_of_truth(scenario: &Scenario, duration_s: f64) -> String {
 }
 
 /// The table below the run file of the scenario, so that a file tells what was compared.
-fn write_csv(mut output: Destination, scenario: &Scenario, rows: &[Row]) -> anyhow::Result<()> {
+fn write_csv(
+    mut output: Destination,
+    scenario: &Scenario,
+    rows: &[ComparisonRow],
+) -> anyhow::Result<()> {
     output.write_all(commented(&scenario.to_toml()).as_bytes())?;
     let mut writer = csv::Writer::from_writer(output);
     rows.iter().try_for_each(|row| writer.serialize(row))?;

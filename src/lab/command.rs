@@ -10,7 +10,7 @@ mod reading;
 mod table;
 mod write;
 
-pub use table::{COMMANDS, Row};
+pub use table::{COMMANDS, CommandRow};
 
 use crate::export::Layout;
 use crate::lab::view::step::Page;
@@ -350,7 +350,7 @@ fn one(index: usize, value: &Value) -> Result<Command, Vec<Problem>> {
 }
 
 /// The problem that `name` is no command. `beside` is a command in the same table: `name` may belong into its value.
-fn unknown(name: &str, beside: Option<&Row>) -> Problem {
+fn unknown(name: &str, beside: Option<&CommandRow>) -> Problem {
     let near = match beside {
         Some(row) => format!(
             "what belongs to {} stands in its value: {}",

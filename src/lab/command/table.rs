@@ -13,8 +13,8 @@ use super::reading::{
 use crate::scenario::Problem;
 use toml::Value;
 
-/// One command.
-pub struct Row {
+/// One command: its row in the table.
+pub struct CommandRow {
     /// Its name in a `[[do]]` table.
     pub name: &'static str,
     /// Examples of its value, as TOML.
@@ -24,7 +24,7 @@ pub struct Row {
     read: fn(&Value) -> Read,
 }
 
-impl Row {
+impl CommandRow {
     /// The command with this value.
     ///
     /// # Errors
@@ -39,8 +39,8 @@ const fn row(
     value: &'static str,
     about: &'static str,
     read: fn(&Value) -> Read,
-) -> Row {
-    Row {
+) -> CommandRow {
+    CommandRow {
         name,
         value,
         about,
@@ -50,7 +50,7 @@ const fn row(
 
 /// Every command there is.
 #[rustfmt::skip]
-pub static COMMANDS: &[Row] = &[
+pub static COMMANDS: &[CommandRow] = &[
     row("open", "\"wobble-push\"", "open a preset or a file, SCENARIO as on the command line; it stands still at step 0", open),
     row("set", "{ \"motion.time_step_s\" = 0.05 }", "set dotted keys of the scenario, from the next step on; of body or start in a new run", set),
     row("nudge", "{ key = \"motion.time_step_s\", times = -1 }", "nudge a value up, or down where times is negative", nudge),

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::checks::{axes, measured};
 use super::file::{Base, SweepFile};
-use super::row::{Row, line};
+use super::row::{SweepRow, line};
 use super::shard::Shard;
 use crate::analysis::at_end::readouts;
 use crate::analysis::readouts::{Readout, Value as Readable};
@@ -274,7 +274,7 @@ impl Sweep {
     }
 
     /// The `row`-th row, from 0; `None` where `go_on` said no on the way.
-    pub fn row(&self, row: u64, go_on: &dyn Fn() -> bool) -> Option<Row> {
+    pub fn row(&self, row: u64, go_on: &dyn Fn() -> bool) -> Option<SweepRow> {
         let found = self
             .scenario(row)
             .and_then(|scenario| readouts(scenario, &self.measure, go_on));
@@ -283,7 +283,7 @@ impl Sweep {
             Err(why) => (vec![Readable::Nothing; self.measure.len()], Some(why)),
         };
         let line = line(&(self.labels(row), cells));
-        Some(Row { line, failure })
+        Some(SweepRow { line, failure })
     }
 }
 

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// One row of a sweep's CSV.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct SweepRow {
     /// The row as it stands in the file, with its line end.
     pub line: String,
     /// Why it holds no readouts.

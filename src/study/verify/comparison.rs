@@ -2,7 +2,7 @@
 
 use super::lines::Lines;
 use super::{Difference, Kind, Verified, What};
-use crate::analysis::compare::{self, Row};
+use crate::analysis::compare::{self, ComparisonRow};
 use crate::analysis::cost::is_affordable;
 use crate::physics::SchemeInfo;
 use crate::run::Clock;
@@ -177,7 +177,7 @@ fn differing(names: &[String], there: &[String], wanted: &[String]) -> Option<Wh
 }
 
 /// `rows` as they are written, the names first.
-fn written(rows: &[Row]) -> Result<Vec<Vec<String>>, csv::Error> {
+fn written(rows: &[ComparisonRow]) -> Result<Vec<Vec<String>>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     rows.iter().try_for_each(|row| writer.serialize(row))?;
     let bytes = writer.into_inner().unwrap_or_default();
