@@ -1,0 +1,243 @@
+//! The table: a row for every readout, with its name, unit, source, meaning and formula.
+
+use super::{Readouts, Value};
+use crate::analysis::{Measured, Theory};
+use crate::scenario::{problem, start};
+use std::time::Duration;
+
+/// One row of the table.
+#[derive(Debug)]
+pub struct Readout {
+    /// The name, with the unit as it is written.
+    pub name: &'static str,
+    /// The unit; empty for a pure number and for a text.
+    pub unit: &'static str,
+    /// What it is, in one line.
+    pub meaning: &'static str,
+    /// How it is obtained.
+    pub source: Source,
+    /// Whether it is a text, never a number.
+    pub is_text: bool,
+    /// Its symbol in figures, as their markup; empty where it has none.
+    pub symbol: &'static str,
+    get: fn(&Readouts) -> Value,
+}
+
+/// In the name of a readout that is the standard error of another.
+const ERROR: &str = "_uncertainty";
+
+/// How a readout is obtained.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// From the scenario and its edits.
+    Scenario,
+    /// From the state at the last step.
+    State,
+    /// From every step of the run.
+    EveryStep,
+    /// From the steps since the forces last changed.
+    Measured,
+    /// By a formula for the scheme at this time step.
+    Scheme,
+    /// Beside the exact motion.
+    Exact,
+    /// By the theory of the heavy symmetric top, for the exact motion under the present forces.
+    Theory,
+    /// By the clock of the machine: it is another number each time.
+    Clock,
+}
+
+impl Source {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Scenario => "the scenario",
+            Self::State => "the run's last step",
+            Self::EveryStep => "every step of the run, its start included",
+            Self::Measured => "measured on the steps since the forces last changed",
+            Self::Scheme => "a formula for the scheme at this time step",
+            Self::Exact => "held against the exact motion",
+            Self::Theory => {
+                "theory of the heavy symmetric top without friction, for the exact motion under the present forces"
+            }
+            Self::Clock => "the machine's clock",
+        }
+    }
+}
+
+impl Readout {
+    /// Whether it is the standard error of another readout.
+    pub fn is_uncertainty(&self) -> bool {
+        self.name.contains(ERROR)
+    }
+
+    /// The readout that is the standard error of this one.
+    pub fn uncertainty(&self) -> Option<&'static Self> {
+        let is_its_error = |other: &&Self| {
+            let stem = other.name.split_once(ERROR);
+            stem.is_some_and(|(stem, _)| self.name.starts_with(stem))
+        };
+        READOUTS
+            .iter()
+            .find(is_its_error)
+            .filter(|_| !self.is_uncertainty())
+    }
+
+    /// The readout in which theory says what this measured one should be.
+    pub fn predicted(&self) -> Option<&'static Self> {
+        let what = self.name.strip_prefix("measured_")?;
+        find(&format!("predicted_{what}"))
+    }
+
+    /// What `readouts` has under this name.
+    pub fn of(&self, readouts: &Readouts) -> Value {
+        (self.get)(readouts)
+    }
+}
+
+/// The readout of that name.
+pub fn find(name: &str) -> Option<&'static Readout> {
+    READOUTS.iter().find(|readout| readout.name == name)
+}
+
+/// Every name, in the table's order.
+pub fn names() -> impl Iterator<Item = &'static str> + Clone {
+    READOUTS.iter().map(|readout| readout.name)
+}
+
+/// For a refusal of `wrong`, which is no readout: "did you mean tilt_deg?", or the names there are.
+pub fn nearest(wrong: &str) -> String {
+    // Of "lowest_tilt_deg" it is not said whose it is: theory's, or the run's.
+    let fuller = names().filter(|name| {
+        name.strip_suffix(wrong)
+            .is_some_and(|kind| kind.ends_with('_'))
+    });
+    match fuller.collect::<Vec<_>>()[..] {
+        [] => problem::nearest(wrong, names()),
+        ref fuller => format!("did you mean {}?", fuller.join(" or ")),
+    }
+}
+
+fn value(measured: Option<Measured>) -> Option<f64> {
+    measured.map(|measured| measured.value)
+}
+
+fn uncertainty(measured: Option<Measured>) -> Option<f64> {
+    measured.map(|measured| measured.uncertainty)
+}
+
+/// What a row's formula gives: a number, yes or no, or a text.
+trait Given {
+    const IS_TEXT: bool = false;
+}
+
+impl Given for f64 {}
+
+impl Given for u64 {}
+
+impl Given for bool {}
+
+impl Given for String {
+    const IS_TEXT: bool = true;
+}
+
+impl<T: Given> Given for Option<T> {
+    const IS_TEXT: bool = T::IS_TEXT;
+}
+
+/// Whether this formula gives a text.
+const fn is_text<T: Given>(_: &impl Fn(&Readouts) -> T) -> bool {
+    T::IS_TEXT
+}
+
+/// Makes a row of each line: name, unit, source, meaning, how it is got of the readouts `r`, and the symbol where it has one.
+macro_rules! readouts {
+    ($($name:literal, $unit:literal, $source:ident, $meaning:literal, |$r:ident| $get:expr $(, $symbol:literal)?;)*) => {
+        /// Every readout.
+        pub const READOUTS: &[Readout] = &[
+            $(Readout {
+                name: $name,
+                unit: $unit,
+                meaning: $meaning,
+                source: Source::$source,
+                is_text: is_text(&|$r: &Readouts| $get),
+                symbol: concat!($($symbol)?),
+                get: |$r| Value::from($get),
+            }),*
+        ];
+    };
+}
+
+readouts! {
+    "title", "", Scenario, "the scenario's title", |r| r.title.clone();
+    "scheme", "", Scenario, "the numerical scheme in force", |r| r.scheme.to_owned();
+    "scheme_kind", "", Scenario, "how the scheme went about it, where it has more than one way", |r| r.scheme_kind.clone();
+    "steps", "", State, "time steps taken", |r| r.sample.step;
+    "time_step_s", "s", Scenario, "the time step in force", |r| r.time_step_s, "Δ*t*";
+    "t_s", "s", State, "time", |r| r.sample.time_s, "*t*";
+    "x_m", "m", State, "traced point, world frame", |r| r.sample.position.x, "*x*";
+    "y_m", "m", State, "traced point, world frame", |r| r.sample.position.y, "*y*";
+    "z_m", "m", State, "traced point, world frame", |r| r.sample.position.z, "*z*";
+    "Lx_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.x, "*L*_{*x*}";
+    "Ly_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.y, "*L*_{*y*}";
+    "Lz_Js", "J s", State, "angular momentum about the pivot, world frame", |r| r.sample.momentum.z, "*L*_{*z*}";
+    "wx_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.x, "*ω*_{*x*}";
+    "wy_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.y, "*ω*_{*y*}";
+    "wz_rad_per_s", "rad/s", State, "angular velocity I^-1 L, world frame", |r| r.sample.angular_velocity.z, "*ω*_{*z*}";
+    "tilt_deg", "deg", State, "angle of the axle from +z", |r| r.sample.tilt_deg, "*θ*";
+    "azimuth_deg", "deg", State, "azimuth of the axle, counted on through full turns", |r| r.sample.azimuth_deg, "*φ*";
+    "energy_J", "J", State, "kinetic energy, and that of the weight from the pivot", |r| r.sample.energy, "*E*";
+    "energy_drift", "", State, "energy that only the scheme's error can have made, in units of M g |c|, or of the kinetic energy at the start where M g |c| is below 1e-9 of it", |r| r.health.energy_drift;
+    "friction_work_J", "J", State, "work of friction since the start, which the energy drift counts as work: of each impulse of it, the impulse times the mean of omega before and after; under exact and rk4 its power integrated", |r| r.health.slowing.map(|slowing| slowing.work);
+    "segment", "", Scenario, "edits of time step, scheme or gravity before this step", |r| r.sample.segment;
+    "measured_lowest_tilt_deg", "deg", EveryStep, "least angle of the axle from +z", |r| r.extremes.lowest_tilt_deg, "*θ*_{min}";
+    "measured_highest_tilt_deg", "deg", EveryStep, "greatest angle of the axle from +z", |r| r.extremes.highest_tilt_deg, "*θ*_{max}";
+    "measured_lowest_z_m", "m", EveryStep, "least z of the traced point", |r| r.extremes.lowest_z_m, "*z*_{min}";
+    "measured_highest_z_m", "m", EveryStep, "greatest z of the traced point", |r| r.extremes.highest_z_m, "*z*_{max}";
+    "turns_per_step", "", State, "turns of the body in one time step, |Omega| dt/2 pi", |r| r.health.turns_per_step;
+    "nutation_multiplier", "", Scheme, "the report's scheme alone: its factor on a nutation's size each step; the truth is 1", |r| r.health.nutation.map(|nutation| nutation.multiplier);
+    "lag_deg", "deg", State, "angle between axle and L", |r| r.health.lag_deg;
+    "steady_lag_deg", "deg", Scheme, "the report's scheme alone: its angle between axle and L in steady precession", |r| r.health.nutation.map(|nutation| nutation.scheme_lag_deg);
+    "predicted_lag_deg", "deg", Scheme, "the report's scheme alone: the mean angle between axle and L, |tau| dt/(|L| |1 - A|), at the last change of the forces; null where that linear theory is off by more than about a tenth", |r| r.frozen.and_then(|frozen| frozen.lag_deg());
+    "predicted_tilt_swing_deg", "deg", Scheme, "the report's scheme alone: the swing of the tilt about that lag, by the same theory; null too where the scheme damps or feeds the nutation in the run", |r| r.frozen.and_then(|frozen| frozen.swing_deg(r.sample.step.saturating_sub(r.since)));
+    "measured_tilt_swing_deg", "deg", Measured, "greatest tilt less least tilt, as the steps show it", |r| value(r.tilt_swing);
+    "measured_tilt_swing_uncertainty_deg", "deg", Measured, "how much more the tilt swings between the steps", |r| uncertainty(r.tilt_swing);
+    "true_steady_lag_deg", "deg", Theory, "the true angle between axle and L in steady precession", |r| r.health.nutation.map(|nutation| nutation.true_lag_deg);
+    "distance_m", "m", Exact, "distance of the traced point from the exact motion's", |r| r.health.deviation.map(|off| off.distance_m);
+    "most_distance_m", "m", Exact, "the largest such distance so far", |r| r.health.most_distance_m;
+    "L_axle_drift_Js", "J s", Exact, "L along the axle less the exact motion's", |r| r.health.deviation.map(|off| off.spin);
+    "Lz_drift_Js", "J s", Exact, "L_z less the exact motion's", |r| r.health.deviation.map(|off| off.lz);
+    "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle", |r| r.kappa, "*κ*";
+    "theory_axis", "", Theory, "the axis that theory speaks of: +z, or another (against the forces, or along L where there are none), and then what it says about that axis is null", |r| r.theory.map(|theory| theory.axis.to_string());
+    "path", "", Theory, "the path of the axle about +z", |r| r.lasting_theory().map(|theory| theory.path.to_string());
+    "predicted_lowest_tilt_deg", "deg", Theory, "least tilt of the exact motion from +z", |r| r.lasting_theory().map(|theory| theory.tilt_range_deg.0), "*θ*_{min}";
+    "predicted_highest_tilt_deg", "deg", Theory, "greatest tilt of the exact motion from +z", |r| r.lasting_theory().map(|theory| theory.tilt_range_deg.1), "*θ*_{max}";
+    "cusp_tilt_deg", "deg", Theory, "tilt at which the axle stands still in azimuth", |r| r.lasting_theory().and_then(|theory| theory.cusp_tilt_deg);
+    "predicted_precession_rad_per_s", "rad/s", Theory, "mean precession of the exact motion about +z", |r| r.lasting_theory().and_then(|theory| theory.precession), "*Ω*_{p}";
+    "measured_precession_rad_per_s", "rad/s", Measured, "mean precession about +z; null under friction, which changes it all the time", |r| value(r.precession), "*Ω*_{p}";
+    "measured_precession_uncertainty_rad_per_s", "rad/s", Measured, "one standard error of it", |r| uncertainty(r.precession);
+    "slow_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the slow one", |r| r.theory_about_z().and_then(|theory| theory.slow_precession), "*Ω*_{slow}";
+    "fast_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the fast one", |r| r.theory_about_z().and_then(|theory| theory.fast_precession), "*Ω*_{fast}";
+    "fast_top_precession_rad_per_s", "rad/s", Theory, "the fast top's precession M g h/L3", |r| r.theory_about_z().and_then(|theory| theory.fast_top_precession), "*M* *g* *h*/*L*_{3}";
+    "predicted_nutation_period_s", "s", Theory, "nutation period of the exact motion", |r| r.lasting_theory().and_then(|theory| theory.nutation_period_s), "*T*_{n}";
+    "measured_nutation_period_s", "s", Measured, "mean time between two turning points of the tilt; null under friction", |r| value(r.nutation), "*T*_{n}";
+    "measured_nutation_uncertainty_s", "s", Measured, "one standard error of it", |r| uncertainty(r.nutation);
+    "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what is measured is strobed", |r| r.nutation_is_resolved();
+    "predicted_precession_period_s", "s", Theory, "time of one turn of the mean precession of the exact motion about +z", |r| r.lasting_theory().and_then(Theory::precession_period_s), "*T*_{p}";
+    "predicted_body_cone_period_s", "s", Theory, "free symmetric body: time in which the instantaneous axis goes once round the axle, seen from the body, (I1/|I3 - I1|) 2 pi/omega3; null under a load, without spin, for I3 = I1, and where only a rotor spins", |r| r.theory.filter(|theory| !r.has_rotor && !theory.is_of_a_moment).and_then(|theory| theory.body_cone_period_s), "*T*_{c}";
+    "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation), "*ω*_{n}";
+    "fast_top_nutation_rpm", "rpm", Theory, "the same in revolutions a minute", |r| r.theory.map(|theory| start::rpm(theory.fast_top_nutation)), "*ω*_{n}";
+    "L_axle_Js", "J s", State, "L along the axle", |r| r.spin, "*L*_{3}";
+    "spin_rpm", "rpm", State, "rate of the spin about the axle: omega along it, or, where start.rotor names a part, L along it over that part's moment", |r| start::rpm(r.spin_rad_per_s), "*ω*_{3}";
+    "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps", |r| r.theory_about_z().map(|theory| theory.sleeping_limit);
+    "health", "", Exact, "whether the numbers hold, in one sentence", |r| r.health.sentence(r.advice.as_ref());
+    "wall_s", "s", Clock, "time spent on stepping alone", |r| r.stepping.map(|wall| wall.as_secs_f64());
+    "steps_per_second", "1/s", Clock, "steps taken in a second of it", |r| r.stepping.map(|wall| per_second(r.sample.step, wall));
+}
+
+fn per_second(steps: u64, wall: Duration) -> f64 {
+    match wall.as_secs_f64() {
+        wall_s if wall_s > 0.0 => steps as f64 / wall_s,
+        _ => 0.0,
+    }
+}

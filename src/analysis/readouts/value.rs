@@ -1,0 +1,62 @@
+//! The value of a readout.
+
+/// What a readout is at one step.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// A finite number, in the readout's unit.
+    Number(f64),
+    /// A count.
+    Whole(u64),
+    /// Whether it is so.
+    Flag(bool),
+    /// A name or a sentence.
+    Text(String),
+    /// There is none, or none that can be stated.
+    Nothing,
+}
+
+impl Value {
+    /// As a number: 1 and 0 for yes and no; `None` of a text.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::Whole(count) => Some(*count as f64),
+            Self::Flag(is_so) => Some(f64::from(u8::from(*is_so))),
+            Self::Text(_) | Self::Nothing => None,
+        }
+    }
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        match number.is_finite() {
+            true => Self::Number(number),
+            false => Self::Nothing,
+        }
+    }
+}
+
+impl From<u64> for Value {
+    fn from(count: u64) -> Self {
+        Self::Whole(count)
+    }
+}
+
+impl From<bool> for Value {
+    fn from(is_so: bool) -> Self {
+        Self::Flag(is_so)
+    }
+}
+
+impl From<String> for Value {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+impl<T: Into<Self>> From<Option<T>> for Value {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Self::Nothing, Into::into)
+    }
+}
