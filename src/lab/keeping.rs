@@ -1,25 +1,20 @@
 //! The content of a session: the history of runs, and the place of the lab in it, each as TOML.
 
-use super::command::{self, Command, Commands, Place};
+mod resuming;
+
+use super::command::{self, Command, Place};
 use super::rerun::Reference;
-use super::script::{GO_ON_WITH_IT, GO_ON_WITH_THEM};
 use super::view::step::Page;
-use super::view::{Part, View};
-use super::work::Work;
-use super::{Lab, Script, UnderWay};
-use crate::observe::camera::{Camera, Zoom};
+use super::{Lab, UnderWay};
 use crate::observe::pace::Speed;
+use crate::scenario::Problems;
 use crate::scenario::file::{Choice, ScenarioFile, ZoomFile};
-use crate::scenario::{Document, Problems, Scenario};
-use crate::storage::confined::Confined;
 use crate::storage::session::{Content, Text};
 use crate::text::printable::Shown;
 use crate::work::history::History;
 use crate::work::journal::Journal;
 use crate::work::next_push::NextPush;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
-use std::sync::Arc;
 
 /// The version of this format, and the versions that can be read. Version 1 had other journals; in version 2 the place
 /// had neither panes nor what is hidden, nor camera, zoom, line and script.
@@ -277,153 +272,6 @@ impl Lab {
             first: command::to_toml(&first),
             left: self.script.left_as_text().to_string(),
         })
-    }
-
-    /// The lab with `content`: on its way to the step where it stood, and paused there. `view` returns how its run is
-    /// shown on this screen.
-    ///
-    /// # Errors
-    /// Why it cannot be read.
-    pub fn resumed(
-        content: &Content,
-        view: impl FnOnce(&Scenario) -> View,
-    ) -> Result<Self, Unreadable> {
-        Self::resumed_in(content, None, view)
-    }
-
-    /// As [`resumed`](Self::resumed), for a lab that reads and writes in the folder `confined` only, if one is given.
-    ///
-    /// # Errors
-    /// Why it cannot be read.
-    pub fn resumed_in(
-        content: &Content,
-        confined: Option<&Confined>,
-        view: impl FnOnce(&Scenario) -> View,
-    ) -> Result<Self, Unreadable> {
-        let mut work: KeptWork = read("the run", &content.work)?;
-        if !FORMS.contains(&work.form) {
-            return Err(Unreadable(
-                "it was kept by another version of gyrolab".to_owned(),
-            ));
-        }
-        let place: KeptPlace = read("the place in it", &content.place)?;
-        let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
-        work.history.check().map_err(unreadable)?;
-        let scenario = work.history.scenario().map_err(unreadable)?;
-        let present = work.history.present();
-        let mut view = view(&scenario);
-        view.focus = view
-            .kept_as(&place.focus)
-            .ok_or_else(|| Unreadable(format!("there is no pane {}", place.focus)))?;
-        view.filled = place.filled;
-        if let Some(ids) = &place.show {
-            view.shown = ids.iter().filter_map(|id| view.kept_as(id)).collect();
-            view.side_by_side = view.to_show();
-        }
-        if let Some(ids) = &place.hide {
-            view.hidden = ids.iter().filter_map(|id| Part::named(id)).collect();
-        }
-        (view.look_at, view.next) = (place.look_at, place.next);
-        view.bare = place.bare.unwrap_or(false);
-        view.residuals = place.residuals.unwrap_or(false);
-        view.page = place.phase.as_ref().and_then(Page::of).unwrap_or_default();
-        view.sum_to = place.sum_to;
-        if let Some(KeptCamera { yaw_deg, pitch_deg }) = place.camera
-            && yaw_deg.is_finite()
-            && (-90.0..=90.0).contains(&pitch_deg)
-        {
-            view.look_from(Camera { yaw_deg, pitch_deg });
-        }
-        if let Some(zoom) = place.zoom {
-            view.zoom = Zoom::of(zoom);
-        }
-        if place.window_s.is_finite() && place.window_s >= 2.0 * scenario.motion.time_step_s {
-            view.window_s = place.window_s;
-        }
-        let is_time = |time_s: &f64| time_s.is_finite() && *time_s > 0.0;
-        view.detail_s = place.detail_s.filter(is_time).or(view.detail_s);
-        let mut lab = Self::new(&present.name.clone(), scenario, view, false);
-        if let Some(folder) = confined {
-            lab.files.confine(folder.clone());
-        }
-        let file = lab.file_as_opened();
-        let pinned = work.pinned.take().map(KeptPinned::reference);
-        lab.work = Work::resumed(work.history, file);
-        lab.values.set_next_push(place.next_push);
-        lab.values.suit(lab.player.run().scenario());
-        lab.player.playback.set_end(lab.work.present().end_s);
-        lab.player
-            .playback
-            .set_speed(place.speed.map_or(Speed::Top, Speed::Times));
-        lab.player.playback.set_exact(place.shows_exact);
-        lab.player.return_to(place.step);
-        lab.scenario_has_changed();
-        let mut told = match place.exporting {
-            Some(path) => {
-                format!("as it was left; the export to {path} was cut off, x begins another")
-            }
-            None => "as it was left; space goes on".to_owned(),
-        };
-        match place.script.map(|kept| kept.commands()) {
-            None => {}
-            Some(Ok(commands)) => {
-                let (count, origin) = (commands.list.len(), &commands.origin);
-                told = match count {
-                    1 => format!("1 command of {origin} is left: {GO_ON_WITH_IT}"),
-                    _ => format!("{count} commands of {origin} are left: {GO_ON_WITH_THEM}"),
-                };
-                lab.script = Script::held(commands);
-            }
-            Some(Err(problems)) => {
-                told += &format!(
-                    "; the rest of its script is lost: {}",
-                    problems.in_one_line()
-                );
-            }
-        }
-        match pinned {
-            None => {}
-            Some(Ok(reference)) => lab.player.pin_again(reference),
-            Some(Err(problems)) => {
-                told += &format!("; the pinned run is lost: {}", problems.in_one_line());
-            }
-        }
-        if let Some(name) = &place.measured {
-            told += &lab.measure_as_kept(name).unwrap_or_default();
-        }
-        lab.lessons = place.lessons;
-        lab.tell(told);
-        lab.read_now();
-        Ok(lab)
-    }
-
-    /// The scenario as the user opened it, if its file can still be read; otherwise the present one.
-    fn file_as_opened(&self) -> Arc<Scenario> {
-        let (name, run) = (self.work.name(), self.player.run());
-        if self.files.admit(Path::new(name)).is_err() {
-            return Arc::clone(run.scenario());
-        }
-        let file = super::opening::read(name).and_then(|document| document.scenario());
-        file.map_or_else(|_| Arc::clone(run.scenario()), Arc::new)
-    }
-}
-
-impl KeptScript {
-    /// The commands to be carried out.
-    ///
-    /// # Errors
-    /// What is wrong with them.
-    fn commands(&self) -> Result<Commands, Problems> {
-        let read = |text: &str| {
-            let document = Document::parse(&self.origin, text)?;
-            command::read(&document)
-        };
-        let mut commands = read(&self.first)?;
-        commands.list.extend(read(&self.left)?.list);
-        for placed in &mut commands.list {
-            placed.line = None; // the line in the user's file is not kept
-        }
-        Ok(commands)
     }
 }
 
