@@ -48,36 +48,7 @@ impl Lab {
         let scenario = work.history.scenario().map_err(unreadable)?;
         let present = work.history.present();
         let mut view = view(&scenario);
-        view.focus = view
-            .kept_as(&place.focus)
-            .ok_or_else(|| Unreadable(format!("there is no pane {}", place.focus)))?;
-        view.filled = place.filled;
-        if let Some(ids) = &place.show {
-            view.shown = ids.iter().filter_map(|id| view.kept_as(id)).collect();
-            view.side_by_side = view.to_show();
-        }
-        if let Some(ids) = &place.hide {
-            view.hidden = ids.iter().filter_map(|id| Part::named(id)).collect();
-        }
-        (view.look_at, view.next) = (place.look_at, place.next);
-        view.bare = place.bare.unwrap_or(false);
-        view.residuals = place.residuals.unwrap_or(false);
-        view.page = place.phase.as_ref().and_then(Page::of).unwrap_or_default();
-        view.sum_to = place.sum_to;
-        if let Some(KeptCamera { yaw_deg, pitch_deg }) = place.camera
-            && yaw_deg.is_finite()
-            && (-90.0..=90.0).contains(&pitch_deg)
-        {
-            view.look_from(Camera { yaw_deg, pitch_deg });
-        }
-        if let Some(zoom) = place.zoom {
-            view.zoom = Zoom::of(zoom);
-        }
-        if place.window_s.is_finite() && place.window_s >= 2.0 * scenario.motion.time_step_s {
-            view.window_s = place.window_s;
-        }
-        let is_time = |time_s: &f64| time_s.is_finite() && *time_s > 0.0;
-        view.detail_s = place.detail_s.filter(is_time).or(view.detail_s);
+        place.restore(&mut view, scenario.motion.time_step_s)?;
         let mut lab = Self::new(&present.name.clone(), scenario, view, false);
         if let Some(folder) = confined {
             lab.files.confine(folder.clone());
@@ -94,7 +65,7 @@ impl Lab {
         lab.player.playback.set_exact(place.shows_exact);
         lab.player.return_to(place.step);
         lab.scenario_has_changed();
-        let mut told = match place.exporting {
+        let mut told = match &place.exporting {
             Some(path) => {
                 format!("as it was left; the export to {path} was cut off, x begins another")
             }
@@ -103,18 +74,12 @@ impl Lab {
         match place.script.map(|kept| kept.commands()) {
             None => {}
             Some(Ok(commands)) => {
-                let (count, origin) = (commands.list.len(), &commands.origin);
-                told = match count {
-                    1 => format!("1 command of {origin} is left: {GO_ON_WITH_IT}"),
-                    _ => format!("{count} commands of {origin} are left: {GO_ON_WITH_THEM}"),
-                };
+                told = left_of(&commands);
                 lab.script = Script::held(commands);
             }
             Some(Err(problems)) => {
-                told += &format!(
-                    "; the rest of its script is lost: {}",
-                    problems.in_one_line()
-                );
+                let reason = problems.in_one_line();
+                told += &format!("; the rest of its script is lost: {reason}");
             }
         }
         match pinned {
@@ -141,6 +106,56 @@ impl Lab {
         }
         let file = opening::read(name).and_then(|document| document.scenario());
         file.map_or_else(|_| Arc::clone(run.scenario()), Arc::new)
+    }
+}
+
+impl KeptPlace {
+    /// Shows in `view` what the session showed. A number of it that makes no sense is passed over; `time_step_s` is the
+    /// run's, s.
+    ///
+    /// # Errors
+    /// Where the pane in focus is none.
+    fn restore(&self, view: &mut View, time_step_s: f64) -> Result<(), Unreadable> {
+        view.focus = view
+            .kept_as(&self.focus)
+            .ok_or_else(|| Unreadable(format!("there is no pane {}", self.focus)))?;
+        view.filled = self.filled;
+        if let Some(ids) = &self.show {
+            view.shown = ids.iter().filter_map(|id| view.kept_as(id)).collect();
+            view.side_by_side = view.to_show();
+        }
+        if let Some(ids) = &self.hide {
+            view.hidden = ids.iter().filter_map(|id| Part::named(id)).collect();
+        }
+        (view.look_at, view.next) = (self.look_at.clone(), self.next.clone());
+        view.bare = self.bare.unwrap_or(false);
+        view.residuals = self.residuals.unwrap_or(false);
+        view.page = self.phase.as_ref().and_then(Page::of).unwrap_or_default();
+        view.sum_to = self.sum_to;
+        if let Some(KeptCamera { yaw_deg, pitch_deg }) = self.camera
+            && yaw_deg.is_finite()
+            && (-90.0..=90.0).contains(&pitch_deg)
+        {
+            view.look_from(Camera { yaw_deg, pitch_deg });
+        }
+        if let Some(zoom) = self.zoom {
+            view.zoom = Zoom::of(zoom);
+        }
+        if self.window_s.is_finite() && self.window_s >= 2.0 * time_step_s {
+            view.window_s = self.window_s;
+        }
+        let is_time = |time_s: &f64| time_s.is_finite() && *time_s > 0.0;
+        view.detail_s = self.detail_s.filter(is_time).or(view.detail_s);
+        Ok(())
+    }
+}
+
+/// What is said of `commands`, those of a script that are not carried out yet.
+fn left_of(commands: &Commands) -> String {
+    let origin = &commands.origin;
+    match commands.list.len() {
+        1 => format!("1 command of {origin} is left: {GO_ON_WITH_IT}"),
+        count => format!("{count} commands of {origin} are left: {GO_ON_WITH_THEM}"),
     }
 }
 
