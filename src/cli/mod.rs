@@ -14,6 +14,7 @@ mod layout;
 mod lesson;
 mod manual;
 mod notes;
+mod pager;
 mod played;
 mod progress;
 mod run;
