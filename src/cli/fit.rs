@@ -12,7 +12,7 @@ use crate::scenario::{Document, Problem, Problems};
 use crate::study::fit::report::Report;
 use crate::study::fit::table::{self, Asked};
 use crate::study::fit::{Fit, Free, Model, NoFit, fit as fitted, free};
-use crate::text::number::{NONE, significant};
+use crate::text::number::{NONE, shortest, significant};
 use crate::text::printable::{Shown, brief};
 use anyhow::{Context, anyhow};
 use clap::Args;
@@ -204,12 +204,36 @@ fn chosen(mut measured: Measured, rows: Option<&Rows>) -> Result<Measured, Probl
     }
 }
 
+/// The command line that makes the fit again.
+fn command(args: &FitArgs) -> String {
+    let free = args.free.join(",");
+    let mut words = vec!["gyrolab", "fit", &args.measured, "--in", &args.scenario];
+    words.extend(["--free", &free]);
+    words.extend(args.changes.set.iter().flat_map(|set| ["--set", set]));
+    let time_step = args.changes.time_step.map(shortest).unwrap_or_default();
+    let rows = args.rows.as_ref().map_or("", |rows| &rows.text);
+    let scheme = args.changes.scheme.as_deref().unwrap_or_default();
+    for (option, value) in [
+        ("--time-step", &*time_step),
+        ("--scheme", scheme),
+        ("--rows", rows),
+    ] {
+        if !value.is_empty() {
+            words.extend([option, value]);
+        }
+    }
+    // No argument of a command line holds the byte that cannot be quoted.
+    shlex::try_join(words).unwrap_or_default()
+}
+
 /// Writes the CSV of a fit.
 fn write(mut output: Destination, report: &Report<'_>, args: &FitArgs) -> anyhow::Result<()> {
     let Fit { keys, quality, .. } = report.fit;
     let values: Vec<f64> = keys.iter().map(|key| key.value).collect();
-    let scenario = report.model.scenario(&values).map_err(|why| anyhow!(why))?;
+    let scenario = report.model.as_long_as_measured(&values);
+    let scenario = scenario.map_err(|why| anyhow!(why))?;
     let asked = Asked {
+        command: command(args),
         measured: args.measured.clone(),
         scenario: args.scenario.clone(),
         free: args.free.clone(),

@@ -14,6 +14,7 @@ mod layout;
 mod lesson;
 mod manual;
 mod notes;
+mod pager;
 mod played;
 mod progress;
 mod run;
@@ -141,6 +142,9 @@ fn tip_for(unknown: &str) -> Option<&'static str> {
         ),
         "--dt" => Some(
             "the time step: --time-step 0.05 holds the seconds of a run and of its pushes, --set motion.time_step_s=0.05 their steps",
+        ),
+        "--measured" => Some(
+            "measured data stand beside a run in the lab (gyrolab SCENARIO --measured FILE), in gyrolab show, figure and writeup; gyrolab fit FILE --in SCENARIO --free KEY fits a run to them",
         ),
         _ => None,
     }

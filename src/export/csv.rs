@@ -161,6 +161,13 @@ fn field(text: &str, delimiter: u8) -> String {
     field
 }
 
+/// What stands above the run file in the header of a CSV whose lines have lost their `# `: the comments at its begin, without
+/// their marks.
+pub fn above_run_file(header: &str) -> String {
+    let comments = header.lines().map_while(|line| line.strip_prefix('#'));
+    comments.flat_map(|line| [line, "\n"]).collect()
+}
+
 /// `text` with "# " before every line, as the run file is written above the rows.
 pub fn commented(text: &str) -> String {
     text.lines().flat_map(|line| ["# ", line, "\n"]).collect()

@@ -4,7 +4,7 @@
 //! `# # every = 10`: the CSV runs again as any other, and can be recomputed as it was written.
 
 use super::columns::{COLUMNS, Column};
-use super::csv::commented;
+use super::csv::{above_run_file, commented};
 use super::points::{POINT_COLUMNS, PointColumn};
 use crate::run::{Clock, Step};
 use crate::scenario::Scenario;
@@ -233,12 +233,11 @@ impl Layout {
     /// # Errors
     /// When a line above the run file is none of a layout, or asks for something that does not exist.
     pub fn read(header: &str) -> Result<Self, LayoutError> {
-        let comments = header.lines().map_while(|line| line.strip_prefix('#'));
-        let text: String = comments.flat_map(|line| [line, "\n"]).collect();
-        let file: LayoutFile = toml::from_str(&text).map_err(|error| LayoutError {
-            key: "the lines above the run file",
-            rule: error.message().to_owned(),
-        })?;
+        let file: LayoutFile =
+            toml::from_str(&above_run_file(header)).map_err(|error| LayoutError {
+                key: "the lines above the run file",
+                rule: error.message().to_owned(),
+            })?;
         file.check()
     }
 }

@@ -10,6 +10,7 @@ use super::quantity;
 use crate::measured::{self, Curve, Measured, Point, at_times, places, residuals as held_against};
 use crate::run::Clock;
 use crate::scenario::Scenario;
+use crate::text::number::shortest;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -111,6 +112,21 @@ pub(super) fn above(
         (chart.x.range, panel.y.range) = (Some(x), Some(y));
     }
     Ok(None)
+}
+
+/// What is said where the runs end before the last point of a figure.
+pub(super) fn beyond_runs(runs: &[Run], request: &Request) -> Option<String> {
+    let measured = request.measured.as_ref()?;
+    let series = measured.series().ok()?;
+    let ends = runs.iter().map(|run| Clock::end_s(&run.scenario));
+    let end_s = ends.fold(0.0, f64::max);
+    let is_beyond = |time_s: &&f64| **time_s > end_s && is_wanted(**time_s, request);
+    let last_s = shortest(*series.times_s.iter().rfind(is_beyond)?);
+    Some(format!(
+        "the run ends at {} s, before the last point of {} at {last_s} s: --duration {last_s} draws the run up to there",
+        shortest(end_s),
+        measured.origin
+    ))
 }
 
 /// What is said where measured points are asked for in space.

@@ -202,6 +202,7 @@ fn draw(runs: &[Run], request: &Request, played: &Played, curve: usize) -> Resul
         Kind::OverTime(columns) => {
             let mut chart = charts::over_time(title, columns, drawn, curve, request);
             warnings.extend(measured::over_time(&mut chart, columns, runs, request)?);
+            warnings.extend(measured::beyond_runs(runs, request));
             warnings.extend(dense::warning(&chart, drawn, curve, request));
             chart.scene()
         }

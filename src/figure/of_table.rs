@@ -26,8 +26,13 @@ pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, St
     }
     let (x, panels) = match &table.subject {
         Subject::Comparison => comparison::drawn(table, columns, width_pt)?,
-        Subject::Fit { settings, run_file } => {
-            fit::drawn(table, settings, run_file, columns, width_pt)?
+        Subject::Fit {
+            settings,
+            run_file,
+            found,
+        } => {
+            let fit = fit::Fitted::new(settings, run_file, found, width_pt);
+            fit::drawn(table, &fit, columns)?
         }
         Subject::Sweep { varied } => sweep::drawn(table, varied, columns, width_pt)?,
     };

@@ -39,6 +39,26 @@ fn of_key(key: &str) -> Axis {
     Axis::new(name, unit_markup(unit))
 }
 
+/// The axis of a key of this `scenario`: a point or a part of the body is called by its name, "mass of weight".
+pub fn axis_in(scenario: &toml::Table, key: &str) -> Axis {
+    let mut steps = key.splitn(4, '.');
+    let steps = [(); 4].map(|()| steps.next().unwrap_or_default());
+    let [body, list @ ("point" | "part"), number, rest] = steps else {
+        return axis(key);
+    };
+    let number = number.parse::<usize>().ok();
+    let named = number.and_then(|number| scenario.get(body)?.get(list)?.get(number)?.get("name"));
+    let Some(name) = named.and_then(toml::Value::as_str) else {
+        return axis(key);
+    };
+    let own = axis(
+        rest.strip_prefix("at_m.")
+            .map_or(rest, |_| &rest["at_m.".len()..]),
+    );
+    let unit = axis(rest).unit;
+    Axis::new(format!("{} of {}", own.name, letters::escape(name)), unit)
+}
+
 /// The symbol of a quantity's value at the start: with the index 0, behind the one that it may have.
 fn at_start(symbol: &str) -> String {
     match symbol.strip_suffix('}') {
@@ -124,6 +144,26 @@ mod tests {
             written("motion.gravity_m_per_s2"),
             pair("gravity", "m s^{−2}")
         );
+    }
+
+    #[test]
+    fn a_part_of_the_body_is_called_by_its_name() {
+        let text =
+            "[[body.point]]\nname = \"a_b\"\n[[body.part]]\n[[body.part]]\nname = \"ball\"\n";
+        let scenario = text.parse().unwrap();
+        let written = |key: &str| {
+            let axis = axis_in(&scenario, key);
+            format!("{} ({})", axis.name, axis.unit)
+        };
+        assert_eq!(written("body.point.0.at_m.2"), "*z* of a\\_b (m)");
+        assert_eq!(written("body.point.0.mass_kg"), "mass of a\\_b (kg)");
+        assert_eq!(
+            written("body.part.1.moments_kg_m2.2"),
+            "moments *z* of ball (kg m^{2})"
+        );
+        // Without a name it is called by its number.
+        assert_eq!(written("body.part.0.mass_kg"), "part 0 mass (kg)");
+        assert_eq!(written("start.tilt_deg"), "*θ*_{0} (°)");
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! A CSV that is no run: the table of a comparison, of a sweep, or of a fit.
 
+use crate::export::csv::above_run_file;
 use crate::scenario::Problem;
 use crate::text::number::NONE;
+use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -10,7 +12,7 @@ use std::path::Path;
 const LONGEST: u64 = 1 << 30;
 
 /// What kind of table it is.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
     /// Errors of schemes over time steps.
     Comparison,
@@ -25,7 +27,22 @@ pub enum Subject {
         settings: Vec<String>,
         /// The run file of the fitted scenario.
         run_file: String,
+        /// What was found for the free keys.
+        found: Vec<Found>,
     },
+}
+
+/// What was found for a key by a fit, as it stands above the run file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Found {
+    /// The key.
+    pub key: String,
+    /// Its value.
+    pub value: f64,
+    /// One standard uncertainty of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<f64>,
 }
 
 /// The columns of a fit, behind those that say where each value was measured.
@@ -168,8 +185,12 @@ fn subject(header: &str, names: &[String]) -> Option<(Subject, String)> {
     }
     let table = table?;
     if let Some(settings) = settings_of_fit(names) {
-        let (title, run_file) = (title(&table), header.to_owned());
-        return Some((Subject::Fit { settings, run_file }, title));
+        let fit = Subject::Fit {
+            settings,
+            run_file: header.to_owned(),
+            found: found(header),
+        };
+        return Some((fit, title(&table)));
     }
     let vary = table.get("vary")?.as_array()?;
     let keys = vary.iter().filter_map(|vary| vary.get("key")?.as_str());
@@ -180,6 +201,16 @@ fn subject(header: &str, names: &[String]) -> Option<(Subject, String)> {
         own => own,
     };
     Some((Subject::Sweep { varied }, title))
+}
+
+/// What was found by the fit in whose CSV this is the `header`; nothing where that does not tell.
+fn found(header: &str) -> Vec<Found> {
+    #[derive(Deserialize)]
+    struct AboveRunFile {
+        key: Vec<Found>,
+    }
+    let above: Option<AboveRunFile> = toml::from_str(&above_run_file(header)).ok();
+    above.map(|above| above.key).unwrap_or_default()
 }
 
 /// The columns of the CSV of a fit that say where its values were measured; `None` where it is none.

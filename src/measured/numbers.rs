@@ -9,12 +9,18 @@ use crate::scenario::keys::Kind;
 use crate::scenario::problem::Found;
 use crate::text::number::shortest;
 use crate::text::printable::brief;
+use std::collections::BTreeMap;
 use toml::Value;
+
+/// So many places of a column that break one rule are told one by one.
+const FEW: usize = 3;
 
 /// Reads cells, and takes down what is wrong with them.
 pub(super) struct Numbers<'a> {
     cells: &'a Cells,
-    pub found: Found,
+    found: Found,
+    /// Of a column and a rule, how many lines break it beyond those that are told.
+    alike: BTreeMap<(String, String), usize>,
     /// The decimal signs that the file has used so far.
     uses_points: bool,
     uses_commas: bool,
@@ -25,6 +31,7 @@ impl<'a> Numbers<'a> {
         Self {
             cells,
             found: Found::default(),
+            alike: BTreeMap::new(),
             uses_points: false,
             uses_commas: false,
         }
@@ -205,7 +212,27 @@ impl<'a> Numbers<'a> {
         Some(number)
     }
 
+    /// What is wrong with the numbers.
+    pub fn found(self) -> Found {
+        let mut found = self.found;
+        for ((name, rule), more) in self.alike {
+            let is_alike = |problem: &&mut Problem| problem.key == name && problem.rule == rule;
+            let lines = if more == 1 { "line is" } else { "lines are" };
+            if let Some(last) = found.list.iter_mut().rfind(is_alike) {
+                last.rule = format!("{rule} ({more} more {lines} like this)");
+            }
+        }
+        found
+    }
+
     fn refuse(&mut self, line: u64, name: &str, text: &str, rule: impl Into<String>) {
+        let rule = rule.into();
+        let is_alike = |problem: &&Problem| problem.key == name && problem.rule == rule;
+        if self.found.list.iter().filter(is_alike).count() == FEW {
+            let more = self.alike.entry((name.to_owned(), rule));
+            *more.or_default() += 1;
+            return;
+        }
         self.found.add(|| {
             let problem = Problem {
                 value: brief(text, 40),

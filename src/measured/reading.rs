@@ -17,7 +17,7 @@ use std::path::Path;
 /// When there are no such data, or as [`read`].
 pub fn open(name: &str) -> Result<Measured, Problems> {
     if let Some(shipped) = shipped::find(name) {
-        return read(&format!("presets/measured/{name}.csv"), shipped.text);
+        return read(name, shipped.text);
     }
     let path = Path::new(name);
     if !name.contains('/') && !name.contains('.') && !path.exists() {
@@ -53,7 +53,7 @@ pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
         about: cells.about.clone(),
         data,
     };
-    let mut found = numbers.found;
+    let mut found = numbers.found();
     if found.list.is_empty() && measured.count() == 0 {
         found.add(|| {
             Problem::at(

@@ -3,7 +3,7 @@
 /// Measured data that come with the program.
 #[derive(Clone, Copy, Debug)]
 pub struct Shipped {
-    /// Their name on the command line; `presets/measured/NAME.csv` in the source.
+    /// Their name on the command line, and in messages; `presets/measured/NAME.csv` in the source.
     pub name: &'static str,
     /// The file's text.
     pub text: &'static str,

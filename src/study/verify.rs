@@ -95,7 +95,7 @@ pub fn verify(
             })?
         }
         names if names.ends_with(FIT_COLUMNS) => {
-            let rule = "is the CSV of a fit, which is not verified: the lines above its run file tell the command that makes it again";
+            let rule = "is the CSV of a fit, which is not computed again: its data stand in another file. The line command at its top makes the fit again: give it -o again.csv, and compare the two files";
             return Err(refused(whole(rule.to_owned())));
         }
         _ if document.table().contains_key("vary") => of_sweep::verify(path, watch)?,

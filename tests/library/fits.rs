@@ -456,6 +456,7 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
         scheme: "exact",
     };
     let asked = Asked {
+        command: "gyrolab fit".to_owned(),
         measured: "heidelberg-precession".to_owned(),
         scenario: "heidelberg".to_owned(),
         free: vec![MOMENT.to_owned()],
@@ -491,6 +492,15 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
         panic!("{} panels", chart.panels.len())
     };
     assert_eq!(values.series.len(), 8, "four settings, each with its model");
+    // Every value has the name of its key.
+    let stated = fit.keys[0].stated();
+    let model = format!("model: moments *z* of ball = {stated} kg m^{{2}}");
+    assert_eq!(values.series[0].name, model);
+    let place = "*z* of weight = 0.1555 m, *z* of second weight = 0 m";
+    assert_eq!(values.series[1].name, place);
+    // Where the page is too narrow for that, the values stand alone.
+    let narrow = gyrolab::figure::of_table::chart(&table, &[], 120.0).unwrap();
+    assert_eq!(narrow.panels[0].series[1].name, "0.1555, 0");
     let points = |panel: &gyrolab::figure::chart::Panel| -> usize {
         let marked = panel
             .series
@@ -512,7 +522,72 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
             .to_string()
             .split(": ")
             .nth(1),
-        Some("is the CSV of a fit, which is not verified")
+        Some("is the CSV of a fit, which is not computed again")
+    );
+}
+
+/// The number of steps with which a fit of these times to [`TOP`] is written.
+fn steps_written(last_s: f64) -> u64 {
+    let text = format!("t_s,tilt_deg\n0,30\n{last_s},30\n");
+    let document = Document::parse("top.toml", TOP).unwrap();
+    let free = vec![Free::parse("start.spin_rpm", &document).unwrap()];
+    let model = Model::new(&document, free, read("lab.csv", &text).unwrap()).unwrap();
+    model.as_long_as_measured(&[3000.0]).unwrap().steps
+}
+
+#[test]
+fn the_run_of_a_fit_is_as_long_as_it_was_measured() {
+    let own = Document::parse("top.toml", TOP)
+        .unwrap()
+        .scenario()
+        .unwrap();
+    let end_s = own.steps as f64 * own.motion.time_step_s;
+    assert_eq!(steps_written(0.5 * end_s), own.steps);
+    assert_eq!(steps_written(12.0 * end_s), 12 * own.steps);
+}
+
+#[test]
+fn few_data_without_uncertainties_give_no_uncertainties() {
+    let fit_of = |text: &str| {
+        let document = Document::parse("top.toml", TOP).unwrap();
+        let free = vec![Free::parse("start.tilt_deg", &document).unwrap()];
+        let model = Model::new(&document, free, read("lab.csv", text).unwrap()).unwrap();
+        let fit = fitted(&model);
+        let sentence = fit.sentence(&model);
+        (fit, sentence)
+    };
+    // Two data that agree by chance are no reason to be sure.
+    let (fit, sentence) = fit_of("t_s,tilt_deg\n0,30\n0,30.0001\n");
+    assert_eq!(fit.quality.degrees_of_freedom, 1);
+    assert_eq!((fit.keys[0].sigma, fit.variance), (None, None));
+    assert!(
+        sentence.contains("1 datum beyond the fitted values are too few")
+            && sentence.contains("Measure 3 more"),
+        "{sentence}"
+    );
+    let (fit, sentence) = fit_of("t_s,tilt_deg\n0,30\n0,30.1\n0,29.9\n0,30.1\n");
+    assert!(fit.keys[0].sigma.is_some(), "{sentence}");
+}
+
+#[test]
+fn a_very_poor_fit_says_that_it_may_be_a_local_minimum() {
+    let document = Document::parse("top.toml", TOP).unwrap();
+    let sentence = |sigma: f64| {
+        let free = vec![Free::parse("start.tilt_deg", &document).unwrap()];
+        let text = format!("t_s,tilt_deg,tilt_uncertainty_deg\n0,30,{sigma}\n0,31,{sigma}\n");
+        let model = Model::new(&document, free, read("lab.csv", &text).unwrap()).unwrap();
+        fitted(&model).sentence(&model)
+    };
+    let words =
+        "there may be a better fit elsewhere: begin at other values of the free keys by --set";
+    let (poor, rare) = (sentence(0.1), sentence(0.25));
+    assert!(
+        poor.contains("does not fit") && poor.contains(words),
+        "{poor}"
+    );
+    assert!(
+        rare.contains("does not fit") && !rare.contains(words),
+        "{rare}"
     );
 }
 

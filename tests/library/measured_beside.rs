@@ -326,4 +326,12 @@ fn a_figure_that_shows_no_point_says_so() {
     assert!(warned("above").contains("tilt_deg and azimuth_deg"));
     assert!(warned("3d").contains("not drawn in space"));
     assert_eq!(warned("spin_rpm"), "");
+    // The run has 20 s.
+    let longer = figure(None, "t_s,x_m\n5,0.5\n25,0.4\n").warnings;
+    assert_eq!(
+        longer,
+        [
+            "the run ends at 20 s, before the last point of bench.csv at 25 s: --duration 25 draws the run up to there"
+        ]
+    );
 }

@@ -73,6 +73,21 @@ fn the_csv_is_drawn_and_runs_again() {
     assert_eq!(code(&drawn), 0, "{}", text(&drawn.stderr));
     let run = ground.run(&["run", "fit.csv", "--steps", "1"]);
     assert_eq!(code(&run), 0, "{}", text(&run.stderr));
+    // What cannot be computed again has the command that does it in its first lines.
+    refused(
+        &ground.run(&["verify", "fit.csv"]),
+        1,
+        "fit.csv: is the CSV of a fit, which is not computed again",
+    );
+    let csv = fs::read_to_string(ground.file("fit.csv")).unwrap();
+    let command = csv
+        .lines()
+        .find_map(|line| line.strip_prefix("# # command = "));
+    let command: toml::Value = command.unwrap().parse().unwrap();
+    let again = command.as_str().unwrap().replacen("gyrolab", "$G", 1);
+    let again = ground.shell(&format!("{again} -o again.csv"));
+    assert_eq!(code(&again), 0, "{}", text(&again.stderr));
+    assert_eq!(fs::read_to_string(ground.file("again.csv")).unwrap(), csv);
     let on_stdout = with(&["-o", "-"]);
     let csv = fs::read(ground.file("fit.csv")).unwrap();
     assert_eq!(text(&on_stdout.stdout), text(&csv));

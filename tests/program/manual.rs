@@ -75,6 +75,68 @@ fn the_topics_hold_the_tables_of_the_program() {
     }
 }
 
+/// What a terminal gets of `gyrolab man ARGS` where PAGER is `pager`, and the exit code.
+fn on_a_terminal(ground: &Ground, args: &[&str], pager: &str) -> (String, u32) {
+    let variables = [("TERM", "xterm"), ("LANG", "C.UTF-8"), ("PAGER", pager)];
+    let args: Vec<_> = ["man"].iter().chain(args).copied().collect();
+    let mut terminal = ground.open_with(&args, &variables);
+    let code = terminal.wait_for_end().exit_code();
+    terminal.wait_until("its end", |terminal| terminal.sent_text().ends_with('\n'));
+    (terminal.sent_text(), code)
+}
+
+#[test]
+fn a_long_topic_is_shown_by_the_pager_on_a_terminal() {
+    let ground = Ground::new();
+    let whole = done(ground.run(&["man", "numbers"]));
+    let lines = stdout(&whole).lines().count();
+    assert!(lines > 24, "{lines}");
+    let counted = format!("counted {lines}");
+    let count = "awk 'END { print \"counted\", NR }'";
+    let (text, code) = on_a_terminal(&ground, &["numbers"], count);
+    assert_eq!((text.trim_end(), code), (&*counted, 0));
+    // One that is left early is no failure.
+    let (text, code) = on_a_terminal(&ground, &["numbers"], "head -n 1");
+    assert_eq!((text.lines().count(), code), (1, 0));
+    // One that is not there, fails or is not wanted leaves the text to be printed.
+    for pager in ["no-such-pager", "false", "'unclosed", "", "cat"] {
+        let (text, code) = on_a_terminal(&ground, &["numbers"], pager);
+        assert_eq!((text.lines().count(), code), (lines, 0), "{pager}");
+    }
+    let (text, _) = on_a_terminal(&ground, &["numbers", "--no-pager"], count);
+    assert_eq!(text.lines().count(), lines);
+    // Without a terminal there is none.
+    let piped = ground.shell(&format!(
+        "PAGER='{}' \"$G\" man numbers",
+        count.replace('\'', "'\\''")
+    ));
+    assert_eq!(stdout(&piped), stdout(&whole));
+}
+
+/// Without man(1) a terminal gets the help of the command, and no roff.
+#[test]
+fn a_page_is_shown_without_man() {
+    let ground = Ground::new();
+    let awk = Command::new("sh")
+        .args(["-c", "command -v awk"])
+        .output()
+        .unwrap();
+    let count = format!("{} 'END {{ print \"counted\", NR }}'", stdout(&awk).trim());
+    let variables = [("TERM", "xterm"), ("PATH", "/nowhere"), ("PAGER", &*count)];
+    for args in [&["man", "run"][..], &["man"]] {
+        let mut terminal = ground.open_with(args, &variables);
+        terminal.wait_for("counted");
+        assert_eq!(terminal.wait_for_end().exit_code(), 0);
+    }
+    let mut terminal = ground.open_with(&["man", "run", "--no-pager"], &variables);
+    terminal.wait_for_end();
+    let text = terminal.sent_text();
+    assert!(
+        text.contains("Usage: gyrolab run") && !text.contains(".SH"),
+        "{text}"
+    );
+}
+
 /// Every environment variable that the sources read stands in the manual.
 #[test]
 fn the_manual_names_every_environment_variable() {

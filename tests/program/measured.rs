@@ -14,6 +14,28 @@ fn one_key_shows_the_residuals() {
     lab.press("q");
 }
 
+/// Commands that take no measured data say which do.
+#[test]
+fn a_run_without_them_says_where_they_stand() {
+    let ground = Ground::new();
+    for command in ["run", "compare", "fit"] {
+        let ran = ground.run(&[command, "method-2", "--measured", "bench.csv"]);
+        let told = stderr(&ran);
+        assert_eq!(code(&ran), 2, "{told}");
+        for words in [
+            "gyrolab SCENARIO --measured FILE",
+            "figure and writeup",
+            "gyrolab fit FILE",
+        ] {
+            assert!(told.contains(words), "{command}: {words}: {told}");
+        }
+        assert!(
+            !told.contains("similar argument") && !told.contains("Usage"),
+            "{told}"
+        );
+    }
+}
+
 #[test]
 fn broken_data_are_refused_before_the_screen_opens() {
     let ground = Ground::new();

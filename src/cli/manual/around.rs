@@ -37,6 +37,11 @@ pub(super) const ENVIRONMENT: &[(&str, &str)] = &[
         "SSH_CONNECTION",
         "The port that the line with scp names after an export.",
     ),
+    (
+        "PAGER",
+        "The program that shows gyrolab man on a terminal where it is longer than the screen; cat, or nothing, to have it printed; by default less.",
+    ),
+    ("LESS", "The options of less; by default FRX."),
     ("USER", "The user whom that line names; else LOGNAME."),
     ("LOGNAME", "See USER."),
     (

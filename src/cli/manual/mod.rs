@@ -5,7 +5,7 @@ mod lab;
 mod roff;
 mod topics;
 
-use super::{command, examples, print, tell};
+use super::{command, examples, pager, print, tell};
 use crate::export::Destination;
 use crate::scenario::problem::nearest;
 use crate::text::printable::{Shown, printable};
@@ -33,6 +33,10 @@ pub(super) struct ManArgs {
     /// Replace existing files
     #[arg(long, requires = "output")]
     force: bool,
+
+    /// Print it at once, where a terminal would get it by a pager: $PAGER, or else less
+    #[arg(long, conflicts_with = "all")]
+    no_pager: bool,
 }
 
 pub(super) fn man(args: &ManArgs) -> anyhow::Result<ExitCode> {
@@ -42,13 +46,17 @@ pub(super) fn man(args: &ManArgs) -> anyhow::Result<ExitCode> {
         return write_all(&gyrolab, folder, args.force);
     }
     let Some(topic) = args.topic.as_deref() else {
-        return show(&page(&gyrolab)?);
+        let plain = || plain_text(&mut gyrolab.clone());
+        return show(&page(&gyrolab)?, plain, args);
     };
     if let Some(text) = topics::text(topic)? {
-        return print(&text);
+        return show_text(&text, args);
     }
     match commands(&gyrolab).find(|command| command.get_name() == topic) {
-        Some(command) => show(&page_of(command)?),
+        Some(command) => {
+            let plain = || command.clone().render_long_help().to_string();
+            show(&page_of(command)?, plain, args)
+        }
         None => {
             let names = names();
             let near = nearest(topic, names.iter().map(String::as_str));
@@ -94,26 +102,43 @@ fn write_all(gyrolab: &Command, folder: &Path, replace: bool) -> anyhow::Result<
     Ok(ExitCode::SUCCESS)
 }
 
-/// Shows a page: on a terminal as man(1) shows it where there is one, else in roff.
-fn show(page: &str) -> anyhow::Result<ExitCode> {
-    if io::stdout().is_terminal() && shown_by_man(page).unwrap_or(false) {
-        return Ok(ExitCode::SUCCESS);
+/// Shows a page: on a terminal as man(1) shows it, or where there is none as `plain` text; else in roff.
+fn show(page: &str, plain: impl Fn() -> String, args: &ManArgs) -> anyhow::Result<ExitCode> {
+    if !io::stdout().is_terminal() {
+        return print(page);
     }
-    print(page)
+    let mut man = process::Command::new("man");
+    man.args(["-l", "-"]).stderr(Stdio::null());
+    if args.no_pager {
+        man.env("MANPAGER", "cat");
+    }
+    match pager::shown_by(man, page) {
+        Ok(true) => Ok(ExitCode::SUCCESS),
+        _ => show_text(&plain(), args),
+    }
 }
 
-/// Whether man(1) has shown `page`.
-fn shown_by_man(page: &str) -> io::Result<bool> {
-    let mut man = process::Command::new("man")
-        .args(["-l", "-"])
-        .stdin(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()?;
-    let written = match man.stdin.take() {
-        Some(mut input) => input.write_all(page.as_bytes()),
-        None => Ok(()),
+fn show_text(text: &str, args: &ManArgs) -> anyhow::Result<ExitCode> {
+    match args.no_pager {
+        true => print(text),
+        false => pager::show(text),
+    }
+}
+
+/// The help of the program and of each command.
+fn plain_text(gyrolab: &mut Command) -> String {
+    let whole = gyrolab.render_long_help().to_string();
+    let help = |command: &Command| {
+        let title = format!("gyrolab {}", command.get_name());
+        let line = "=".repeat(title.len());
+        format!(
+            "\n\n{title}\n{line}\n\n{}",
+            command.clone().render_long_help()
+        )
     };
-    Ok(man.wait()?.success() && written.is_ok())
+    commands(gyrolab)
+        .map(help)
+        .fold(whole, |text, help| text + &help)
 }
 
 /// The manual: the page of the program, then one section for each command.

@@ -2,15 +2,16 @@
 
 use super::{Rows, grouped, numbers};
 use crate::figure::chart::legend::longest_name;
+use crate::figure::chart::ticks::{power_of_ten, with_minus};
 use crate::figure::chart::{Axis, Panel, Series, Style};
-use crate::figure::page::ink::LABEL_PT;
+use crate::figure::page::ink::{self, LABEL_PT};
 use crate::figure::page::letters;
 use crate::figure::quantity;
-use crate::figure::table::Table;
+use crate::figure::table::{Found, Table};
 use crate::measured::quantity::TIME;
 use crate::measured::{self, Curve, Point, Quantity};
 use crate::scenario::Document;
-use crate::text::unit::Unit;
+use crate::text::number::{significant, uncertain};
 use std::sync::Arc;
 
 /// So many points are on the curve of a model over time: several for each dot of a column's width.
@@ -18,34 +19,109 @@ const POINTS: u32 = 1500;
 /// Runs under several settings that are still told apart.
 const MOST_GROUPS: usize = 6;
 
+/// What was fitted, and what was found.
+pub(super) struct Fitted<'a> {
+    settings: &'a [String],
+    run_file: &'a str,
+    found: &'a [Found],
+    /// The run file, in which the keys have their names.
+    scenario: toml::Table,
+    /// The longest name in the legend, pt.
+    room_pt: f64,
+}
+
+impl<'a> Fitted<'a> {
+    pub(super) fn new(
+        settings: &'a [String],
+        run_file: &'a str,
+        found: &'a [Found],
+        width_pt: f64,
+    ) -> Self {
+        Self {
+            settings,
+            run_file,
+            found,
+            scenario: run_file.parse().unwrap_or_default(),
+            room_pt: longest_name(width_pt),
+        }
+    }
+
+    /// `key` with what stands for its value, such as "*z* of weight = 0.1555 m".
+    fn said(&self, key: &str, value: &str) -> String {
+        let axes = key
+            .split('+')
+            .map(|key| quantity::axis_in(&self.scenario, key));
+        let (names, units): (Vec<_>, Vec<_>) = axes.map(|axis| (axis.name, axis.unit)).unzip();
+        let unit = units.first().map_or("", String::as_str);
+        let said = format!("{} = {value} {unit}", names.join(" = "));
+        said.trim_end().to_owned()
+    }
+
+    /// `markup`, or where the page is too narrow for it `plain`, which is cut where that is too long as well.
+    fn within_room(&self, markup: String, plain: &str) -> String {
+        match ink::width(&markup, LABEL_PT) <= self.room_pt {
+            true => markup,
+            false => letters::shortened(plain, LABEL_PT, self.room_pt),
+        }
+    }
+
+    /// What the legend says of the model: the value of each free key.
+    fn model(&self) -> Vec<String> {
+        let lines = self.found.iter().enumerate().map(|(index, found)| {
+            let model = if index == 0 { "model: " } else { "" };
+            let value = stated(found);
+            let said = format!("{model}{}", self.said(&found.key, &value));
+            let value = significant(found.value, DIGITS);
+            self.within_room(said, &format!("{model}{} = {value}", found.key))
+        });
+        let lines: Vec<_> = lines.collect();
+        match lines.is_empty() {
+            true => vec!["model".to_owned()],
+            false => lines,
+        }
+    }
+}
+
+/// Digits of a value whose uncertainty cannot be stated.
+const DIGITS: usize = 6;
+
+/// The value with its uncertainty, as markup.
+fn stated(found: &Found) -> String {
+    let stated = found
+        .uncertainty
+        .and_then(|sigma| uncertain(found.value, sigma));
+    match stated {
+        Some(stated) if stated.exponent == 0 => with_minus(&stated.digits),
+        Some(stated) => {
+            let power = power_of_ten(stated.exponent);
+            format!("{} · {power}", with_minus(&stated.digits))
+        }
+        None => with_minus(&significant(found.value, DIGITS)),
+    }
+}
+
 /// The axis of the time or of a setting, and for each quantity a panel with its values and one with what is left of them.
 pub(super) fn drawn(
     table: &Table,
-    settings: &[String],
-    run_file: &str,
+    fit: &Fitted<'_>,
     columns: &[&str],
-    width_pt: f64,
 ) -> Result<(Axis, Vec<Panel>), String> {
     let quantities = table.texts("quantity").unwrap_or_default();
-    let (along, x) = along(table, settings)?;
+    let (along, x) = along(table, fit.settings)?;
     let mut panels = Vec::new();
     for (name, rows) in grouped(&quantities) {
         if !columns.is_empty() && !columns.contains(&name.as_str()) {
             continue;
         }
-        let mut groups = groups(table, settings, along, &rows);
+        let mut groups = groups(table, fit, along, &rows);
         if groups.len() > MOST_GROUPS {
             groups = vec![(String::new(), rows.clone())];
         }
         let curve = match along == TIME {
-            true => curve(run_file, &name, &x),
+            true => curve(fit.run_file, &name, &x),
             false => None,
         };
-        let drawing = Drawing {
-            table,
-            x: &x,
-            room_pt: longest_name(width_pt),
-        };
+        let drawing = Drawing { table, fit, x: &x };
         panels.push(drawing.values(&name, &groups, curve.as_deref())?);
         panels.push(drawing.residuals(&name, &groups)?);
     }
@@ -77,24 +153,22 @@ fn along<'a>(table: &Table, settings: &'a [String]) -> Result<(&'a str, Vec<f64>
 }
 
 /// `rows` by what else was set, each with its values as its name.
-fn groups(table: &Table, settings: &[String], along: &str, rows: &Rows) -> Vec<(String, Rows)> {
-    let others = settings.iter().filter(|name| *name != along);
+fn groups(table: &Table, fit: &Fitted<'_>, along: &str, rows: &Rows) -> Vec<(String, Rows)> {
+    let others = fit.settings.iter().filter(|name| *name != along);
     let columns: Vec<(&str, Vec<&str>)> = others
-        .filter_map(|name| {
-            let unit = Unit::of(name.trim_end_matches(|c: char| c == '.' || c.is_ascii_digit()));
-            Some((unit.map_or("", |unit| unit.name), table.texts(name)?))
-        })
+        .filter_map(|name| Some((name.as_str(), table.texts(name)?)))
         .collect();
     // What is the same in every row tells no two apart.
     let differs = |texts: &Vec<&str>| rows.iter().any(|&row| texts[row] != texts[rows[0]]);
     let named = |row: &usize| {
         let parts = columns.iter().filter(|(_, texts)| differs(texts));
-        let parts =
-            parts.map(|(unit, texts)| format!("{} {unit}", texts[*row].trim_end_matches(".0")));
-        parts
-            .map(|part| part.trim().to_owned())
-            .collect::<Vec<_>>()
-            .join(", ")
+        let (said, values): (Vec<_>, Vec<_>) = parts
+            .map(|(key, texts)| {
+                let value = texts[*row].trim_end_matches(".0");
+                (fit.said(key, &letters::escape(value)), value)
+            })
+            .unzip();
+        fit.within_room(said.join(", "), &values.join(", "))
     };
     let names: Vec<String> = rows.iter().map(named).collect();
     let groups = grouped(&names).into_iter();
@@ -138,8 +212,8 @@ fn curve(run_file: &str, name: &str, x: &[f64]) -> Option<Vec<[f64; 2]>> {
 /// What is drawn, and over what.
 struct Drawing<'a> {
     table: &'a Table,
+    fit: &'a Fitted<'a>,
     x: &'a [f64],
-    room_pt: f64,
 }
 
 impl Drawing<'_> {
@@ -169,15 +243,12 @@ impl Drawing<'_> {
             ..Panel::default()
         };
         let is_alone = groups.len() == 1;
+        let mut said = self.fit.model().into_iter();
         for (index, (group, rows)) in groups.iter().enumerate() {
             let (points, _) = self.points("model", "uncertainty", rows)?;
             panel.series.push(Series {
                 errors_across: Vec::new(),
-                name: if is_alone {
-                    "model".to_owned()
-                } else {
-                    String::new()
-                },
+                name: said.next().filter(|_| index == 0).unwrap_or_default(),
                 points: curve.map_or(points, <[_]>::to_vec),
                 errors: Vec::new(),
                 style: Style {
@@ -185,11 +256,23 @@ impl Drawing<'_> {
                     ..Style::theory(index)
                 },
             });
+            // The values of further keys, each on a line of the legend without a curve.
+            let more = said.by_ref().take_while(|_| index == 0);
+            panel.series.extend(more.map(|name| Series {
+                name,
+                style: Style {
+                    width_pt: 0.0,
+                    ..Style::default()
+                },
+                ..Series::default()
+            }));
             let (points, errors) = self.points("measured", "uncertainty", rows)?;
-            let own = letters::shortened(&letters::escape(group), LABEL_PT, self.room_pt);
             panel.series.push(Series {
                 errors_across: Vec::new(),
-                name: if is_alone { "measured".to_owned() } else { own },
+                name: match is_alone {
+                    true => "measured".to_owned(),
+                    false => group.clone(),
+                },
                 points,
                 errors,
                 style: Style::points(index),

@@ -7,6 +7,7 @@ use crate::analysis::readouts::{self, Readout};
 use crate::measured::{
     Data, Measured, Point, Quantity, Residual, Series, Table, at_times, residuals,
 };
+use crate::run::Clock;
 use crate::scenario::dotted::is_in;
 use crate::scenario::{Document, Problem, Problems, Scenario, ScenarioFile};
 use rayon::prelude::*;
@@ -89,6 +90,27 @@ impl Model {
     /// Why there is no such scenario.
     pub fn scenario(&self, p: &[f64]) -> Result<Scenario, String> {
         checked(&self.document(p)?)
+    }
+
+    /// The same, as long as it was measured: at least up to the last time of a time series.
+    ///
+    /// # Errors
+    /// As [`scenario`](Self::scenario).
+    pub fn as_long_as_measured(&self, p: &[f64]) -> Result<Scenario, String> {
+        let scenario = self.scenario(p)?;
+        let last_s = match &self.measured.data {
+            Data::Series(series) => series.times_s.last().copied().unwrap_or(0.0),
+            Data::Table(_) => 0.0,
+        };
+        let steps = Clock::at(&scenario, scenario.steps).step_at(last_s);
+        match i64::try_from(steps) {
+            Ok(steps) if last_s > Clock::end_s(&scenario) => {
+                let mut document = self.document(p)?;
+                write(&mut document, "motion.steps", Value::Integer(steps))?;
+                checked(&document)
+            }
+            _ => Ok(scenario),
+        }
     }
 
     fn document(&self, p: &[f64]) -> Result<Document, String> {

@@ -5,7 +5,7 @@
 
 use super::report::Report;
 use crate::export::csv::commented;
-use crate::figure::table::OF_FIT;
+use crate::figure::table::{Found, OF_FIT};
 use crate::measured::{Data, Residual};
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
@@ -25,6 +25,8 @@ pub struct Header {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Asked {
+    /// The whole command, without its output.
+    pub command: String,
     /// The data, as they were named.
     pub measured: String,
     /// The scenario, as it was named.
@@ -45,19 +47,6 @@ pub struct Asked {
     pub scatter: Option<f64>,
     /// Whether the model fits, in a sentence.
     pub verdict: String,
-}
-
-/// What was found for a key.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Found {
-    /// The key.
-    pub key: String,
-    /// Its value.
-    pub value: f64,
-    /// One standard uncertainty of it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub uncertainty: Option<f64>,
 }
 
 /// Writes the CSV of `report` on `out`; `scenario` is the fitted one, and `asked` has what was asked for.

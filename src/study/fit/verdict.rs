@@ -1,7 +1,7 @@
 //! Whether the model fits, in one sentence.
 
 use super::model::Model;
-use super::search::Fit;
+use super::search::{Fit, LEAST_FREEDOM};
 use crate::measured::Residual;
 use crate::text::number::{short, significant};
 use statrs::function::gamma::checked_gamma_ur;
@@ -24,6 +24,10 @@ pub struct Quality {
 
 /// Below this probability a model does not fit; above 1 less this, the uncertainties are too large.
 const RARE: f64 = 0.01;
+/// From this chi^2 a degree of freedom on, the search may have ended in a valley that is not the deepest.
+const VERY_POOR: f64 = 10.0;
+/// What is said then.
+const ELSEWHERE: &str = " The search goes down from where it begins, and there may be a better fit elsewhere: begin at other values of the free keys by --set KEY=VALUE.";
 /// Rows that are off by more than this many uncertainties are named.
 const FAR: f64 = 3.0;
 /// The most rows that are named.
@@ -94,11 +98,15 @@ impl Fit {
                     .to_owned()
                     + "."
             }
-            Some(probability) if probability < RARE => format!(
-                "The model does not fit: {sum}, which chance gives {}; {}.",
-                once_in(probability),
-                self.far(model)
-            ),
+            Some(probability) if probability < RARE => {
+                let is_very_poor = chi_squared > VERY_POOR * freedom as f64;
+                let elsewhere = if is_very_poor { ELSEWHERE } else { "" };
+                format!(
+                    "The model does not fit: {sum}, which chance gives {}; {}.{elsewhere}",
+                    once_in(probability),
+                    self.far(model)
+                )
+            }
             Some(probability) if probability > 1.0 - RARE => format!(
                 "The model fits, but the uncertainties are too large: {sum}; by their scatter the data are about {} times as good as stated.",
                 significant((freedom as f64 / chi_squared).sqrt(), 2)
@@ -112,7 +120,16 @@ impl Fit {
             .columns
             .first()
             .map_or("", |column| column.readout.unit);
+        let freedom = self.quality.degrees_of_freedom;
         match self.quality.scatter {
+            Some(scatter) if freedom < LEAST_FREEDOM => format!(
+                "Whether the model fits cannot be said, since the data have no uncertainties; nor can uncertainties of the keys: {} beyond the fitted values are too few to tell from their scatter of {} {unit} how good the data are. Measure {LEAST_FREEDOM} more than there are keys at least, or give the data their uncertainties.",
+                match freedom {
+                    1 => "1 datum".to_owned(),
+                    count => format!("{count} data"),
+                },
+                short(scatter)
+            ),
             Some(scatter) => format!(
                 "Whether the model fits cannot be said, since the data have no uncertainties: they scatter about it by {} {unit}, of which the uncertainties of the keys are made.",
                 short(scatter)
@@ -202,7 +219,7 @@ impl Fit {
         {
             let bound = significant(fitted.value, 6);
             remarks.push(format!(
-                "{} stands at its bound {bound}: the fit would be better beyond it, and it has no uncertainty.",
+                "{} stands at its bound {bound}: the fit would be better beyond it, and it has no uncertainty. Begun at another value by --set, the search may find a better fit within.",
                 key(index)
             ));
         }

@@ -71,6 +71,39 @@ fn names_of_columns() {
 }
 
 #[test]
+fn a_rule_that_many_lines_break_is_told_for_a_few() {
+    let rows = |bad: usize| "0,x\n".repeat(bad);
+    let rule = "must be a number, without its unit; a value that is missing is an empty place";
+    let told = |line: u64| format!("lab.csv:{line}: tilt_deg (x) {rule}");
+    let first = [2, 3, 4].map(told).join("\n");
+    is_refused(&format!("t_s,tilt_deg\n{}", rows(3)), &first);
+    for (bad, more) in [
+        (4, "1 more line is"),
+        (40, "37 more lines are"),
+        (1000, "997 more lines are"),
+    ] {
+        let text = format!("t_s,tilt_deg\n{}", rows(bad));
+        is_refused(&text, &format!("{first} ({more} like this)"));
+    }
+    // Another rule, and another column, are told for themselves.
+    let text = format!("t_s,tilt_deg\n{}0,inf\nz,1\n", rows(40));
+    let (finite, time) = (refusal(&text), "lab.csv:43: t_s (z) must be a number");
+    assert!(finite.contains("lab.csv:42: tilt_deg (inf) must be a finite number"));
+    assert!(
+        finite.contains(time) && !finite.contains("and "),
+        "{finite}"
+    );
+}
+
+#[test]
+fn data_that_come_with_the_program_go_by_their_name() {
+    assert_eq!(
+        open("heidelberg-nutation").unwrap().origin,
+        "heidelberg-nutation"
+    );
+}
+
+#[test]
 fn uncertainties_without_values() {
     is_refused(
         "t_s,tilt_deg,azimuth_uncertainty_deg\n0,1,2\n",
@@ -221,8 +254,13 @@ fn a_hostile_file_is_told_in_few_lines_that_steer_no_terminal() {
     let cell = format!("\u{1b}[2J{}", "9".repeat(100_000));
     let text = format!("t_s,tilt_deg\n{}", format!("0,{cell}\n").repeat(400));
     let told = refusal(&text);
-    assert_eq!(told.lines().count(), 13, "{told}");
+    assert_eq!(told.lines().count(), 3, "{told}");
     assert!(told.len() < 4000 && !told.replace('\n', "").chars().any(is_steering));
+    assert!(told.ends_with("(397 more lines are like this)"), "{told}");
+    // Here each line breaks a rule of its own.
+    let rows: String = (0..401).rev().map(|time| format!("{time},1\n")).collect();
+    let told = refusal(&format!("t_s,tilt_deg\n{rows}"));
+    assert_eq!(told.lines().count(), 13, "{told}");
     assert!(told.ends_with("lab.csv: and 388 more"), "{told}");
     let names = format!("t_s,{}\n0\n", "\u{202e}x".repeat(50_000));
     assert!(refusal(&names).len() < 400);
