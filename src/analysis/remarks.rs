@@ -1,17 +1,16 @@
 //! The health of a run in words, all of them: the sentence after a run, the remarks on the lab's screen, and the lines of
 //! the summary.
 
+mod sentence;
+
 use super::health::{Advice, Nutation, Picture};
 use super::{Health, Slowing};
 use crate::run::EnergyUnit;
 use crate::text::number::{
     NONE, exponent, fixed, short, shortest, signed, signed_exponent, steady, times,
 };
-use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-/// Radians a step beyond which no scheme that follows the rotation by polynomials keeps up.
-const TOO_FAR_RAD: f64 = 1.0;
 /// What is wrong with a run whose scheme has broken down.
 const NO_ROTATION: &str = "its orientation is no rotation any more";
 /// Distances smaller than this are what decimals leave over, m.
@@ -29,67 +28,6 @@ impl fmt::Display for Picture {
     }
 }
 
-impl Health {
-    /// In one sentence: whether the numbers hold, what is wrong with them, and what would mend it.
-    pub fn sentence(&self, advice: Option<&Advice>) -> String {
-        sentence(self, advice)
-    }
-}
-
-fn sentence(health: &Health, advice: Option<&Advice>) -> String {
-    let Some(most) = health.most_distance_m else {
-        return "Not held against the exact motion, which would take too long or leaves the range of numbers.".to_owned();
-    };
-    if health.arm_m == 0.0 {
-        return "Nothing can be said: the traced point is the pivot, which stands still in every run.".to_owned();
-    }
-    let far = format!(
-        "{} m ({} % of its arm)",
-        short(most),
-        short(100.0 * most / health.arm_m)
-    );
-    if health.is_believed() == Some(true) {
-        let picture = match health.picture {
-            Picture::Right => String::new(),
-            Picture::Unknown => {
-                format!(" (in a step the wheel turns {})", health.picture)
-            }
-            _ => format!(
-                "; only a picture of the turning wheel would mislead, which turns {} times a step: {}",
-                short(health.turns_per_step),
-                health.picture
-            ),
-        };
-        return match lost_nutation(health) {
-            None => format!(
-                "The numbers hold: the traced point has kept within {far} of the exact motion{picture}."
-            ),
-            Some(lost) => format!(
-                "The traced point holds, and the nutation does not: the point has kept within {far} of the exact motion{picture}, but {lost}."
-            ),
-        };
-    }
-    let mend = advice.map_or(String::new(), |advice| how_to_mend(health, advice));
-    format!(
-        "Do not believe this run: {}, and the traced point is up to {far} off the exact motion{mend}.",
-        cause(health)
-    )
-}
-
-/// What is not the run's although its traced point holds: a nutation too small to show there, which the scheme has changed.
-fn lost_nutation(health: &Health) -> Option<String> {
-    let (nutation, left) = (health.nutation?, health.changed_nutation()?);
-    let swing = short(health.swing_deg?);
-    let now = match left {
-        left if left < 1e-3 => "is gone".to_owned(),
-        left => format!("has {} times its size", short(left)),
-    };
-    let (verb, percent) = change(&nutation);
-    Some(format!(
-        "the nutation, a swing of {swing} degrees that should last, is not the body's: the scheme {verb} it by {percent} % a step, so that it {now}"
-    ))
-}
-
 /// Whether the scheme damps a nutation or feeds it, and by how many per cent a step.
 fn change(nutation: &Nutation) -> (&'static str, String) {
     let verb = if nutation.multiplier < 1.0 {
@@ -99,81 +37,6 @@ fn change(nutation: &Nutation) -> (&'static str, String) {
     };
     let percent = 100.0 * (nutation.multiplier - 1.0).abs();
     (verb, short(percent))
-}
-
-fn cause(health: &Health) -> String {
-    let psi = TAU * health.turns_per_step;
-    let (turns, name) = (short(health.turns_per_step), health.scheme.name);
-    match health.nutation {
-        _ if !health.is_a_rotation => {
-            format!("the scheme {name} breaks down at this time step, {NO_ROTATION}")
-        }
-        Some(_) if psi >= PI => {
-            format!(
-                "the wheel turns {turns} times in a time step, so that the swing of the axle is strobed: it is the time step's"
-            )
-        }
-        Some(nutation) if health.nutation_is_the_cause() => {
-            let (verb, percent) = change(&nutation);
-            format!(
-                "the scheme {verb} the nutation by {percent} % a step, which should last as it is"
-            )
-        }
-        _ if !psi.is_finite() => {
-            "the body turns further in a time step than numbers reach".to_owned()
-        }
-        _ if psi >= TOO_FAR_RAD => {
-            format!(
-                "the body turns {turns} times in a time step, more than the scheme {name} can follow"
-            )
-        }
-        _ if health.scheme.order.is_none() => {
-            "what another scheme did before the edit is carried on exactly".to_owned()
-        }
-        _ => format!("the error that the scheme {name} makes at this time step has added up"),
-    }
-}
-
-fn how_to_mend(health: &Health, advice: &Advice) -> String {
-    // A run with edits at steps is refused another time step: it has to be written anew.
-    let throughout = match health.can_be_rescaled {
-        true => "",
-        false => " throughout, with its edits of gravity and pushes at the same times,",
-    };
-    match advice {
-        Advice::Holds => String::new(),
-        Advice::Nothing => "; nothing that could be tried in reasonable time mends it".to_owned(),
-        Advice::BoundToItsTimeStep => {
-            "; no other scheme mends it at this time step, and at another one its accumulating pushes make it another run"
-                .to_owned()
-        }
-        Advice::TimeStep(step) => {
-            let step = shortest(*step);
-            let option = match health.can_be_rescaled {
-                true => format!(" (--time-step {step})"),
-                false => String::new(),
-            };
-            format!("; a time step of {step} s{option}{throughout} keeps it within 1 %")
-        }
-        Advice::Scheme {
-            name,
-            time_step_s,
-            tried_s,
-        } if time_step_s == tried_s => {
-            let step = shortest(*time_step_s);
-            format!("; the scheme {name} at {step} s{throughout} mends it")
-        }
-        Advice::Scheme {
-            name,
-            time_step_s,
-            tried_s,
-        } => {
-            let (step, tried) = (shortest(*time_step_s), shortest(*tried_s));
-            format!(
-                "; no time step down to {tried} s mends it, but the scheme {name} at {step} s{throughout} does"
-            )
-        }
-    }
 }
 
 /// One thing to say on the screen, at length where there is room, and in short.
