@@ -1,18 +1,19 @@
 //! `gyrolab` and `gyrolab show`: the lab, live or as one picture.
 
+mod resuming;
+
 use super::args::{Changes, Cli, Color, Look, Markers, Screen, WorkbenchArgs};
 use super::scenario::change;
 use super::show::{Picture, go_to, print_picture};
 use super::{sessions, settings, tell};
+use crate::lab::Lab;
 use crate::lab::command;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use crate::lab::view::{FPS, View};
-use crate::lab::{Lab, Summary};
-use crate::scenario::{Document, Scenario};
+use crate::scenario::Document;
 use crate::storage::confined::Confined;
 use crate::storage::exporting;
-use crate::storage::session::{self, KeptAside, Session};
 use crate::storage::settings::Keeper;
 use crate::teach::{Class, Lesson, Page};
 use crate::text::printable::{Shown, printable};
@@ -21,6 +22,7 @@ use crate::tui::panes;
 use crate::tui::surroundings::{self, ColourChoice};
 use anyhow::Context;
 use clap::CommandFactory;
+use resuming::{begun, come_back, come_back_to, tell_of_session};
 use std::fs;
 use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
@@ -171,33 +173,6 @@ fn confined_to(folder: &Path) -> anyhow::Result<Confined> {
     Confined::enter(folder).with_context(|| format!("--folder {}", Shown(folder)))
 }
 
-/// Says on the shell's screen what can be come back to, as the disk has it; or that nothing can, and why.
-fn tell_of_session(session: Result<Session, String>, folder: Option<&Path>) -> anyhow::Result<()> {
-    let kept = session.and_then(|session| {
-        let name = session.name().to_owned();
-        let content = session.close(PATIENCE)?;
-        Lab::check(&content)?;
-        let summary = Lab::summary(&content).map_err(told)?;
-        Ok((name, summary))
-    });
-    match kept {
-        Ok((name, Summary { title, step, .. })) => writeln!(
-            io::stdout(),
-            "gyrolab{} --resume comes back to step {step} of {} (session {name})",
-            folder.map_or(String::new(), |folder| format!(
-                " --folder {}",
-                Shown(folder)
-            )),
-            printable(&title)
-        )?,
-        Err(reason) => tell(format_args!(
-            "gyrolab: there is no session to come back to: {}",
-            printable(&reason)
-        )),
-    }
-    Ok(())
-}
-
 /// A lab with what `name` names, as the command line wants it.
 fn new(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
     let theme = theme(args.look);
@@ -208,134 +183,6 @@ fn new(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
         arrived.with_context(|| name.to_owned())?;
     }
     Ok(lab)
-}
-
-/// The lab that a session has kept, as the command line wants it to look.
-fn resumed(
-    content: &session::Content,
-    look: Look,
-    confined: Option<&Confined>,
-) -> Result<Lab, String> {
-    let view =
-        |scenario: &Scenario| View::new(scenario, marker(look.markers), theme(look), &panes::IDS);
-    Lab::resumed_in(content, confined, view).map_err(told)
-}
-
-/// The session called `name`, or an error that says why it cannot be had.
-fn come_back_to(
-    name: &str,
-    args: &WorkbenchArgs,
-    confined: Option<&Confined>,
-    folder: Result<PathBuf, String>,
-) -> anyhow::Result<(Lab, Result<Session, String>)> {
-    let folder = folder.map_err(anyhow::Error::msg)?;
-    let shown = printable(name);
-    let found = session::resume_named(&folder, name, |content| {
-        resumed(content, args.look, confined)
-    })
-    .with_context(|| format!("--resume {shown} (gyrolab sessions lists what there is)"))?;
-    let aside = put_aside(&found.kept_aside) + &left_alone(&found.left_alone);
-    if let Some(resumed) = found.resumed {
-        let mut lab = resumed.what;
-        if !aside.is_empty() {
-            lab.tell_first(&aside);
-        }
-        return Ok((lab, Ok(resumed.session)));
-    }
-    match aside.is_empty() {
-        false => anyhow::bail!(
-            "--resume {shown}: {}",
-            printable(aside.trim_end_matches("; "))
-        ),
-        true => anyhow::bail!(
-            "--resume {shown}: it is open in another lab{}",
-            found
-                .in_use_by
-                .first()
-                .map_or(String::new(), |process| format!(", process {process}"))
-        ),
-    }
-}
-
-/// The newest session that is not in use; where there is none, a new lab that says so. What is damaged, or cannot be
-/// kept, never keeps the lab from opening.
-fn come_back(
-    args: &WorkbenchArgs,
-    confined: Option<&Confined>,
-    folder: Result<PathBuf, String>,
-) -> anyhow::Result<(Lab, Result<Session, String>)> {
-    let read = |content: &session::Content| resumed(content, args.look, confined);
-    let found = folder
-        .clone()
-        .and_then(|folder| session::resume(&folder, read).map_err(told));
-    let (aside, none) = match found {
-        Ok(found) => {
-            let passed_over = put_aside(&found.kept_aside)
-                + &left_alone(&found.left_alone)
-                + &in_use(&found.in_use_by);
-            if let Some(resumed) = found.resumed {
-                let (mut lab, session) = (resumed.what, Ok(resumed.session));
-                if !passed_over.is_empty() {
-                    lab.tell_first(&(passed_over + "this is an older one, "));
-                }
-                return Ok((lab, session));
-            }
-            let none = match found.in_use_by.is_empty() {
-                true => "no session to come back to: this is a new one",
-                false => "this is a new one",
-            };
-            (passed_over, none.to_owned())
-        }
-        Err(trouble) => (String::new(), trouble),
-    };
-    let mut lab = new(args, DEFAULT)?;
-    lab.tell(format!("{aside}{none}"));
-    Ok((lab, folder.and_then(|folder| begun(&folder))))
-}
-
-/// Says that newer sessions are open in other labs, of the processes `owners`. A line that has died without a word keeps
-/// its lab alive for as long as the system believes in it.
-fn in_use(owners: &[u32]) -> String {
-    let numbers = owners
-        .iter()
-        .map(ToString::to_string)
-        .collect::<Vec<_>>()
-        .join(" ");
-    match owners {
-        [] => String::new(),
-        [_] => format!(
-            "the newest session is open in another lab (if its line is dead, kill {numbers} frees it for --resume); "
-        ),
-        _ => format!(
-            "newer sessions are open in other labs (where the line is dead, kill frees them: {numbers}); "
-        ),
-    }
-}
-
-fn begun(folder: &Path) -> Result<Session, String> {
-    Session::begin(folder).map_err(told)
-}
-
-fn told(error: impl std::fmt::Display) -> String {
-    error.to_string()
-}
-
-fn put_aside(damaged: &[KeptAside]) -> String {
-    let names = damaged.iter().map(|one| {
-        format!(
-            "a damaged session is put aside as {} ({}); ",
-            Shown(&one.path),
-            one.reason
-        )
-    });
-    names.collect()
-}
-
-fn left_alone(sessions: &[KeptAside]) -> String {
-    let names = sessions
-        .iter()
-        .map(|one| format!("{} is left alone ({}); ", Shown(&one.path), one.reason));
-    names.collect()
 }
 
 /// Says on the shell's screen what was exported: the lab's is gone with its last notice.

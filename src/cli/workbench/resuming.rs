@@ -1,0 +1,173 @@
+//! The session of a lab: coming back to one, beginning one, and what is said of it on the shell's screen.
+
+use super::{DEFAULT, PATIENCE, marker, new, theme};
+use crate::cli::args::{Look, WorkbenchArgs};
+use crate::cli::tell;
+use crate::lab::view::View;
+use crate::lab::{Lab, Summary};
+use crate::scenario::Scenario;
+use crate::storage::confined::Confined;
+use crate::storage::session::{self, KeptAside, Session};
+use crate::text::printable::{Shown, printable};
+use crate::tui::panes;
+use anyhow::Context;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// Says on the shell's screen what can be come back to, as the disk has it; or that nothing can, and why.
+pub(super) fn tell_of_session(
+    session: Result<Session, String>,
+    folder: Option<&Path>,
+) -> anyhow::Result<()> {
+    let kept = session.and_then(|session| {
+        let name = session.name().to_owned();
+        let content = session.close(PATIENCE)?;
+        Lab::check(&content)?;
+        let summary = Lab::summary(&content).map_err(told)?;
+        Ok((name, summary))
+    });
+    match kept {
+        Ok((name, Summary { title, step, .. })) => writeln!(
+            io::stdout(),
+            "gyrolab{} --resume comes back to step {step} of {} (session {name})",
+            folder.map_or(String::new(), |folder| format!(
+                " --folder {}",
+                Shown(folder)
+            )),
+            printable(&title)
+        )?,
+        Err(reason) => tell(format_args!(
+            "gyrolab: there is no session to come back to: {}",
+            printable(&reason)
+        )),
+    }
+    Ok(())
+}
+
+/// The lab that a session has kept, as the command line wants it to look.
+fn resumed(
+    content: &session::Content,
+    look: Look,
+    confined: Option<&Confined>,
+) -> Result<Lab, String> {
+    let view =
+        |scenario: &Scenario| View::new(scenario, marker(look.markers), theme(look), &panes::IDS);
+    Lab::resumed_in(content, confined, view).map_err(told)
+}
+
+/// The session called `name`, or an error that says why it cannot be had.
+pub(super) fn come_back_to(
+    name: &str,
+    args: &WorkbenchArgs,
+    confined: Option<&Confined>,
+    folder: Result<PathBuf, String>,
+) -> anyhow::Result<(Lab, Result<Session, String>)> {
+    let folder = folder.map_err(anyhow::Error::msg)?;
+    let shown = printable(name);
+    let found = session::resume_named(&folder, name, |content| {
+        resumed(content, args.look, confined)
+    })
+    .with_context(|| format!("--resume {shown} (gyrolab sessions lists what there is)"))?;
+    let aside = put_aside(&found.kept_aside) + &left_alone(&found.left_alone);
+    if let Some(resumed) = found.resumed {
+        let mut lab = resumed.what;
+        if !aside.is_empty() {
+            lab.tell_first(&aside);
+        }
+        return Ok((lab, Ok(resumed.session)));
+    }
+    match aside.is_empty() {
+        false => anyhow::bail!(
+            "--resume {shown}: {}",
+            printable(aside.trim_end_matches("; "))
+        ),
+        true => anyhow::bail!(
+            "--resume {shown}: it is open in another lab{}",
+            found
+                .in_use_by
+                .first()
+                .map_or(String::new(), |process| format!(", process {process}"))
+        ),
+    }
+}
+
+/// The newest session that is not in use; where there is none, a new lab that says so. What is damaged, or cannot be
+/// kept, never keeps the lab from opening.
+pub(super) fn come_back(
+    args: &WorkbenchArgs,
+    confined: Option<&Confined>,
+    folder: Result<PathBuf, String>,
+) -> anyhow::Result<(Lab, Result<Session, String>)> {
+    let read = |content: &session::Content| resumed(content, args.look, confined);
+    let found = folder
+        .clone()
+        .and_then(|folder| session::resume(&folder, read).map_err(told));
+    let (aside, none) = match found {
+        Ok(found) => {
+            let passed_over = put_aside(&found.kept_aside)
+                + &left_alone(&found.left_alone)
+                + &in_use(&found.in_use_by);
+            if let Some(resumed) = found.resumed {
+                let (mut lab, session) = (resumed.what, Ok(resumed.session));
+                if !passed_over.is_empty() {
+                    lab.tell_first(&(passed_over + "this is an older one, "));
+                }
+                return Ok((lab, session));
+            }
+            let none = match found.in_use_by.is_empty() {
+                true => "no session to come back to: this is a new one",
+                false => "this is a new one",
+            };
+            (passed_over, none.to_owned())
+        }
+        Err(trouble) => (String::new(), trouble),
+    };
+    let mut lab = new(args, DEFAULT)?;
+    lab.tell(format!("{aside}{none}"));
+    Ok((lab, folder.and_then(|folder| begun(&folder))))
+}
+
+/// Says that newer sessions are open in other labs, of the processes `owners`. A line that has died without a word keeps
+/// its lab alive for as long as the system believes in it.
+fn in_use(owners: &[u32]) -> String {
+    let numbers = owners
+        .iter()
+        .map(ToString::to_string)
+        .collect::<Vec<_>>()
+        .join(" ");
+    match owners {
+        [] => String::new(),
+        [_] => format!(
+            "the newest session is open in another lab (if its line is dead, kill {numbers} frees it for --resume); "
+        ),
+        _ => format!(
+            "newer sessions are open in other labs (where the line is dead, kill frees them: {numbers}); "
+        ),
+    }
+}
+
+pub(super) fn begun(folder: &Path) -> Result<Session, String> {
+    Session::begin(folder).map_err(told)
+}
+
+fn told(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}
+
+fn put_aside(damaged: &[KeptAside]) -> String {
+    let names = damaged.iter().map(|one| {
+        format!(
+            "a damaged session is put aside as {} ({}); ",
+            Shown(&one.path),
+            one.reason
+        )
+    });
+    names.collect()
+}
+
+fn left_alone(sessions: &[KeptAside]) -> String {
+    let names = sessions
+        .iter()
+        .map(|one| format!("{} is left alone ({}); ", Shown(&one.path), one.reason));
+    names.collect()
+}
