@@ -20,8 +20,8 @@ pub(super) struct Offer {
 }
 
 impl Player {
-    /// The run that advice is looked for, as far as it is meant to go or has gone: an edit of the time step at step 0
-    /// leaves the scenario as many steps, and the lab as many seconds.
+    /// The run for which advice is sought, up to the later of its end and the step that it has reached. After an edit
+    /// of the time step at step 0 the scenario has as many steps as before, but the lab plays as many seconds.
     pub(super) fn to_be_mended(&self) -> Arc<Scenario> {
         let scenario = self.run().scenario();
         let end_s = self.playback.end_s().max(self.run().now().time_s);
@@ -35,7 +35,7 @@ impl Player {
         })
     }
 
-    /// What `advice` offers; `None` where there is nothing to do, or where it cannot be done to this run.
+    /// The offer that `advice` makes; `None` where nothing is to be done, or where this run cannot be changed so.
     fn offered(&self, advice: &Advice) -> Option<Offer> {
         let (time_step_s, scheme) = match *advice {
             Advice::TimeStep(time_step_s) => (time_step_s, None),
@@ -82,8 +82,8 @@ impl Player {
         }
     }
 
-    /// What would mend doubtful numbers, in words, with the key that does it; `None` where nothing is known to, or where it
-    /// cannot be done to this run.
+    /// What would mend doubtful numbers, in words, with the key that does it; `None` where no remedy is known, or where
+    /// this run cannot be changed so.
     pub fn offer(&self) -> Option<String> {
         let is_doubted = self.reading().readouts.health.is_believed() == Some(false);
         let offer = self.offer.as_ref().filter(|_| is_doubted)?;

@@ -1,4 +1,4 @@
-//! The dialogs: what the one for a file says at first, and the command that an answered dialog asks for.
+//! The dialogs: the text that a dialog for a file offers, and the command that an answered dialog stands for.
 
 use super::action::Action;
 use super::carry_out::{Answer, Done};
@@ -114,7 +114,7 @@ impl Lab {
     }
 }
 
-/// The number that `text` says; a comma may stand for the point.
+/// The number in `text`; a comma may stand for the decimal point.
 ///
 /// # Errors
 /// Why it is none.

@@ -29,7 +29,7 @@ pub struct Browser {
     entries: Vec<Entry>,
     /// How many files of the folder are left out because they hold no run.
     others: usize,
-    /// The search for them, as long as it goes on.
+    /// The search for files that hold no run, while it is in progress.
     sorting: Option<Sorting>,
     /// The name of the entry that is open in the lab.
     open: String,
@@ -50,7 +50,8 @@ impl Browser {
         browser
     }
 
-    /// Makes the list again, as [`new`](Self::new) does, with only the files for which `may_be_read` is true.
+    /// Lists presets and files again, as [`new`](Self::new) does, but of the files only those for which `may_be_read`
+    /// is true.
     pub fn begin(&mut self, folder: &Path, name: &str, may_be_read: impl Fn(&Path) -> bool) {
         let presets = PRESETS.iter().map(|preset| Entry {
             name: preset.name.to_owned(),
@@ -73,8 +74,8 @@ impl Browser {
         self.refilter();
     }
 
-    /// Takes the files that hold no run off the list, once they are known or are within `wait`. Returns whether there are
-    /// any. The selection stays on its entry.
+    /// Removes the files that hold no run from the list, if the search has found them or finds them within `wait`.
+    /// Returns whether it removed any. The selection stays on its entry.
     fn leave_out_others(&mut self, wait: Duration) -> bool {
         let Some(others) = self
             .sorting
@@ -97,7 +98,8 @@ impl Browser {
         !others.is_empty()
     }
 
-    /// Reads the selected file again and chooses it to be opened: [`take_chosen`](Self::take_chosen) gives what it holds.
+    /// Requests the selected file once more and chooses it to be opened: [`take_chosen`](Self::take_chosen) returns its
+    /// scenario.
     pub(super) fn choose(&mut self) {
         self.is_chosen = true;
         if let Some((entry, preview)) = &mut self.preview
@@ -107,7 +109,7 @@ impl Browser {
         }
     }
 
-    /// What is chosen is no longer to be opened. Returns whether anything was chosen.
+    /// Withdraws the choice of the file to be opened. Returns whether one was chosen.
     pub(super) fn forget_chosen(&mut self) -> bool {
         std::mem::take(&mut self.is_chosen)
     }
@@ -163,7 +165,7 @@ impl Browser {
 
     /// Takes over what has been read in the background: the preview, and which files hold no run; returns whether there was
     /// anything.
-    pub fn take_news(&mut self) -> bool {
+    pub fn take_what_was_read(&mut self) -> bool {
         let is_shorter = self.leave_out_others(Duration::ZERO);
         if is_shorter {
             self.load_preview();
@@ -172,7 +174,7 @@ impl Browser {
     }
 
     fn take_preview(&mut self) -> bool {
-        match (&mut self.preview, self.loader.news()) {
+        match (&mut self.preview, self.loader.take_answer()) {
             (Some((_, preview @ Preview::Loading)), Some(news)) => {
                 *preview = news;
                 true

@@ -1,5 +1,4 @@
-//! What is done to the course of the run on the screen: it is stepped, taken to a place or a condition, played and paused, at
-//! some speed.
+//! Commands about the course of the run: steps, going to a place or a condition, play and pause, and the speed.
 
 use super::carry_out::{Answer, Done, UnderWay};
 use super::command::Place;

@@ -43,8 +43,8 @@ pub(super) enum Question {
     Figure(u64),
     /// The run file for the run up to this step.
     SaveRun(u64),
-    /// The file for this text, the scenario that starts from the present state. The text is that of the moment when the
-    /// dialog was opened: the run may go on while the user types.
+    /// The file for this text, a scenario that starts from the present state. The text was made when the dialog was
+    /// opened, since the run may go on while the user types.
     SavePresent(String),
     /// A number that a room above the lab asks for.
     Number,
@@ -157,7 +157,7 @@ impl Dialog {
         self.asked_to_replace.as_deref() == Some(path)
     }
 
-    /// Which rows of a CSV file to write, as typed in the second field: 10 stands for each tenth row.
+    /// The interval of the rows to write, as typed in the second field: 10 stands for each tenth row.
     ///
     /// # Errors
     /// Why the text is no such number.

@@ -56,7 +56,7 @@ impl Lab {
         Ok(self.on_its_way(done))
     }
 
-    /// `done`, after which the run may be on its way to the time at which the lab stood.
+    /// `done`; it says that the command is under way where the run is replayed to the time at which the lab stood.
     pub(super) fn on_its_way(&self, done: Done) -> Done {
         match self.player.is_replaying() {
             true => done.going_on(UnderWay::Going),
@@ -205,7 +205,8 @@ impl Lab {
         self.measure_as_opened(&before);
     }
 
-    /// Records where the present run stands, or is on its way back to, as it may be left now.
+    /// Records the step and the push to come with which the present run may be left now. The step is the one that the
+    /// run is on its way back to, if it is.
     fn leave(&mut self) {
         let step = self.player.step_to_keep();
         self.work.leave_at(step, self.values.next_push());

@@ -13,24 +13,24 @@ use crate::physics::{State, Workings};
 use crate::scenario::Scenario;
 use std::sync::Arc;
 
-/// The most points of a body whose steps are taken apart while the run goes on; of a larger body that is done as soon as
-/// it stands still.
+/// The most points of a body whose steps are taken apart while the run goes on. The step of a larger body is taken
+/// apart once the run stands still.
 const MOST_POINTS_MOVING: usize = 1000;
 /// Rows of a page of a table.
 const PAGE_ROWS: i64 = 10;
 
-/// A time step with what the scheme computed on its way.
+/// A time step with the intermediate results of its scheme.
 #[derive(Clone, Debug)]
 pub struct Explained {
     /// The number of the step.
     pub step: u64,
     /// The state before it and after it.
     pub states: (State, State),
-    /// What the scheme computed: the numbers of the step itself.
+    /// The intermediate results: the numbers that made the step itself.
     pub workings: Arc<Workings>,
     /// The run's scenario.
     pub scenario: Arc<Scenario>,
-    /// The sums of the table on the page, where some of its rows are added up.
+    /// The sums of the table on the page, if some of its rows are added up.
     sums: Option<(usize, Sums)>,
     /// The first dip of the run, where the page shows it.
     dip: Option<Dip>,
@@ -108,8 +108,8 @@ impl Player {
         }
     }
 
-    /// Takes one time step, and keeps what is computed on its way where the step pane is shown: otherwise the step would
-    /// be taken a second time for it.
+    /// Takes one time step. Where the step pane is shown, it keeps the intermediate results, so that the step need not
+    /// be taken a second time for the pane.
     pub(super) fn take_one_step(&mut self) {
         self.playback.keep_workings(self.explains);
         self.playback.take_steps(1);
@@ -183,7 +183,8 @@ impl Lab {
         self.view.turn_to(super::Pane::STEP);
     }
 
-    /// The commands that go `times` phases on, or back: after the last phase of a step comes the first of the next.
+    /// The commands that go `times` phases forward or back. The first phase of the next step follows the last phase of
+    /// a step.
     pub(super) fn other_phase(&self, times: i64) -> Result<Vec<Command>, String> {
         let first = Command::Phase(Page::default());
         if self.player.is_moving() {
@@ -226,7 +227,8 @@ impl Lab {
         })
     }
 
-    /// The command that adds up more rows of the table in the step pane, or fewer. Beyond either end are all rows.
+    /// The command that adds up more rows of the table in the step pane, or fewer. Beyond either end all rows are added
+    /// up.
     pub(super) fn other_sum(&self, direction: Direction, times: i32) -> Result<Command, String> {
         let explained = self.player.explained();
         let phase = explained.and_then(|explained| explained.phase(self.view.page));

@@ -23,7 +23,7 @@ pub struct Files {
     /// The folder outside of which nothing is read or written, if there is one.
     confined: Option<Confined>,
     exporting: Option<Exporting>,
-    /// Why the last export failed, until somebody asks for it.
+    /// Why the last export failed, until it has been read.
     failure: Option<String>,
     written: Vec<Written>,
 }
@@ -90,8 +90,7 @@ impl Files {
         Ok(Done::saying("the export goes on in the background").going_on(UnderWay::Exporting))
     }
 
-    /// Begins to draw a figure of that kind of `scenario`, beside the exact motion or without it, and with
-    /// what was measured.
+    /// Begins to draw a figure of `scenario`, with or without the exact motion and the measured data.
     ///
     /// # Errors
     /// Where the kind is none, the file's name does not say in which form, or as for an export.
@@ -150,7 +149,7 @@ impl Files {
         })
     }
 
-    /// Why the last export failed, if it did; it is given once.
+    /// Why the last export failed, if it did. It can be read once.
     pub(super) fn take_failure(&mut self) -> Option<String> {
         self.failure.take()
     }

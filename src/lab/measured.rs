@@ -1,4 +1,4 @@
-//! Measured data beside the run: what the run says of the same quantities at the same times, and how far they are off.
+//! Measured data beside the run: the values of the same quantities in the run at the same times, and their residuals.
 //!
 //! A second simulation of the run's scenario follows the run, like the exact motion does, and reads it at the measured
 //! times. It also records the quantities that were measured and that the run's own recording does not have, so that their
@@ -24,7 +24,7 @@ const IN_A_RECORDING: usize = Curve::OF_POINT.len();
 /// Steps between two looks at the clock.
 const BETWEEN_LOOKS: u64 = 32;
 
-/// Measured data, and what the run says of them so far.
+/// Measured data, and the run's values for them so far.
 pub struct Beside {
     name: String,
     measured: Arc<Measured>,
@@ -32,7 +32,7 @@ pub struct Beside {
     simulation: Simulation,
     reader: Reader<Arc<Series>>,
     recorded: Vec<Recording>,
-    /// What was recorded of the run before.
+    /// The recording of the run before.
     before: Vec<Recording>,
     /// Whether the run's numbers stopped being finite on the way.
     has_broken: bool,
@@ -85,7 +85,7 @@ impl Beside {
         &self.compared
     }
 
-    /// The curve of the quantity of this index where it is recorded here: the recording, and in which place of it.
+    /// The recording that has the quantity of this index, and its curve there; `None` where it is not recorded here.
     pub fn recorded(&self, index: usize) -> Option<(&Recording, Curve)> {
         self.place_of(index, &self.recorded)
     }
@@ -115,7 +115,7 @@ impl Beside {
         })
     }
 
-    /// Begins again with the run of `scenario`. What was recorded of the run before stays, where `keeps` says so.
+    /// Begins again with the run of `scenario`. If `keeps`, the recording so far stays as that of the run before.
     pub(super) fn begin_again(&mut self, scenario: &Arc<Scenario>, keeps: bool) {
         if keeps {
             self.before = std::mem::take(&mut self.recorded);
@@ -141,7 +141,7 @@ impl Beside {
         self.reader.forget_after(self.simulation.now().time_s());
     }
 
-    /// Whether it has not come as far as a run at `step`.
+    /// Whether it is behind a run that stands at `step`.
     pub(super) fn is_behind(&self, step: u64) -> bool {
         let has_to_go_on = !self.recorded.is_empty() || self.reader.next_time_s().is_some();
         has_to_go_on && !self.has_broken && self.simulation.step_number() < step
@@ -161,7 +161,7 @@ impl Beside {
             }
         }
         if !self.has_broken && self.simulation.step_number() <= step {
-            // What was measured at the very step. Where the next step breaks down, the run says so.
+            // The value measured at this very step. Where the next step breaks down, the run says so.
             self.has_broken = self.reader.take(&self.simulation).is_err();
         }
     }
@@ -183,7 +183,7 @@ impl Beside {
         }
     }
 
-    /// Holds the data against the run up to `now_s`.
+    /// Compares the data with the run up to `now_s`.
     pub(super) fn compare(&mut self, now_s: f64) {
         let scenario = self.simulation.scenario();
         let traced = &scenario.body.mechanics.points()[scenario.trace].at;
@@ -257,7 +257,7 @@ impl Player {
         }
     }
 
-    /// Holds the data against the run as far as it has come.
+    /// Compares the data with the run as far as it has come.
     pub(super) fn compare(&mut self) {
         let step = self.playback.step_number();
         let now_s = self.playback.run().now().time_s;

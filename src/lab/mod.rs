@@ -187,7 +187,7 @@ impl Lab {
         if let Some(halt) = halt {
             self.halted(halt);
         }
-        self.changed |= self.on_top.take_news();
+        self.changed |= self.on_top.take_what_was_read();
         self.open_what_was_read();
         self.follow_export();
         if let Some(trouble) = self.keeper.as_ref().and_then(Keeper::trouble) {

@@ -70,7 +70,8 @@ pub fn find(name: &str) -> Result<Named<'_>, String> {
 }
 
 impl Lab {
-    /// The number called `name`, as the lab has read it last; `None` if there is none of that name, or none now.
+    /// The number called `name`, as the lab has read it last; `None` if there is no such number, or if it has no value
+    /// now.
     pub fn number(&self, name: &str) -> Option<f64> {
         let readouts = &self.player.reading().readouts;
         match find(name).ok()?.of(self.player.run()) {

@@ -210,8 +210,8 @@ impl OnTop {
     }
 
     /// Updates the browser with what its background thread has read; returns whether that was anything.
-    pub(super) fn take_news(&mut self) -> bool {
-        self.browser.take_news()
+    pub(super) fn take_what_was_read(&mut self) -> bool {
+        self.browser.take_what_was_read()
     }
 
     /// Reads the selected file and chooses it to be opened: [`take_chosen`](Self::take_chosen) returns what it holds.

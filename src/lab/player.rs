@@ -23,9 +23,9 @@ use std::time::Duration;
 
 /// The share of the traces' window that may pass between two readings; a faster run is read for every frame.
 const FAST: f64 = 0.1;
-/// A window of the fast motion that passes in less than this, s, stands still meanwhile.
+/// If the window of the fast motion passes in less wall time than this, s, the strip stands still for a while.
 const PASSES_S: f64 = 8.0;
-/// How long it stands still.
+/// How long the strip then stands still.
 const HOLD: Duration = Duration::from_secs(1);
 
 /// The run, its ghost, its latest reading and the advice about it.
@@ -53,7 +53,7 @@ pub struct Player {
     at_cursor: Option<(Arc<Scenario>, Sample)>,
     /// The step to which the run is on its way by itself; out of date where other steps were asked for since.
     pub(super) heading: Option<Heading>,
-    /// What the last edit that began the run anew was played to; `None` if another act came after it.
+    /// The time to which the last edit that began the run anew had it played; `None` if another act came after it.
     pub(super) replay: Option<Replay>,
 }
 
@@ -128,15 +128,15 @@ impl Player {
         self.is_fast(window_s) || now >= self.read_at + reading::EVERY
     }
 
-    /// Whether the run is so fast that its pictures would differ from numbers that are read a few times a second.
+    /// Whether the run is so fast that numbers read a few times a second would not belong to the picture of each frame.
     fn is_fast(&self, window_s: f64) -> bool {
         let passes_s = reading::EVERY.as_secs_f64();
         self.playback.is_flat_out()
             || matches!(self.playback.speed(), Speed::Times(speed) if speed * passes_s > FAST * window_s)
     }
 
-    /// Reads the numbers, and begins to look for advice if they are doubtful. Returns what is to be said where another curve
-    /// of the same run has become the one of the fast motion.
+    /// Reads the numbers, and begins to look for advice if they are doubtful. Returns a message where the strip of the
+    /// fast motion now shows another curve of the same run.
     pub(super) fn read(&mut self, now: Duration, view: &View) -> Option<&'static str> {
         self.reading = self.playback.read();
         self.read_at = now;
@@ -176,8 +176,8 @@ impl Player {
         self.at_cursor.as_ref().map(|(_, sample)| sample)
     }
 
-    /// Chooses the time that the strip of the fast motion shows. While that would pass too fast to be seen, it is chosen
-    /// once in a while only.
+    /// Chooses the window of the strip of the fast motion. While the window passes too fast to be seen, it is chosen
+    /// only once in a while.
     fn choose_detail(&mut self, now: Duration, view: &View) {
         let is_fast = match self.playback.speed() {
             _ if !self.playback.is_running() => false,
@@ -200,7 +200,7 @@ impl Player {
             },
         };
         let (run, readouts) = (self.playback.run(), &self.reading.readouts);
-        // The length that another run had is none for this one.
+        // The window of another run says nothing about this one.
         let before = self.has_detail.then_some(&self.detail);
         self.detail = Detail::new(run, readouts, &wanted, before);
         (self.detail_at, self.has_detail) = (now, true);

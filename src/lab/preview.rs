@@ -1,12 +1,13 @@
-//! What the selected entry of the browser holds, found out in the background: a file may take long to read and to check.
+//! The preview of the entry that is selected in the browser. A thread reads it, since a file may take long to read and
+//! to check.
 
 use crate::scenario::{Document, Scenario};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// How long a selection waits for its preview before the picture says that it is being read: what is read at once
-/// shows at once.
+/// How long the lab waits for a preview before it shows that the entry is being read. A file that is read faster is
+/// shown at once.
 pub(super) const AT_ONCE: Duration = Duration::from_millis(15);
 
 /// What is known of the selected entry.
@@ -14,108 +15,110 @@ pub(super) const AT_ONCE: Duration = Duration::from_millis(15);
 pub enum Preview {
     /// It is being read.
     Loading,
-    /// It cannot be looked into now.
+    /// It cannot be read: the system gives no thread.
     Unknown,
-    /// What it holds, or why it cannot be opened.
+    /// Its scenario, or why it cannot be opened.
     Known(Arc<Result<Scenario, String>>),
 }
 
-/// Reads one scenario after the other on a thread of its own; what was asked for before the last is not read at all.
+/// Reads scenarios on a thread of its own, one after the other. A request that has not begun when the next one comes is
+/// dropped.
 #[derive(Debug, Default)]
 pub struct Loader {
-    desk: Option<Arc<Desk>>,
+    shared: Option<Arc<Shared>>,
 }
 
 #[derive(Debug, Default)]
-struct Desk {
-    order: Mutex<Order>,
+struct Shared {
+    task: Mutex<Task>,
     changed: Condvar,
 }
 
 #[derive(Debug, Default)]
-struct Order {
-    /// What is to be read next.
+struct Task {
+    /// The scenario to be read next.
     wanted: Option<String>,
-    /// What was asked for last, once it is known.
+    /// The answer to the last request, once there is one.
     known: Option<Arc<Result<Scenario, String>>>,
-    has_news: bool,
+    is_new: bool,
     is_over: bool,
 }
 
 impl Loader {
-    /// Asks for the scenario `name`: the answer to anything asked before is dropped.
+    /// Requests the scenario `name`. The answer to any earlier request is dropped.
     pub fn ask(&mut self, name: &str) -> Preview {
-        let Some(desk) = self.desk() else {
+        let Some(shared) = self.started() else {
             return Preview::Unknown;
         };
-        let mut order = desk.lock();
-        (order.wanted, order.known) = (Some(name.to_owned()), None);
-        desk.changed.notify_all();
-        let is_waiting = |order: &mut Order| order.known.is_none();
-        let waited = desk.changed.wait_timeout_while(order, AT_ONCE, is_waiting);
-        let (mut order, _) = waited.unwrap_or_else(PoisonError::into_inner);
-        order.has_news = false;
-        order.known.clone().map_or(Preview::Loading, Preview::Known)
+        let mut task = shared.lock();
+        (task.wanted, task.known) = (Some(name.to_owned()), None);
+        shared.changed.notify_all();
+        let is_waiting = |task: &mut Task| task.known.is_none();
+        let waited = shared.changed.wait_timeout_while(task, AT_ONCE, is_waiting);
+        let (mut task, _) = waited.unwrap_or_else(PoisonError::into_inner);
+        task.is_new = false;
+        task.known.clone().map_or(Preview::Loading, Preview::Known)
     }
 
-    /// The answer to what was asked last, if it has come since.
-    pub fn news(&self) -> Option<Preview> {
-        let mut order = self.desk.as_ref()?.lock();
-        let has_news = std::mem::take(&mut order.has_news);
-        order.known.clone().filter(|_| has_news).map(Preview::Known)
+    /// The answer to the last request, if it has come since this was last called.
+    pub fn take_answer(&self) -> Option<Preview> {
+        let mut task = self.shared.as_ref()?.lock();
+        let is_new = std::mem::take(&mut task.is_new);
+        task.known.clone().filter(|_| is_new).map(Preview::Known)
     }
 
-    /// The thread's desk, the thread begun if there is none; `None` where none can be had.
-    fn desk(&mut self) -> Option<Arc<Desk>> {
-        if self.desk.is_none() {
-            let desk = Arc::new(Desk::default());
-            let its_own = Arc::clone(&desk);
+    /// The state that is shared with the thread, which is started if there is none; `None` where the system gives no
+    /// thread.
+    fn started(&mut self) -> Option<Arc<Shared>> {
+        if self.shared.is_none() {
+            let shared = Arc::new(Shared::default());
+            let of_thread = Arc::clone(&shared);
             let thread = thread::Builder::new().name("preview".to_owned());
-            thread.spawn(move || its_own.work()).ok()?;
-            self.desk = Some(desk);
+            thread.spawn(move || of_thread.work()).ok()?;
+            self.shared = Some(shared);
         }
-        self.desk.clone()
+        self.shared.clone()
     }
 }
 
 impl Drop for Loader {
     fn drop(&mut self) {
-        if let Some(desk) = &self.desk {
-            desk.lock().is_over = true;
-            desk.changed.notify_all();
+        if let Some(shared) = &self.shared {
+            shared.lock().is_over = true;
+            shared.changed.notify_all();
         }
     }
 }
 
-impl Desk {
-    fn lock(&self) -> MutexGuard<'_, Order> {
-        self.order.lock().unwrap_or_else(PoisonError::into_inner)
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, Task> {
+        self.task.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Reads what is asked for, until nobody asks any more.
+    /// Reads each requested scenario, until the loader is dropped.
     fn work(&self) {
         loop {
-            let is_idle = |order: &mut Order| order.wanted.is_none() && !order.is_over;
+            let is_idle = |task: &mut Task| task.wanted.is_none() && !task.is_over;
             let waited = self.changed.wait_while(self.lock(), is_idle);
-            let mut order = waited.unwrap_or_else(PoisonError::into_inner);
-            if order.is_over {
+            let mut task = waited.unwrap_or_else(PoisonError::into_inner);
+            if task.is_over {
                 return;
             }
-            let Some(name) = order.wanted.take() else {
+            let Some(name) = task.wanted.take() else {
                 continue;
             };
-            drop(order);
+            drop(task);
             let known = Arc::new(read(&name));
-            let mut order = self.lock();
-            if order.wanted.is_none() {
-                (order.known, order.has_news) = (Some(known), true);
+            let mut task = self.lock();
+            if task.wanted.is_none() {
+                (task.known, task.is_new) = (Some(known), true);
                 self.changed.notify_all();
             }
         }
     }
 }
 
-/// What the scenario `name` holds, or why it cannot be opened.
+/// The scenario `name`, or why it cannot be opened.
 pub fn read(name: &str) -> Result<Scenario, String> {
     Document::open(name)
         .and_then(|document| document.scenario())
@@ -134,7 +137,7 @@ mod tests {
                 Preview::Unknown => panic!("no thread"),
                 Preview::Loading => {
                     thread::yield_now();
-                    preview = loader.news().unwrap_or(Preview::Loading);
+                    preview = loader.take_answer().unwrap_or(Preview::Loading);
                 }
             }
         }
@@ -153,7 +156,7 @@ mod tests {
                 known.as_ref().as_ref().unwrap().file.title,
                 read("method-2").unwrap().file.title
             );
-            assert!(loader.news().is_none(), "it is told once");
+            assert!(loader.take_answer().is_none(), "it is told once");
         }
     }
 

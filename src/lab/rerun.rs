@@ -1,5 +1,5 @@
-//! The runs beside the present one: the run before an edit as a ghost, the pinned run, and the way of a run that was begun
-//! anew to the time at which the lab stood.
+//! The runs beside the present one: the run before an edit, kept as a ghost, and the pinned run. And the replay of a
+//! run that was begun anew, to the time at which the lab stood.
 
 use super::carry_out::Done;
 use super::player::Player;
@@ -22,7 +22,7 @@ pub(super) struct Heading {
     goes_on: bool,
 }
 
-/// What a run that was begun anew is played to.
+/// The time to which a run that was begun anew is played.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Replay {
     /// The time at which the lab stood, s.
@@ -43,7 +43,7 @@ pub(super) enum Pinned {
     Returning(GhostToBe),
 }
 
-/// What is needed to pin a run again.
+/// What a session keeps of a pinned run, to pin it again.
 #[derive(Clone)]
 pub(super) enum Reference {
     /// It is the present run.
@@ -139,8 +139,9 @@ impl Player {
 
     /// The step to be recorded when an edit leaves the present run.
     pub(super) fn step_to_leave_at(&self) -> u64 {
-        // The new run begins as the old one moves at the step on the screen, even if that is on its way back to another
-        // step; a run that is played to the time at which the lab stood moves there as it does here.
+        // The new run begins with the settings that the old one has at the step on the screen, even if the old one is
+        // on its way back to another step. A run that is being replayed to the time at which the lab stood has the same
+        // settings there as here.
         let replaying = self.heading().filter(|heading| heading.is_replay);
         replaying.map_or(self.playback.step_number(), |heading| heading.step)
     }
@@ -169,8 +170,8 @@ impl Player {
         recorded.map_or(0.0, |whole| whole.end_s)
     }
 
-    /// The time to which the run is to be played after an edit: where it stands or is on its way to; at step 0 the latest
-    /// time that it has reached; with `is_again` that of the edit before.
+    /// The time to which the run is to be played after an edit. It is where the run stands or is on its way to; at step
+    /// 0 it is the latest time that the run has reached; with `is_again` it is that of the edit before.
     fn to_be_played_to(&self, is_again: bool) -> Replay {
         if let Some(replay) = self.replay.filter(|_| is_again) {
             return replay;
@@ -205,7 +206,7 @@ impl Player {
         }
     }
 
-    /// Lets the run go on that has arrived where it was on its way to, if it went on before the edit.
+    /// Lets the run go on once its replay has arrived, if it went on before the edit.
     pub(super) fn has_halted(&mut self, halt: Halt) {
         let heading = self.heading.take();
         let here = self.playback.step_number();
@@ -218,8 +219,8 @@ impl Player {
         }
     }
 
-    /// Keeps the present run as the ghost, if it was played far enough, unless `keeps_ghost`. Where it is pinned, it is
-    /// drawn as that instead.
+    /// Keeps the present run as the ghost if it was played far enough, unless `keeps_ghost`. A pinned run does not
+    /// become the ghost, since it is drawn as the pinned run.
     fn leave_ghost(&mut self, keeps_ghost: bool) {
         let is_pinned = matches!(self.pinned, Some(Pinned::Present));
         self.keep_pinned();

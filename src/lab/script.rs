@@ -15,11 +15,11 @@ use std::time::{Duration, Instant};
 /// How often to look whether an export is complete while there is nothing else to do.
 const LOOK: Duration = Duration::from_millis(2);
 
-/// What the keys do with one command that waits, and with several.
+/// The keys of a script that waits, for one command and for several.
 pub(super) const GO_ON_WITH_IT: &str = "space goes on with it, Esc leaves it out";
 pub(super) const GO_ON_WITH_THEM: &str = "space goes on with them, Esc leaves them out";
 
-/// How long steps are taken before the caller is asked whether to go on.
+/// How long steps are taken before the caller decides whether to go on.
 const PART: Duration = Duration::from_millis(100);
 
 /// The commands that are not carried out yet.
@@ -168,8 +168,8 @@ impl Lab {
         self.finish_script_while(|_, _| ControlFlow::Continue(()))
     }
 
-    /// As [`finish_script`](Self::finish_script), and calls `go_on` several times a second with the step that the run is
-    /// at and the one at which it stops: what is left of the commands is dropped when that breaks.
+    /// As [`finish_script`](Self::finish_script), and calls `go_on` several times a second with the step at which the
+    /// run is and the one at which it will stop. When `go_on` breaks, the other commands are dropped.
     ///
     /// # Errors
     /// As [`finish_script`](Self::finish_script).
@@ -212,8 +212,8 @@ impl Lab {
         }
     }
 
-    /// Pauses the script. Its command under way is carried out again when it goes on: a run to the same step, until the
-    /// same condition holds, for what is left of a wait. An export goes on meanwhile.
+    /// Pauses the script. When it goes on, the command under way is carried out again: a run goes to the same step or
+    /// until the same condition holds, a wait lasts for what was left of it. An export goes on meanwhile.
     pub(super) fn pause_script(&mut self) {
         let playback = &self.player.playback;
         let again = match &self.script.under_way {
@@ -238,7 +238,7 @@ impl Lab {
         }
     }
 
-    /// Lets a script go on that waits, as soon as the run is back at the step where a session left it.
+    /// Lets a waiting script go on, as soon as the run is back at the step where a session left it.
     pub(super) fn release_script(&mut self) {
         if !std::mem::take(&mut self.script.is_held) {
             return;

@@ -1,4 +1,4 @@
-//! Which files of the browser's list hold no run, found out in the background: a file may take long to read.
+//! Finds out which files of the browser's list hold no run. A thread does it, since a file may take long to read.
 
 use std::collections::HashSet;
 use std::fs::File;
@@ -7,7 +7,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-/// Bytes of a file in which its `[motion]` is looked for; a body of many points may stand before it.
+/// How many bytes of a file are searched for its `[motion]`; a body of many points may stand before it.
 const HEAD: u64 = 1 << 20;
 
 /// A search, in progress or finished.
@@ -42,8 +42,8 @@ impl Sorting {
     }
 }
 
-/// Whether the file `name` may be opened: a scenario has its motion in its first lines, a CSV that a run was exported to has
-/// it in its header. A file that cannot be read is taken for one, so that the reason is told where it is selected.
+/// Whether the file `name` may hold a run: its first mebibyte names `motion`, as a table or key of a scenario or in the
+/// header of an exported CSV. A file that cannot be read counts too: the preview then says why.
 fn may_hold_run(name: &str) -> bool {
     let mut head = Vec::new();
     let read = File::open(name).and_then(|file| file.take(HEAD).read_to_end(&mut head));

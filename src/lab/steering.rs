@@ -1,5 +1,5 @@
-//! What the lab does with an action: it carries out the commands that the action stands for, or changes the interface,
-//! which no command does: dialogs, the browser, the focus, dots and colours.
+//! Carries actions out. An action stands for commands, or it changes the interface, which no command does: dialogs, the
+//! browser, the focus, dots and colours.
 
 use super::action::{Action, Direction, LessonKey};
 use super::carry_out::{Answer, Done};
@@ -42,7 +42,7 @@ impl Lab {
         None
     }
 
-    /// Says what `action` has hidden, and the key that brings it back.
+    /// Says which part of the screen `action` has hidden, and the key that shows it again.
     fn say_what_is_hidden(&mut self, action: Action) {
         let (part, hidden, shown) = match action {
             Action::ToggleHealth => (
@@ -60,7 +60,7 @@ impl Lab {
         self.say(if self.view.hides(part) { hidden } else { shown });
     }
 
-    /// Carries out `command` as a key does: what was said before goes, and its message is shown.
+    /// Carries out `command` as a key does: it removes the present message and shows that of the command.
     pub fn carry_out_now(&mut self, command: &Command) {
         self.on_top.clear();
         self.carry_out_all(std::slice::from_ref(command));
@@ -240,9 +240,9 @@ impl Lab {
         }
     }
 
-    /// Closes or stops one thing: what lies on top, the script, the steps asked for, the cursor, the pane that fills the
-    /// screen; it turns from the parameters back to the run; it stops the export. If there is none of these, it says how to
-    /// leave, unless the key has already removed a message or a count.
+    /// Closes or stops the first of these that there is: what lies on top, the script, the steps asked for, the cursor,
+    /// the pane that fills the screen, the focus on the parameters, the export. If there is none of these, it says how
+    /// to leave, unless the key has already removed a message or a count.
     fn close(&mut self, cleared: &Cleared) -> Option<Request> {
         let is_found = self.on_top.mode() == Mode::Find;
         let is_filtered = self.on_top.mode() == Mode::Lab && self.view.focus == Pane::PARAMETERS;
@@ -262,12 +262,13 @@ impl Lab {
         } else if self.view.filled {
             self.carry_out_all(&[Command::Fill(None)]);
             self.turn_to_sheet();
-            // The values fill a screen that has no place for them beside the run: they are left with it.
+            // On a screen that has no place for the values beside the run, they fill it: leaving them shows the run
+            // again.
             if !self.view.side_by_side.contains(&Pane::PARAMETERS) {
                 self.view.leave_parameters();
             }
         } else if cleared.count.is_none() && self.view.leave_parameters() {
-            // Back to the run, whatever message was removed with it.
+            // The focus returns to the run even if the key has removed a message too.
         } else if cleared.anything {
             // The key has done something already.
         } else if self.files.is_exporting() {
@@ -280,7 +281,7 @@ impl Lab {
         None
     }
 
-    /// Turns to the values, to type a part of the name of one.
+    /// Moves the focus to the values and begins to search for one by a part of its name.
     fn find_value(&mut self) {
         self.view.turn_to(Pane::PARAMETERS);
         self.values.forget_name();

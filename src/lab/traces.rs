@@ -1,5 +1,4 @@
-//! How the traces are looked at: the time that they show, how far their values are magnified, and the cursor at which
-//! they are read off.
+//! The view of the traces: the time that they show, the magnification of their values, and the cursor.
 
 use super::Lab;
 use super::action::Direction;
@@ -9,7 +8,7 @@ use crate::observe::live::LiveRun;
 use crate::observe::lookup;
 use crate::observe::strip::Strip;
 
-/// The part of the window by which a key moves the cursor, and that by which it moves the window.
+/// The share of the window by which a key moves the cursor, and by which it moves the window.
 const CURSOR_SHARE: f64 = 0.02;
 const PAN_SHARE: f64 = 0.5;
 

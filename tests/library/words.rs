@@ -139,7 +139,7 @@ fn the_list_of_files_has_those_that_hold_a_run() {
     write("table.csv", "a,b\n1,2\n");
     let mut browser = gyrolab::lab::browser::Browser::new(folder.path(), "method-2");
     while browser.others() == 0 {
-        browser.take_news();
+        browser.take_what_was_read();
         thread::sleep(Duration::from_millis(5));
     }
     let files = browser.shown().into_iter().filter(|entry| entry.is_file);

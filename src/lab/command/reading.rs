@@ -1,4 +1,4 @@
-//! Reads the values of the commands that act on the run, and what those of all commands consist of.
+//! Reads the values of the commands that act on the run, and the parts of which the values of all commands consist.
 
 use super::write::map;
 use super::{Command, Force, Place, PushChoice};
@@ -37,7 +37,7 @@ pub(super) fn checked(kind: Kind, value: &Value) -> Result<&Value, Vec<Problem>>
     }
 }
 
-/// `value`, of which the scenario's key `view.name` says what it may be.
+/// `value`, checked as the value of the scenario's key `view.name`.
 pub(super) fn of_view<'a>(name: &str, value: &'a Value) -> Result<&'a Value, Vec<Problem>> {
     match keys::find(&format!("view.{name}")) {
         Ok((_, kind)) => checked(kind, value),
@@ -82,7 +82,7 @@ pub(super) fn count(value: &Value) -> Result<u32, Vec<Problem>> {
         .unwrap_or(1))
 }
 
-/// The fields of a table, no other than `known`.
+/// The fields of a table, of which only `known` are allowed.
 pub(super) fn fields<'a>(value: &'a Value, known: &[&str]) -> Result<&'a Table, Vec<Problem>> {
     let Value::Table(table) = value else {
         return wrong(value, format!("must be a table of {}", known.join(", ")));
@@ -100,7 +100,7 @@ pub(super) fn fields<'a>(value: &'a Value, known: &[&str]) -> Result<&'a Table, 
     }
 }
 
-/// What `read` makes of the field `name`, where there is one.
+/// The value that `read` returns for the field `name`; `None` where there is no such field.
 pub(super) fn field<T>(
     table: &Table,
     name: &str,
@@ -148,7 +148,7 @@ pub(super) fn set(value: &Value) -> Read {
                     format!("would be set as a whole: write each key in quotes, \"{inner}\"");
                 problems.push(Problem::at(key.clone(), rule));
             }
-            // A whole push, or another table: what is in it is checked where it comes to stand.
+            // A whole push, or another table: it is checked when it is set.
             Err(_) if is_table && keys::is_table(key) => {}
             Err(rule) => problems.push(Problem::at(quoted(key), rule)),
             Ok((_, kind)) => {
@@ -172,7 +172,7 @@ fn first_inside(key: &str, value: &Value) -> String {
     }
 }
 
-/// A dotted name, which is one key of the table that it stands in.
+/// `key` as a TOML table has it as one key: in quotes where it has dots.
 fn quoted(key: &str) -> String {
     match key.contains('.') {
         true => format!("\"{key}\""),
@@ -315,7 +315,7 @@ pub(super) fn whole(table: &Table, name: &str, least: i64) -> Result<Option<u64>
     Ok(number.and_then(|number| u64::try_from(number).ok()))
 }
 
-/// The table that stands for a path alone.
+/// The value as a table: a path alone stands for `{ path = ... }`.
 pub(super) fn with_path(value: &Value) -> Value {
     match value {
         Value::String(_) => map([("path", value.clone())]),

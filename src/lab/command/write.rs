@@ -136,7 +136,7 @@ fn file_written(path: &str, to_step: Option<u64>, force: bool) -> Table {
     table
 }
 
-/// The path alone where the table holds nothing else.
+/// The path alone, where the table has no other entry.
 fn short(mut table: Table) -> Value {
     match table.len() {
         1 => table.remove("path").unwrap_or(Value::Table(table)),

@@ -1,16 +1,16 @@
-//! Measured data held against a run: each value with what the run says of it, and all of them in a few numbers.
+//! Measured data compared with a run: each value beside the run's, and statistics of all.
 
 use crate::measured::{Curve, Place, Quantity, Series, places, residuals};
 use nalgebra::Vector3;
 
-/// Measured data and what the run says of them.
+/// Measured data, each value beside the run's.
 #[derive(Clone, Debug, Default)]
 pub struct Compared {
     /// The values of each column, in the order of time.
     pub curves: Vec<Vec<Shown>>,
     /// Where the traced point was measured to be, from above; empty where the columns do not tell.
     pub places: Vec<Place>,
-    /// All of it in a few numbers.
+    /// Statistics of the residuals.
     pub sum: Sum,
 }
 
@@ -23,11 +23,11 @@ pub struct Shown {
     pub value: f64,
     /// One standard uncertainty of it, where it is stated.
     pub sigma: Option<f64>,
-    /// What the run says; `None` for times that it has not reached.
+    /// The value in the run; `None` for times that it has not reached.
     pub model: Option<f64>,
 }
 
-/// How far data and run are apart, in a few numbers.
+/// Statistics of the residuals of all values.
 #[derive(Clone, Debug, Default)]
 pub struct Sum {
     /// How many values were measured.
@@ -88,13 +88,13 @@ fn reached(series: &Series, curve: &Curve, now_s: f64) -> usize {
     curve.points.partition_point(is_reached)
 }
 
-/// The points of `curve`, of which the first have the values `model`.
+/// The points of `curve`. The first of them have the values `model` in the run.
 fn shown(series: &Series, curve: &Curve, model: &[f64]) -> Vec<Shown> {
     let held = residuals(Some(curve.quantity), &curve.points, model);
     let mut shown: Vec<Shown> = Vec::with_capacity(curve.points.len());
     for (index, point) in curve.points.iter().enumerate() {
         let residual = held.get(index);
-        // A direction that the run has not reached is taken at the turn that is nearest to the last one.
+        // A direction that the run has not reached gets the number of turns that is nearest to the last one.
         let value = match (residual, shown.last()) {
             (Some(residual), _) => residual.measured,
             (None, Some(before)) if curve.quantity.is_direction => {

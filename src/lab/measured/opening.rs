@@ -83,8 +83,8 @@ impl Lab {
         }))
     }
 
-    /// After another scenario has been opened in place of `before`: puts the data beside its run that its `[view]` names,
-    /// and takes those away that the `[view]` of the one before named.
+    /// To be called after another scenario was opened in place of `before`. Puts the data that its `[view]` names
+    /// beside its run, and removes those that the `[view]` of `before` named.
     pub(in crate::lab) fn measure_as_opened(&mut self, before: &Scenario) {
         let named = |scenario: &Scenario| scenario.file.view.as_ref()?.measured.clone();
         let scenario = self.player.run().scenario();
@@ -110,8 +110,8 @@ impl Lab {
         }
     }
 
-    /// The measured data beside the run, as a session keeps them: by name, and a file's name with all of its folders where
-    /// the lab is not confined to one.
+    /// The name of the measured data beside the run, for a session. A file has its full path, unless the lab is
+    /// confined to a folder.
     pub(in crate::lab) fn measured_to_keep(&self) -> Option<String> {
         let name = self.player.measured().map(Beside::name)?;
         let is_whole = shipped::find(name).is_some() || self.files.confined().is_some();
@@ -120,7 +120,7 @@ impl Lab {
         Some(whole.unwrap_or_else(|| name.to_owned()))
     }
 
-    /// Puts the measured data back that a session has kept; what is to be told where that cannot be.
+    /// Puts the measured data of a session beside the run again. Returns a message where that is not possible.
     pub(in crate::lab) fn measure_as_kept(&mut self, name: &str) -> Option<String> {
         let problems = self.put_beside(name, false).err()?;
         let why = problems.in_one_line();

@@ -51,7 +51,8 @@ pub struct View {
     pub detail_s: Option<f64>,
     /// Time at the left edge of the traces, s; `None`: they follow the run.
     pub since_s: Option<f64>,
-    /// How many times the values of the traces are magnified, about the cursor or else about the run's own.
+    /// How many times the values of the traces are magnified: about the value at the cursor, or else about the run's
+    /// present one.
     pub magnified: f64,
     /// The step at which the traces are read off.
     pub cursor: Option<u64>,
@@ -84,7 +85,7 @@ pub struct View {
     pub beside: Option<Pane>,
     /// The text beside the panes.
     pub sheet: Option<Arc<Sheet>>,
-    /// The first row of it that is shown; `None`: as its paragraph that is to be seen wants it.
+    /// The first row of the text that is shown; `None`: the row that brings its important paragraph into view.
     pub sheet_scrolled: Option<usize>,
     /// Whether measured data stand beside the run: a line then tells of them.
     pub measured: bool,
@@ -164,7 +165,7 @@ impl View {
         }
         match file.camera {
             Some(camera) => self.look_from(Camera::of(camera)),
-            // Another run is not seen from where the last one happened to be seen well.
+            // The camera of the last run need not suit another one.
             None if !self.camera_is_chosen => self.camera = Camera::default(),
             None => {}
         }

@@ -11,7 +11,7 @@ use crate::scenario::screen::{LAST, WHY};
 pub enum Page {
     /// The phase of this number, from 1; the last one where there are fewer.
     Number(usize),
-    /// The first phase of this name; the first of all where none has it.
+    /// The first phase of this name; the first phase of all if no phase has it.
     Named(&'static str),
     /// The last phase.
     Last,
@@ -38,7 +38,7 @@ impl Page {
         }
     }
 
-    /// What `choice` of a file stands for.
+    /// The page that `choice` of a file stands for.
     pub fn of(choice: &Choice) -> Option<Self> {
         match choice {
             Choice::Number(number) => usize::try_from(*number).ok().map(Self::Number),
@@ -46,7 +46,7 @@ impl Page {
         }
     }
 
-    /// The same as files have it.
+    /// The page as files write it.
     pub fn choice(self) -> Choice {
         match self {
             Self::Number(number) => Choice::Number(number as u64),
@@ -56,7 +56,7 @@ impl Page {
         }
     }
 
-    /// The index of its phase in `workings`; `None` for the page that shows none, and where there is none.
+    /// The index of its phase in `workings`; `None` for the page that shows no phase, and where there are no phases.
     pub fn index(self, workings: &Workings) -> Option<usize> {
         let last = workings.phases().count().checked_sub(1)?;
         match self {
@@ -72,7 +72,7 @@ impl Page {
 }
 
 impl View {
-    /// Takes page and sum of the step pane from `[view]`; what it does not have is as usual.
+    /// Sets page and sum of the step pane from `[view]`, or to their defaults.
     pub(super) fn fit_step(&mut self, file: &ViewFile) {
         self.page = file.phase.as_ref().and_then(Page::of).unwrap_or_default();
         self.sum_to = match &file.sum_to {
