@@ -16,9 +16,9 @@ pub const EVERY: Duration = Duration::from_millis(250);
 pub struct Reading {
     /// The run's numbers, as the table of readouts has them.
     pub readouts: Readouts,
-    /// The state at that time; where the scheme has broken down, the last one in which the body was a rigid one.
+    /// The state at that time. Where the scheme has broken down, the last state whose orientation is a rotation.
     pub state: State,
-    /// The step of that state, where the scheme has broken down since.
+    /// The step of that state, if the scheme has broken down since; else `None`.
     pub last_whole: Option<u64>,
     /// Whether the run goes on, and how fast.
     pub pace: String,

@@ -1,4 +1,4 @@
-//! Markdown becomes a lesson.
+//! Reads a lesson from its Markdown.
 //!
 //! A lesson begins with its title, a level-1 heading. Each level-2 heading begins a page. A fenced block with `lesson`,
 //! `lab`, `task`, `predict`, `compare` or `check` behind its fence holds TOML, one with `notes` Markdown for the teacher;
@@ -17,12 +17,12 @@ use crate::scenario::{Problem, Problems};
 use crate::text::printable::is_steering;
 use std::collections::BTreeSet;
 
-/// The most lines of one.
+/// The most lines of a lesson.
 const MOST_LINES: usize = 20_000;
-/// The most blocks of one, pages counted.
+/// The most blocks of a lesson, its pages included.
 const MOST_BLOCKS: usize = 1000;
 
-/// Takes `text` as the lesson that the file `origin` holds.
+/// Reads `text`, the content of the file `origin`, as a lesson.
 ///
 /// # Errors
 /// Everything that is wrong with it, in the order of the file.
@@ -44,7 +44,7 @@ pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
     assembly.finish()
 }
 
-/// Holds that `text` is short enough and has no character that could steer a terminal.
+/// Checks that `text` is short enough and has no character that could steer a terminal.
 fn plain(text: &str, lines: &Lines) -> Result<(), Problem> {
     let count = text.matches('\n').count();
     if count > MOST_LINES {
@@ -64,7 +64,7 @@ fn plain(text: &str, lines: &Lines) -> Result<(), Problem> {
     }
 }
 
-/// A lesson while it is put together from the elements of its file.
+/// A lesson that is being put together from the elements of its file.
 struct Assembly<'a> {
     origin: &'a str,
     title: Option<String>,
@@ -72,7 +72,8 @@ struct Assembly<'a> {
     minutes: Option<u32>,
     introduction: Vec<Block>,
     pages: Vec<Page>,
-    /// The setups by their lines, which were read before everything else: they tell which numbers are kept.
+    /// The `lab` and `task` blocks by their lines. They were read before everything else, since they define the names
+    /// of the numbers that are kept.
     setups: Vec<Setup>,
     names: Names,
     predictions: BTreeSet<String>,
@@ -182,7 +183,7 @@ impl<'a> Assembly<'a> {
         self.title.get_or_insert_with(|| words.to_owned());
     }
 
-    /// Complains once if nothing so far has been the title.
+    /// Adds a problem, once, if the file has no title so far.
     fn need_title(&mut self, line: usize) {
         if self.title.is_none() {
             let rule = "comes before the title: a lesson begins with # and its title";
@@ -198,7 +199,7 @@ impl<'a> Assembly<'a> {
         read.map_err(|problems| self.refuse_all(problems)).ok()
     }
 
-    /// Refuses lines that are meant as headings and are text: Markdown wants a blank behind the signs.
+    /// Refuses lines that look like headings but are text: Markdown wants a blank after the signs.
     fn refuse_lost_headings(&mut self, source: &str, line: usize) {
         for (at, text) in (line..).zip(source.lines()) {
             let words = text.trim_start_matches('#');
@@ -345,7 +346,7 @@ impl<'a> Assembly<'a> {
         })
     }
 
-    /// Holds that the prediction of `compare` is asked for before it.
+    /// Checks that the prediction of `compare` is asked for before it.
     fn check_compare(&mut self, compare: &Compare) {
         let line_of = |page: &Page| {
             let mut asked = page.predicts();

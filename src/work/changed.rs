@@ -10,8 +10,8 @@ pub fn look_at(scenario: &Scenario) -> Option<&str> {
     scenario.file.view.as_ref()?.look_at.as_deref()
 }
 
-/// Lists what makes `now` move differently from `before`. `None` where nothing does, or where the `look_at` line itself
-/// is a new one.
+/// Lists the differences that make `now` move differently from `before`. `None` where there are none, or where the
+/// `look_at` line itself is a new one.
 pub fn changed(before: &Scenario, now: &Scenario) -> Option<String> {
     let changes = changes(before, now);
     if changes.is_empty() || look_at(before) != look_at(now) {

@@ -1,8 +1,8 @@
 //! Expressions over a run's numbers: `t_s >= 60 and abs(tilt_deg - 45) < 0.5`.
 //!
-//! Numbers, names, `+ - * /`, parentheses, `abs(...)`, the comparisons `< <= > >= == !=`, `and`, `or`. A name stands for
-//! a readout or for a key of the scenario; what it is at a step is asked of the caller. A number that is not there makes
-//! of everything computed from it nothing; a comparison with it neither holds nor fails.
+//! Numbers, names, `+ - * /`, parentheses, `abs(...)`, the comparisons `< <= > >= == !=`, `and`, `or`. A name stands
+//! for a readout or for a key of the scenario; the caller looks its value up. A name may have no value at a step: what
+//! is computed from it has none either, and a comparison with it neither holds nor fails.
 
 mod parse;
 
@@ -19,7 +19,7 @@ pub struct Expression {
     names: Vec<(String, usize)>,
 }
 
-/// An expression whose names have been looked up: each stands for a `T`.
+/// An expression whose names have been looked up. Each name stands for a `T`.
 #[derive(Clone, Debug)]
 pub struct Bound<T> {
     root: Node,
@@ -30,7 +30,7 @@ pub struct Bound<T> {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("column {column}: {rule}")]
 pub struct Fault {
-    /// The character at which it shows, counted from 1.
+    /// The character at which the error shows, counted from 1.
     pub column: usize,
     /// What is wrong there, and the remedy.
     pub rule: String,
@@ -66,7 +66,7 @@ use Operator::{
     And, Equal, Greater, GreaterOrEqual, Less, LessOrEqual, Minus, NotEqual, Or, Over, Plus, Times,
 };
 
-/// How operators are written; the longer of two that begin alike stands first.
+/// The text of each operator. Of two that begin alike the longer stands first.
 const OPERATORS: [(&str, Operator); 12] = [
     ("<=", LessOrEqual),
     (">=", GreaterOrEqual),
@@ -152,7 +152,7 @@ impl Expression {
         &self.text
     }
 
-    /// Whether it holds or not, rather than being a number.
+    /// Whether it is a condition, not a number.
     pub fn is_condition(&self) -> bool {
         self.is_condition
     }
@@ -162,7 +162,7 @@ impl Expression {
         self.names.iter().map(|(name, _)| name.as_str())
     }
 
-    /// Looks every name up once, with `find`, which says in words why a name stands for no number.
+    /// Looks each name up once, with `find`, which returns in words why a name stands for no number.
     ///
     /// # Errors
     /// The first name that is not found, where it stands, and why.
@@ -181,7 +181,7 @@ impl Expression {
         Ok(Bound { root, sources })
     }
 
-    /// Its value, every name being what `value_of` says; `None` where a number it needs is not there.
+    /// Its value, with the values of the names from `value_of`; `None` where a number that it needs has no value.
     pub fn value(&self, value_of: impl Fn(&str) -> Option<f64>) -> Option<f64> {
         self.root.value(&mut |index| value_of(&self.names[index].0))
     }
@@ -194,12 +194,13 @@ impl PartialEq for Expression {
 }
 
 impl<T> Bound<T> {
-    /// Its value, every name being what `value_of` says; a condition is 1 where it holds and 0 where it does not.
+    /// Its value, with the values of the names from `value_of`. A condition is 1 where it holds and 0 where it does
+    /// not.
     pub fn value(&self, mut value_of: impl FnMut(&T) -> Option<f64>) -> Option<f64> {
         self.root.value(&mut |index| value_of(&self.sources[index]))
     }
 
-    /// Whether it is there and not 0. A number that decides nothing any more is not asked for.
+    /// Whether it has a value other than 0. A number that cannot change the result any more is not looked up.
     pub fn holds(&self, value_of: impl FnMut(&T) -> Option<f64>) -> bool {
         self.value(value_of).is_some_and(|value| value != 0.0)
     }
@@ -222,7 +223,7 @@ impl Node {
 
 impl Operator {
     fn apply(self, left: Option<f64>, right: impl FnOnce() -> Option<f64>) -> Option<f64> {
-        // One side can decide, whatever the other is, and even where it is not known.
+        // One side can decide the result, even where the other has no value.
         match (self, left) {
             (Or, Some(left)) if left != 0.0 => return Some(1.0),
             (And, Some(0.0)) => return Some(0.0),

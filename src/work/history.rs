@@ -27,7 +27,8 @@ pub struct RunRecord {
     /// The push that the user had prepared when they left the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub next_push: Option<NextPush>,
-    /// Whether the run follows the advice about the one before: the edits that it has from there are not undone in it.
+    /// Whether the run follows the advice about the one before. The edits that it has from that one cannot be undone
+    /// one by one in it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_advised: bool,
     /// The scenario, and what the user did to it.

@@ -1,4 +1,4 @@
-//! The run that an advice leads to: the same one from its start, at another time step or by another scheme throughout.
+//! The run that follows an advice: the same run from its start, with another time step or scheme throughout.
 
 use crate::run::Clock;
 use crate::scenario::dotted::number_of_push;
@@ -8,15 +8,16 @@ use crate::scenario::{Document, Problem, Problems, Scenario};
 use std::sync::Arc;
 use toml::{Table, Value};
 
-/// What a run is called in messages.
+/// The name of the run in messages.
 const ORIGIN: &str = "the run as advised";
-/// What of an edit another time step or scheme throughout takes the place of.
+/// The keys of an edit that another time step or scheme throughout replaces.
 const REPLACED: [&str; 2] = ["motion.time_step_s", "motion.scheme"];
-/// What a push counts in steps.
+/// The keys of a push that count in steps.
 const COUNTED: [&str; 3] = ["first_step", "steps", "accumulates"];
 
-/// `scenario` at `time_step_s` (s) and, where one is named, by `scheme` throughout: its pushes and its edits of gravity and
-/// pushes at the same times, without its edits of time step and scheme. It ends at `end_s` (s).
+/// The run of `scenario` with the time step `time_step_s` (s) and, where one is named, `scheme` throughout. It has the
+/// pushes and the edits of gravity and pushes at the same times, and no edits of time step and scheme. It ends at
+/// `end_s` (s).
 ///
 /// # Errors
 /// Where steps have a meaning that seconds cannot hold: a push that accumulates, or an edit that counts in steps.
@@ -59,8 +60,8 @@ pub fn mended(
     Document::from_file(ORIGIN, &file)?.scenario()
 }
 
-/// What of the edits of `scenario` a run as advised does without: the time step and the scheme, in words; `None` where
-/// nothing of that was edited.
+/// The edits of `scenario` that a run as advised leaves out, in words: time step, scheme or both. `None` where it has
+/// none.
 pub fn replaced(scenario: &Scenario) -> Option<&'static str> {
     let edits = |key: &str| (scenario.file.edit.iter()).any(|edit| edit.set.contains_key(key));
     match REPLACED.map(edits) {

@@ -1,4 +1,4 @@
-//! What a user makes of a scenario: values changed one at a time, pushes, and the journal of both with its undo.
+//! What a user does to a scenario: changed values, pushes, and the journal of both with its undo.
 //!
 //! - [`parameters`] lists and changes the values of a scenario, [`next_push`] those of the push that the user prepares.
 //! - [`journal`] records what the user did in one run and computes the run's scenario from it; [`history`] keeps the

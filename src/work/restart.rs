@@ -1,4 +1,4 @@
-//! Makes a scenario whose start is the present state of a run, with the run's present loads and settings.
+//! Makes a scenario that starts from the present state of a run, with the settings and pushes in force there.
 
 use crate::physics::{State, rotation};
 use crate::scenario::file::{MotionFile, PushFile, ScenarioFile, StartFile, ViewFile};
@@ -128,7 +128,7 @@ struct Now<'a> {
 }
 
 impl Now<'_> {
-    /// What remains of `push`, number `index` of the run, from now on; `None` where it is over.
+    /// The rest of `push`, number `index` of the run, from now on; `None` where it is over.
     fn push(&self, index: usize, push: &Push) -> Result<Option<PushFile>, Problem> {
         let file = PushFile {
             point: self.name(push.point).to_owned(),
@@ -168,7 +168,7 @@ impl Now<'_> {
             .map_or("", |(name, _)| name)
     }
 
-    /// Whether the new scenario has the old one's start and time step, so that step numbers mean the same in both.
+    /// Whether the new scenario has the old one's start and time step, so that a step has the same number in both.
     fn may_keep_step_numbers(&self) -> bool {
         self.step == 0 && self.counts_steps()
     }

@@ -1,4 +1,4 @@
-//! Reading an expression: its tokens, and what they are joined to.
+//! Parses an expression: its tokens, and the tree of operators.
 
 use super::Operator::{Minus, Times};
 use super::{Fault, Node, OPERATORS, Operator};
@@ -7,7 +7,7 @@ use std::fmt;
 /// How deep parentheses and signs may be nested.
 const DEEPEST: usize = 64;
 
-/// What was read: the expression, whether it is a condition, and every name in it once with its column.
+/// The result: the expression, whether it is a condition, and each name in it once with its column.
 type Read = (Node, bool, Vec<(String, usize)>);
 
 /// Reads `text` to its end.
@@ -155,7 +155,8 @@ impl Parser {
         Err(Fault { column, rule })
     }
 
-    /// What is joined by operators that bind at least as tightly as `least`; and whether it is a condition.
+    /// The operands joined by operators that bind at least as tightly as `least`; and whether the result is a
+    /// condition.
     fn expression(&mut self, least: u8) -> Result<(Node, bool), Fault> {
         self.depth += 1;
         if self.depth > DEEPEST {

@@ -1,7 +1,7 @@
-//! The scenarios that a journal has been found to lead to.
+//! Scenarios of a journal that have been checked already.
 //!
-//! Checking a whole run file takes as long as it is long. An act changes little of it: the scenario after the act is made
-//! from the one before, and only what the act adds is checked. The same serves undo and redo.
+//! Checking a whole run file takes a time that grows with its length. An act changes little of it: the scenario after
+//! the act is made from the scenario before, and only the addition is checked. Undo and redo use the same.
 
 use super::run_file::Edits;
 use super::{Act, Entry, Journal};
@@ -9,7 +9,7 @@ use crate::scenario::file::EditFile;
 use crate::scenario::{Document, Problems, Scenario, growing};
 use std::sync::Arc;
 
-/// What the run is called in a refusal.
+/// The name of the run in a refusal.
 pub(super) const ORIGIN: &str = "the run";
 
 /// The most scenarios that are kept.
@@ -32,8 +32,8 @@ struct Known {
     scenario: Arc<Scenario>,
 }
 
-/// The last few of them, for the present journal and for what undo and redo lead to. They say nothing that the journal
-/// does not say: two journals are equal whatever is known of them.
+/// The last few checked scenarios: of the present journal, and of those that undo and redo lead to. They follow from
+/// the journal: two journals are equal whatever scenarios are kept with them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Checked(Vec<Arc<Known>>);
 
@@ -44,7 +44,7 @@ impl PartialEq for Checked {
 }
 
 impl Checked {
-    /// The scenario of a journal of `length` entries, or else of one of about as many.
+    /// The scenario of a journal of `length` entries, or else the one of the nearest length.
     fn nearest(&self, length: usize) -> Option<&Known> {
         let near = self
             .0
@@ -159,7 +159,7 @@ impl Journal {
                 }
             }
         }
-        // An edit that others may be joined with is made again, without those that were joined with it before.
+        // An edit that later ones may join is made again, without those that had joined it.
         let mut open = None;
         if edits.last_may_be_joined() {
             for entry in &wanted[first_of_last..same] {
@@ -205,7 +205,7 @@ impl Journal {
     }
 }
 
-/// Joins the edit `entry` with `open`, or begins it.
+/// Joins the edit `entry` with `open`, or begins a new edit with it.
 fn join(open: &mut Option<EditFile>, entry: &Entry) {
     let Act::Edit(set) = &entry.act else { return };
     match open {

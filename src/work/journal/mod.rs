@@ -8,8 +8,9 @@
 //! steps: an entry that a newer one dropped stays in the list, and is in force again once the newer one is undone.
 
 //!
-//! `entry` is one act; `run_file` tells which are in force and what run file they make; `known` checks that file, by
-//! what has changed in it; `next_run` begins another run from it; `stored` reads a journal from a session file.
+//! `entry` is one act; `run_file` decides which entries are in force and makes the run file of them; `known` checks
+//! that file, as far as it has changed; `next_run` begins another run from it; `stored` reads a journal from a session
+//! file.
 
 mod entry;
 mod known;
@@ -39,7 +40,7 @@ pub struct Journal {
     /// Undone entries, the one undone last at the end: redo takes it first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     undone: Vec<Arc<Entry>>,
-    /// What is known of the scenarios that it leads to.
+    /// Scenarios that it leads to, checked already.
     #[serde(skip)]
     checked: Checked,
 }

@@ -1,4 +1,4 @@
-//! A new run that begins with what the old one has come to.
+//! A new run that begins with the present settings of the old one.
 
 use super::{Act, Journal};
 use crate::scenario::dotted::number_of_push;

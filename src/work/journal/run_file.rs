@@ -90,7 +90,7 @@ impl Journal {
         let mut head = growing::head(&base);
         match growing::described("the run", &head, sets.iter().copied()) {
             Ok(described) => head = described,
-            // One of them is wrong, which happens in a file edited by hand alone: the others hold.
+            // One of them is wrong, which happens only in a file that was edited by hand. The others are kept.
             Err(_) => {
                 for set in sets {
                     head = growing::described("the run", &head, [set].into_iter()).unwrap_or(head);

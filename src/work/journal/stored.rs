@@ -74,7 +74,7 @@ impl Nested {
         matches!(self.act, Act::Describe(_))
     }
 
-    /// The entry without the entries that it dropped.
+    /// The entry alone, without the entries that it dropped.
     fn alone(self) -> Arc<Entry> {
         Arc::new(Entry {
             step: self.step,

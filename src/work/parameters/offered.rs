@@ -1,4 +1,4 @@
-//! Which values of a scenario are listed, and what a file means that leaves one out.
+//! Which values of a scenario are listed, and the values that a file implies by leaving keys out.
 
 use crate::scenario::dotted::find;
 use crate::scenario::keys::{Key, join};
@@ -7,7 +7,7 @@ use crate::scenario::{Scenario, start};
 use nalgebra::Vector3;
 use toml::{Table, Value};
 
-/// The value that the file means by leaving out the key at `place`, where another of its values tells it: the spin or
+/// The value that the file implies by leaving out the key at `place`, where it follows from other values: the spin or
 /// momentum of a start that is given in another way, the axis and the length of a part.
 pub(super) fn present(key: &Key, place: &str, table: &Table, scenario: &Scenario) -> Option<Value> {
     let start = &scenario.start;
@@ -31,8 +31,8 @@ fn is_dimension(place: &str, table: &Table) -> bool {
     shape.is_some_and(|shape| has_dimension(shape, name))
 }
 
-/// Whether the key at `place` goes with the other keys of its table: a push has its times either in steps or in seconds,
-/// and an angular velocity is listed where the start is told by one.
+/// Whether the key at `place` fits the other keys of its table: a push has its times either in steps or in seconds, and
+/// an angular velocity is listed only where the file gives one.
 pub(super) fn is_offered(place: &str, table: &Table) -> bool {
     let Some((inside, name)) = place.rsplit_once('.') else {
         return true;
