@@ -4,7 +4,8 @@
 //! - [`journal`] records what the user did in one run and computes the run's scenario from it; [`history`] keeps the
 //!   journals of all runs of a session and undoes and redoes across them.
 //! - [`expression`] reads and evaluates conditions over a run's numbers.
-//! - [`restart`] makes a scenario that starts where a run stands; [`changed`] says how a scenario differs from its file.
+//! - [`mended`] makes the run that follows an advice; [`restart`] makes a scenario that starts where a run stands;
+//!   [`changed`] says how a scenario differs from its file.
 
 pub mod changed;
 pub mod expression;

@@ -75,7 +75,7 @@ pub fn row_at(browser: &Browser, area: Rect, at: Position) -> Option<usize> {
     (is_in_list && row < browser.shown().len()).then_some(row)
 }
 
-/// What can be done with the list, and what is in it beside the presets, in as many words as `width` columns hold.
+/// The keys of the list, and what it contains beside the presets, in as many words as fit in `width` columns.
 fn keys(files: usize, others: usize, width: usize) -> String {
     const KEYS: &str = "/ filters by name, Enter opens";
     let files = match files {

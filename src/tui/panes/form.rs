@@ -64,8 +64,8 @@ impl Widget for FormPane<'_> {
 }
 
 impl FormPane<'_> {
-    /// What there is room for in `height` lines: the selected field first and a line of why it was refused, then the
-    /// other fields, the rest of the reason, the keys, and what is known.
+    /// The lines that fit in `height`: first the selected field and a line of the complaint, then the other fields, the
+    /// rest of the complaint, the keys and the information.
     fn lines(&self, width: u16, height: usize) -> Vec<Line<'_>> {
         let form = self.form;
         let mut room = height;
@@ -140,7 +140,7 @@ impl FormPane<'_> {
         self.text(is_selected, field, room, buf);
     }
 
-    /// As much of the text as there is room for, the cursor in it where it is typed into.
+    /// As much of the text as there is room for, with the cursor if the field is selected.
     fn text(&self, is_selected: bool, field: &Field, area: Rect, buf: &mut Buffer) {
         if area.is_empty() {
             return;
@@ -185,7 +185,7 @@ fn taken(room: &mut usize, wanted: usize) -> usize {
     taken
 }
 
-/// The first of `chars` that is shown on `width` columns, so that what is at `cursor` is seen.
+/// The first of `chars` that is shown on `width` columns, so that the one at `cursor` is visible.
 fn first_shown(chars: &[char], cursor: usize, width: usize) -> usize {
     let cursor = cursor.min(chars.len());
     let at_cursor = chars.get(cursor).map_or(1, |&c| wide(c).max(1));

@@ -15,9 +15,9 @@ use ratatui::widgets::Widget;
 
 /// Column of keys and words.
 const NAMES: usize = 2;
-/// Between them and their texts.
+/// Columns between them and their texts.
 const GAP: usize = 2;
-/// Texts with fewer columns than this begin right after their keys, not in a column of their own.
+/// A text that would have fewer columns than this begins right after its key, not in a column of its own.
 const LEAST_TEXT: usize = 40;
 /// What marks the selected entry.
 const SELECTED: &str = "►";
@@ -45,8 +45,8 @@ pub fn limit(lab: &mut Lab) {
     }
 }
 
-/// Closes the help and does what the key of the selected entry does; a key of a pane turns to that pane first. Says why
-/// where nothing can be done.
+/// Closes the help and does what the key of the selected entry does. For a key of a pane it moves the focus to that
+/// pane first. Where nothing can be done it says why.
 pub fn do_entry(lab: &mut Lab) -> Option<Request> {
     use crate::lab::action::Action;
     let Some(entry) = selected(lab) else {
@@ -179,7 +179,7 @@ fn heading(entry: &Entry, width: usize) -> Vec<Line> {
 
 type Pieces = Vec<(usize, String, Role)>;
 
-/// The text of `entry`: of a pane's key with the pane, where no heading says it.
+/// The text of `entry`. For a key of a pane it names the pane, unless a heading does.
 fn told(entry: &Entry, grouped: bool) -> String {
     match entry.pane {
         Some(_) if !grouped => format!("{} ({})", entry.text(), entry.group),

@@ -97,7 +97,8 @@ struct Page {
 }
 
 impl Page {
-    /// `sheet` in lines for the area `inside`, scrolled to the line `scrolled`, or to what is to be seen.
+    /// `sheet` in lines for the area `inside`, scrolled to the line `scrolled`, or else so far that its important
+    /// paragraph is in view.
     fn new(sheet: &Sheet, inside: Rect, scrolled: Option<usize>, theme: &Theme) -> Self {
         let mut lines: Vec<Line> = Vec::new();
         let mut end_of_seen = 0;

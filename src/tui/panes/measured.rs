@@ -12,9 +12,9 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use std::path::Path;
 
-/// Between two parts of the line.
+/// The separator between two parts of the line.
 const SEPARATOR: &str = " · ";
-/// The fewest columns of a file's name.
+/// The fewest columns to which a file's name is shortened.
 const LEAST_NAME: usize = 12;
 
 /// Draws the line about the data in `lab`, if there are any.

@@ -1,4 +1,4 @@
-//! The panes: each borrows what it shows, and draws it on its area. None of them changes anything.
+//! The panes. Each borrows what it shows and draws it on its area; none of them changes anything.
 //!
 //! [`PANES`] is the one table of panes. A new pane is a file with its `ROW`, that row's name in the table, and its id in
 //! [`screen`], by which files and commands name it.
@@ -31,7 +31,7 @@ use ratatui::style::{Modifier, Style};
 use ratatui::widgets::{Block, Clear, Widget};
 use std::borrow::Cow;
 
-/// A pane: what the layout, the focus, the footer and the help need of it.
+/// A row of the table of panes: what the layout, the focus, the footer and the help need to know.
 #[derive(Debug)]
 pub struct PaneRow {
     /// Its id.
@@ -46,7 +46,7 @@ pub struct PaneRow {
     pub least: (u16, u16),
     /// Draws it.
     pub draw: fn(&Lab, Rect, &mut Buffer),
-    /// The keys that mean something else, or something at all, while it has the focus.
+    /// The keys that are its own while it has the focus; they go before the keys of the lab.
     pub keys: &'static [Binding],
 }
 
@@ -82,7 +82,8 @@ pub static IDS: [Pane; PANES.len()] = {
     ids
 };
 
-/// Stops the compiler where a pane of the table has no name in files, or the other way round.
+/// Does not compile where a pane of the table is missing in [`screen::PANES`], by whose names files and commands know
+/// it, or the other way round.
 const _: () = {
     assert!(
         IDS.len() == screen::PANES.len(),
@@ -124,7 +125,7 @@ pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
     own.iter().chain(beside.iter().filter(is_free))
 }
 
-/// A frame with a title, the accent on it where it has the focus; gives the area inside.
+/// Draws a frame with a title, marked where the pane has the focus; returns the area inside.
 pub(super) fn frame(title: &str, area: Rect, focus: bool, theme: &Theme, buf: &mut Buffer) -> Rect {
     let (border, text) = match focus {
         true => (Role::Focus, Role::Focus),
@@ -141,8 +142,8 @@ pub(super) fn frame(title: &str, area: Rect, focus: bool, theme: &Theme, buf: &m
     inside
 }
 
-/// The title of a round pane, which `width` columns have room for: `name` and how much larger than the whole it is shown,
-/// and which step it shows where the scheme has broken down since.
+/// The title of a round pane: `name`, its magnification, and the step that it shows if the scheme has broken down
+/// since. The longest form that fits in `width` columns.
 pub(super) fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, width: u16) -> String {
     let title = match zoom == 1.0 {
         true => name.to_owned(),
@@ -181,14 +182,14 @@ pub(super) fn write(
     let room = (area.width - x) as usize;
     let text = printable(text);
     let text = shortened(&text, room);
-    // What stood there before was bold or faint for itself.
+    // Bold and faint are reset: the text before may have been either.
     let weight = (Modifier::BOLD | Modifier::DIM).difference(style.add_modifier);
     let style = style.remove_modifier(weight);
     let (end, _) = buf.set_stringn(area.x + x, area.y + y, text, room, style);
     end - area.x
 }
 
-/// What stands for the rest of a text: no single character for it is in every terminal's font.
+/// Stands for the rest of a text. Not every terminal's font has a single character for it.
 const REST: &str = "...";
 
 /// `text`, or as much of it as `width` columns hold, with dots for the rest.

@@ -1,6 +1,7 @@
 //! The scenario's values and the readouts, each with its unit, in fixed columns.
 //!
-//! In focus it is an editor: the values one by one above, one of them selected, and the readouts to watch below.
+//! With the focus it is an editor: the values above, one on each line, one of them selected; the readouts to watch
+//! below.
 
 mod edited;
 mod lines;
@@ -31,7 +32,7 @@ const MOST_EDITED: u16 = 6;
 const SELECTED: &str = "►";
 const ABOVE: &str = "▲";
 const BELOW: &str = "▼";
-/// From this height on the readouts to watch have a place below the editor's lines.
+/// From this height on there is room for the readouts to watch, below the values.
 const WATCHED_FROM: usize = 8;
 
 /// Its row in the table of panes.
@@ -118,7 +119,7 @@ impl Parameters<'_> {
         }
     }
 
-    /// The lines there is room for, and how to see the others.
+    /// The most important lines, and a note how to see the others.
     fn most_important(&self, area: Rect, buf: &mut Buffer) {
         let mut lines = self.lines();
         if lines.len() <= area.height as usize {
@@ -243,7 +244,7 @@ impl Parameters<'_> {
         let room = height * count as usize;
         let (shown, above, below) = around_selected(lines, room);
         self.columns(shown.chunks(height.max(1)), wide, place, buf);
-        // On the frame, or where columns of lines are empty.
+        // On the frame, or in the last column of the lines, which is empty.
         let x = match self.view.filled && area.width == count * wide {
             true => area.right() - 1,
             false => area.right(),
@@ -252,7 +253,7 @@ impl Parameters<'_> {
         self.hint(below, (x, place.bottom().saturating_sub(1)), BELOW, buf);
     }
 
-    /// Says at `place` that a list goes on, where it does.
+    /// Marks at `place` that a list goes on, if it does.
     fn hint(&self, goes_on: bool, place: (u16, u16), sign: &str, buf: &mut Buffer) {
         if let Some(cell) = buf.cell_mut(place).filter(|_| goes_on) {
             cell.set_symbol(sign)
@@ -290,7 +291,7 @@ impl Parameters<'_> {
         let value = fewer_digits(&line.value, room);
         let style = theme.style(line.value_role);
         if line.unit.is_empty() && columns(&value) > room {
-            // Words have no unit beside them.
+            // Words may take the columns of the unit, since they have none.
             write(area, (end + 1, 0), &value, style, buf);
         } else {
             let value = shortened(&value, room);

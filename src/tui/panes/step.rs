@@ -31,9 +31,9 @@ pub use words::{Words, of as words_of};
 /// From this height on all phases are listed above the page.
 const LISTED_FROM: u16 = 24;
 
-/// The rank of what stands aside while the rows of a table are added up.
+/// The rank of numbers that are less important while the rows of a table are added up.
 const ASIDE: u8 = 10;
-/// Points of a rim from this number on are called by their number alone, for which there is room.
+/// A point of the rim with this number or a larger one is named by its number alone, since there is no room for more.
 const SHORT: usize = 1000;
 
 /// Its row in the table of panes.
@@ -136,7 +136,7 @@ struct PhasePage<'a> {
 }
 
 impl PhasePage<'_> {
-    /// What stands on it, for `room` lines.
+    /// Its sections, for `room` lines.
     fn sections(&self, room: usize) -> Vec<Section> {
         let words = words_of(self.phase.name);
         let text = |rank, text: &str, role| Section::text(rank, text, self.width, 0, role);
@@ -183,7 +183,7 @@ impl PhasePage<'_> {
         }
     }
 
-    /// Where in time the phase is.
+    /// The times of the step, and the part of it to which the phase belongs.
     fn part(&self) -> String {
         let (before, after) = &self.explained.states;
         let time = |time_s: f64| crate::text::number::significant(time_s, 9);
@@ -211,7 +211,7 @@ impl PhasePage<'_> {
         }
     }
 
-    /// A line that says `text` of what `label` names.
+    /// A section of `text` after `label`.
     fn told(&self, rank: u8, label: &str, text: &str) -> Section {
         if text.is_empty() {
             return Section::default();
@@ -232,14 +232,14 @@ impl PhasePage<'_> {
         section
     }
 
-    /// The numbers; tables as they are where there is least room.
+    /// The numbers of the phase. Tables have their fewest lines.
     fn quantities(&self) -> Vec<Section> {
         let all = &self.phase.quantities;
         let format = Format::of_vectors(self.width);
         let adds_up = self.sum().is_some();
         let is_vector =
             |quantity: &&Quantity| matches!(quantity.value, Value::Vector(_) | Value::Matrix(_));
-        // While points are added up, what is made of all of them is less important.
+        // While points are added up, the quantities that are made of the full sums are less important.
         let is_aside = |quantity: &Quantity| adds_up && is_made_of_sums(self.phase, quantity);
         let heads = match all.iter().filter(is_vector).all(is_aside) {
             true => ASIDE,
@@ -284,7 +284,7 @@ impl PhasePage<'_> {
         Some((rows, self.explained.sums(self.view.page, table, rows)?))
     }
 
-    /// The table that is the quantity of this index, in `room` lines, or as many as it keeps where that is less.
+    /// The lines of the table that is the quantity of this index: `room` lines, or its fewest where that is more.
     fn table(&self, index: usize, room: usize) -> Vec<Line> {
         let Value::Table(table) = &self.phase.quantities[index].value else {
             return Vec::new();
@@ -314,7 +314,7 @@ impl PhasePage<'_> {
     }
 }
 
-/// Whether `quantity` of `phase` is made of the sum of the table's rows.
+/// Whether `quantity` of `phase` is made of the sums over the table's rows.
 fn is_made_of_sums(phase: &Phase, quantity: &Quantity) -> bool {
     let table = crate::lab::explained::table_of(phase);
     table.is_some_and(is_summed) && matches!(quantity.symbol, "S" | "I" | "Σ m X")
@@ -323,8 +323,8 @@ fn is_made_of_sums(phase: &Phase, quantity: &Quantity) -> bool {
 /// The directions from a part's centre in which its points lie, in their order.
 const OFF_CENTRE: [&str; POINTS - 1] = ["+x", "-x", "+y", "-y", "+z", "-z"];
 
-/// The name of the point of this index: of those of the rim their number on it, of those of a part their direction from its
-/// centre.
+/// The name of the point of this index. For a point of the rim it has its number on the rim, for a point of a part its
+/// direction from the part's centre.
 pub fn name_of(scenario: &Scenario, point: usize) -> String {
     let body = &scenario.file.body;
     let rim = body.rim.as_ref().map_or(0, |rim| rim.points);

@@ -1,7 +1,7 @@
 //! The timeline: a line for the whole run, with the place where it stands, how far it has been, its pushes and its edits.
 //!
-//! Each has a sign of its own, so that no colour is needed to tell them apart. The scale changes only where the run goes
-//! on beyond the line's end: while a run is played, two cells change now and then.
+//! Each has a sign of its own, so that they can be told apart without colours. While a run is played, few cells change:
+//! the scale changes only when the run goes on beyond the line's end.
 
 use super::write;
 use crate::lab::Lab;
@@ -26,7 +26,7 @@ const END: &str = "│";
 const PINNED: &str = "┤";
 /// Where the run stands.
 const NOW: &str = "█";
-/// What names the sign of the pinned run, on a line of so many columns or more.
+/// The label of the pinned run's sign, and the fewest columns of a line that has it.
 const LEGEND: &str = "┤ pinned  ";
 const LEGEND_FROM: u16 = 60;
 /// Fewest columns of a line that is worth drawing.

@@ -1,5 +1,5 @@
-//! What the help lists: every key, grouped by what one wants to do, and every word of the glossary; and what a search finds
-//! among them.
+//! The entries of the help: every key, grouped by its purpose, and every word of the glossary. And the search among
+//! them.
 
 use super::glossary::{GLOSSARY, Word};
 use crate::lab::Mode;
@@ -67,7 +67,8 @@ impl Entry {
         }
     }
 
-    /// How well it answers to `search`, of which `lower` is in small letters: 0 is best; `None` if it does not.
+    /// How well it matches `search`, of which `lower` is the lower case: 0 is the best match; `None` where it does not
+    /// match.
     fn answers(&self, search: &str, lower: &str) -> Option<u8> {
         let is_key = |wanted: &dyn Fn(String) -> bool| match self.what {
             What::Key(binding) => binding.keys.iter().any(|key| wanted(key.to_string())),
@@ -131,7 +132,7 @@ pub fn entries() -> Vec<Entry> {
         .collect()
 }
 
-/// The entries that answer to `search`, the best first; all of them, group by group, where it is empty.
+/// The entries that match `search`, the best match first; if it is empty, all entries, group by group.
 pub fn found(search: &str) -> Vec<Entry> {
     let (search, mut found) = (search.trim(), entries());
     if search.is_empty() {
@@ -152,7 +153,7 @@ fn key(group: &'static str, pane: Option<Pane>, binding: &'static Binding) -> En
     }
 }
 
-/// What one wants to do who presses the key of `action` in the lab.
+/// The group of the key of `action` in the lab: its purpose.
 fn purpose(action: Action) -> &'static str {
     use Action as A;
     match action {

@@ -1,4 +1,5 @@
-//! The lines of the values that can be edited: all of them or those that are found, and the selected one in full.
+//! The lines of the values that can be edited: all of them, or those that a search finds. And the key of the selected
+//! one.
 
 use super::ROW;
 use super::lines::{COLUMN, Line, VALUE_END, heading};
@@ -61,7 +62,7 @@ fn edited_line(value: &ListedValue, is_selected: bool) -> Line {
     }
 }
 
-/// `text` as it can stand on a line, whatever it holds.
+/// `text` on one line and printable.
 fn on_one_line(text: &str) -> String {
     printable(&text.replace('\n', " ")).into_owned()
 }
@@ -122,7 +123,7 @@ pub(super) fn fewer_digits(text: &str, room: usize) -> Cow<'_, str> {
     fitting.find(is_told).map_or(text.into(), Cow::from)
 }
 
-/// Whether `told` is `number` to within a thousandth.
+/// Whether `told` is `number` to within a thousandth of it.
 fn near(told: f64, number: f64) -> bool {
     (told - number).abs() <= 1e-3 * number.abs()
 }

@@ -1,4 +1,4 @@
-//! What stands in the pane's lines, each number with as many decimals as there is room for.
+//! The lines of the pane. Each number has as many decimals as there is room for.
 
 use super::edited::fewer_digits;
 use crate::analysis::remarks::{short_no_drift, short_unit};
@@ -22,7 +22,7 @@ pub(super) const PREDICTED: &str = "predicted";
 /// One line: a heading, or a value.
 #[derive(Clone)]
 pub(super) struct Line {
-    /// Lines with larger numbers go first where there is no room for all.
+    /// Where there is no room for all, lines of higher rank are left out first.
     pub(super) rank: u8,
     pub(super) label: Cow<'static, str>,
     pub(super) label_role: Role,
@@ -58,12 +58,12 @@ pub(super) fn value(rank: u8, label: &'static str, value: String, unit: &'static
     }
 }
 
-/// A number, with as many of `digits` decimals as stand beside its label.
+/// A number with `digits` decimals, or as many as there is room for beside its label.
 fn number(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'static str) -> Line {
     value(rank, label, fixed(label, Some(number), digits), unit)
 }
 
-/// As [`number`], of a quantity of the size `size`: where decimals would leave nothing of that, with an exponent.
+/// As [`number`], of a quantity of the size `size`. A small number that would lose its digits has an exponent.
 fn sized(
     rank: u8,
     label: &'static str,
@@ -72,7 +72,7 @@ fn sized(
     digits: usize,
     unit: &'static str,
 ) -> Line {
-    /// What is smaller than this part of the size is its rounding.
+    /// A number smaller than this part of the size is rounding error.
     const ROUNDING: f64 = 1e-9;
     let is_small = size > 0.0 && size < 0.1;
     match is_small && number.abs() > ROUNDING * size {
@@ -81,7 +81,8 @@ fn sized(
     }
 }
 
-/// A number of the scenario: with `digits` decimals where these are all it has, else with as many as stand beside its label.
+/// A number of the scenario: with `digits` decimals where it has no more, else with as many as there is room for beside
+/// its label.
 fn given(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'static str) -> Line {
     let usual = fixed(label, Some(number), digits);
     let is_whole = usual.parse() == Ok(number);
@@ -93,7 +94,7 @@ fn given(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'stat
     value(rank, label, text, unit)
 }
 
-/// What follows from the body's values.
+/// Quantities that follow from the body's values.
 pub(super) fn derived_lines(scenario: &Scenario) -> Vec<Line> {
     let body: &Body = &scenario.body.mechanics;
     let height = body.first_moment().z / body.mass();
@@ -189,7 +190,7 @@ pub(super) fn now_lines(reading: &Reading) -> Vec<Line> {
     let sample = &reading.readouts.sample;
     let momentum = sample.momentum.norm();
     let kinetic = 0.5 * sample.momentum.dot(&sample.angular_velocity);
-    // What a scheme that has broken down leaves is no place and no energy of a body.
+    // A scheme that has broken down leaves neither a position nor an energy of a rigid body.
     let of_body = |number: f64| reading.readouts.health.is_a_rotation.then_some(number);
     let axis = |label, role, metres: f64| Line {
         label_role: role,
@@ -216,7 +217,7 @@ pub(super) fn now_lines(reading: &Reading) -> Vec<Line> {
     lines
 }
 
-/// What is shown beside them where there is room: the extremes so far, and how the wheel turns.
+/// The readouts that are shown too where there is room: the extremes so far, and how the wheel turns.
 pub(super) fn further_lines(reading: &Reading) -> Vec<Line> {
     let readouts = &reading.readouts;
     let told = |rank, label, name, digits, unit| {
@@ -258,7 +259,7 @@ pub(super) fn watched_lines(reading: &Reading) -> [Line; 5] {
     let tilt = health.is_a_rotation.then_some(readouts.sample.tilt_deg);
     let drift = readouts.health.energy_drift;
     let energy_unit = readouts.health.energy_unit;
-    // An axle that goes through the vertical has no precession; else there is only none yet.
+    // An axle that passes through the vertical has no precession. Any other has none so far.
     let has_none = readouts
         .theory
         .as_ref()
@@ -319,7 +320,7 @@ fn signed(label: &str, number: f64, digits: usize) -> String {
     )
 }
 
-/// The most decimals with which `format` keeps off `label`, a blank between them; an exponent where none do.
+/// `number` with the most decimals for which `format` leaves a blank after `label`, or with an exponent.
 fn fitted(label: &str, digits: usize, format: impl Fn(usize) -> String, number: f64) -> String {
     if !number.is_finite() {
         return NONE.to_owned();

@@ -14,10 +14,10 @@ const UNIT: usize = 6;
 const AROUND: usize = 4;
 /// Digits of a number, where there is room for so many.
 const DIGITS: std::ops::RangeInclusive<usize> = 3..=9;
-/// A number smaller than this part of the largest beside it is what rounding leaves of a zero: some units in the last
-/// place of the terms that it is made of.
+/// A number smaller than this part of the largest beside it is the rounding error of a zero: a few units in the last
+/// place of its terms.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-/// What stands for it: it is not exactly zero.
+/// The text for such a number, which is not exactly zero.
 const ALMOST_ZERO: &str = "~0";
 /// A component of which fewer digits than this would be seen is written with an exponent.
 const LEAST_SEEN: i32 = 3;
@@ -51,9 +51,9 @@ impl Format {
         Self::new(width.saturating_sub(SYMBOL + UNIT), 3)
     }
 
-    /// `numbers` with as many decimals as the largest needs, each as wide as a cell, the point in one column. A number
-    /// that is small beside it, but not zero, is written with an exponent: it shall not look like zero. One that is the
-    /// rounding of the others is written as almost zero.
+    /// `numbers` with as many decimals as the largest needs, each as wide as a cell, the decimal points in one column.
+    /// A number that is small beside the largest is written with an exponent, so that it does not look like zero; one
+    /// that is its rounding error is written as almost zero.
     pub fn aligned(self, numbers: &[f64]) -> Vec<String> {
         let sizes = numbers.iter().map(|number| number.abs());
         let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);

@@ -11,7 +11,7 @@ use ratatui::layout::Rect;
 #[derive(Clone, Debug, Default)]
 pub struct Line {
     pub pieces: Vec<(usize, String, Role)>,
-    /// Whether it is marked as the one that was chosen.
+    /// Whether it is marked as the chosen line.
     pub is_chosen: bool,
 }
 

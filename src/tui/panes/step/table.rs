@@ -1,5 +1,5 @@
-//! A table of points: only the rows that have room are looked at, however many there are. Where a sum is asked for, it
-//! stands below the last row that is in it.
+//! A table of points. Only the rows that are drawn are read, however many there are. A sum stands below the last row
+//! that it includes.
 
 use super::super::shortened;
 use super::numbers::{Format, SYMBOL};
@@ -11,10 +11,10 @@ use std::ops::Range;
 
 /// Columns of the points' names, with a space after them.
 const NAME: usize = 8;
-/// Columns of a mass between its point's name and coordinates, where these are all that has room.
+/// Columns of a mass between the name and the coordinates of its point, where there is room for nothing else.
 const MASS: usize = 5;
 const MASS_DIGITS: usize = 3;
-/// The fewest columns of a number that still says something.
+/// The fewest columns of a number that is still of use.
 const LEAST_CELL: usize = 9;
 /// How many numbers stand side by side where there is no room for all.
 const FEW: usize = 3;
@@ -25,7 +25,7 @@ const LEAST_ROWS: usize = 4;
 pub struct TableView<'a> {
     /// The table.
     pub table: &'a Table,
-    /// How many of its rows are added up, and the sum of each column over them; `None`: no sum is asked for.
+    /// How many of its rows are added up, and the sum of each column over them; `None`: no sum is wanted.
     pub sum: Option<(usize, Vec<f64>)>,
     /// The names of the body's points.
     pub name: &'a dyn Fn(usize) -> String,
@@ -101,13 +101,13 @@ impl TableView<'_> {
         lines
     }
 
-    /// The columns that stand side by side; where not all of them do, a row takes a line for each group.
+    /// Groups of columns that stand side by side. If there are several groups, a row takes a line for each.
     fn groups(&self) -> Vec<Range<usize>> {
         let count = self.table.columns.len();
         let fits = |count: usize| NAME + count * LEAST_CELL <= self.width;
         match (count, summed(self.table)) {
             (count, _) if fits(count) => std::iter::once(0..count).collect(),
-            // The coordinates; their products stand with the sum.
+            // The coordinates alone. Their products are only shown in the sum.
             (10, products) => std::iter::once(1..products.start).collect(),
             _ => (0..count.div_ceil(FEW))
                 .map(|group| group * FEW..((group + 1) * FEW).min(count))
@@ -115,7 +115,7 @@ impl TableView<'_> {
         }
     }
 
-    /// Whether the first column, of masses, stands by itself before those of `group`.
+    /// Whether the column of masses stands before the columns of `group`, which it does not belong to.
     fn has_mass_aside(&self, group: &Range<usize>) -> bool {
         group.start == 1 && self.table.columns.len() == 10
     }

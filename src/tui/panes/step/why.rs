@@ -24,13 +24,14 @@ const ANY: &str = "Each force makes a torque τ = X × F square to it. In the ti
 const NONE: &str = "No torque acts: L stays as it is, and the axle circles about it.";
 /// The fewest lines of a picture.
 const LEAST_PICTURE: u16 = 6;
-/// Lengths in the picture from above, of the axle as it is seen: τ, dL, and how far L goes beyond the axle's tip.
+/// Lengths in the picture from above, in units of the axle as it is drawn: τ, dL, and L from the pivot.
 const TORQUE: f64 = 0.75;
 const CHANGE: f64 = 0.45;
 const BEYOND: f64 = 1.45;
-/// An axle that is seen shorter than this part of its length is drawn so long: from above it would be a point.
+/// Arrows are at least as long as for an axle that is seen at this part of its length: from above an upright axle is a
+/// point.
 const LEAST_SEEN: f64 = 0.25;
-/// A way shorter than this part of the arm is rounding.
+/// A displacement shorter than this part of the arm is rounding error.
 const ROUNDING: f64 = 1e-12;
 
 /// Draws the page for the step at which the run of `lab` stands.
@@ -230,7 +231,7 @@ fn from_above(explained: &Explained, view: &View, area: Rect, buf: &mut Buffer) 
         return;
     }
     let length = tip.norm().max(LEAST_SEEN * arm);
-    // Where the scheme tells no torque: the way that L has gone in the step.
+    // Where the scheme gives no torque: the change of L in the step.
     let changed = after.momentum - explained.states.0.momentum;
     let torque = match last(explained, &["τ", "dL", "ΔL"]).map(|quantity| &quantity.value) {
         Some(Value::Vector(torque)) => *torque,
@@ -260,7 +261,7 @@ fn from_above(explained: &Explained, view: &View, area: Rect, buf: &mut Buffer) 
     plan.draw(area, view, buf);
 }
 
-/// The way of the axle's tip at first, magnified as much as there is room for.
+/// The path of the axle's tip in its first dip, magnified to fill the picture.
 fn dip(
     (dip, arm_m): (Option<&Dip>, f64),
     is_seen: bool,
@@ -324,7 +325,7 @@ fn dip(
     }
     plan.sign(first, "o", Role::Focus);
     plan.draw(picture, view, buf);
-    // What a length is, under it.
+    // The scale, below the picture.
     let cell_m = plan.dots.in_a_cell().0 as f64 / plan.scale.0;
     let length_m = at_or_below(0.5 * f64::from(area.width) * cell_m);
     let cells = (length_m / cell_m).round() as usize + 1;

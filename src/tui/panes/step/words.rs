@@ -1,6 +1,6 @@
-//! What is said of each phase of a time step, whatever the scheme.
+//! The words about each phase of a time step, for every scheme.
 
-/// What is said of a phase.
+/// The words about a phase.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Words {
     /// The phase's name, as its scheme has it.
@@ -13,7 +13,7 @@ pub struct Words {
     pub seen: &'static str,
 }
 
-/// What is said of a phase that has no words here.
+/// The words about a phase that has none here.
 const OTHER: Words = Words {
     name: "",
     happens: "",
@@ -59,7 +59,7 @@ const TABLE: &[Words] = &[
     words("Taylor series", "Orientation and momentum at the time t, from a series that is exact to the last digits.", "how the body stands, and L", "the wheel before (°) and after"),
 ];
 
-/// What is said of the phase called `name`.
+/// The words about the phase called `name`.
 pub fn of(name: &str) -> &'static Words {
     TABLE.iter().find(|row| row.name == name).unwrap_or(&OTHER)
 }
