@@ -1,7 +1,7 @@
 //! The path of the traced point from above, x to the right and y up: a true circle at every size.
 //!
-//! What there is to see: where the point is, and the shape of its last swings behind it, as a line; the turn before them
-//! and all that came before, dotted more and more sparsely, denser where the point dwelt.
+//! It shows where the point is, and the shape of its last swings behind it, as a line. The turn before them and all
+//! that came before are dotted, more and more sparsely; dots are denser where the point stayed longer.
 
 mod legend;
 mod points;
@@ -31,25 +31,26 @@ use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
 use std::f64::consts::TAU;
 
-/// Length of a push's line, of the radius shown: its direction is what there is to see.
+/// Length of a push's line, as a share of the radius shown. Only its direction has a meaning.
 const ARROW: f64 = 0.35;
-/// A force with less than this part of it in the plane is straight up or down as far as one sees from above.
+/// A force with a horizontal part smaller than this share of it counts as straight up or down.
 const UPRIGHT: f64 = 0.1;
-/// More pushes than this at one time are no picture.
+/// The most pushes that are drawn at one time.
 const MOST_PUSHES: usize = 20;
 
-/// The least radius shown, m: a path that never leaves the vertical has none of its own.
+/// The least radius shown, m. The path of a point that stays on the vertical has no radius.
 const LEAST: f64 = 1e-6;
 
 /// The radius shown grows by this factor's exponential, or not at all.
 const STEP: f64 = 0.05;
 
-/// Where gravity turns L by less than this in the whole run, rad, the path is a circle about L and the picture is too.
+/// If gravity turns L by less than this in the whole run, rad, the path is a circle about L, and the picture is centred
+/// on it.
 const STANDING: f64 = 0.35;
 /// A point that is nearer to the axle than this part of its distance from the pivot is on it.
 const ON_AXLE: f64 = 1e-6;
 
-/// Swings larger than this, dots, cover each other if they are close.
+/// Swings larger than this, dots, cover each other where they are close together.
 const LARGE_SWING: f64 = 4.0;
 
 /// Rows of the pane for each line of its legend, and the most lines.
@@ -114,7 +115,7 @@ impl Widget for FromAbove<'_> {
         self.points(&plan, picture, buf);
         let forces = self.pushes(&plan, picture, buf);
         let mut places = self.marks(&plan, picture, buf);
-        // Words keep off the marks; heads of arrows stand where they point.
+        // Words do not cover marks; heads of arrows stand where they point.
         let push = self.view.theme.style(Role::Push);
         for (cell, sign) in forces {
             let width = sign.len() as u16;
@@ -149,7 +150,7 @@ impl FromAbove<'_> {
         let radii = paths.into_iter().flatten().map(about);
         let away = self.places().iter().map(|place| (place.at - middle).norm());
         let radius = radii.chain(away).fold(LEAST, f64::max);
-        // In steps of 5 %: the picture shall not breathe with every millimetre.
+        // In steps of 5 %, so that the scale does not change all the time.
         let radius = libm::exp((libm::log(radius) / STEP).ceil() * STEP) * 1.02;
         let zoom = self.view.zoom.above;
         let half = radius / zoom;
@@ -183,8 +184,8 @@ impl FromAbove<'_> {
         ages.unwrap_or(Ages::UNKNOWN).on_picture(turn_dots)
     }
 
-    /// The moment that is shown: the present one, or that of the latest reading where the swings cover each other and the
-    /// eye cannot follow them anyway. They would have to be sent with every frame. Where the scheme has broken down, it is
+    /// The moment that is shown: the present one. Where the swings cover each other and the eye cannot follow them, it
+    /// is that of the latest reading, so that not every frame has to be sent. Where the scheme has broken down, it is
     /// the last moment before.
     fn now(&self, across: f64) -> Moment {
         let scenario = self.run.scenario();

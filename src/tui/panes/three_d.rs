@@ -1,7 +1,7 @@
 //! The scene in space: the wheel on its axle over the ground, the path of the axle's top, and what turns it.
 //!
-//! What there is to see: which way is up, a wheel with its masses of which some are in front and some behind, and why it
-//! goes where it goes. The weight g makes a torque τ about the pivot; L changes by dL along it, and the axle follows L.
+//! The scene shows which way is up, a wheel with its masses of which some are in front and some behind, and why it goes
+//! where it goes. The weight g makes a torque τ about the pivot; L changes by dL along it, and the axle follows L.
 
 mod arrows;
 mod phase;
@@ -33,21 +33,21 @@ use ratatui::widgets::Widget;
 use shape::Shape;
 use std::f64::consts::TAU;
 
-/// Lengths of the arrows, of the scene's reach: their directions are what there is to see.
+/// Lengths of the arrows, as shares of the scene's reach. Only their directions have a meaning.
 const MOMENTUM: f64 = 1.28;
 const CHANGE: f64 = 0.3;
-/// Length of the axes of the world, of the same.
+/// Length of the axes of the world, as such a share.
 const GROUND: f64 = 0.6;
-/// Height of the stand on whose tip the pivot is, and radius of its foot, of the same.
+/// Height of the stand that carries the pivot, and radius of its foot, as such shares.
 const STAND: f64 = 0.3;
 const FOOT: f64 = 0.25;
 /// The legs of the stand.
 const LEGS: usize = 3;
-/// A torque below this part of the largest that the weight can have is none.
+/// A torque smaller than this share of the largest torque of the weight counts as zero.
 const NO_TORQUE: f64 = 1e-9;
 /// Rows of the pane for each line of its legend.
 const ROWS_A_LINE: u16 = 5;
-/// Parts of a circle.
+/// Straight pieces of which a circle is drawn.
 const PARTS: usize = 72;
 
 /// Its row in the table of panes.
@@ -77,8 +77,8 @@ pub struct ThreeD<'a> {
     pub run: &'a LiveRun,
     /// How it is looked at.
     pub view: &'a View,
-    /// The latest reading of the run, if it is read at all: the scene is that of its time, and by it the path is recent or
-    /// old. A wheel that turns changes most of the picture; sent with every frame it would load a slow line.
+    /// The latest reading of the run, if it is read at all. The scene and the age of the path are those of its time: a
+    /// turning wheel changes most of the picture, which would load a slow line in every frame.
     pub reading: Option<&'a Reading>,
     /// The time step that the step pane takes apart: the scene shows what its page is about.
     pub explained: Option<&'a Explained>,
@@ -148,7 +148,7 @@ impl Widget for ThreeD<'_> {
     }
 }
 
-/// What is drawn: the run at the time of the picture, with what several parts of it need.
+/// The run at the time of the picture, and what several parts of the picture need of it.
 struct Subject<'a> {
     run: &'a LiveRun,
     ghost: Option<&'a Ghost>,

@@ -1,4 +1,4 @@
-//! What a metre is on the picture from above, and what its marks and lines are.
+//! The scale of the picture from above, and the meaning of its marks and lines.
 
 use super::{FromAbove, Plan, write};
 use crate::lab::view::markers::Marker;

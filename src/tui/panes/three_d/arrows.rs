@@ -10,12 +10,12 @@ use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// Lengths of the arrows, of the scene's reach: their directions are what there is to see.
+/// Lengths of the arrows, as shares of the scene's reach. Only their directions have a meaning.
 const OMEGA: f64 = 1.12;
 const WEIGHT: f64 = 0.35;
 const TORQUE: f64 = 0.5;
 const PUSH: f64 = 0.4;
-/// More pushes than this at one time are no picture.
+/// The most pushes that are drawn at one time.
 const MOST_PUSHES: usize = 20;
 
 impl Subject<'_> {
@@ -80,7 +80,8 @@ impl Subject<'_> {
         labels
     }
 
-    /// Lines that the legend takes of `width` columns: at most `most`, and as many while a push acts as between pushes.
+    /// Lines that the legend takes of `width` columns, at most `most`. They are as many while a push acts as between
+    /// pushes.
     pub(super) fn legend_lines(&self, width: usize, most: usize) -> usize {
         let has_pushes = !self.run.scenario().pushes.is_empty();
         self.legend_in(width, most, has_pushes).len().max(1)

@@ -1,5 +1,5 @@
-//! What the scene shows of the phase that the step pane is at: the arrows it is about and no others, the axis of its
-//! turn, and the body as it stood before the step.
+//! The phase of the step pane in the scene: only the arrows that it is about, the axis of its turn, and the body as it
+//! stood before the step.
 
 use super::{Label, MOMENTUM, Subject};
 use crate::lab::explained::{Explained, table_of};
@@ -11,9 +11,9 @@ use crate::tui::scene::{Scene, Stroke};
 use crate::tui::theme::Role;
 use nalgebra::Vector3;
 
-/// How far the axis of a turn goes beyond the body on both sides, of its size.
+/// How far the axis of a turn goes beyond the body on both sides, as a share of its size.
 const AXIS: f64 = 1.0;
-/// Directions that differ by less, in radians, are drawn as one.
+/// Directions that differ by less than this, rad, are drawn as one.
 const SEEN: f64 = 0.03;
 
 /// The phase that the step pane is at.
@@ -81,7 +81,7 @@ impl<'a> Shown<'a> {
 }
 
 impl Subject<'_> {
-    /// Whether the arrow of this letter is drawn: all of them, or in the step pane's phase those it is about.
+    /// Whether the arrow of this letter is drawn. Where the step pane is shown, only those are that its phase is about.
     pub(super) fn draws(&self, letter: &str) -> bool {
         let shown = self.shown_phase.as_ref();
         shown.is_none_or(|shown| shown.letters().contains(&letter))
@@ -140,7 +140,7 @@ impl Subject<'_> {
         shown.map_or_else(Vec::new, |shown| self.masses_before(shown.before(), scene))
     }
 
-    /// The direction of the new L, where the phase makes one that is seen to be another than the old.
+    /// The direction of the new L, if the phase makes one that can be told from the old.
     pub(super) fn new_momentum(&self) -> Option<Vector3<f64>> {
         let shown = self.shown_phase.as_ref().filter(|_| self.draws("dL"))?;
         let (old, new) = (shown.direction("L")?, shown.direction("new L")?);

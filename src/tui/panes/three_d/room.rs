@@ -1,17 +1,18 @@
-//! What the scene must have room for.
+//! The room that the scene needs.
 
 use super::{CHANGE, GROUND, MOMENTUM, STAND, Subject};
 use crate::observe::camera::Zoom;
 use crate::observe::recording::Curve;
 use crate::tui::scene::Shown;
 
-/// The tilts that are to have room are taken at multiples of this, degrees: the picture shall not breathe.
+/// Tilts are rounded to multiples of this, degrees, so that the scale does not change all the time.
 const TILT_DEG: f64 = 5.0;
-/// Room around what is drawn, of it: for letters.
+/// Margin around what is drawn, as a share of it, for letters.
 const MARGIN: f64 = 1.06;
 
 impl Subject<'_> {
-    /// What there must be room for: wherever the body comes as it precesses at the tilts that it has had, L, and the ground.
+    /// The room that the scene needs: for the body as it precesses at the tilts that it has had, for L, and for the
+    /// ground.
     pub(super) fn shown(&self) -> Shown {
         let tilts = self.run.recording().whole();
         let tilts = tilts.map_or((0.0, 0.0), |whole| {

@@ -1,4 +1,4 @@
-//! The solid parts in the scene, seen as what they are.
+//! The solid parts in the scene.
 
 use super::Subject;
 use crate::observe::outline::{self, Polyline};

@@ -14,7 +14,7 @@ const MOST_SPOKES: usize = 6;
 const HUB: f64 = 0.14;
 /// A mass is near or far where it is nearer or farther than the hub by this part of the rim's radius.
 const NEAR: f64 = 0.33;
-/// Signs of masses stand no closer than this on the rim, cells.
+/// The least distance of the signs of masses on the rim, cells.
 const CLOSEST: f64 = 2.0;
 
 /// A sign, its role and its cell.
@@ -51,7 +51,7 @@ impl Subject<'_> {
             for point in (0..points).step_by(every) {
                 let at = on_circle(state, radius, height, point, points);
                 let hub = on_circle(state, HUB * radius, height, point, points);
-                // One of them is told from the others, so that the wheel is seen to turn.
+                // One spoke is drawn differently, so that the wheel is seen to turn.
                 let stroke = match point {
                     0 => Stroke::Thin,
                     _ => Stroke::Dotted(3),

@@ -1,4 +1,4 @@
-//! What the strips show: the curves that every run has, and beside measured data the quantities that only they have.
+//! The contents of the strips: the curves that every run has, and the measured quantities that are none of these.
 
 use super::Traces;
 use crate::lab::measured::Shown;

@@ -43,7 +43,8 @@ pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: 
         Stroke::LongAndShort => !matches!(x / across % LONG_AND_SHORT, 3 | 5),
         Stroke::Dotted => x.is_multiple_of(across.max(2)),
     };
-    // Of a steep piece of a dotted curve two dots in a cell, from its top on: a level piece is seen at any height.
+    // A steep piece of a dotted curve has two dots in each cell, counted from the cell's top. A level piece is seen at
+    // any height.
     let apart = match stroke {
         Stroke::Dotted => (down / 2).max(1),
         _ => 1,

@@ -8,7 +8,8 @@ use ratatui::layout::Rect;
 
 /// From this width on the values stand beside the strips, and not on a line above each.
 const BESIDE_FROM: u16 = 48;
-/// The fewest rows of a strip where something was measured, and how much of the rest a strip with points has.
+/// The fewest rows of a strip where something was measured, and the shares of the remaining rows that a strip with
+/// points has.
 const STRIP_MEASURED: u16 = 3;
 const WITH_POINTS: u16 = 3;
 
@@ -129,9 +130,9 @@ impl Traces<'_> {
         }
     }
 
-    /// What is shown where there is room for `most` strips, from the top: on that of the fast motion, and on the others,
-    /// in their order. What was measured goes before the rest; where there is no room for all of that, z goes before y, and
-    /// x before both.
+    /// The contents for `most` strips, from the top: that of the strip of the fast motion, and those of the others, in
+    /// their order. Measured quantities go before the others. Where there is no room for all of these, z goes before y,
+    /// and x before both.
     fn shown(&self, most: usize, is_magnified: bool) -> (Vec<Content>, Vec<Content>) {
         let first = Content::Curve(self.detail.curve);
         let measured = self.measured_contents();

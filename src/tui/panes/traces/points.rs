@@ -16,7 +16,7 @@ use ratatui::layout::Rect;
 const LEAST: f64 = 1e-9;
 
 impl Traces<'_> {
-    /// What the points of `content` need of the range of values: of those in the time of `strip`, or of all.
+    /// The range of values that the points of `content` need: those in the time of `strip`, or all.
     pub(super) fn extent_of_points(
         &self,
         content: Content,

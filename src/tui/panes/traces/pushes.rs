@@ -8,7 +8,7 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// What marks time with a push.
+/// The mark of the time in which a push acts.
 const BAR: &str = "═";
 /// The word at it.
 const WORD: &str = "push";

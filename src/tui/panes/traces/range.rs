@@ -8,17 +8,18 @@ use crate::observe::recording::{Curve, Extent, Recording};
 use crate::observe::scale::Scale;
 use crate::observe::strip::Strip;
 
-/// Least range of z, of the distance between pivot and traced point: a swing below it is small, and shall look small.
+/// Least range of z, as a share of the distance between pivot and traced point: a smaller swing is drawn small.
 const Z_LEAST: f64 = 0.05;
-/// Least range of the tilt, degrees: below it there is rounding to see, and no end to the digits of its ends.
+/// Least range of the tilt, degrees. Below it there is only rounding error, and the labels would have too many digits.
 const TILT_LEAST: f64 = 0.02;
-/// Least range of other quantities, of their size.
+/// Least range of other quantities, as a share of their size.
 const SHARE_LEAST: f64 = 1e-3;
-/// Least reach of x and y, of the same distance.
+/// Least reach of x and y, as a share of the distance between pivot and traced point.
 const PLANE_LEAST: f64 = 1e-4;
 
 impl Traces<'_> {
-    /// The range of values of a strip, magnified as it is looked at: that of the whole run, or of the time of `strip` alone.
+    /// The range of values of a strip, magnified as the view wants it: that of the whole run, or of the time of `strip`
+    /// alone.
     pub(super) fn scale(&self, content: Content, strip: Option<&Strip>) -> Scale {
         let scale = self.whole_scale(content, strip);
         if self.view.magnified <= 1.0 {
@@ -50,8 +51,9 @@ impl Traces<'_> {
         }
     }
 
-    /// Everything the strip of `content` has to show: the run, the points, and where they are shown the exact motion, the
-    /// run before and the pinned one: the whole of it at once, so that the picture stays while the run comes after it.
+    /// The extent of all that the strip of `content` shows: the run, the points, and, where they are shown, the exact
+    /// motion, the run before and the pinned one. These count as a whole, so that the scale stays while the run catches
+    /// up with them.
     fn extent(&self, content: Content, strip: Option<&Strip>) -> Extent {
         let of_every_run = |recording| match content {
             Content::Curve(curve) => Some((recording, curve)),
