@@ -1,5 +1,5 @@
-//! The lab from its keys to its picture, without a terminal: pictures of every mode, journeys, and properties at
-//! random sizes and states.
+//! The lab without a terminal, from keys to pictures: pictures of every mode, journeys, and properties at random sizes
+//! and states.
 
 use crate::support::stage::{LARGE, SMALL, Stage, picture};
 use gyrolab::lab::Request;
@@ -301,7 +301,7 @@ fn the_run_pauses_once_at_its_end() {
 fn top_speed_is_as_fast_as_there_is_time_for() {
     let mut stage = Stage::open("method-2", &["motion.steps=100000000"], SMALL);
     stage.commands("speed = 'top'").wait(0.5).shows("top ×");
-    // 25 ms a slice, 50 µs for each reading of the clock: 500 readings with some hundred steps between them.
+    // A slice lasts 25 ms and each reading of the clock 50 µs: 500 readings, with some hundred steps between two.
     assert!(stage.step() > 100_000, "{}", stage.step());
 }
 
@@ -686,7 +686,7 @@ fn a_circle_is_round() {
                 .press(&"m".repeat(marker))
                 .wait(6.0);
             let (across, down) = extent_of_the_path(&stage.picture());
-            // A cell is twice as high as wide; the path's edge may lie anywhere in a cell at both ends.
+            // A cell is twice as high as wide. At both ends the edge of the path may lie anywhere in a cell.
             assert!(
                 (across - 2.0 * down).abs() <= 4.0,
                 "{across} x {down} at {width}x{height}:\n{}",
@@ -696,7 +696,7 @@ fn a_circle_is_round() {
     }
 }
 
-/// Cells across and down that hold the path.
+/// Width and height of the path, cells.
 fn extent_of_the_path(picture: &str) -> (f64, f64) {
     let is_dot = |c: char| ('\u{2800}'..='\u{28ff}').contains(&c) || "▀▄█•".contains(c);
     let at: Vec<(usize, usize)> = picture

@@ -1,5 +1,5 @@
-//! What a user does in the lab from its opening to its end, and what is on the screen and the disk then: the program
-//! itself in a pty.
+//! Journeys of a user through the lab, from its opening to its end, with what is on the screen and the disk then. The
+//! program itself runs in a pty.
 
 use crate::support::dice::Dice;
 use crate::support::ground::Ground;
@@ -14,9 +14,9 @@ const LEFT: &str = "\u{1b}[D";
 const ESC: &str = "\u{1b}";
 const TO_THE_TOP: &str = "99\u{1b}[A";
 const CTRL_Z: &str = "\u{1a}";
-/// Takes away what a dialog offers, or what was typed into it.
+/// Ctrl-U: clears the field of a dialog.
 const CLEAR: &str = "\u{15}";
-/// What the lab says of itself when a session has been come back to.
+/// The message of a lab that has resumed a session.
 const AS_LEFT: &str = "as it was left";
 
 /// The lab with Method 2, standing still at `step`.
@@ -27,7 +27,7 @@ fn paused_at(ground: &Ground, step: u64) -> Terminal {
     lab
 }
 
-/// The lab as the newest session has it, arrived where it was left.
+/// The lab of the newest session, once it has arrived at the step where it was left.
 fn resumed(ground: &Ground) -> Terminal {
     let lab = ground.open(&["--resume"]);
     lab.wait_for(AS_LEFT);
@@ -66,7 +66,7 @@ fn go_to(lab: &mut Terminal, step: u64) {
     });
 }
 
-/// Gives the push that is chosen, and sees it given.
+/// Gives the push to come, and waits for the message about it.
 #[track_caller]
 fn push(lab: &mut Terminal) {
     lab.ask("1", "1: now the key"); // what was said of the push before has gone
@@ -96,7 +96,7 @@ fn exported(lab: &mut Terminal, name: &str) -> Vec<u8> {
     fs::read(lab.ground().file(name)).unwrap()
 }
 
-/// What `gyrolab run` makes of the file `name`.
+/// The CSV that `gyrolab run` writes for the file `name`.
 fn run(ground: &Ground, name: &str) -> Vec<u8> {
     let output = ground.run(&["run", name, "-o", "-"]);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -260,7 +260,7 @@ fn a_step_beyond_all_is_gone_to_with_progress_until_esc() {
     lab.quit();
 }
 
-/// The file is written by one who does all there is to do before.
+/// The run that is exported has every kind of change in it.
 #[test]
 fn an_export_is_the_run_that_was_saved() {
     let ground = Ground::new();
@@ -379,7 +379,7 @@ fn an_export_whose_folder_goes_away_says_so_and_the_lab_stays() {
     lab.quit();
 }
 
-/// So many steps of a wheel of so many points take a second, and as long again to be written.
+/// A run of this many steps of a wheel of this many points takes a second, and its export takes another.
 const LONG: u64 = 200_000;
 const POINTS: &str = "body.rim.points=4000";
 
@@ -429,7 +429,7 @@ fn a_line_that_is_lost_in_an_export_leaves_no_part_and_is_told_of() {
     });
 }
 
-/// Does `test` with each of `cases`, which wait more than they work.
+/// Runs `test` with all `cases` at once: they wait more than they compute.
 fn all_at_once(cases: &[&str], test: impl Fn(&str) + Sync) {
     thread::scope(|scope| {
         for case in cases {
@@ -438,7 +438,7 @@ fn all_at_once(cases: &[&str], test: impl Fn(&str) + Sync) {
     });
 }
 
-/// Has the lab end by that signal, or by the loss of its line.
+/// Ends the lab by the signal `by`, or by the loss of its line.
 fn ended(lab: &mut Terminal, by: &str) {
     match by {
         "line" => lab.lose_line(),
@@ -447,7 +447,7 @@ fn ended(lab: &mut Terminal, by: &str) {
     lab.wait_for_end();
 }
 
-/// All that is kept of sessions.
+/// The content of all session files.
 fn kept(ground: &Ground) -> String {
     let folder = ground.state().join("gyrolab");
     let names = ground
@@ -564,7 +564,7 @@ fn the_runs_before_are_kept_too() {
     lab.quit();
 }
 
-/// Keys and the end may come together, as from a hand that is fast on a line that is slow.
+/// Keys may arrive together with the end of the program, from a fast typist on a slow line.
 #[test]
 fn what_is_pressed_just_before_the_end_is_kept() {
     all_at_once(&["q", "\u{3}", CTRL_Z], |end| {
@@ -574,7 +574,7 @@ fn what_is_pressed_just_before_the_end_is_kept() {
         match end {
             CTRL_Z => {
                 lab.has_given_the_terminal_back();
-                wait_for_rest(&lab);
+                wait_until_stopped(&lab);
                 lab.kill();
             }
             _ => drop(lab.wait_for_end()),
@@ -596,9 +596,9 @@ fn keys_that_come_together_count_one_by_one() {
     lab.quit();
 }
 
-/// Waits until the process has stopped, as Ctrl-Z has it stop.
+/// Waits until Ctrl-Z has stopped the process.
 #[track_caller]
-fn wait_for_rest(lab: &Terminal) {
+fn wait_until_stopped(lab: &Terminal) {
     let stat = format!("/proc/{}/stat", lab.child.process_id().unwrap());
     lab.wait_until("a process that has stopped", |_| {
         let stat = fs::read_to_string(&stat).unwrap_or_default();
@@ -697,7 +697,7 @@ fn two_labs_have_two_sessions_and_a_third_begins_anew() {
     third.wait_for("Method 2");
 }
 
-/// Waits until where `lab` stands is on the disk.
+/// Waits until the step of `lab` is on the disk.
 fn wait_until_kept(lab: &Terminal, ground: &Ground) {
     let step = format!("step = {}\n", lab.step().unwrap());
     lab.wait_until("what it does on the disk", |_| kept(ground).contains(&step));
@@ -732,7 +732,7 @@ fn a_damaged_session_is_named_and_kept_aside() {
     assert_eq!(aside, [format!("{name}.damaged")]);
     lab.press(" ");
     lab.quit();
-    // It is not tried again, and the lab that was opened instead has a session of its own.
+    // The damaged session is not tried again, and the lab that was opened instead has a session of its own.
     resumed(&ground);
 }
 
@@ -774,7 +774,7 @@ fn a_place_for_sessions_that_is_lost_is_told_of_and_found_again() {
     assert_eq!(resumed(&ground).step(), Some(31));
 }
 
-/// A lab that comes back to a far step is on its way for a while: an end on the way must not cost the rest of it.
+/// A lab that resumes at a far step is on its way for a while. If it ends on the way, it must still resume there.
 #[test]
 fn an_end_on_the_way_back_costs_nothing() {
     let ground = Ground::new();
@@ -792,7 +792,7 @@ fn an_end_on_the_way_back_costs_nothing() {
     assert_eq!(lab.step(), Some(3_000_000));
 }
 
-/// On the way to another step than that, where it has come to is what counts.
+/// On the way to a step that the user asked for, it resumes at the step that it had reached.
 #[test]
 fn an_end_on_the_way_further_costs_nothing_either() {
     let ground = Ground::new();
@@ -806,18 +806,18 @@ fn an_end_on_the_way_further_costs_nothing_either() {
     assert!(lab.step() >= step, "{:?} {step:?}", lab.step());
 }
 
-/// What must be there after a kill.
-struct Sure {
-    /// The step at which the run was saved, and what was in the file.
+/// What a session must contain after a kill.
+struct Kept {
+    /// The step at which the run was saved, and the run file.
     step: u64,
     run: String,
-    /// A step it had come to, and how many pushes had been given since then, more than a second before the kill.
+    /// A step that the lab showed more than a second before the kill, and how many pushes the run had then.
     reached: u64,
     pushes: usize,
 }
 
-/// What is seen at some time.
-struct Seen {
+/// What the screen showed at some time.
+struct Observed {
     at: Instant,
     step: u64,
     pushes: usize,
@@ -837,30 +837,30 @@ fn five_kills(seed: u64) {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 20);
     for kill in 0..5 {
-        let sure = lives_until_killed(&mut lab, &mut dice, kill);
+        let kept = is_used_until_killed(&mut lab, &mut dice, kill);
         lab = resumed(&ground);
         let context = format!("seed {seed}, kill {kill}");
         let step = lab.step().unwrap();
-        assert!(step >= sure.reached, "{context}: {step} {}", sure.reached);
+        assert!(step >= kept.reached, "{context}: {step} {}", kept.reached);
         let all = saved(&mut lab, &format!("all-{kill}.toml"));
         let pushes = all.matches("[[push]]").count();
-        assert!(pushes >= sure.pushes, "{context}: {pushes} {}", sure.pushes);
-        go_to(&mut lab, sure.step);
+        assert!(pushes >= kept.pushes, "{context}: {pushes} {}", kept.pushes);
+        go_to(&mut lab, kept.step);
         let again = saved(&mut lab, &format!("again-{kill}.toml"));
-        assert_eq!(again, sure.run, "{context}");
+        assert_eq!(again, kept.run, "{context}");
     }
 }
 
-/// Does this and that, and saves it; does more for a second or two; and is killed.
-fn lives_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Sure {
+/// Changes the run at random and saves it; then adds to it for a second or two, and is killed.
+fn is_used_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Kept {
     for _ in 0..dice.whole(1, 6) {
-        does_anything(lab, dice);
+        changes_something(lab, dice);
     }
     let step = dice.whole(10, 400);
     go_to(lab, step);
     let run = saved(lab, &format!("run-{kill}.toml"));
     let pushes = run.matches("[[push]]").count();
-    let mut seen = vec![Seen {
+    let mut seen = vec![Observed {
         at: Instant::now(),
         step,
         pushes,
@@ -869,9 +869,9 @@ fn lives_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Sure 
     lab.wait_for_step(step + 1);
     let until = Instant::now() + Duration::from_millis(dice.whole(1000, 1900));
     while Instant::now() < until {
-        let given = goes_on(lab, dice);
+        let given = adds_something(lab, dice);
         let pushes = seen.last().map_or(0, |seen| seen.pushes) + given;
-        seen.push(Seen {
+        seen.push(Observed {
             at: Instant::now(),
             step: lab.step().unwrap(),
             pushes,
@@ -880,13 +880,13 @@ fn lives_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Sure 
     }
     let killed = Instant::now();
     lab.kill();
-    let is_sure = |seen: &&Seen| seen.at + Duration::from_secs(1) <= killed;
-    let Seen {
+    let is_old = |seen: &&Observed| seen.at + Duration::from_secs(1) <= killed;
+    let Observed {
         step: reached,
         pushes,
         ..
-    } = seen.iter().rfind(is_sure).unwrap();
-    Sure {
+    } = seen.iter().rfind(is_old).unwrap();
+    Kept {
         step,
         run,
         reached: *reached,
@@ -894,8 +894,8 @@ fn lives_until_killed(lab: &mut Terminal, dice: &mut Dice, kill: usize) -> Sure 
     }
 }
 
-/// Any change of the run, at any place in it.
-fn does_anything(lab: &mut Terminal, dice: &mut Dice) {
+/// A random change of the run, at any of its steps.
+fn changes_something(lab: &mut Terminal, dice: &mut Dice) {
     match dice.whole(0, 7) {
         0 => push(lab),
         1 => select(lab, 1),
@@ -914,15 +914,15 @@ fn does_anything(lab: &mut Terminal, dice: &mut Dice) {
     }
 }
 
-/// Something that only adds to the run; gives how many pushes.
-fn goes_on(lab: &mut Terminal, dice: &mut Dice) -> usize {
+/// A random action that only adds to the run; returns how many pushes it gave.
+fn adds_something(lab: &mut Terminal, dice: &mut Dice) -> usize {
     match dice.whole(0, 4) {
         0 => {
             push(lab);
             return 1;
         }
         1 => lab.press(" "),
-        // Played no faster, the run does not come to its end, whose message would stand in the place of the push's.
+        // The speed is never raised: the run must not reach its end, whose message would replace that of a push.
         _ => lab.press(dice.pick(&[".", "5.", "-", "w"])),
     }
     0

@@ -33,12 +33,12 @@ impl Ground {
         self.path().join(name)
     }
 
-    /// The folder in which the sessions' folder is created.
+    /// The folder that contains the sessions' folder.
     pub fn state(&self) -> PathBuf {
         self.file("state")
     }
 
-    /// The folder in which the folder of the user's settings is.
+    /// The folder that contains the folder of the user's settings.
     pub fn config(&self) -> PathBuf {
         self.file("config")
     }

@@ -27,8 +27,8 @@ impl Ground {
         self.spawn(command, variables)
     }
 
-    /// The program on a terminal that is not its controlling terminal, as after `su -c`: it gets no signal when the line is
-    /// lost.
+    /// The program on a terminal that is not its controlling terminal, as after `su -c`: it gets no signal when the
+    /// line is lost.
     pub fn open_uncontrolled(&self, args: &[&str]) -> Terminal {
         let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_gyrolab"));
         command.args(args);
@@ -74,7 +74,7 @@ pub struct Terminal {
     pty: Option<Box<dyn MasterPty + Send>>,
     shown: Arc<Mutex<Shown>>,
     size: (u16, u16),
-    /// Whether the reader hangs up at the next byte.
+    /// Whether the reader closes the line at the next byte.
     lost: Arc<AtomicBool>,
     /// Whether the reader accepts no bytes, like a terminal stopped by Ctrl-S.
     stopped: Arc<AtomicBool>,

@@ -113,8 +113,8 @@ impl Stage {
         self
     }
 
-    /// Carries out the commands in `text`, the lines of a `[[do]]` each, and fits the lab to the screen again, as the
-    /// terminal does before the next frame.
+    /// Carries out the commands in `text`, each line of which is the body of a `[[do]]`. Then fits the lab to the
+    /// screen again, as the terminal does before the next frame.
     #[track_caller]
     pub fn commands(&mut self, text: &str) -> &mut Self {
         for command in commands(text) {
