@@ -1,25 +1,9 @@
 //! The lessons that come with the program, compiled in.
 
-/// A lesson that comes with the program.
-#[derive(Clone, Copy, Debug)]
-pub struct Shipped {
-    /// Its name on the command line; `presets/lessons/NAME.md` in the source.
-    pub name: &'static str,
-    /// The file's text.
-    pub text: &'static str,
-}
-
-macro_rules! lessons {
-    ($($name:literal)*) => {
-        &[$(Shipped {
-            name: $name,
-            text: include_str!(concat!("../../presets/lessons/", $name, ".md")),
-        }),*]
-    };
-}
+use crate::text::shipped::{Shipped, shipped};
 
 /// Every lesson, in the order in which they build on each other.
-pub const LESSONS: &[Shipped] = lessons![
+pub const LESSONS: &[Shipped] = shipped!["lessons", "md":
     "why-it-does-not-fall"
     "one-step-by-hand"
     "method-1-and-its-z"
@@ -38,7 +22,7 @@ pub const LESSONS: &[Shipped] = lessons![
 
 /// The lesson of that name.
 pub fn find(name: &str) -> Option<&'static Shipped> {
-    LESSONS.iter().find(|lesson| lesson.name == name)
+    Shipped::find(LESSONS, name)
 }
 
 /// A small lesson with a comment on each part, to begin one's own from.

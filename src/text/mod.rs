@@ -3,11 +3,13 @@
 //! - [`ladder`]: the numbers 1, 2 and 5 times a power of ten.
 //! - [`number`]: numbers in as few digits as a reader needs.
 //! - [`printable`]: text with nothing in it that steers a terminal.
+//! - [`shipped`]: files that come with the program.
 //! - [`mod@unit`]: units at the end of names.
 //! - [`wrap`]: text in lines of a width.
 
 pub mod ladder;
 pub mod number;
 pub mod printable;
+pub mod shipped;
 pub mod unit;
 pub mod wrap;
