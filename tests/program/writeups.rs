@@ -96,7 +96,7 @@ fn measured_data_stand_beside_the_run() {
     assert_eq!(lab.read("w/bench.csv"), data);
     let page = lab.read("w/README.md");
     for words in [
-        "`bench.csv` holds 3 measured values. 1 of them were measured after the end of the run at 4 s",
+        "`bench.csv` holds 3 measured values. The run ends at 4 s, before 1 of them",
         "| `x_m` | 2 of 3 | 8 | 2 | 2 at 1 s | n/a |",
         "chi^2 of all is 8 at 2 measured values",
         "](measured.svg)",

@@ -203,7 +203,7 @@ fn write_beside(page: &mut String, beside: &Beside) -> fmt::Result {
     let measured = match sum.points - sum.compared {
         0 => String::new(),
         later => format!(
-            " {later} of them were measured after the end of the run at {} s, and are not compared.",
+            " The run ends at {} s, before {later} of them: these are not compared.",
             shortest(beside.end_s)
         ),
     };
@@ -256,17 +256,30 @@ fn points(count: usize) -> String {
 fn write_again(page: &mut String, beside: Option<&Beside>) -> fmt::Result {
     let measured = beside.map(|beside| format!(" --measured {}", beside.name()));
     let measured = measured.unwrap_or_default();
-    writeln!(
-        page,
-        "In this folder, with gyrolab {version}:\n\n\
-         ```sh\n\
-         gyrolab verify {CSV}               # computes the rows anew and says whether they are the same\n\
-         gyrolab run {RUN_FILE} -o again.csv   # the same bytes as {CSV}\n\
-         gyrolab writeup {RUN_FILE}{measured} -o again   # this folder\n\
-         gyrolab {RUN_FILE}{measured}                    # the run, live in the terminal\n\
-         ```\n",
-        version = env!("CARGO_PKG_VERSION")
-    )
+    let same = format!("the same bytes as {CSV}");
+    let commands = [
+        (
+            format!("verify {CSV}"),
+            "computes the rows anew and says whether they are the same",
+        ),
+        (format!("run {RUN_FILE} -o again.csv"), same.as_str()),
+        (
+            format!("writeup {RUN_FILE}{measured} -o again"),
+            "this folder",
+        ),
+        (
+            format!("{RUN_FILE}{measured}"),
+            "the run, live in the terminal",
+        ),
+    ];
+    let width = commands.iter().map(|(command, _)| command.len()).max();
+    let width = width.unwrap_or_default();
+    let version = env!("CARGO_PKG_VERSION");
+    writeln!(page, "In this folder, with gyrolab {version}:\n\n```sh")?;
+    for (command, what) in commands {
+        writeln!(page, "gyrolab {command:width$}   # {what}")?;
+    }
+    writeln!(page, "```\n")
 }
 
 fn write_languages(page: &mut String, languages: &[Lines]) -> fmt::Result {
