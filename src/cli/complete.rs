@@ -3,7 +3,7 @@
 
 use super::{command, manual, print};
 use crate::analysis::readouts::READOUTS;
-use crate::export::columns::COLUMNS;
+use crate::export::columns::{COLUMNS, OPTIONAL_COLUMNS};
 use crate::export::points::POINT_COLUMNS;
 use crate::measured::shipped::SHIPPED;
 use crate::scenario::keys::{Effect, KEYS, Key, Kind};
@@ -184,7 +184,9 @@ fn with_files(
 
 fn columns(current: &OsStr) -> Vec<CompletionCandidate> {
     let columns = COLUMNS.iter().map(|column| (column.name, column.about));
-    let mut found = named(current, columns);
+    let optional = OPTIONAL_COLUMNS.iter();
+    let optional = optional.map(|column| (column.name, column.about));
+    let mut found = named(current, columns.chain(optional));
     let of_points = POINT_COLUMNS
         .iter()
         .filter(|point| COLUMNS.iter().all(|column| column.name != point.name));

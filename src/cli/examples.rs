@@ -41,7 +41,8 @@ const EXAMPLES: &[(&str, &str)] = &[
     ),
     (
         "writeup",
-        "  gyrolab writeup wobble-push -o wobble      run, CSV, figures, table and text in a folder",
+        "  gyrolab writeup wobble-push -o wobble      run, CSV, figures, table and text in a folder
+  gyrolab writeup method-2 --measured bench.csv -o bench    with what was measured, and chi^2",
     ),
     (
         "verify",

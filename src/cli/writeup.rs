@@ -7,9 +7,12 @@ use super::scenario::scenario_of;
 use super::{INTERRUPTED, complain, tell};
 use crate::export::stream::Ended;
 use crate::export::{CsvWriter, Folder};
+use crate::measured;
+use crate::scenario::{Document, Scenario};
 use crate::study::writeup::figures::figures;
-use crate::study::writeup::{CSV, Writeup};
+use crate::study::writeup::{Beside, CSV, Writeup};
 use crate::text::printable::Shown;
+use crate::work::changed::changed;
 use anyhow::Context;
 use clap::Args;
 use std::fs::{self, File};
@@ -29,13 +32,22 @@ pub(super) struct WriteupArgs {
     #[command(flatten)]
     pub(super) length: LengthArgs,
 
+    /// Add measured data: a CSV with a column t_s, or data that come with gyrolab (heidelberg-spin-decay); a copy, figures
+    /// of them and of measured less run, and chi^2
+    #[arg(long, value_name = "FILE")]
+    pub(super) measured: Option<String>,
+
     /// Write into a folder that holds files, and replace those of the same names
     #[arg(long)]
     pub(super) force: bool,
 }
 
 pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
-    let scenario = Arc::new(scenario_of(&args.scenario, &args.length)?);
+    let scenario = Arc::new(with_true_line(
+        scenario_of(&args.scenario, &args.length)?,
+        args,
+    ));
+    let mut beside = args.measured.as_deref().map(beside).transpose()?;
     let (_, interruption) = progress::open(None, false)?;
     let folder = Folder::begin(&args.output, args.force)?;
     let cannot_write = || format!("cannot write {}", Shown(&args.output));
@@ -51,7 +63,16 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     };
     let readouts = played.readouts();
     let mut meter = Meter::new();
-    let drawings = figures(&scenario, &readouts, |step, of| {
+    if let Some(beside) = &mut beside {
+        let goes_on = |step| {
+            meter.show(step, scenario.steps);
+            !interruption.has_come()
+        };
+        if !beside.hold(&scenario, readouts.sample.time_s, goes_on)? {
+            return Ok(ExitCode::from(INTERRUPTED));
+        }
+    }
+    let drawings = figures(&scenario, &readouts, beside.as_ref(), |step, of| {
         meter.show(step, of);
         interruption.go_on()
     });
@@ -59,7 +80,7 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let Some(drawings) = drawings.map_err(anyhow::Error::msg)? else {
         return Ok(ExitCode::from(INTERRUPTED));
     };
-    let writeup = Writeup::new(scenario, readouts, broken, drawings);
+    let writeup = Writeup::new(scenario, readouts, broken, beside, drawings);
     for (name, bytes) in writeup.files()? {
         fs::write(folder.path().join(name), bytes).with_context(cannot_write)?;
     }
@@ -76,4 +97,26 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     };
     complain(&anyhow::Error::new(error).context(args.scenario.scenario.clone()));
     Ok(ExitCode::FAILURE)
+}
+
+/// `scenario`, whose line about what there is to see may be false where the command line has changed its motion: as in the
+/// lab, the changes stand in its place then.
+fn with_true_line(mut scenario: Scenario, args: &WriteupArgs) -> Scenario {
+    let opened = Document::open(&args.scenario.scenario);
+    let opened = opened.and_then(|document| document.scenario()).ok();
+    let changed = opened.and_then(|opened| changed(&opened, &scenario));
+    let line = scenario.file.view.as_mut();
+    let line = line.and_then(|view| view.look_at.as_mut());
+    if let (Some(line), Some(changed)) = (line, changed) {
+        *line = changed;
+    }
+    scenario
+}
+
+/// The measured data `name`, to be held against the run.
+fn beside(name: &str) -> anyhow::Result<Beside> {
+    let text = measured::text(name)?.into_owned();
+    let measured = measured::read(name, &text)?;
+    measured.series()?; // a table of runs is refused before anything is run
+    Ok(Beside::new(measured, text))
 }

@@ -1,6 +1,8 @@
-//! The table of CSV columns: every number of a [`Sample`] with its column name.
+//! The table of CSV columns: every number of a [`Sample`] with its column name, and those that a CSV has on request.
 
+use crate::physics::State;
 use crate::run::Sample;
+use crate::scenario::{Scenario, start};
 
 /// A column of the CSV.
 #[derive(Debug)]
@@ -90,6 +92,89 @@ pub const COLUMNS: &[Column] = &[
         |s| Whole(s.segment),
     ),
 ];
+
+/// A column that a CSV has where it is asked for: not every run has a use for it.
+#[derive(Debug)]
+pub struct OptionalColumn {
+    /// Name with its unit, as in the header line.
+    pub name: &'static str,
+    /// What it holds, in one line.
+    pub about: &'static str,
+    value: fn(&Scenario, &State) -> f64,
+}
+
+/// Every column on request.
+pub static OPTIONAL_COLUMNS: [OptionalColumn; 2] = [SPIN, L_AXLE];
+
+const SPIN: OptionalColumn = OptionalColumn {
+    name: "spin_rpm",
+    about: "rate of the spin about the axle",
+    value: |scenario, state| start::rpm(scenario.spin_rad_per_s(state)),
+};
+
+const L_AXLE: OptionalColumn = OptionalColumn {
+    name: "L_axle_Js",
+    about: "angular momentum along the axle",
+    value: |_, state| state.momentum.dot(&state.axle()),
+};
+
+impl OptionalColumn {
+    /// The column of that name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        OPTIONAL_COLUMNS.iter().find(|column| column.name == name)
+    }
+
+    /// The value in `state` of a run of `scenario`.
+    pub fn of(&self, scenario: &Scenario, state: &State) -> f64 {
+        (self.value)(scenario, state)
+    }
+
+    /// The value at `sample`, which is of a run of `scenario`.
+    pub fn value(&self, scenario: &Scenario, sample: &Sample) -> f64 {
+        let state = State {
+            time_s: sample.time_s,
+            orientation: sample.orientation,
+            momentum: sample.momentum,
+        };
+        self.of(scenario, &state)
+    }
+}
+
+/// A column that a CSV was asked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Chosen {
+    Usual(&'static Column),
+    Optional(&'static OptionalColumn),
+}
+
+impl Chosen {
+    /// The names of all there are.
+    pub(super) fn names() -> impl Iterator<Item = &'static str> + Clone {
+        let usual = COLUMNS.iter().map(|column| column.name);
+        usual.chain(OPTIONAL_COLUMNS.iter().map(|column| column.name))
+    }
+
+    /// The column of that name.
+    pub(super) fn find(name: &str) -> Option<Self> {
+        let optional = || OptionalColumn::find(name).map(Self::Optional);
+        Column::find(name).map(Self::Usual).or_else(optional)
+    }
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Usual(column) => column.name,
+            Self::Optional(column) => column.name,
+        }
+    }
+
+    /// Its field in the row of `sample`, which is of a run of `scenario`.
+    pub(super) fn cell(self, scenario: &Scenario, sample: &Sample) -> Cell<'static> {
+        Cell::Number(match self {
+            Self::Usual(column) => column.value(sample),
+            Self::Optional(column) => Number(column.value(scenario, sample)),
+        })
+    }
+}
 
 const fn column(name: &'static str, about: &'static str, value: fn(&Sample) -> Value) -> Column {
     Column { name, about, value }

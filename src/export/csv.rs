@@ -17,6 +17,8 @@ const BYTE_ORDER_MARK: &str = "\u{feff}";
 pub struct CsvWriter<W: Write> {
     rows: Rows<W>,
     layout: Layout,
+    /// Of whose run the rows are.
+    scenario: Scenario,
     /// The points of the body, where each of them has a row.
     points: Vec<NamedPoint>,
 }
@@ -61,6 +63,7 @@ impl<W: Write> CsvWriter<W> {
                 count: 0,
             },
             layout,
+            scenario: scenario.clone(),
             points,
         })
     }
@@ -78,7 +81,10 @@ impl<W: Write> CsvWriter<W> {
         let rows = &mut self.rows;
         match self.layout.shape() {
             Shape::Whole => rows.add(COLUMNS.iter().map(|column| column.cell(sample))),
-            Shape::Columns(columns) => rows.add(columns.iter().map(|column| column.cell(sample))),
+            Shape::Columns(columns) => {
+                let scenario = &self.scenario;
+                rows.add(columns.iter().map(|column| column.cell(scenario, sample)))
+            }
             Shape::Points(columns) => {
                 for point in &self.points {
                     let placed = PlacedPoint::new(point, sample);

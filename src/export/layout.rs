@@ -3,7 +3,7 @@
 //! Whatever is not the default stands above the run file in the CSV's header, as TOML in TOML's comments, such as
 //! `# # every = 10`: the CSV runs again as any other, and can be recomputed as it was written.
 
-use super::columns::{COLUMNS, Column};
+use super::columns::{COLUMNS, Chosen};
 use super::csv::{above_run_file, commented};
 use super::points::{POINT_COLUMNS, PointColumn};
 use crate::run::{Clock, Step};
@@ -54,7 +54,7 @@ pub(super) enum Shape {
     #[default]
     Whole,
     /// A step, with these columns.
-    Columns(Vec<&'static Column>),
+    Columns(Vec<Chosen>),
     /// A point at a step, with these columns.
     Points(Vec<&'static PointColumn>),
 }
@@ -99,10 +99,7 @@ impl LayoutFile {
         let shape = match (&self.columns, self.points) {
             (None, false) => Shape::Whole,
             (None, true) => Shape::Points(POINT_COLUMNS.iter().collect()),
-            (Some(names), false) => {
-                let known = COLUMNS.iter().map(|column| column.name);
-                Shape::Columns(chosen(names, &known, Column::find)?)
-            }
+            (Some(names), false) => Shape::Columns(chosen(names, &Chosen::names(), Chosen::find)?),
             (Some(names), true) => {
                 let known = POINT_COLUMNS.iter().map(|column| column.name);
                 Shape::Points(chosen(names, &known, PointColumn::find)?)
@@ -116,8 +113,8 @@ impl LayoutFile {
 fn chosen<C>(
     names: &[String],
     known: &(impl Iterator<Item = &'static str> + Clone),
-    find: impl Fn(&str) -> Option<&'static C>,
-) -> Result<Vec<&'static C>, LayoutError> {
+    find: impl Fn(&str) -> Option<C>,
+) -> Result<Vec<C>, LayoutError> {
     let wrong = |rule: String| LayoutError {
         key: "columns",
         rule,
@@ -186,7 +183,7 @@ impl Layout {
     pub fn names(&self) -> Vec<&'static str> {
         match &self.shape {
             Shape::Whole => COLUMNS.iter().map(|column| column.name).collect(),
-            Shape::Columns(columns) => columns.iter().map(|column| column.name).collect(),
+            Shape::Columns(columns) => columns.iter().map(|column| column.name()).collect(),
             Shape::Points(columns) => columns.iter().map(|column| column.name).collect(),
         }
     }

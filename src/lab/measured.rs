@@ -4,10 +4,9 @@
 //! times. It also records the quantities that were measured and that the run's own recording does not have, so that their
 //! curves can be drawn. [`Compared`] holds the two against each other.
 
-mod compared;
 mod opening;
 
-pub use compared::{Compared, Largest, Shown, Sum};
+pub use crate::measured::compared::{Compared, Largest, Shown, Sum};
 
 use super::player::Player;
 use crate::measured::{Measured, Quantity, Reader, Series};

@@ -7,9 +7,10 @@
 //!
 //! [`open`] reads a file, or data that come with the program ([`shipped`]); `cells` takes it apart, `names` says what its
 //! columns are, `numbers` what stands in them. [`of_run`] reads a run at the times of a series, and [`residual`] holds what was
-//! measured against it: everything that shows or fits measured data takes its residuals from there.
+//! measured against it: everything that shows or fits measured data takes its residuals from there. [`compared`] sums them up.
 
 mod cells;
+pub mod compared;
 mod names;
 mod numbers;
 pub mod of_run;
@@ -19,10 +20,11 @@ mod reading;
 pub mod residual;
 pub mod shipped;
 
+pub use compared::Compared;
 pub use of_run::{Reader, at_times};
 pub use places::{Place, places};
 pub use quantity::Quantity;
-pub use reading::{open, read};
+pub use reading::{open, read, text};
 pub use residual::{Residual, residuals};
 
 use crate::analysis::readouts::Readout;

@@ -1,10 +1,9 @@
 //! What can be measured on one run over its time: quantities that it has at every step.
 
 use crate::analysis::readouts::{self, Readout};
-use crate::export::columns::Column;
-use crate::physics::State;
+use crate::export::columns::{Column, OPTIONAL_COLUMNS, OptionalColumn};
 use crate::run::{Sample, Step};
-use crate::scenario::{Scenario, start};
+use crate::scenario::Scenario;
 use crate::text::unit::Unit;
 
 /// The column of the time.
@@ -27,8 +26,8 @@ pub struct Quantity {
 enum Read {
     /// A column of the run's CSV.
     Column,
-    /// A readout that has no column.
-    State(fn(&Scenario, &State) -> f64),
+    /// A column that the CSV has where it is asked for.
+    Optional(&'static OptionalColumn),
 }
 
 const fn column(name: &'static str) -> Quantity {
@@ -39,11 +38,11 @@ const fn column(name: &'static str) -> Quantity {
     }
 }
 
-const fn live(name: &'static str, read: fn(&Scenario, &State) -> f64) -> Quantity {
+const fn optional(column: &'static OptionalColumn) -> Quantity {
     Quantity {
-        name,
+        name: column.name,
         is_direction: false,
-        read: Read::State(read),
+        read: Read::Optional(column),
     }
 }
 
@@ -64,10 +63,8 @@ pub static QUANTITIES: [Quantity; 14] = [
         ..column("azimuth_deg")
     },
     column("energy_J"),
-    live("spin_rpm", |scenario, state| {
-        start::rpm(scenario.spin_rad_per_s(state))
-    }),
-    live("L_axle_Js", |_, state| state.momentum.dot(&state.axle())),
+    optional(&OPTIONAL_COLUMNS[0]),
+    optional(&OPTIONAL_COLUMNS[1]),
 ];
 
 impl Quantity {
@@ -95,7 +92,7 @@ impl Quantity {
     /// Its value after `step`, in the unit of its name.
     pub fn of(&self, step: &Step) -> f64 {
         match self.read {
-            Read::State(read) => read(step.scenario(), step.after()),
+            Read::Optional(column) => column.of(step.scenario(), step.after()),
             Read::Column => self.of_sample(step.scenario(), &step.sample()),
         }
     }
@@ -106,18 +103,11 @@ impl Quantity {
             Read::Column => {
                 Column::find(self.name).map_or(f64::NAN, |column| column.value(sample).number())
             }
-            Read::State(read) => {
-                let state = State {
-                    time_s: sample.time_s,
-                    orientation: sample.orientation,
-                    momentum: sample.momentum,
-                };
-                read(scenario, &state)
-            }
+            Read::Optional(column) => column.value(scenario, sample),
         }
     }
 
-    /// Whether it is a column of the run's CSV.
+    /// Whether every CSV of a run has it as a column.
     pub fn is_column(&self) -> bool {
         matches!(self.read, Read::Column)
     }

@@ -9,6 +9,7 @@ use super::{Data, Measured};
 use crate::scenario::problem::Found;
 use crate::scenario::problem::nearest;
 use crate::scenario::{Problem, Problems};
+use std::borrow::Cow;
 use std::path::Path;
 
 /// Opens what `name` names: data that come with the program, or else a file. A file's name holds a `/` or ends in `.csv`.
@@ -16,8 +17,16 @@ use std::path::Path;
 /// # Errors
 /// When there are no such data, or as [`read`].
 pub fn open(name: &str) -> Result<Measured, Problems> {
+    read(name, &text(name)?)
+}
+
+/// The text of what `name` names, as it stands in the file.
+///
+/// # Errors
+/// When there are no such data, or the file cannot be read.
+pub fn text(name: &str) -> Result<Cow<'static, str>, Problems> {
     if let Some(shipped) = shipped::find(name) {
-        return read(name, shipped.text);
+        return Ok(shipped.text.into());
     }
     let path = Path::new(name);
     if !name.contains('/') && !name.contains('.') && !path.exists() {
@@ -28,7 +37,7 @@ pub fn open(name: &str) -> Result<Measured, Problems> {
         return Err(Problems::one(name, Problem::at("", rule)));
     }
     let text = text_of(path).map_err(|problem| Problems::one(name, problem))?;
-    read(name, &text)
+    Ok(text.into())
 }
 
 /// Reads the measured data that `text` holds, which is the file `origin`.

@@ -49,6 +49,10 @@ fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
     let others = [
         (now.file.body != before.file.body, "another body"),
         (now.file.start != before.file.start, "another start"),
+        (
+            now.file.friction != before.file.friction,
+            "another friction",
+        ),
         (are_pushes_changed(before, now), push_change(before, now)),
     ];
     changes.extend(

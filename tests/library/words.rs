@@ -29,6 +29,9 @@ fn what_was_changed_is_told_of_a_preset_as_of_a_file() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("p.");
     stage.shows("differs from what was opened: one more push");
+    let mut stage = Stage::open("cusps", &[], SMALL);
+    stage.commands("set = { 'friction.swing_viscous_Nms' = 0.1 }");
+    stage.shows("differs from what was opened: another friction");
 }
 
 /// A FIFO that nobody writes to does for a file that takes for ever to read.

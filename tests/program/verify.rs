@@ -8,6 +8,10 @@ fn exports_of_every_kind_are_verified() {
     for (name, options) in [
         ("whole.csv", ""),
         ("part.csv", "--every 7 --from 1 --to 3.5 --columns t_s,z_m"),
+        (
+            "spin.csv",
+            "--columns t_s,spin_rpm,L_axle_Js --scheme strang",
+        ),
         ("points.csv", "--points --every 10"),
         ("excel.csv", "--excel --scheme strang"),
     ] {
@@ -20,12 +24,34 @@ fn exports_of_every_kind_are_verified() {
     for words in [
         "whole.csv: the same: all 41 rows, computed again\n    Do not believe this run: ",
         "part.csv: the same: all 4 rows",
+        "spin.csv: the same: all 41 rows",
         "excel.csv: the same: all 41 rows",
         "errors.csv: the same: all 16 rows",
         "ns_per_step and wall_s are times by the clock",
     ] {
         assert!(told.contains(words), "{words}: {told}");
     }
+    // The columns on request say what the readouts say at the end.
+    let last = |name: &str| ground.read(name).lines().last().unwrap().to_owned();
+    let run = [
+        "run",
+        "wobble-push",
+        "--steps",
+        "40",
+        "--scheme",
+        "strang",
+        "--json",
+    ];
+    let json = done(ground.run(&run));
+    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let ends = [&json["t_s"], &json["spin_rpm"], &json["L_axle_Js"]];
+    let last = last("spin.csv");
+    let cells = last.split(',').map(|cell| cell.parse::<f64>().unwrap());
+    assert!(
+        cells.eq(ends.map(|end| end.as_f64().unwrap())),
+        "{last}: {ends:?}"
+    );
+    assert!(!ground.read("whole.csv").contains("spin_rpm,"));
     let excel = ground.read("excel.csv");
     assert!(excel.starts_with("\u{feff}# # excel = true\n# gyrolab = "));
     assert!(excel.contains("\n40;4,0;"));

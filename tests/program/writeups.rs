@@ -58,9 +58,15 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
         "(0, 0, -50) N on the point top on 200 time steps from step 1 on",
         "700 of 0.1 s",
         "Do not believe this run",
+        // The line of the preset speaks of another run.
+        "\n\nDiffers from what was opened: other pushes\n\n",
     ] {
         assert!(page.contains(words), "{words}: {page}");
     }
+    let own = "23 % down and 14 % up";
+    assert!(!page.contains(own), "{page}");
+    done(lab.run(&["writeup", "wobble-push", "--steps", "20", "-o", "own"]));
+    assert!(lab.read("own/README.md").contains(own));
     // The lines for other programs count the lines above the rows.
     let csv = lab.read("run.csv");
     let header = csv.lines().take_while(|line| line.starts_with('#')).count();
@@ -69,6 +75,58 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
         page.contains(&format!("\",\", {}, 0)", header + 1)),
         "{page}"
     );
+}
+
+#[test]
+fn measured_data_stand_beside_the_run() {
+    let lab = Ground::new();
+    let run = ["method-2", "--steps", "40"];
+    done(lab.run(&[&["run"], &run[..], &["-o", "run.csv", "--columns", "x_m"]].concat()));
+    let csv = lab.read("run.csv");
+    let x: Vec<f64> = csv.lines().filter_map(|line| line.parse().ok()).collect();
+    // Two uncertainties off, and one value after the run, which ends at 4 s.
+    let data = format!(
+        "# our wheel\nt_s,x_m,x_uncertainty_m\n1,{},0.01\n2,{},0.01\n100,0.5,0.01\n",
+        x[10] + 0.02,
+        x[20] - 0.02
+    );
+    lab.write("bench.csv", &data);
+    let measured = ["--measured", "bench.csv", "-o", "w"];
+    done(lab.run(&[&["writeup"], &run[..], &measured].concat()));
+    assert_eq!(lab.read("w/bench.csv"), data);
+    let page = lab.read("w/README.md");
+    for words in [
+        "`bench.csv` holds 3 measured values. The run ends at 4 s, before 1 of them",
+        "| `x_m` | 2 of 3 | 8 | 2 | 2 at 1 s | n/a |",
+        "chi^2 of all is 8 at 2 measured values",
+        "](measured.svg)",
+        "](residuals.svg)",
+        "gyrolab writeup run.toml --measured bench.csv -o again",
+    ] {
+        assert!(page.contains(words), "{words}: {page}");
+    }
+    let json: serde_json::Value = serde_json::from_str(&lab.read("w/readouts.json")).unwrap();
+    let told = &json["measured_data"];
+    assert!(
+        (told["chi_squared"].as_f64().unwrap() - 8.0).abs() < 1e-9,
+        "{told}"
+    );
+    assert_eq!(
+        (&told["file"], &told["points_in_run"]),
+        (&"bench.csv".into(), &2.into())
+    );
+    assert_eq!(told["columns"][0]["name"], "x_m");
+    assert!(
+        lab.read("w/measured.svg")
+            .contains("measured: bench (2 points)")
+    );
+    done(lab.shell("cd w && \"$G\" writeup run.toml --measured bench.csv -o ../again"));
+    assert_eq!(contents(&lab.file("w")), contents(&lab.file("again")));
+    // What has no place beside a run is refused before there is a folder.
+    let refused = |data: &str| lab.run(&["writeup", "method-2", "--measured", data, "-o", "no"]);
+    failed(&refused("heidelberg-precession"), &["is a table of runs"]);
+    failed(&refused("nothing.csv"), &["there is no such file"]);
+    assert!(!lab.files().contains(&"no".to_owned()));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! braces.
 
 use crate::cli::info;
-use crate::export::columns::COLUMNS;
+use crate::export::columns::{COLUMNS, OPTIONAL_COLUMNS};
 use crate::export::points::POINT_COLUMNS;
 use std::fmt;
 
@@ -41,10 +41,17 @@ pub(super) fn text(name: &str) -> Result<Option<String>, fmt::Error> {
 /// The name of a table in a topic, and what is written in its place.
 type Table = (&'static str, fn() -> Result<String, fmt::Error>);
 
-const TABLES: [Table; 5] = [
+const TABLES: [Table; 6] = [
     ("{COLUMNS}", || {
         Ok(list(
             COLUMNS.iter().map(|column| (column.name, column.about)),
+        ))
+    }),
+    ("{COLUMNS ON REQUEST}", || {
+        Ok(list(
+            OPTIONAL_COLUMNS
+                .iter()
+                .map(|column| (column.name, column.about)),
         ))
     }),
     ("{COLUMNS OF POINTS}", || {

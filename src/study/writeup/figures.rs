@@ -1,5 +1,6 @@
 //! The figures of a write-up.
 
+use super::Beside;
 use crate::analysis::Readouts;
 use crate::analysis::cost::is_affordable;
 use crate::figure::kind::Kind;
@@ -23,6 +24,9 @@ pub struct Drawing {
     pub scene: Scene,
 }
 
+/// The figures of what was measured, and of measured less run.
+const MEASURED: &str = "measured";
+const RESIDUALS: &str = "residuals";
 /// A run of more swings than this has a figure of its first few of its own.
 const MANY_SWINGS: f64 = 15.0;
 /// Fewer steps a swing make a curve with corners.
@@ -38,6 +42,7 @@ const FEW_SWINGS: f64 = 8.0;
 pub fn figures(
     scenario: &Arc<Scenario>,
     readouts: &Readouts,
+    beside: Option<&Beside>,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Vec<Drawing>>, String> {
     let runs = [Run {
@@ -45,7 +50,7 @@ pub fn figures(
         named: scenario.file.title.clone(),
     }];
     let exact = is_affordable(scenario);
-    let beside = if exact {
+    let dashed = if exact {
         ", the exact motion dashed"
     } else {
         ""
@@ -55,37 +60,61 @@ pub fn figures(
         .map(|swing_s| swing_s / scenario.motion.time_step_s)
         .filter(|steps| *steps < SMOOTH)
         .map(|steps| format!("; straight lines join the run's steps, about {steps:.0} a swing"));
-    let beside = format!("{beside}{}", joined.unwrap_or_default());
+    let also = format!("{dashed}{}", joined.unwrap_or_default());
     let mut wanted = vec![
         (
             TRACES,
             Kind::traces(),
             None,
-            format!("x, y and z of the traced point over time{beside}"),
+            format!("x, y and z of the traced point over time{also}"),
         ),
         (
             ABOVE,
             Kind::Above,
             None,
-            format!("Path of the traced point from above{beside}"),
+            format!("Path of the traced point from above{also}"),
         ),
         (
             THREE_D,
             Kind::ThreeD,
             None,
-            format!("Path of the traced point in space{beside}"),
+            format!("Path of the traced point in space{also}"),
         ),
     ];
     if let Some(to_s) = few_swings_s(scenario, readouts) {
-        let caption = format!("Tilt in the first {} s{beside}", shortest(to_s));
+        let caption = format!("Tilt in the first {} s{also}", shortest(to_s));
         wanted.insert(1, ("swings", Kind::named("tilt_deg")?, Some(to_s), caption));
     }
-    let requests = wanted.iter().map(|(_, kind, to_s, _)| Request {
+    let measured = beside.map(|beside| (beside.reached(), beside.end_s));
+    if let Some((measured, end_s)) = &measured
+        && measured.count() > 0
+        && let Ok(series) = measured.series()
+    {
+        let name = &measured.origin;
+        let over_time = format!("What was measured, `{name}`, and the run{also}");
+        let less = format!("What was measured, `{name}`, less what the run says");
+        let kinds = [
+            (MEASURED, Kind::measured(series), over_time),
+            (RESIDUALS, Kind::Residuals, less),
+        ];
+        for (place, (name, kind, caption)) in kinds.into_iter().enumerate() {
+            wanted.insert(place, (name, kind, Some(*end_s), caption));
+        }
+    }
+    let has_places = beside.is_some_and(|beside| !beside.compared.places.is_empty());
+    let is_beside = |name: &str| match name {
+        ABOVE => has_places,
+        name => [MEASURED, RESIDUALS].contains(&name),
+    };
+    let requests = wanted.iter().map(|(name, kind, to_s, _)| Request {
         kind: kind.clone(),
         from_s: 0.0,
         to_s: *to_s,
         exact,
-        measured: None,
+        measured: measured
+            .as_ref()
+            .filter(|_| is_beside(name))
+            .map(|(measured, _)| Arc::clone(measured)),
         width_pt: COLUMN_PT,
     });
     let requests: Vec<_> = requests.collect();

@@ -6,6 +6,7 @@
 pub mod figures;
 mod languages;
 mod latex;
+pub mod measured;
 mod page;
 mod quantities;
 
@@ -17,6 +18,7 @@ use crate::run::NotFinite;
 use crate::scenario::Scenario;
 pub use figures::Drawing;
 pub use languages::Lines;
+pub use measured::Beside;
 pub use quantities::Quantity;
 use serde_json::{Map, Value};
 use std::sync::Arc;
@@ -32,6 +34,9 @@ pub const LATEX: &str = "readouts.tex";
 /// Every readout.
 pub const READOUTS_FILE: &str = "readouts.json";
 
+/// The name, among the readouts, of what was measured.
+const MEASURED_DATA: &str = "measured_data";
+
 /// What a write-up is made of.
 #[derive(Clone, Debug)]
 pub struct Writeup {
@@ -43,21 +48,25 @@ pub struct Writeup {
     pub broken: Option<NotFinite>,
     /// The measured numbers beside theory.
     pub quantities: Vec<Quantity>,
+    /// Measured data beside the run, where there are some.
+    pub beside: Option<Beside>,
     /// The figures, in the order in which the page shows them.
     pub drawings: Vec<Drawing>,
 }
 
 impl Writeup {
     /// The write-up of the run of `scenario`, whose `readouts` were read at its end; `broken` is why that was not its
-    /// last step.
+    /// last step, and `beside` has what was measured.
     pub fn new(
         scenario: Arc<Scenario>,
         readouts: Readouts,
         broken: Option<NotFinite>,
+        beside: Option<Beside>,
         drawings: Vec<Drawing>,
     ) -> Self {
         Self {
             broken,
+            beside,
             quantities: quantities::quantities(&readouts),
             scenario,
             readouts,
@@ -82,6 +91,10 @@ impl Writeup {
             .into_iter()
             .map(|(name, text)| (name.to_owned(), text.into_bytes()))
             .collect();
+        if let Some(beside) = &self.beside {
+            let text = beside.text.clone().into_bytes();
+            files.push((beside.name().to_owned(), text));
+        }
         for drawing in &self.drawings {
             for (ending, format) in [("svg", Format::Svg), ("pdf", Format::Pdf)] {
                 let bytes = figure::write(&drawing.scene, format)?;
@@ -108,12 +121,15 @@ impl Writeup {
         let lasting = READOUTS
             .iter()
             .filter(|readout| readout.source != Source::Clock);
-        let object: Map<_, _> = lasting
+        let mut object: Map<_, _> = lasting
             .map(|readout| {
                 let value = serde_json::to_value(readout.of(&self.readouts));
                 (readout.name.to_owned(), value.unwrap_or(Value::Null))
             })
             .collect();
+        if let Some(beside) = &self.beside {
+            object.insert(MEASURED_DATA.to_owned(), beside.json());
+        }
         format!("{:#}\n", Value::Object(object))
     }
 

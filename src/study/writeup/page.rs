@@ -2,7 +2,7 @@
 
 use super::languages::Lines;
 use super::quantities::Quantity;
-use super::{CSV, Drawing, RUN_FILE, Writeup};
+use super::{Beside, CSV, Drawing, RUN_FILE, Writeup};
 use crate::export::summary::steps_in_words;
 use crate::physics::{SchemeInfo, SymmetricTop};
 use crate::scenario::{Push, Window};
@@ -23,7 +23,9 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     let readouts = &writeup.readouts;
     writeln!(page, "# {}\n", escaped(&readouts.title))?;
     let file = &writeup.scenario.file;
-    for text in file.about.iter().chain(&file.source) {
+    let look_at = file.view.as_ref().and_then(|view| view.look_at.as_ref());
+    let look_at = look_at.map(|line| sentence(line));
+    for text in file.about.iter().chain(&look_at).chain(&file.source) {
         writeln!(page, "{}\n", escaped(text))?;
     }
     writeln!(page, "## What was run\n")?;
@@ -39,10 +41,14 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     )?;
     writeln!(page, "## Measured beside theory\n")?;
     write_quantities(&mut page, &writeup.quantities)?;
+    if let Some(beside) = &writeup.beside {
+        writeln!(page, "\n## Measured data beside the run\n")?;
+        write_beside(&mut page, beside)?;
+    }
     writeln!(page, "\n## Figures\n")?;
     write_drawings(&mut page, &writeup.drawings)?;
     writeln!(page, "## How to make it again\n")?;
-    write_again(&mut page)?;
+    write_again(&mut page, writeup.beside.as_ref())?;
     writeln!(page, "## How to read the CSV\n")?;
     write_languages(&mut page, &writeup.languages())?;
     writeln!(page, "## How to cite\n")?;
@@ -192,18 +198,88 @@ fn write_drawings(page: &mut String, drawings: &[Drawing]) -> fmt::Result {
     Ok(())
 }
 
-fn write_again(page: &mut String) -> fmt::Result {
+fn write_beside(page: &mut String, beside: &Beside) -> fmt::Result {
+    let (sum, name) = (&beside.compared.sum, beside.name());
+    let measured = match sum.points - sum.compared {
+        0 => String::new(),
+        later => format!(
+            " The run ends at {} s, before {later} of them: these are not compared.",
+            shortest(beside.end_s)
+        ),
+    };
+    writeln!(page, "`{name}` holds {}.{measured}\n", points(sum.points))?;
     writeln!(
         page,
-        "In this folder, with gyrolab {version}:\n\n\
-         ```sh\n\
-         gyrolab verify {CSV}               # computes the rows anew and says whether they are the same\n\
-         gyrolab run {RUN_FILE} -o again.csv   # the same bytes as {CSV}\n\
-         gyrolab writeup {RUN_FILE} -o again   # this folder\n\
-         gyrolab {RUN_FILE}                    # the run, live in the terminal\n\
-         ```\n",
-        version = env!("CARGO_PKG_VERSION")
-    )
+        "| what | compared | chi^2 | with uncertainty | largest, in uncertainties | without uncertainty off by (rms) |"
+    )?;
+    writeln!(page, "| --- | --- | --- | --- | --- | --- |")?;
+    for (name, own) in beside.rows() {
+        let chi_squared = (own.weighed > 0).then(|| significant(own.chi_squared, 4));
+        let largest = own.largest.map(|largest| {
+            format!(
+                "{} at {} s",
+                significant(largest.sigmas, 3),
+                shortest(largest.time_s)
+            )
+        });
+        let rms = own
+            .scatter
+            .first()
+            .map(|(quantity, rms)| format!("{} {}", significant(*rms, 3), quantity.unit()));
+        let [chi_squared, largest, rms] =
+            [chi_squared, largest, rms].map(|text| text.unwrap_or(NONE.to_owned()));
+        writeln!(
+            page,
+            "| `{name}` | {} of {} | {chi_squared} | {} | {largest} | {rms} |",
+            own.compared, own.points, own.weighed
+        )?;
+    }
+    if sum.weighed > 0 {
+        writeln!(
+            page,
+            "\nchi^2 of all is {} at {}: the sum of the squares of measured less run, in units of the stated uncertainties. Where \
+             the run is right and no value of it was fitted, it is about as large as their number.",
+            significant(sum.chi_squared, 4),
+            points(sum.weighed)
+        )?;
+    }
+    Ok(())
+}
+
+fn points(count: usize) -> String {
+    match count {
+        1 => "1 measured value".to_owned(),
+        count => format!("{count} measured values"),
+    }
+}
+
+fn write_again(page: &mut String, beside: Option<&Beside>) -> fmt::Result {
+    let measured = beside.map(|beside| format!(" --measured {}", beside.name()));
+    let measured = measured.unwrap_or_default();
+    let same = format!("the same bytes as {CSV}");
+    let commands = [
+        (
+            format!("verify {CSV}"),
+            "computes the rows anew and says whether they are the same",
+        ),
+        (format!("run {RUN_FILE} -o again.csv"), same.as_str()),
+        (
+            format!("writeup {RUN_FILE}{measured} -o again"),
+            "this folder",
+        ),
+        (
+            format!("{RUN_FILE}{measured}"),
+            "the run, live in the terminal",
+        ),
+    ];
+    let width = commands.iter().map(|(command, _)| command.len()).max();
+    let width = width.unwrap_or_default();
+    let version = env!("CARGO_PKG_VERSION");
+    writeln!(page, "In this folder, with gyrolab {version}:\n\n```sh")?;
+    for (command, what) in commands {
+        writeln!(page, "gyrolab {command:width$}   # {what}")?;
+    }
+    writeln!(page, "```\n")
 }
 
 fn write_languages(page: &mut String, languages: &[Lines]) -> fmt::Result {

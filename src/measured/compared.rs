@@ -1,6 +1,6 @@
 //! Measured data compared with a run: each value beside the run's, and statistics of all.
 
-use crate::measured::{Curve, Place, Quantity, Series, places, residuals};
+use super::{Curve, Place, Quantity, Series, places, residuals};
 use nalgebra::Vector3;
 
 /// Measured data, each value beside the run's.
@@ -12,6 +12,8 @@ pub struct Compared {
     pub places: Vec<Place>,
     /// Statistics of the residuals.
     pub sum: Sum,
+    /// The same of each column.
+    pub sums: Vec<Sum>,
 }
 
 /// A measured value as it is shown.
@@ -66,18 +68,22 @@ impl Compared {
     /// `series` against the `model`, the values of a run at the first points of each curve, up to `now_s`. `traced` is the
     /// traced point, body frame, m.
     pub fn new(series: &Series, model: &[Vec<f64>], now_s: f64, traced: &Vector3<f64>) -> Self {
-        let mut sum = Sum::default();
+        let (mut sum, mut sums) = (Sum::default(), Vec::new());
         let curves = series.curves.iter().zip(model);
         let curves = curves.map(|(curve, model)| {
             let reached = reached(series, curve, now_s).min(model.len());
             let shown = shown(series, curve, &model[..reached]);
             sum.take(curve.quantity, &shown);
+            let mut own = Sum::default();
+            own.take(curve.quantity, &shown);
+            sums.push(own);
             shown
         });
         Self {
             curves: curves.collect(),
             places: places(series, traced),
             sum,
+            sums,
         }
     }
 }

@@ -1,0 +1,152 @@
+//! Measured data in a write-up: their file, and how far the run is from them.
+
+use super::{CSV, LATEX, PAGE, READOUTS_FILE, RUN_FILE};
+use crate::measured::compared::{Compared, Sum};
+use crate::measured::{Measured, Reader, Series};
+use crate::run::Simulation;
+use crate::scenario::{Problems, Scenario};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Steps that are taken without asking whether to go on.
+const BLOCK: u64 = 4096;
+
+/// Measured data beside the run of a write-up.
+#[derive(Clone, Debug)]
+pub struct Beside {
+    /// The data; their origin is the name of their copy in the folder.
+    pub measured: Arc<Measured>,
+    /// The text of the file, of which the folder has a copy.
+    pub text: String,
+    /// What the run says of them, as far as it goes.
+    pub compared: Compared,
+    /// The end of the run, s.
+    pub end_s: f64,
+}
+
+impl Beside {
+    /// `measured`, which was read from `text`, of which nothing has been held against a run.
+    pub fn new(measured: Measured, text: String) -> Self {
+        Self {
+            measured: Arc::new(Measured {
+                origin: name_of_copy(&measured.origin),
+                ..measured
+            }),
+            text,
+            compared: Compared::default(),
+            end_s: 0.0,
+        }
+    }
+
+    /// The name of the copy in the folder.
+    pub fn name(&self) -> &str {
+        &self.measured.origin
+    }
+
+    /// Holds the data against the run of `scenario` up to `end_s`; whether it came to the end, and not `go_on` said no. A
+    /// run whose numbers stop being finite is held as far as it goes.
+    ///
+    /// # Errors
+    /// Where the data are a table of runs: what to do with it.
+    pub fn hold(
+        &mut self,
+        scenario: &Arc<Scenario>,
+        end_s: f64,
+        mut go_on: impl FnMut(u64) -> bool,
+    ) -> Result<bool, Problems> {
+        let series = self.measured.series()?;
+        let mut reader = Reader::new(series);
+        let mut simulation = Simulation::new(Arc::clone(scenario));
+        while reader.next_time_s().is_some_and(|time_s| time_s <= end_s) {
+            if reader.take(&simulation).is_err() || simulation.step().is_err() {
+                break;
+            }
+            let step = simulation.step_number();
+            if step.is_multiple_of(BLOCK) && !go_on(step) {
+                return Ok(false);
+            }
+        }
+        let traced = scenario.body.mechanics.points()[scenario.trace].at;
+        self.compared = Compared::new(series, reader.values(), end_s, &traced);
+        self.end_s = end_s;
+        Ok(true)
+    }
+
+    /// The data that were measured before the end of the run.
+    pub(super) fn reached(&self) -> Arc<Measured> {
+        let mut reached = Measured::clone(&self.measured);
+        if let Ok(Series { times_s, .. }) = self.measured.series() {
+            reached.keep_rows(|row| times_s[row] <= self.end_s);
+        }
+        Arc::new(reached)
+    }
+
+    /// What was measured, with how far the run is from it, one row a column.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (&'static str, &Sum)> {
+        let series = self.measured.series();
+        let curves = series.map(|series| series.curves.as_slice());
+        let names = curves.unwrap_or_default().iter();
+        names
+            .map(|curve| curve.quantity.name)
+            .zip(&self.compared.sums)
+    }
+
+    /// The same for programs.
+    pub(super) fn json(&self) -> Value {
+        let columns = self.rows().map(|(name, sum)| {
+            let mut column = of(sum);
+            column["name"] = json!(name);
+            column["rms"] = json!(sum.scatter.first().map(|(_, scatter)| scatter));
+            column
+        });
+        let columns: Vec<_> = columns.collect();
+        let mut all = of(&self.compared.sum);
+        all["file"] = json!(self.name());
+        all["columns"] = json!(columns);
+        all
+    }
+}
+
+/// The numbers of `sum`; null where there is none.
+fn of(sum: &Sum) -> Value {
+    json!({
+        "points": sum.points, "points_in_run": sum.compared, "points_with_uncertainty": sum.weighed,
+        "chi_squared": (sum.weighed > 0).then_some(sum.chi_squared),
+        "largest_sigmas": sum.largest.map(|largest| largest.sigmas),
+        "largest_at_s": sum.largest.map(|largest| largest.time_s),
+    })
+}
+
+/// The name of the copy of the data `origin`: that of the file, where a shell and Markdown take it as it is and no other
+/// file of the folder has it.
+fn name_of_copy(origin: &str) -> String {
+    const OTHERWISE: &str = "measured.csv";
+    let stem = Path::new(origin).file_stem().and_then(|stem| stem.to_str());
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+    let stem = stem.filter(|stem| stem.chars().all(is_plain) && !stem.starts_with(['-', '.']));
+    let name = stem.map(|stem| format!("{stem}.csv"));
+    let is_taken = |name: &String| [CSV, RUN_FILE, PAGE, LATEX, READOUTS_FILE].contains(&&**name);
+    name.filter(|name| !is_taken(name))
+        .unwrap_or_else(|| OTHERWISE.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_copy_has_a_plain_name_of_its_own() {
+        for (origin, name) in [
+            ("bench.csv", "bench.csv"),
+            ("../a folder/bench-2.txt", "bench-2.csv"),
+            ("heidelberg-spin-decay", "heidelberg-spin-decay.csv"),
+            ("old/run.csv", "measured.csv"),
+            ("our data.csv", "measured.csv"),
+            ("-rf.csv", "measured.csv"),
+            ("/dev/fd/63", "63.csv"),
+        ] {
+            assert_eq!(name_of_copy(origin), name, "{origin}");
+        }
+    }
+}
