@@ -1,6 +1,7 @@
 //! The report's step with its record, and the splittings' steps by themselves, against the same loops in plain C
-//! (`report_step.c`, `splitting.c`, gcc -O3), by turns in one run, and the ratios. Whatever else the machine does only
-//! adds time: of many short rounds the fastest counts. Run: cargo bench --bench against_c
+//! (`report_step.c`, `splitting.c`), by turns in one run, and the ratios. Whatever else the machine does only adds time: of
+//! many short rounds the fastest counts. Run: cargo bench --bench against_c, with the compiler and its options in CC and
+//! CFLAGS; without them they are gcc and -O3.
 //!
 //! Where the report's step spends its time, by samples of it (Zen 4, baseline x86-64, 14 points, 60 ns without the
 //! simulation around it): I and the solution of I Ω = L 14 ns, a third of it one division; the square root 6 ns; sine and
@@ -88,23 +89,39 @@ fn in_c(program: &Path, args: &[&str]) -> f64 {
         .unwrap()
 }
 
-/// The program made of a source beside this one; `None` without a compiler.
+/// The compiler and its options: those of the environment's `CC` and `CFLAGS`, or gcc and -O3.
+fn compiler() -> (String, Vec<String>) {
+    let from_environment = |name, default: &str| {
+        let value = std::env::var(name).ok();
+        value
+            .filter(|value| !value.trim().is_empty())
+            .unwrap_or_else(|| default.to_owned())
+    };
+    let options = from_environment("CFLAGS", "-O3");
+    let options = options.split_whitespace().map(str::to_owned).collect();
+    (from_environment("CC", "gcc"), options)
+}
+
+/// The program made of a source beside this one; `None` where it cannot be built.
 fn compiled(source: &str) -> Option<PathBuf> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("benches")
         .join(source);
     let name = source.file_stem()?.to_str()?;
     let program = std::env::temp_dir().join(format!("gyrolab-{name}-{}", std::process::id()));
-    let gcc = Command::new("gcc")
-        .args(["-O3", "-o"])
+    let (compiler, options) = compiler();
+    let made = Command::new(&compiler)
+        .args(&options)
+        .arg("-o")
         .arg(&program)
         .arg(&source)
         .arg("-lm")
         .status();
-    if gcc.is_ok_and(|status| status.success()) {
+    if made.is_ok_and(|status| status.success()) {
         return Some(program);
     }
-    eprintln!("gcc is needed to build {}", source.display());
+    let options = options.join(" ");
+    eprintln!("{compiler} {options} does not build {}", source.display());
     None
 }
 
@@ -123,6 +140,8 @@ fn main() -> ExitCode {
     else {
         return ExitCode::FAILURE;
     };
+    let (compiler, options) = compiler();
+    println!("C: {compiler} {}", options.join(" "));
     compare(
         "report, 14 points, with its record",
         || in_c(&report, &[]),

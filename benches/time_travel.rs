@@ -1,25 +1,46 @@
-//! How long it takes to go to a step where a run has been before, and how much memory the run takes: prints a table.
+//! How long it takes to play a run ahead, as a session is resumed, beside the bare steps of the same run; to go to a step
+//! where it has been before; and how much memory the run takes: prints a table. Below it, what each of the three threads
+//! that play a run ahead has to do for a step: the slowest of them sets the pace where each has a core, their sum shared
+//! by the cores where there are fewer.
 //!
-//! `cargo bench --bench time_travel`, or with `-- 1000000` for a run of that many steps alone.
+//! `cargo bench --bench time_travel`, with `-- 1000000` for a run of that many steps alone, or with `-- threads` for the
+//! threads alone.
 
 #![allow(clippy::unwrap_used)]
 
+use gyrolab::analysis::{Beside, Gauges};
+use gyrolab::observe::path::Path;
 use gyrolab::observe::playback::Playback;
-use gyrolab::scenario::Document;
+use gyrolab::observe::recording::{Moment, Recording};
+use gyrolab::run::{Batch, Simulation};
+use gyrolab::scenario::{Document, Scenario};
+use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;
 
 /// Shares of the run to go to, one after the other: far back, a little back, forward, and near the end.
 const SHARES: [f64; 7] = [0.5, 0.499, 0.93, 0.07, 0.999, 1.0, 0.0];
 
+/// What is played ahead is measured so often, by turns with the bare steps; the least counts.
+const ROUNDS: usize = 3;
+
+/// So many steps are measured together for what a thread has to do for one, so often.
+const STRETCH: u64 = 20_000;
+const STRETCHES: usize = 200;
+/// As many steps are handed over together as where a run is played ahead.
+const TOGETHER: usize = 1024;
+
 fn main() {
+    if std::env::args().any(|argument| argument == "threads") {
+        return report_threads();
+    }
     let asked = std::env::args()
         .skip(1)
         .find_map(|argument| argument.parse().ok());
     let lengths = asked.map_or(vec![1_000_000, 10_000_000], |steps| vec![steps]);
     println!(
-        "{:<12} {:>9} {:<9} {:>9} {:>9} {:>9} {:>9}",
-        "steps", "points", "scheme", "play s", "worst s", "back one", "MB"
+        "{:<12} {:>9} {:<9} {:>9} {:>9} {:>6} {:>9} {:>9} {:>9}",
+        "steps", "points", "scheme", "play s", "bare s", "ratio", "worst s", "back one", "MB"
     );
     for steps in lengths {
         for (points, scheme) in [
@@ -31,9 +52,10 @@ fn main() {
             travel(steps, points, scheme);
         }
     }
+    report_threads();
 }
 
-fn travel(steps: u64, points: u64, scheme: &str) {
+fn scenario(points: u64, scheme: &str, steps: u64) -> Arc<Scenario> {
     let mut document = Document::open("method-2").unwrap();
     for set in [
         format!("body.rim.points={points}"),
@@ -43,7 +65,11 @@ fn travel(steps: u64, points: u64, scheme: &str) {
     ] {
         document.set(&set).unwrap();
     }
-    let mut playback = Playback::new(Arc::new(document.scenario().unwrap()), false);
+    Arc::new(document.scenario().unwrap())
+}
+
+fn travel(steps: u64, points: u64, scheme: &str) {
+    let scenario = scenario(points, scheme, steps);
     let seconds = |playback: &mut Playback, step: u64| {
         let begin = Instant::now();
         playback.go_to(step);
@@ -51,9 +77,19 @@ fn travel(steps: u64, points: u64, scheme: &str) {
         playback.read();
         begin.elapsed().as_secs_f64()
     };
-    let begin = Instant::now();
-    playback.begin_at(steps).unwrap();
-    let play = begin.elapsed().as_secs_f64();
+    let mut playback = Playback::new(Arc::clone(&scenario), false);
+    let (mut play, mut bare) = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..ROUNDS {
+        let begin = Instant::now();
+        playback = Playback::new(Arc::clone(&scenario), false);
+        playback.begin_at(steps).unwrap();
+        play = play.min(begin.elapsed().as_secs_f64());
+        let begin = Instant::now();
+        black_box(Simulation::new(Arc::clone(&scenario)))
+            .step_to(steps)
+            .unwrap();
+        bare = bare.min(begin.elapsed().as_secs_f64());
+    }
     let mut worst: f64 = 0.0;
     for share in SHARES {
         let step = (share * steps as f64) as u64;
@@ -64,9 +100,79 @@ fn travel(steps: u64, points: u64, scheme: &str) {
         .map(|back| seconds(&mut playback, steps / 3 - back))
         .fold(0.0, f64::max);
     println!(
-        "{steps:<12} {points:>9} {scheme:<9} {play:>9.3} {worst:>9.4} {back:>9.4} {:>9.1}",
+        "{steps:<12} {points:>9} {scheme:<9} {play:>9.3} {bare:>9.3} {:>6.2} {worst:>9.4} {back:>9.4} {:>9.1}",
+        play / bare,
         resident_mb()
     );
+}
+
+/// What each thread does for a step of a run in its millionth step, each alone on one core.
+fn report_threads() {
+    println!(
+        "ns a step: {:>9} {:<9} {:>6} {:>9} {:>9} {:>9}",
+        "points", "scheme", "bare", "stepping", "pictures", "beside"
+    );
+    for (points, scheme) in [(10, "report"), (96, "report"), (10, "srkn11b")] {
+        let [bare, stepping, pictures, beside] = of_threads(points, scheme);
+        println!(
+            "           {points:>9} {scheme:<9} {bare:>6.1} {stepping:>9.1} {pictures:>9.1} {beside:>9.1}"
+        );
+    }
+}
+
+fn of_threads(points: u64, scheme: &str) -> [f64; 4] {
+    let scenario = scenario(points, scheme, 10_000_000);
+    let mut simulation = Simulation::new(Arc::clone(&scenario));
+    let mut gauges = Gauges::new(simulation.now());
+    let mut beside = Beside::new(&scenario);
+    let mut recording = Recording::default();
+    let mut path = Path::new(scenario.arm_m());
+    let mut bare = simulation.clone();
+    let mut least = [f64::INFINITY; 4];
+    let timed = |least: &mut f64, work: &mut dyn FnMut()| {
+        let begin = Instant::now();
+        work();
+        *least = least.min(begin.elapsed().as_nanos() as f64 / STRETCH as f64);
+    };
+    let mut batches = vec![Batch::with_capacity(TOGETHER)];
+    for _ in 0..STRETCHES {
+        let to = bare.step_number() + STRETCH;
+        timed(&mut least[0], &mut || bare.step_to(to).unwrap());
+        timed(&mut least[1], &mut || {
+            let (mut batch, mut given) = (0, 0);
+            batches.iter_mut().for_each(Batch::clear);
+            while simulation.step_number() < to {
+                let step = simulation.step().unwrap();
+                if given == TOGETHER || !batches[batch].push(step) {
+                    (batch, given) = (batch + 1, 0);
+                    if batch == batches.len() {
+                        batches.push(Batch::with_capacity(TOGETHER));
+                    }
+                    batches[batch].push(step);
+                }
+                given += 1;
+            }
+        });
+        timed(&mut least[2], &mut || {
+            for batch in &batches {
+                batch.each(|step| {
+                    gauges.follow(step);
+                    let moment = Moment {
+                        time_s: step.time_s(),
+                        position: *step.position(),
+                        axle_height: step.after().axle().z,
+                    };
+                    recording.push(&moment);
+                    path.follow(step.number(), &moment.position);
+                });
+            }
+        });
+        timed(&mut least[3], &mut || {
+            let states = batches.iter().flat_map(Batch::states);
+            states.for_each(|(_, state)| beside.hold(state));
+        });
+    }
+    least
 }
 
 /// The memory of this process now, MB; 0 where the system does not say.

@@ -29,6 +29,7 @@ impl Beside {
 
     /// Goes on beside a run of `scenario`, whose past is the same.
     pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
+        self.settle(); // its steps so far belong to the forces so far
         match &mut self.truth {
             Some(truth) => truth.go_on_in(scenario),
             None => self.truth = Some(Truth::new(Arc::clone(scenario))),
@@ -43,6 +44,7 @@ impl Beside {
 
     /// The exact motion, where the run is held against it.
     pub fn truth(&mut self) -> Option<&mut Truth> {
+        self.settle();
         self.truth.as_mut()
     }
 

@@ -6,7 +6,9 @@
 
 use super::trial::{Deviation, distance_near};
 use crate::physics::State;
+use crate::physics::exact::AT_ONCE;
 use crate::run::Truth;
+use nalgebra::Vector3;
 
 /// What a distance that is known nearly may be off, as a part of the arm: more than ten times what it was found to be.
 const OFF: f64 = 3e-14;
@@ -26,6 +28,8 @@ pub(super) struct Farthest {
     near_m: f64,
     /// The steps that may be farther off than `most_m`.
     kept: Vec<State>,
+    /// The newest steps, which are looked at together.
+    waiting: Vec<State>,
 }
 
 impl Farthest {
@@ -36,19 +40,47 @@ impl Farthest {
             most_m: 0.0,
             near_m: 0.0,
             kept: Vec::new(),
+            waiting: Vec::new(),
         }
     }
 
-    /// Takes in a step of the run beside `truth`; whether its distance is a number.
+    /// Takes in a step of the run beside `truth`; whether all distances that were looked at are numbers.
     #[inline]
     pub fn follow(&mut self, state: &State, truth: &mut Truth) -> bool {
+        self.waiting.push(*state);
+        self.waiting.len() < AT_ONCE || self.look(truth)
+    }
+
+    /// Looks at the steps that wait.
+    fn look(&mut self, truth: &mut Truth) -> bool {
+        let states = std::mem::take(&mut self.waiting);
+        let near = match states.first_chunk() {
+            Some(states) if self.near_m > WORTH_IT * self.off_m => distances_near(states, truth),
+            _ => None,
+        };
+        let is_below = |near_m: &f64| *near_m < self.near_m - 2.0 * self.off_m;
+        let mut are_numbers = true;
+        if !near.is_some_and(|near| near.iter().all(is_below)) {
+            for (place, state) in states.iter().enumerate() {
+                let near_m = near.map(|near| near[place]);
+                are_numbers &= self.look_at(state, near_m, truth);
+            }
+        }
+        self.waiting = states;
+        self.waiting.clear();
+        are_numbers
+    }
+
+    /// Looks at one step, the distance of which may be known nearly.
+    fn look_at(&mut self, state: &State, near_m: Option<f64>, truth: &mut Truth) -> bool {
         if self.near_m > WORTH_IT * self.off_m
-            && let Some(near_m) = distance_near(state, truth).filter(|near_m| near_m.is_finite())
+            && let Some(near_m) = near_m.or_else(|| distance_near(state, truth))
+            && near_m.is_finite()
         {
             return near_m < self.near_m - 2.0 * self.off_m || self.keep(state, near_m, truth);
         }
         // The forces may change here: what is kept belongs to those before.
-        let are_numbers = self.settle(truth);
+        let are_numbers = self.settle_kept(truth);
         self.take_in(Deviation::distance_of(state, truth)) && are_numbers
     }
 
@@ -58,11 +90,16 @@ impl Farthest {
         }
         self.near_m = self.near_m.max(near_m);
         self.kept.push(*state);
-        self.kept.len() < KEPT || self.settle(truth)
+        self.kept.len() < KEPT || self.settle_kept(truth)
     }
 
-    /// Computes to the last bit what has been kept; whether all of it is a number.
+    /// Computes to the last bit what may be the largest; whether all of it is a number.
     pub fn settle(&mut self, truth: &mut Truth) -> bool {
+        let are_numbers = self.look(truth);
+        self.settle_kept(truth) && are_numbers
+    }
+
+    fn settle_kept(&mut self, truth: &mut Truth) -> bool {
         let kept = std::mem::take(&mut self.kept);
         let mut are_numbers = true;
         for state in &kept {
@@ -86,6 +123,18 @@ impl Farthest {
     pub fn most_m(&self) -> f64 {
         self.most_m
     }
+}
+
+/// Distance of the traced point of each of `states`, which follow one another, from where it should be, within a few units
+/// of rounding of the arm, m; `None` where that is not had in less time.
+fn distances_near(states: &[State; AT_ONCE], truth: &Truth) -> Option<[f64; AT_ONCE]> {
+    let scenario = truth.scenario();
+    let at = &scenario.body.mechanics.points()[scenario.trace].at;
+    let [x, y, z] = truth.traced_near(&states.each_ref().map(|state| state.time_s))?;
+    Some(std::array::from_fn(|place| {
+        let exact = Vector3::new(x[place], y[place], z[place]);
+        (states[place].orientation * at - exact).norm()
+    }))
 }
 
 #[cfg(test)]

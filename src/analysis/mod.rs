@@ -14,6 +14,7 @@ pub mod cost;
 pub mod extremes;
 mod farthest;
 pub mod frozen;
+pub mod gauges;
 pub mod health;
 pub mod measure;
 pub mod monitor;
@@ -29,6 +30,7 @@ mod turns;
 
 pub use beside::Beside;
 pub use extremes::Extremes;
+pub use gauges::Gauges;
 pub use health::Health;
 pub use measure::{Instruments, Measured};
 pub use monitor::Monitor;

@@ -3,10 +3,10 @@
 use super::beside::Beside;
 use super::extremes::Extremes;
 use super::frozen::Frozen;
+use super::gauges::Gauges;
 use super::health::Health;
 use super::measure::{Instruments, Measured};
 use super::theory::Theory;
-use super::tilt_swing::TiltSwing;
 use super::trial::Deviation;
 use crate::physics::{LagrangeTop, State, SymmetricTop};
 use crate::run::Step;
@@ -16,32 +16,32 @@ use std::sync::Arc;
 /// Follows one run from its start.
 #[derive(Clone, Debug)]
 pub struct Monitor {
-    instruments: Instruments,
-    extremes: Extremes,
+    gauges: Gauges,
     beside: Beside,
     /// Steps still to be held against the exact motion.
     unheld: Vec<State>,
-    /// The change of forces since which the instruments measure.
-    changes: u64,
-    /// The step from which on they do.
-    since: u64,
-    tilt_swing: TiltSwing,
-    frozen: Option<Frozen>,
 }
 
 impl Monitor {
     /// A monitor for the run that begins at `step`.
     pub fn new(step: &Step) -> Self {
+        Self::of(Gauges::new(step), Beside::new(step.scenario()))
+    }
+
+    /// The monitor whose [parts](Self::parts) are these.
+    pub fn of(gauges: Gauges, beside: Beside) -> Self {
         Self {
-            instruments: Instruments::new(step),
-            extremes: Extremes::new(step),
-            beside: Beside::new(step.scenario()),
+            gauges,
+            beside,
             unheld: Vec::new(),
-            changes: step.changes(),
-            since: step.number(),
-            tilt_swing: TiltSwing::new(step),
-            frozen: Frozen::new(step),
         }
+    }
+
+    /// What is measured on the steps, and how far they stray from the exact motion. Either may follow the run by itself,
+    /// as long as both are shown every step before anything else is asked of the monitor.
+    pub fn parts(&mut self) -> (&mut Gauges, &mut Beside) {
+        self.hold_rest();
+        (&mut self.gauges, &mut self.beside)
     }
 
     /// Goes on with a run of `scenario`, whose past is the same.
@@ -69,30 +69,20 @@ impl Monitor {
 
     /// Holds against the exact motion the steps that have not been.
     pub fn catch_up(&mut self) {
-        let states = std::mem::take(&mut self.unheld);
-        for state in &states {
-            self.beside.hold(state);
-        }
-        self.unheld = states;
-        self.unheld.clear();
+        self.hold_rest();
         self.beside.settle();
+    }
+
+    fn hold_rest(&mut self) {
+        self.unheld.iter().for_each(|state| self.beside.hold(state));
+        self.unheld.clear();
     }
 
     /// As [`follow`](Self::follow), without holding the step against the exact motion: for a reader of what is measured
     /// and of the extremes alone.
     #[inline]
     pub fn measure(&mut self, step: &Step) {
-        self.extremes.follow(step);
-        if step.changes() == self.changes {
-            self.instruments.follow(step);
-            self.tilt_swing.follow(step);
-        } else {
-            self.changes = step.changes();
-            self.since = step.number();
-            self.instruments = Instruments::new(step);
-            self.tilt_swing = TiltSwing::new(step);
-            self.frozen = Frozen::new(step);
-        }
+        self.gauges.follow(step);
     }
 
     /// Holds `step` against the exact motion, and says how the run is there.
@@ -142,39 +132,29 @@ impl Monitor {
         self.beside.most_distance_m()
     }
 
-    /// How far the run strays from the exact motion, as far as its steps are held against that.
-    pub fn beside(&self) -> &Beside {
-        &self.beside
-    }
-
-    /// Takes over what was found of the steps that it [measured](Self::measure), and did not hold against the exact motion.
-    pub fn set_beside(&mut self, beside: Beside) {
-        self.beside = beside;
-    }
-
     /// The least and the greatest over every step of the run.
     pub fn extremes(&self) -> &Extremes {
-        &self.extremes
+        self.gauges.extremes()
     }
 
     /// By how much the tilt has swung since the forces last changed, degrees; `None` before it was seen whole.
     pub fn tilt_swing_deg(&self) -> Option<Measured> {
-        self.tilt_swing.measured()
+        self.gauges.tilt_swing_deg()
     }
 
     /// What the linear theory of the report's scheme says of the motion since the forces last changed; `None` where it says
     /// nothing.
     pub fn frozen(&self) -> Option<Frozen> {
-        self.frozen
+        self.gauges.frozen()
     }
 
     /// The step at which the forces last changed.
     pub fn since(&self) -> u64 {
-        self.since
+        self.gauges.since()
     }
 
     /// What has been measured since the forces last changed.
     pub fn instruments(&self) -> &Instruments {
-        &self.instruments
+        self.gauges.instruments()
     }
 }

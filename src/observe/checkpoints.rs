@@ -2,11 +2,14 @@
 //!
 //! They are equally spaced from the start. When there are too many, every second one is dropped and the spacing doubles,
 //! so that memory is bounded however long the run is.
+//!
+//! A checkpoint has three parts, each in a series of its own, so that each can be stored on the core where it is found.
+//! All series have the same steps, because every one of them is offered every step.
 
-use crate::analysis::{Beside, Monitor};
+use crate::analysis::{Beside, Gauges, Monitor};
 use crate::run::Simulation;
 
-/// Steps between two checkpoints at first.
+/// Steps between two checkpoints at first; a power of two.
 const SPACING: u64 = 256;
 /// Memory for all checkpoints, bytes.
 const MEMORY: usize = 24 << 20;
@@ -17,99 +20,115 @@ const PER_CHECKPOINT: usize = 9 << 10;
 /// Least number of checkpoints, however large the body.
 const FEWEST: usize = 8;
 
-/// A run at one step, with the measurements up to there.
-#[derive(Clone)]
-pub struct Checkpoint {
-    /// The run.
-    pub simulation: Simulation,
-    /// The measurements on its steps.
-    pub monitor: Monitor,
+/// One part of the checkpoints of a run, the first at its start.
+pub struct Series<T> {
+    start: T,
+    later: Vec<(u64, T)>,
+    spacing: u64,
+    most: usize,
 }
 
-impl Checkpoint {
-    /// Of a run as it stands. Workings are left out: they may take much memory, and are found again by a step.
-    fn of(simulation: &Simulation, monitor: &Monitor) -> Self {
-        let mut simulation = simulation.clone();
-        simulation.keep_workings(false);
+impl<T> Series<T> {
+    fn new(start: T, most: usize) -> Self {
         Self {
-            simulation,
-            monitor: monitor.clone(),
+            start,
+            later: Vec::new(),
+            spacing: SPACING,
+            most,
         }
     }
 
-    /// The step it stands at.
-    pub fn step(&self) -> u64 {
-        self.simulation.step_number()
+    /// Stores what `part` gives if `step`, at which the run stands, is a multiple of the spacing. To be called after every
+    /// step.
+    #[inline]
+    pub fn offer(&mut self, step: u64, part: impl FnOnce() -> T) {
+        if step & (self.spacing - 1) == 0 {
+            self.keep(step, part);
+        }
+    }
+
+    fn keep(&mut self, step: u64, part: impl FnOnce() -> T) {
+        if self.later.last().is_some_and(|(last, _)| *last >= step) || step == 0 {
+            return; // this step is stored already
+        }
+        self.later.push((step, part()));
+        if self.later.len() > self.most {
+            self.spacing *= 2;
+            let spacing = self.spacing;
+            self.later.retain(|(step, _)| step.is_multiple_of(spacing));
+        }
+    }
+
+    /// The part of the last checkpoint at `step` or earlier.
+    fn before(&self, step: u64) -> &T {
+        let earlier = self.later.partition_point(|(at, _)| *at <= step);
+        earlier
+            .checked_sub(1)
+            .map_or(&self.start, |last| &self.later[last].1)
+    }
+
+    fn cut_back(&mut self, step: u64) {
+        let earlier = self.later.partition_point(|(at, _)| *at <= step);
+        self.later.truncate(earlier);
     }
 }
 
 /// The checkpoints of one run, the first at its start.
 pub struct Checkpoints {
-    start: Checkpoint,
-    later: Vec<Checkpoint>,
-    spacing: u64,
-    most: usize,
+    /// The run as it stood.
+    pub simulations: Series<Simulation>,
+    /// What was measured on its steps up to there.
+    pub gauges: Series<Gauges>,
+    /// How far it had been off the exact motion.
+    pub besides: Series<Beside>,
 }
 
 impl Checkpoints {
     /// The checkpoints of a run that stands at step 0.
-    pub fn new(simulation: &Simulation, monitor: &Monitor) -> Self {
+    pub fn new(simulation: &Simulation, monitor: &mut Monitor) -> Self {
         let points = simulation.scenario().body.mechanics.points().len();
+        let most = (MEMORY / (PER_CHECKPOINT + PER_POINT * points)).max(FEWEST);
+        let (gauges, beside) = monitor.parts();
         Self {
-            start: Checkpoint::of(simulation, monitor),
-            later: Vec::new(),
-            spacing: SPACING,
-            most: (MEMORY / (PER_CHECKPOINT + PER_POINT * points)).max(FEWEST),
+            simulations: Series::new(bare(simulation), most),
+            gauges: Series::new(gauges.clone(), most),
+            besides: Series::new(beside.clone(), most),
         }
     }
 
-    /// Stores the run's present state if its step is a multiple of the spacing. To be called after every step. Returns
-    /// whether it was.
+    /// Offers a run as it stands, with the measurements on its steps, to all series. To be called after every step.
     #[inline]
-    pub fn offer(&mut self, simulation: &Simulation, monitor: &Monitor) -> bool {
-        let is_due = simulation.step_number().is_multiple_of(self.spacing);
-        if is_due {
-            self.keep(simulation, monitor);
-        }
-        is_due
-    }
-
-    /// Gives the checkpoint at `step`, if it is stored, what was found of its distance from the exact motion later.
-    pub fn set_beside(&mut self, step: u64, beside: Beside) {
-        if let Ok(place) = self.later.binary_search_by_key(&step, Checkpoint::step) {
-            self.later[place].monitor.set_beside(beside);
-        }
-    }
-
-    fn keep(&mut self, simulation: &Simulation, monitor: &Monitor) {
+    pub fn offer(&mut self, simulation: &Simulation, monitor: &mut Monitor) {
         let step = simulation.step_number();
-        if self.later.last().is_some_and(|last| last.step() >= step) || step == 0 {
-            return; // this step is stored already
-        }
-        self.later.push(Checkpoint::of(simulation, monitor));
-        if self.later.len() > self.most {
-            self.spacing *= 2;
-            let spacing = self.spacing;
-            self.later
-                .retain(|checkpoint| checkpoint.step().is_multiple_of(spacing));
-        }
+        self.simulations.offer(step, || bare(simulation));
+        self.gauges.offer(step, || monitor.parts().0.clone());
+        self.besides.offer(step, || monitor.parts().1.clone());
     }
 
-    /// The last checkpoint at `step` or earlier.
-    pub fn before(&self, step: u64) -> &Checkpoint {
-        let earlier = self
-            .later
-            .partition_point(|checkpoint| checkpoint.step() <= step);
-        earlier
-            .checked_sub(1)
-            .map_or(&self.start, |last| &self.later[last])
+    /// The run at the last checkpoint that is at `step` or earlier.
+    pub fn before(&self, step: u64) -> &Simulation {
+        self.simulations.before(step)
+    }
+
+    /// The measurements up to there.
+    pub fn monitor_before(&self, step: u64) -> Monitor {
+        Monitor::of(
+            self.gauges.before(step).clone(),
+            self.besides.before(step).clone(),
+        )
     }
 
     /// Drops the checkpoints later than `step`, because the run changes from there on.
     pub fn cut_back(&mut self, step: u64) {
-        let earlier = self
-            .later
-            .partition_point(|checkpoint| checkpoint.step() <= step);
-        self.later.truncate(earlier);
+        self.simulations.cut_back(step);
+        self.gauges.cut_back(step);
+        self.besides.cut_back(step);
     }
+}
+
+/// A copy of the run without its workings: they may take much memory, and are found again by a step.
+pub fn bare(simulation: &Simulation) -> Simulation {
+    let mut simulation = simulation.clone();
+    simulation.keep_workings(false);
+    simulation
 }

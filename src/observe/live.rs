@@ -4,7 +4,8 @@
 //! steps on from there, with the same bits as the first time. The pictures of the steps that then lie ahead are stored
 //! separately.
 
-mod on_two_cores;
+mod on_cores;
+mod pictures;
 
 use super::checkpoints::Checkpoints;
 use super::overlay::Overlay;
@@ -13,9 +14,9 @@ use super::recording::{Moment, Recording};
 use crate::analysis::readouts::Source;
 use crate::analysis::{Health, Instruments, Monitor, Readouts, Theory};
 use crate::physics::{State, Workings};
-use crate::run::{NotFinite, Simulation, Step};
+use crate::run::{NotFinite, Simulation};
 use crate::scenario::Scenario;
-use std::cmp::Ordering;
+use pictures::Pictures;
 use std::sync::Arc;
 
 /// Steps between two readings of the clock for a body of one point; a body of n points takes 1/n of that.
@@ -29,25 +30,11 @@ pub struct LiveRun {
     simulation: Simulation,
     monitor: Monitor,
     checkpoints: Checkpoints,
-    now: Moment,
-    recording: Recording,
-    path: Path,
-    /// The last step in the path. It is later than the present step while the run is still stepping towards it.
-    followed_to: u64,
-    ahead: Option<Ahead>,
+    pictures: Pictures,
     overlay: Option<Overlay>,
     keeps_workings: bool,
-    /// The last state in which the body was a rigid one, and its step; `None` where it still is one.
-    last_whole: Option<(u64, State)>,
     /// The workings that were asked for last without having been kept, and of which step they are.
     explained: Option<(u64, Arc<Workings>)>,
-}
-
-/// The pictures of a run up to the furthest step it has been at, while it stands at an earlier one.
-struct Ahead {
-    step: u64,
-    recording: Recording,
-    path: Path,
 }
 
 /// The result of playing.
@@ -79,25 +66,16 @@ impl LiveRun {
     pub fn new(scenario: Arc<Scenario>) -> Self {
         let reach = scenario.arm_m();
         let simulation = Simulation::new(scenario);
-        let monitor = Monitor::new(simulation.now());
-        let now = moment(simulation.now());
-        let mut run = Self {
-            checkpoints: Checkpoints::new(&simulation, &monitor),
+        let mut monitor = Monitor::new(simulation.now());
+        Self {
+            checkpoints: Checkpoints::new(&simulation, &mut monitor),
+            pictures: Pictures::new(simulation.now(), reach),
             monitor,
             simulation,
-            now,
-            recording: Recording::default(),
-            path: Path::new(reach),
-            followed_to: 0,
-            ahead: None,
             overlay: None,
             keeps_workings: false,
-            last_whole: None,
             explained: None,
-        };
-        run.recording.push(&run.now);
-        run.path.follow(0, &run.now.position);
-        run
+        }
     }
 
     /// Takes one time step.
@@ -105,53 +83,22 @@ impl LiveRun {
     /// # Errors
     /// When the numbers stop being finite; the run then stays at the step before.
     pub fn step(&mut self) -> Result<(), NotFinite> {
-        self.take_step(Monitor::follow).map(drop)
-    }
-
-    /// Takes one time step, of which the monitor takes in what `follow` gives it. Returns whether that stored a checkpoint.
-    #[inline]
-    fn take_step(&mut self, follow: impl Fn(&mut Monitor, &Step)) -> Result<bool, NotFinite> {
         let step = self.simulation.step()?;
-        follow(&mut self.monitor, step);
-        self.now = moment(step);
-        if self.last_whole.is_none() && !step.after().is_a_rotation() {
-            let before = step.before().filter(|before| before.is_a_rotation());
-            self.last_whole = before.map(|before| (step.number() - 1, *before));
-        }
-        let is_stored = self.checkpoints.offer(&self.simulation, &self.monitor);
-        self.keep();
-        Ok(is_stored)
-    }
-
-    /// Adds the present moment to the recording and the path, unless they have it already.
-    fn keep(&mut self) {
-        let step = self.simulation.step_number();
-        if step >= self.recording.moments() {
-            self.recording.push(&self.now);
-        }
-        match step.cmp(&self.followed_to) {
-            Ordering::Less => {}
-            Ordering::Equal => self.path.stand_at(&self.now.position),
-            Ordering::Greater => {
-                self.path.follow(step, &self.now.position);
-                self.followed_to = step;
-            }
-        }
-        if let Some(ahead) = self.ahead.take_if(|ahead| ahead.step == step) {
-            (self.recording, self.path) = (ahead.recording, ahead.path);
-        }
+        self.monitor.follow(step);
+        self.pictures.follow(step);
+        self.checkpoints.offer(&self.simulation, &mut self.monitor);
+        Ok(())
     }
 
     /// The furthest step that the run has reached.
     pub fn furthest(&self) -> u64 {
-        let ahead = self.ahead.as_ref().map_or(0, |ahead| ahead.step);
-        ahead.max(self.followed_to)
+        self.pictures.furthest()
     }
 
     /// The step for which it has set out, if it has not arrived. Calling [`step`](Self::step) repeatedly leads there.
     pub fn destination(&self) -> Option<u64> {
-        let step = self.simulation.step_number();
-        (step < self.followed_to).then_some(self.followed_to)
+        let (step, to) = (self.simulation.step_number(), self.pictures.followed_to);
+        (step < to).then_some(to)
     }
 
     /// Sets out for `step`, or for the furthest step that it has reached if that is earlier. It then stands at that step, or
@@ -163,40 +110,17 @@ impl LiveRun {
         if step == here {
             return;
         }
-        let ahead = self.ahead.get_or_insert_with(|| Ahead {
-            step: here,
-            recording: self.recording.clone(),
-            path: self.path.clone(),
-        });
-        if step > here {
-            self.recording.clone_from(&ahead.recording);
-            self.path.clone_from(&ahead.path);
-        } else if self.overlay.is_some() {
+        if step < here && self.overlay.is_some() {
             self.set_overlay(true);
         }
-        self.path.cut_back(step);
-        self.followed_to = step;
-        let recorded = self.cut_back_recording(step + 1);
-        self.stand_before(step.min(recorded.saturating_sub(1)), here);
-        if self.recording.moments() == 0 {
-            self.recording.push(&self.now);
-        }
-        self.keep();
-    }
-
-    /// Cuts the recording back to at most `moments`, and so far that filling it again makes it fine enough. Returns how
-    /// many moments it keeps.
-    fn cut_back_recording(&mut self, moments: u64) -> u64 {
-        let kept = self.recording.cut_back(moments);
-        match self.recording.coarse_since() {
-            Some(from) => self.recording.cut_back(from),
-            None => kept,
-        }
+        let latest = self.pictures.go_to(step, here);
+        self.stand_before(latest, here);
+        self.pictures.keep(self.simulation.step_number());
     }
 
     /// A copy of the run at the last stored state that is at `step` or before, to step through what it has been through.
     pub(super) fn again_before(&self, step: u64) -> Simulation {
-        let stored = &self.checkpoints.before(step).simulation;
+        let stored = self.checkpoints.before(step);
         let here = self.simulation.step_number();
         if (stored.step_number()..=step).contains(&here) && !self.simulation.has_ended() {
             return self.simulation.clone();
@@ -211,17 +135,15 @@ impl LiveRun {
     /// Puts the run at the latest stored state that is not later than `latest`: a checkpoint, or the present one, which is
     /// at step `here`.
     fn stand_before(&mut self, latest: u64, here: u64) {
-        let checkpoint = self.checkpoints.before(latest);
-        if (checkpoint.step()..=latest).contains(&here) && !self.simulation.has_ended() {
+        let stored = self.checkpoints.before(latest);
+        if (stored.step_number()..=latest).contains(&here) && !self.simulation.has_ended() {
             return;
         }
         let scenario = Arc::clone(self.simulation.scenario());
-        (self.simulation, self.monitor) =
-            (checkpoint.simulation.clone(), checkpoint.monitor.clone());
+        self.simulation = stored.clone();
+        self.monitor = self.checkpoints.monitor_before(latest);
         self.simulation.keep_workings(self.keeps_workings);
-        self.now = moment(self.simulation.now());
-        let here = self.simulation.step_number();
-        self.last_whole.take_if(|(step, _)| *step >= here);
+        self.pictures.stand_at(self.simulation.now());
         self.adopt(&scenario);
     }
 
@@ -236,31 +158,25 @@ impl LiveRun {
     /// Cancels its way to the destination and stays at the present step. Where the recording lacks steps, it is filled with
     /// the present moment.
     pub fn stay(&mut self) {
-        if self.destination().is_none() {
-            return;
-        }
-        let step = self.simulation.step_number();
-        self.path.cut_back(step);
-        self.path.stand_at(&self.now.position);
-        self.followed_to = step;
-        for _ in self.recording.cut_back(step + 1)..=step {
-            self.recording.push(&self.now);
+        if self.destination().is_some() {
+            self.pictures.stay(self.simulation.step_number());
         }
     }
 
     /// Continues with `scenario`, which has the same motion up to the present step and up to the destination. The pictures
     /// of later steps are dropped.
     pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
-        self.ahead = None;
+        self.pictures.ahead = None;
         self.explained = None;
-        self.checkpoints.cut_back(self.followed_to);
+        self.checkpoints.cut_back(self.pictures.followed_to);
         if self.simulation.has_ended() {
             let here = self.simulation.step_number();
             self.stand_before(here, here);
         }
         self.adopt(scenario);
+        let now_s = self.now().time_s;
         match &mut self.overlay {
-            Some(overlay) if overlay.now().time_s <= self.now.time_s => overlay.go_on_in(scenario),
+            Some(overlay) if overlay.now().time_s <= now_s => overlay.go_on_in(scenario),
             overlay => *overlay = overlay.is_some().then(|| Overlay::new(scenario)),
         }
     }
@@ -279,12 +195,12 @@ impl LiveRun {
         mut enough: impl FnMut() -> bool,
         mut is_fulfilled: impl FnMut(&mut Self) -> bool,
     ) -> Played {
-        let begin_s = self.now.time_s;
+        let begin_s = self.now().time_s;
         let look_every = (STEPS_PER_LOOK / self.scenario().body.mechanics.points().len()).max(1);
         let mut until_look = look_every;
         let end = loop {
             let time_step_s = self.simulation.motion().time_step_s;
-            if self.now.time_s + time_step_s - begin_s > time_s + ROUNDING * time_step_s {
+            if self.now().time_s + time_step_s - begin_s > time_s + ROUNDING * time_step_s {
                 break PlayEnd::InTime;
             }
             if self.simulation.step_number() >= stop {
@@ -305,7 +221,7 @@ impl LiveRun {
             }
         };
         Played {
-            stepped_s: self.now.time_s - begin_s,
+            stepped_s: self.now().time_s - begin_s,
             end,
         }
     }
@@ -317,8 +233,9 @@ impl LiveRun {
 
     /// Advances the exact motion to the run's time, or until `enough` returns true.
     pub fn follow_exact(&mut self, enough: impl FnMut() -> bool) {
+        let now_s = self.now().time_s;
         if let Some(overlay) = &mut self.overlay {
-            overlay.follow(self.now.time_s, enough);
+            overlay.follow(now_s, enough);
         }
     }
 
@@ -331,7 +248,7 @@ impl LiveRun {
     pub fn overlay_is_behind(&self) -> bool {
         self.overlay
             .as_ref()
-            .is_some_and(|overlay| overlay.now().time_s < self.now.time_s)
+            .is_some_and(|overlay| overlay.now().time_s < self.now().time_s)
     }
 
     /// How reliable the run's numbers are at the present step.
@@ -352,7 +269,7 @@ impl LiveRun {
 
     /// What theory says of the exact motion now; `None` where it says nothing.
     pub fn theory(&mut self) -> Option<Theory> {
-        self.monitor.theory(self.now.time_s)
+        self.monitor.theory(self.now().time_s)
     }
 
     /// What has been measured on its steps.
@@ -388,7 +305,7 @@ impl LiveRun {
 
     /// The last state in which the body was a rigid one, and its step, where the scheme has broken down since.
     pub fn last_whole(&self) -> Option<&(u64, State)> {
-        self.last_whole.as_ref()
+        self.pictures.last_whole.as_ref()
     }
 
     /// The run itself.
@@ -403,33 +320,24 @@ impl LiveRun {
 
     /// Where it stands.
     pub fn now(&self) -> &Moment {
-        &self.now
+        &self.pictures.now
     }
 
     /// Its curves over time and its path, as far as it has been.
     pub fn pictures(&self) -> (&Recording, &Path) {
-        match &self.ahead {
+        match &self.pictures.ahead {
             Some(ahead) => (&ahead.recording, &ahead.path),
-            None => (&self.recording, &self.path),
+            None => (&self.pictures.recording, &self.pictures.path),
         }
     }
 
     /// Its curves over time.
     pub fn recording(&self) -> &Recording {
-        &self.recording
+        &self.pictures.recording
     }
 
     /// Its path from above.
     pub fn path(&self) -> &Path {
-        &self.path
-    }
-}
-
-/// What the pictures need of `step`.
-fn moment(step: &Step) -> Moment {
-    Moment {
-        time_s: step.time_s(),
-        position: *step.position(),
-        axle_height: step.after().axle().z,
+        &self.pictures.path
     }
 }

@@ -46,20 +46,19 @@ impl Path {
             self.radius = libm::hypot(x, y);
         }
         let (from_x, from_y) = self.last.replace((x, y)).unwrap_or((x, y));
+        let (way_x, way_y) = (x - from_x, y - from_y);
         let cell = 2.0 * self.half_width / SIDE as f64;
-        let cells = ((x - from_x).abs().max((y - from_y).abs()) / cell).ceil();
-        let dots = if cells > LONGEST_LINE {
-            1.0
+        let cells = way_x.abs().max(way_y.abs()) / cell;
+        if cells > 1.0 && cells <= LONGEST_LINE {
+            // ceil() is a call to a library where the processor has no instruction for it.
+            let whole = cells as u32;
+            let dots = whole + u32::from(f64::from(whole) < cells);
+            for dot in 1..=dots {
+                let share = f64::from(dot) / f64::from(dots);
+                self.visit(step, from_x + share * way_x, from_y + share * way_y);
+            }
         } else {
-            cells.max(1.0)
-        };
-        for dot in 1..=dots as u32 {
-            let share = f64::from(dot) / dots;
-            self.visit(
-                step,
-                from_x + share * (x - from_x),
-                from_y + share * (y - from_y),
-            );
+            self.visit(step, from_x + way_x, from_y + way_y);
         }
     }
 

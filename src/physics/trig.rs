@@ -68,8 +68,8 @@ pub fn round(x: f64) -> f64 {
 }
 
 /// Sine and cosine of `angle + rest`, |angle| up to pi/4 and |rest| up to half a unit in its last place.
-#[inline]
-fn kernels(angle: f64, rest: f64) -> (f64, f64) {
+#[inline(always)]
+pub(super) fn kernels(angle: f64, rest: f64) -> (f64, f64) {
     let z = angle * angle;
     let zz = z * z;
     let cube = angle * z;

@@ -3,8 +3,9 @@
 //! [`Simulation`] is the one road forward in time; the command line, the exporters, the tests and any screen all
 //! travel on it. [`step`] is what it publishes of each time step. [`clock`] says what time a step has, [`pushes`] which
 //! forces act on it, [`sample`] what of it leaves the program, [`energy`] what its drift is measured in. [`truth`] is the
-//! exact motion beside it, and [`resample`] the same run at another time step.
+//! exact motion beside it, [`resample`] the same run at another time step, and [`batch`] hands steps over to another core.
 
+pub mod batch;
 pub mod clock;
 pub mod energy;
 pub mod pushes;
@@ -14,6 +15,7 @@ pub mod simulation;
 pub mod step;
 pub mod truth;
 
+pub use batch::Batch;
 pub use clock::Clock;
 pub use energy::{EnergyScale, EnergyUnit};
 pub use sample::Sample;

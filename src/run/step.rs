@@ -1,5 +1,6 @@
 //! One time step of a run, whole: everything that shows, measures, explains or exports a step reads this.
 
+use super::batch::Further;
 use super::{EnergyScale, EnergyUnit, Sample};
 use crate::physics::observables::{self, Azimuth};
 use crate::physics::{Loads, State, Workings};
@@ -155,6 +156,17 @@ impl Step {
     /// What the energy drift is measured in; `None` where there is nothing to measure it by.
     pub fn energy_unit(&self) -> Option<EnergyUnit> {
         self.energy.scale.map(|scale| scale.unit)
+    }
+
+    /// Goes on to the next step, under the same forces.
+    #[inline]
+    pub(super) fn go_on(&mut self, further: &Further) {
+        self.before = std::mem::replace(&mut self.after, further.after);
+        (self.energy.work, self.energy.friction) = (further.work, further.friction);
+        self.number += 1;
+        self.azimuth.follow(&self.after.axle());
+        self.workings = None;
+        self.derived = Derived::default();
     }
 
     /// Its numbers as they leave the program.

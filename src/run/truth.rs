@@ -5,7 +5,7 @@
 
 use super::Clock;
 use super::pushes::{self, Counting, Stretch};
-use crate::physics::exact::Kind;
+use crate::physics::exact::{AT_ONCE, Kind};
 use crate::physics::{ExactMotion, Loads, State};
 use crate::scenario::{Edit, Pushes, Scenario};
 use nalgebra::Matrix3;
@@ -75,6 +75,16 @@ impl Truth {
         let is_here = self.piece.begin_s() <= time_s && time_s <= self.end_s;
         is_here
             .then(|| self.piece.orientation_near(time_s))
+            .flatten()
+    }
+
+    /// Where the traced point is at `times` (s, in order), within a few units of rounding of its distance from the pivot: x, y
+    /// and z, m, world frame. `None` where there is no such short way, or the forces change before the last of them.
+    pub fn traced_near(&self, times: &[f64; AT_ONCE]) -> Option<[[f64; AT_ONCE]; 3]> {
+        let is_here = self.piece.begin_s() <= times[0] && times[AT_ONCE - 1] <= self.end_s;
+        let at = &self.scenario.body.mechanics.points()[self.scenario.trace].at;
+        is_here
+            .then(|| self.piece.positions_near(at, times))
             .flatten()
     }
 

@@ -128,6 +128,17 @@ impl Extent {
             max: self.max.max(other.max),
         }
     }
+
+    /// The extent of both, whose values are finite: one instruction for each, which [`f64::min`], with its care for what is
+    /// no number, is not.
+    #[inline]
+    fn with(self, other: Self) -> Self {
+        let Self { min, max } = self;
+        Self {
+            min: if other.min < min { other.min } else { min },
+            max: if other.max > max { other.max } else { max },
+        }
+    }
 }
 
 /// A stretch of the run.
@@ -183,6 +194,7 @@ impl Block {
     }
 
     /// The block of one moment, at which the curves have turned or not.
+    #[inline]
     pub(super) fn of(moment: &Moment, turned: [bool; 4]) -> Self {
         let values = moment.values();
         Self {
@@ -197,16 +209,30 @@ impl Block {
     }
 
     /// Both as one; `later` begins where this one ends.
+    #[inline]
     pub(super) fn and(&self, later: &Self) -> Self {
         Self {
             begin_s: self.begin_s,
             end_s: later.end_s,
             moments: self.moments + later.moments,
-            extents: std::array::from_fn(|curve| self.extents[curve].and(later.extents[curve])),
+            extents: std::array::from_fn(|curve| self.extents[curve].with(later.extents[curve])),
             sums: std::array::from_fn(|curve| self.sums[curve] + later.sums[curve]),
             turns: std::array::from_fn(|curve| self.turns[curve] + later.turns[curve]),
             end: later.end,
         }
+    }
+
+    /// Goes on through `later`, which begins where this one ends.
+    #[inline]
+    pub(super) fn take_in(&mut self, later: &Self) {
+        self.end_s = later.end_s;
+        self.moments += later.moments;
+        for curve in 0..4 {
+            self.extents[curve] = self.extents[curve].with(later.extents[curve]);
+            self.sums[curve] += later.sums[curve];
+            self.turns[curve] += later.turns[curve];
+        }
+        self.end = later.end;
     }
 }
 

@@ -49,15 +49,15 @@ use nalgebra::{Complex, Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3}
 pub struct LagrangeTop {
     across: f64,
     /// Turns the frame with its third axis along the vertical into the world frame.
-    vertical: UnitQuaternion<f64>,
+    pub(super) vertical: UnitQuaternion<f64>,
     momentum_vertical: f64,
     turning: Turning,
-    lattice: Lattice,
+    pub(super) lattice: Lattice,
     /// Time between the start and the turning point the sums are centred on, s.
-    since_origin: f64,
+    pub(super) since_origin: f64,
     starts_low: bool,
-    alpha: Part,
-    beta: Part,
+    pub(super) alpha: Part,
+    pub(super) beta: Part,
     loaded: bool,
 }
 

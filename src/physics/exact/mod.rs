@@ -8,6 +8,7 @@
 
 mod elliptic;
 mod lagrange;
+mod near;
 mod part;
 mod phases;
 mod scheme;
@@ -17,6 +18,7 @@ mod theta;
 mod turning;
 
 pub use lagrange::LagrangeTop;
+pub use near::AT_ONCE;
 pub use scheme::Exact;
 pub use taylor::AccurateMotion;
 
@@ -118,6 +120,16 @@ impl ExactMotion {
     pub fn orientation_near(&self, time_s: f64) -> Option<Matrix3<f64>> {
         self.closed_form()
             .map(|top| top.orientation_near(time_s - self.begin_s))
+    }
+
+    /// Where the point `at` of the body (body frame, m) is at `times` (s), as [`LagrangeTop::positions_near`] has it.
+    pub fn positions_near(
+        &self,
+        at: &Vector3<f64>,
+        times: &[f64; AT_ONCE],
+    ) -> Option<[[f64; AT_ONCE]; 3]> {
+        let since = times.map(|time_s| time_s - self.begin_s);
+        self.closed_form()?.positions_near(at, &since)
     }
 
     /// When it began, s.

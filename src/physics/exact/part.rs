@@ -12,7 +12,7 @@ pub(super) struct Part {
     /// Value of the whole at the start divided by that of its sum.
     pub amplitude: Complex<f64>,
     /// Mean rotation with the body's extra spin, turns per second.
-    turns_per_s: f64,
+    pub turns_per_s: f64,
 }
 
 /// The sums of alpha and of beta at one moment.

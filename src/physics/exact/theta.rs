@@ -122,6 +122,11 @@ impl Lattice {
         }
     }
 
+    /// Whether it is summed over pulses, and not over harmonics.
+    pub fn is_pulsed(&self) -> bool {
+        self.pulsed
+    }
+
     /// Time since the turning point that squared sine and cosine of the amplitude place the state at, s.
     pub fn time_at(&self, sin2: f64, cos2: f64) -> f64 {
         elliptic::incomplete(sin2, cos2, self.one_minus_m) / self.elliptic_rate
@@ -252,6 +257,12 @@ impl Lattice {
 
 fn circular(z: f64, sin_cos: impl SinCos) -> Harmonics {
     let (sin, cos) = sin_cos(2.0 * z);
+    harmonics_of(sin, cos)
+}
+
+/// The harmonics of an angle with this sine and cosine.
+#[inline(always)]
+fn harmonics_of(sin: f64, cos: f64) -> Harmonics {
     let mut h = Harmonics::ZERO;
     h.x[0] = 1.0;
     for k in 1..TERMS {
@@ -286,8 +297,15 @@ impl Wave {
     }
 
     /// The sum without its rotation.
+    #[inline(always)]
     pub fn value(&self, h: &Harmonics) -> Complex<f64> {
         Complex::new(dot(&self.real, &h.x), dot(&self.imaginary, &h.y))
+    }
+
+    /// The same where twice the argument has this sine and cosine.
+    #[inline(always)]
+    pub fn value_at(&self, sin: f64, cos: f64) -> Complex<f64> {
+        self.value(&harmonics_of(sin, cos))
     }
 
     /// Its time derivative, 1/s, with the rotation's rate included and the rotation itself left out.
@@ -297,6 +315,7 @@ impl Wave {
     }
 }
 
+#[inline(always)]
 fn dot(a: &[f64; TERMS], b: &[f64; TERMS]) -> f64 {
     (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
 }

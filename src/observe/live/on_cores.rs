@@ -1,0 +1,224 @@
+//! Many steps at once: one thread does nothing but take them. It hands them over, many together, to another, which measures
+//! them and adds them to the pictures; that one passes them on to a third, which holds them against the exact motion. Each
+//! has its own part of the run and of its checkpoints. They share nothing but the steps that they pass on, so that what they
+//! find is the same on any number of cores.
+
+use super::LiveRun;
+use crate::observe::checkpoints::bare;
+use crate::run::{Batch, NotFinite, Step};
+use std::panic;
+use std::sync::mpsc::{self, Receiver, SendError, SyncSender};
+use std::thread::{self, Scope, ScopedJoinHandle};
+
+/// Fewer steps than this are not worth a thread.
+const FEWEST: u64 = 4096;
+/// The most steps that are handed over together.
+const TOGETHER: usize = 1024;
+/// So many batches may wait for a thread that is slower than the one before it; then that one waits too.
+const WAITING: usize = 8;
+
+impl LiveRun {
+    /// Steps until the run stands at `step`. All that is read off it then is as if it had taken them
+    /// [one by one](Self::step).
+    ///
+    /// # Errors
+    /// When the numbers stop being finite; the run then stays at the step before.
+    pub fn step_to(&mut self, step: u64) -> Result<(), NotFinite> {
+        let steps = step.saturating_sub(self.simulation.step_number());
+        if steps >= FEWEST
+            && let Some(stepped) = self.step_on_cores_to(step)
+        {
+            return stepped;
+        }
+        self.step_alone_to(step)
+    }
+
+    fn step_alone_to(&mut self, step: u64) -> Result<(), NotFinite> {
+        while self.simulation.step_number() < step {
+            self.step()?;
+        }
+        Ok(())
+    }
+
+    /// `None` where the system gives no threads; nothing has been done then.
+    fn step_on_cores_to(&mut self, step: u64) -> Option<Result<(), NotFinite>> {
+        let Self {
+            simulation,
+            monitor,
+            checkpoints,
+            pictures,
+            ..
+        } = self;
+        let (gauges, beside) = monitor.parts();
+        let measure = |batch: &Batch| {
+            batch.each(|step| {
+                gauges.follow(step);
+                pictures.follow(step);
+                checkpoints.gauges.offer(step.number(), || gauges.clone());
+            });
+        };
+        let hold = |batch: &Batch| {
+            for (step, state) in batch.states() {
+                beside.hold(state);
+                checkpoints.besides.offer(step, || beside.clone());
+            }
+        };
+        thread::scope(|scope| {
+            let (to_measure, to_be_measured) = mpsc::sync_channel(WAITING);
+            let (to_hold, to_be_held) = mpsc::sync_channel(WAITING);
+            let (seen_by_all, blank) = mpsc::channel();
+            let following = [
+                follow(scope, "pictures", to_be_measured, measure, move |batch| {
+                    to_hold.send(batch)
+                })?,
+                follow(scope, "beside", to_be_held, hold, move |batch| {
+                    seen_by_all.send(batch)
+                })?,
+            ];
+            let mut steps = HandOver::to(to_measure, blank);
+            let stepped = loop {
+                if simulation.step_number() >= step {
+                    break Ok(());
+                }
+                match simulation.step() {
+                    Ok(step) => steps.push(step),
+                    Err(error) => break Err(error),
+                }
+                let stored = &mut checkpoints.simulations;
+                stored.offer(simulation.step_number(), || bare(simulation));
+            };
+            steps.finish();
+            for thread in following {
+                if let Err(reason) = thread.join() {
+                    panic::resume_unwind(reason);
+                }
+            }
+            Some(stepped)
+        })
+    }
+}
+
+/// A thread that shows `look` every one of `batches` and then gives it to `pass_on`; `None` where the system gives none.
+fn follow<'scope>(
+    scope: &'scope Scope<'scope, '_>,
+    name: &str,
+    batches: Receiver<Batch>,
+    mut look: impl FnMut(&Batch) + Send + 'scope,
+    pass_on: impl Fn(Batch) -> Result<(), SendError<Batch>> + Send + 'scope,
+) -> Option<ScopedJoinHandle<'scope, ()>> {
+    let follow_all = move || {
+        for batch in batches {
+            look(&batch);
+            // It fails only where the next thread has panicked, or where no more blank batches are wanted.
+            let _ = pass_on(batch);
+        }
+    };
+    let thread = thread::Builder::new().name(name.to_owned());
+    thread.spawn_scoped(scope, follow_all).ok()
+}
+
+/// Gathers steps into batches, and hands them over.
+struct HandOver {
+    to: SyncSender<Batch>,
+    /// Batches that all have seen: their memory is used again.
+    blank: Receiver<Batch>,
+    batch: Batch,
+}
+
+impl HandOver {
+    fn to(to: SyncSender<Batch>, blank: Receiver<Batch>) -> Self {
+        Self {
+            to,
+            blank,
+            batch: Batch::with_capacity(TOGETHER),
+        }
+    }
+
+    #[inline]
+    fn push(&mut self, step: &Step) {
+        if self.batch.len() == TOGETHER || !self.batch.push(step) {
+            let mut blank = match self.blank.try_recv() {
+                Ok(seen) => seen,
+                Err(_) => Batch::with_capacity(TOGETHER),
+            };
+            blank.clear();
+            blank.push(step);
+            self.give(blank);
+        }
+    }
+
+    /// Hands over the steps so far, and goes on with `next`.
+    fn give(&mut self, next: Batch) {
+        // It fails only where the other thread has panicked, which is reported where it is joined.
+        let _ = self.to.send(std::mem::replace(&mut self.batch, next));
+    }
+
+    /// Hands over what is left. The followers end when they have seen it.
+    fn finish(mut self) {
+        self.give(Batch::default());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Document;
+    use std::sync::Arc;
+
+    const STEPS: u64 = 20_000;
+
+    fn run(name: &str) -> LiveRun {
+        let mut document = Document::open(name).unwrap();
+        document.set("motion.steps=1000000").unwrap();
+        LiveRun::new(Arc::new(document.scenario().unwrap()))
+    }
+
+    /// All that is read off a run, in digits that tell any two numbers apart.
+    fn read(run: &mut LiveRun) -> String {
+        let dots: Vec<_> = run.path().dots().collect();
+        format!(
+            "{:?} {:?} {:?} {dots:?}",
+            run.readouts(),
+            run.now(),
+            run.recording()
+        )
+    }
+
+    #[test]
+    fn it_is_read_as_if_its_steps_were_taken_one_by_one() {
+        for name in ["method-2", "wobble-push", "cusps", "wing-nut"] {
+            let (mut one_by_one, mut at_once) = (run(name), run(name));
+            one_by_one.step_alone_to(STEPS).unwrap();
+            at_once.step_to(STEPS).unwrap();
+            assert!(
+                read(&mut one_by_one) == read(&mut at_once),
+                "{name} at {STEPS}"
+            );
+            // Back at a step behind a checkpoint that was stored on the way.
+            for run in [&mut one_by_one, &mut at_once] {
+                run.set_out_for(5000);
+                while run.destination().is_some() {
+                    run.step().unwrap();
+                }
+            }
+            assert!(
+                read(&mut one_by_one) == read(&mut at_once),
+                "{name} at 5000"
+            );
+        }
+    }
+
+    #[test]
+    fn it_stays_before_the_step_whose_numbers_are_not_finite() {
+        let mut document = Document::open("method-2").unwrap();
+        document.set("motion.time_step_s=1e3").unwrap();
+        document.set("motion.gravity_m_per_s2=1e306").unwrap();
+        let scenario = Arc::new(document.scenario().unwrap());
+        let (mut one_by_one, mut at_once) =
+            (LiveRun::new(Arc::clone(&scenario)), LiveRun::new(scenario));
+        let alone = one_by_one.step_alone_to(STEPS);
+        assert!(alone.is_err());
+        assert_eq!(at_once.step_to(STEPS), alone);
+        assert_eq!(at_once.now(), one_by_one.now());
+    }
+}

@@ -1,0 +1,152 @@
+//! The closed form at many times at once: where one point of the body is, within a few units of rounding.
+//!
+//! What takes the time of [`LagrangeTop::orientation_at`] are sines to the last bit, and choices which depend on the angle.
+//! Here every time goes through the same operations, without a choice: angles are reduced to one turn, their fourth part
+//! lies where the polynomials hold, and two doublings lead back. So the processor takes several times together.
+
+use super::lagrange::LagrangeTop;
+use super::part::Part;
+use crate::physics::trig::kernels;
+use core::f64::consts::{FRAC_PI_2, TAU};
+use nalgebra::{Complex, Matrix3, Vector3};
+
+/// So many times are taken at once.
+pub const AT_ONCE: usize = 8;
+
+/// Adding and subtracting 1.5 * 2^52 rounds to the nearest integer, below 2^51.
+const ROUNDER: f64 = 6755399441055744.0;
+/// With more cells or turns than this there is no place in a turn left to be found.
+const MOST_TURNS: f64 = 1e12;
+
+impl LagrangeTop {
+    /// Where the point `at` of the body (body frame, m) is at `times`, s after the start: x, y and z, m, world frame. `None`
+    /// where the motion has no sines (near the separatrix), or a time is out of all proportion.
+    pub fn positions_near(
+        &self,
+        at: &Vector3<f64>,
+        times: &[f64; AT_ONCE],
+    ) -> Option<[[f64; AT_ONCE]; 3]> {
+        let per_s = [&self.alpha, &self.beta].map(|part| part.turns_per_s.abs());
+        let per_s = per_s[0].max(per_s[1]).max(self.lattice.per_period);
+        let latest = times.iter().fold(0.0_f64, |latest, t| latest.max(t.abs()));
+        if self.lattice.is_pulsed() || (latest + self.since_origin.abs()) * per_s > MOST_TURNS {
+            return None;
+        }
+        let period = match self.lattice.per_period == 0.0 {
+            true => 0.0, // it is none, and there is one cell
+            false => self.lattice.period,
+        };
+        let vertical = self.vertical.to_rotation_matrix();
+        let mut positions = [[0.0; AT_ONCE]; 3];
+        for (place, t) in times.iter().enumerate() {
+            let at = self.position_near(*t, period, at, vertical.matrix());
+            for axis in 0..3 {
+                positions[axis][place] = at[axis];
+            }
+        }
+        Some(positions)
+    }
+
+    #[inline(always)]
+    fn position_near(
+        &self,
+        t: f64,
+        period: f64,
+        at: &Vector3<f64>,
+        vertical: &Matrix3<f64>,
+    ) -> Vector3<f64> {
+        let since = t + self.since_origin;
+        let local = since - whole(since * self.lattice.per_period) * period;
+        let fraction = local * self.lattice.per_period;
+        let (sin, cos) = doubled_twice(0.5 * self.lattice.rate * local);
+        let [alpha, beta] = [&self.alpha, &self.beta]
+            .map(|part| parameter(part, part.turns_per_s * t, fraction, sin, cos));
+        let norm2 = alpha.norm_sqr() + beta.norm_sqr();
+        // The turn of `at` by the quaternion (alpha.re, beta.re, beta.im, alpha.im), whose square is norm2.
+        let axis = Vector3::new(beta.re, beta.im, alpha.im);
+        let across = axis.cross(at);
+        let turned = (across * alpha.re + axis.cross(&across)) * (2.0 / norm2);
+        vertical * (at + turned)
+    }
+}
+
+/// Alpha or beta short of a common real factor, after so many turns and at this fraction of a period, whose angle has this
+/// sine and cosine.
+#[inline(always)]
+fn parameter(part: &Part, turns: f64, fraction: f64, sin: f64, cos: f64) -> Complex<f64> {
+    let angle = (turns - whole(turns)) + part.wave.lag / TAU * fraction;
+    let (turn_sin, turn_cos) = doubled_twice(FRAC_PI_2 * (angle - whole(angle)));
+    part.amplitude * Complex::new(turn_cos, turn_sin) * part.wave.value_at(sin, cos)
+}
+
+/// The nearest whole number, of halves either one.
+#[inline(always)]
+fn whole(x: f64) -> f64 {
+    (x + ROUNDER) - ROUNDER
+}
+
+/// Sine and cosine of four times `quarter`, |`quarter`| up to π/4.
+#[inline(always)]
+fn doubled_twice(quarter: f64) -> (f64, f64) {
+    let (s, c) = kernels(quarter, 0.0);
+    let (s2, c2) = (2.0 * s * c, 1.0 - 2.0 * s * s);
+    (2.0 * s2 * c2, 1.0 - 2.0 * s2 * s2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::Simulation;
+    use crate::scenario::Document;
+    use std::sync::Arc;
+
+    #[test]
+    fn it_is_the_closed_form_but_for_rounding() {
+        let mut waving = 0;
+        for preset in [
+            "wobble-push",
+            "cusps",
+            "loops",
+            "torque-free",
+            "method-1",
+            "method-2",
+            "fast-top",
+        ] {
+            let scenario = Arc::new(Document::open(preset).unwrap().scenario().unwrap());
+            let mut truth = crate::run::Truth::new(Arc::clone(&scenario));
+            let start = *Simulation::new(scenario).state();
+            let _ = truth.state_at(start.time_s);
+            let top = truth.motion().closed_form().unwrap();
+            let mut most = 0.0_f64;
+            for at in [Vector3::z(), Vector3::new(0.6, 0.0, 0.8)] {
+                for number in 0..2_500 {
+                    let begin = 0.0137 * f64::from(8 * number) - 3.0;
+                    let times = std::array::from_fn(|place| begin + 0.0137 * place as f64);
+                    let Some(near) = top.positions_near(&at, &times) else {
+                        continue;
+                    };
+                    waving += 1;
+                    for (place, t) in times.into_iter().enumerate() {
+                        let exact = top.orientation_at(t) * at;
+                        let near = Vector3::from(near.map(|axis| axis[place]));
+                        most = most.max((exact - near).norm());
+                    }
+                }
+            }
+            assert!(most < 3e-15, "{preset}: {most:e}");
+        }
+        assert!(waving > 20_000, "{waving}");
+    }
+
+    #[test]
+    fn a_time_out_of_all_proportion_is_refused() {
+        let scenario = Arc::new(Document::open("cusps").unwrap().scenario().unwrap());
+        let truth = crate::run::Truth::new(scenario);
+        let top = truth.motion().closed_form().unwrap();
+        assert!(top.positions_near(&Vector3::z(), &[1e3; AT_ONCE]).is_some());
+        assert!(
+            top.positions_near(&Vector3::z(), &[1e15; AT_ONCE])
+                .is_none()
+        );
+    }
+}
