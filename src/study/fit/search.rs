@@ -4,7 +4,7 @@ use super::free::Free;
 use super::levenberg::{self, Bounds, Failure, Minimum, Problem, Stop};
 use super::model::Model;
 use super::solution::{SILENT, Solution};
-use super::verdict::Quality;
+use super::verdict::{self, Quality};
 use super::weights::Weights;
 use crate::measured::Residual;
 use crate::text::number::significant;
@@ -101,9 +101,6 @@ const CHANGE: f64 = 1e-4;
 /// this is aimed at then.
 const LARGE: f64 = 0.5;
 const AIM: f64 = 0.1;
-/// The fewest degrees of freedom from which the scatter of data without uncertainties says how uncertain they are: with
-/// fewer, two data that agree by chance would make the keys as sure as one likes.
-pub(super) const LEAST_FREEDOM: u64 = 3;
 /// How often the weights are computed anew, and the change at which they have settled.
 const MOST_ROUNDS: u32 = 40;
 const SETTLED: f64 = 1e-7;
@@ -199,12 +196,8 @@ fn finished(
             Quality::unweighted(sum.sqrt() * unit, freedom)
         }
     };
-    // Of unweighted data the scatter says what their uncertainty is.
-    let variance = match (weights.are_stated, freedom) {
-        (true, _) => Some(1.0),
-        (false, ..LEAST_FREEDOM) => None,
-        (false, freedom) => Some(sum / freedom as f64),
-    };
+    let scattered = || verdict::variance(sum, freedom);
+    let variance = weights.are_stated.then_some(1.0).or_else(scattered);
     let places = model.free.iter().enumerate();
     let keys = places.map(|(index, free)| Fitted {
         free: free.clone(),

@@ -1,7 +1,7 @@
 //! Whether the model fits, in one sentence.
 
 use super::model::Model;
-use super::search::{Fit, LEAST_FREEDOM};
+use super::search::Fit;
 use crate::measured::Residual;
 use crate::text::number::{short, significant};
 use statrs::function::gamma::checked_gamma_ur;
@@ -34,6 +34,16 @@ const FAR: f64 = 3.0;
 const MOST_NAMED: usize = 5;
 /// From this correlation on, two keys are hardly told apart.
 pub(super) const HARDLY: f64 = 0.99;
+
+/// The fewest degrees of freedom from which the scatter of data without uncertainties says how uncertain they are: with
+/// fewer, two data that agree by chance would make the keys as sure as one likes.
+const LEAST_FREEDOM: u64 = 3;
+
+/// The variance that data without uncertainties have by their scatter, of which `sum` is that of the squares; `None` where it
+/// cannot be stated.
+pub(super) fn variance(sum: f64, freedom: u64) -> Option<f64> {
+    (freedom >= LEAST_FREEDOM).then(|| sum / freedom as f64)
+}
 
 impl Quality {
     /// Of data with uncertainties.

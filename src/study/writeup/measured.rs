@@ -2,10 +2,12 @@
 
 use super::{CSV, LATEX, PAGE, READOUTS_FILE, RUN_FILE};
 use crate::measured::compared::{Compared, Sum};
-use crate::measured::{Measured, Reader, Series};
+use crate::measured::{Measured, Quantity, Reader, Series};
 use crate::run::Simulation;
 use crate::scenario::{Problems, Scenario};
+use crate::text::number::{NONE, shortest, significant};
 use serde_json::{Value, json};
+use std::fmt::{self, Write};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -92,12 +94,66 @@ impl Beside {
             .zip(&self.compared.sums)
     }
 
+    /// Writes the section of the page.
+    ///
+    /// # Errors
+    /// None: a `String` takes what is written to it.
+    pub(super) fn write(&self, page: &mut String) -> fmt::Result {
+        let (sum, name) = (&self.compared.sum, self.name());
+        let measured = match sum.points - sum.compared {
+            0 => String::new(),
+            later => format!(
+                " The run ends at {} s, before {later} of them: these are not compared.",
+                shortest(self.end_s)
+            ),
+        };
+        writeln!(page, "`{name}` holds {}.{measured}\n", points(sum.points))?;
+        writeln!(
+            page,
+            "| what | compared | chi^2 | with uncertainty | largest, in uncertainties | without uncertainty off by (rms) |"
+        )?;
+        writeln!(page, "| --- | --- | --- | --- | --- | --- |")?;
+        for (name, own) in self.rows() {
+            let chi_squared = (own.weighed > 0).then(|| significant(own.chi_squared, 4));
+            let largest = own.largest.map(|largest| {
+                format!(
+                    "{} at {} s",
+                    significant(largest.sigmas, 3),
+                    shortest(largest.time_s)
+                )
+            });
+            let rms = own
+                .scatter
+                .first()
+                .map(|(quantity, rms)| format!("{} {}", significant(*rms, 3), quantity.unit()));
+            let [chi_squared, largest, rms] =
+                [chi_squared, largest, rms].map(|text| text.unwrap_or(NONE.to_owned()));
+            writeln!(
+                page,
+                "| `{name}` | {} of {} | {chi_squared} | {} | {largest} | {rms} |",
+                own.compared, own.points, own.weighed
+            )?;
+        }
+        if sum.weighed > 0 {
+            writeln!(
+                page,
+                "\nchi^2 of all is {} at {}: the sum of the squares of measured less run, in units of the stated uncertainties. Where \
+             the run is right and no value of it was fitted, it is about as large as their number.",
+                significant(sum.chi_squared, 4),
+                points(sum.weighed)
+            )?;
+        }
+        Ok(())
+    }
+
     /// The same for programs.
     pub(super) fn json(&self) -> Value {
         let columns = self.rows().map(|(name, sum)| {
             let mut column = of(sum);
             column["name"] = json!(name);
-            column["rms"] = json!(sum.scatter.first().map(|(_, scatter)| scatter));
+            column["unit"] = json!(Quantity::find(name).map_or("", Quantity::unit));
+            column["rms_without_uncertainty"] =
+                json!(sum.scatter.first().map(|(_, scatter)| scatter));
             column
         });
         let columns: Vec<_> = columns.collect();
@@ -116,6 +172,13 @@ fn of(sum: &Sum) -> Value {
         "largest_sigmas": sum.largest.map(|largest| largest.sigmas),
         "largest_at_s": sum.largest.map(|largest| largest.time_s),
     })
+}
+
+fn points(count: usize) -> String {
+    match count {
+        1 => "1 measured value".to_owned(),
+        count => format!("{count} measured values"),
+    }
 }
 
 /// The name of the copy of the data `origin`: that of the file, where a shell and Markdown take it as it is and no other

@@ -43,7 +43,7 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     write_quantities(&mut page, &writeup.quantities)?;
     if let Some(beside) = &writeup.beside {
         writeln!(page, "\n## Measured data beside the run\n")?;
-        write_beside(&mut page, beside)?;
+        beside.write(&mut page)?;
     }
     writeln!(page, "\n## Figures\n")?;
     write_drawings(&mut page, &writeup.drawings)?;
@@ -196,61 +196,6 @@ fn write_drawings(page: &mut String, drawings: &[Drawing]) -> fmt::Result {
         )?;
     }
     Ok(())
-}
-
-fn write_beside(page: &mut String, beside: &Beside) -> fmt::Result {
-    let (sum, name) = (&beside.compared.sum, beside.name());
-    let measured = match sum.points - sum.compared {
-        0 => String::new(),
-        later => format!(
-            " The run ends at {} s, before {later} of them: these are not compared.",
-            shortest(beside.end_s)
-        ),
-    };
-    writeln!(page, "`{name}` holds {}.{measured}\n", points(sum.points))?;
-    writeln!(
-        page,
-        "| what | compared | chi^2 | with uncertainty | largest, in uncertainties | without uncertainty off by (rms) |"
-    )?;
-    writeln!(page, "| --- | --- | --- | --- | --- | --- |")?;
-    for (name, own) in beside.rows() {
-        let chi_squared = (own.weighed > 0).then(|| significant(own.chi_squared, 4));
-        let largest = own.largest.map(|largest| {
-            format!(
-                "{} at {} s",
-                significant(largest.sigmas, 3),
-                shortest(largest.time_s)
-            )
-        });
-        let rms = own
-            .scatter
-            .first()
-            .map(|(quantity, rms)| format!("{} {}", significant(*rms, 3), quantity.unit()));
-        let [chi_squared, largest, rms] =
-            [chi_squared, largest, rms].map(|text| text.unwrap_or(NONE.to_owned()));
-        writeln!(
-            page,
-            "| `{name}` | {} of {} | {chi_squared} | {} | {largest} | {rms} |",
-            own.compared, own.points, own.weighed
-        )?;
-    }
-    if sum.weighed > 0 {
-        writeln!(
-            page,
-            "\nchi^2 of all is {} at {}: the sum of the squares of measured less run, in units of the stated uncertainties. Where \
-             the run is right and no value of it was fitted, it is about as large as their number.",
-            significant(sum.chi_squared, 4),
-            points(sum.weighed)
-        )?;
-    }
-    Ok(())
-}
-
-fn points(count: usize) -> String {
-    match count {
-        1 => "1 measured value".to_owned(),
-        count => format!("{count} measured values"),
-    }
 }
 
 fn write_again(page: &mut String, beside: Option<&Beside>) -> fmt::Result {
