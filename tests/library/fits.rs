@@ -561,7 +561,7 @@ fn few_data_without_uncertainties_give_no_uncertainties() {
     assert_eq!(fit.quality.degrees_of_freedom, 1);
     assert_eq!((fit.keys[0].sigma, fit.variance), (None, None));
     assert!(
-        sentence.contains("1 datum beyond the fitted values are too few")
+        sentence.contains("1 datum more than fitted values is too few")
             && sentence.contains("Measure 3 more"),
         "{sentence}"
     );

@@ -133,10 +133,10 @@ impl Fit {
         let freedom = self.quality.degrees_of_freedom;
         match self.quality.scatter {
             Some(scatter) if freedom < LEAST_FREEDOM => format!(
-                "Whether the model fits cannot be said, since the data have no uncertainties; nor can uncertainties of the keys: {} beyond the fitted values are too few to tell from their scatter of {} {unit} how good the data are. Measure {LEAST_FREEDOM} more than there are keys at least, or give the data their uncertainties.",
+                "Whether the model fits cannot be said, since the data have no uncertainties; nor can uncertainties of the keys: {} too few to tell from their scatter of {} {unit} how good the data are. Measure {LEAST_FREEDOM} more than there are keys at least, or give the data their uncertainties.",
                 match freedom {
-                    1 => "1 datum".to_owned(),
-                    count => format!("{count} data"),
+                    1 => "1 datum more than fitted values is".to_owned(),
+                    count => format!("{count} data more than fitted values are"),
                 },
                 short(scatter)
             ),
