@@ -25,6 +25,7 @@ mod editing;
 pub mod explained;
 mod files;
 pub mod form;
+pub mod help_search;
 mod keeping;
 pub mod measured;
 mod messages;
