@@ -14,6 +14,7 @@
 
 pub mod action;
 mod advised;
+mod answer;
 mod answering;
 pub mod browser;
 mod carry_out;
@@ -46,7 +47,7 @@ pub mod values;
 pub mod view;
 mod work;
 
-pub use carry_out::{Answer, Done, Refusal, UnderWay};
+pub use answer::{Answer, Done, Refusal, UnderWay};
 pub use dialog::Dialog;
 pub use files::Files;
 pub use keeping::{Summary, Unreadable};
