@@ -1,6 +1,6 @@
 //! The search in the help, and the entry that is selected among those found.
 
-use super::on_top::type_into;
+use super::typing::type_into;
 
 /// The text that is searched for, and the selected entry.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -43,6 +43,7 @@ mod sorting;
 mod steering;
 mod traces;
 mod travel;
+mod typing;
 pub mod values;
 pub mod view;
 mod work;

@@ -2,12 +2,12 @@
 //! the message at the bottom of the screen.
 
 use super::action::FieldEdit;
-use super::browser::{Browser, MOST_TYPED};
+use super::browser::Browser;
 use super::dialog::Dialog;
 use super::help_search::HelpSearch;
 use super::notice::Notice;
 use super::preview::Preview;
-use crate::text::printable::is_steering;
+use super::typing::MOST_TYPED;
 use std::path::Path;
 use std::time::Duration;
 
@@ -302,12 +302,6 @@ impl OnTop {
             }
         }
     }
-}
-
-/// Adds `text` to the line `typed`, without line ends and other control characters, up to 100 characters.
-pub(super) fn type_into(typed: &mut String, text: &str) {
-    let room = MOST_TYPED.saturating_sub(typed.chars().count());
-    typed.extend(text.chars().filter(|&c| !is_steering(c)).take(room));
 }
 
 #[cfg(test)]
