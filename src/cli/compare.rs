@@ -7,7 +7,7 @@ use super::{INTERRUPTED, one_on_stdout, print};
 use crate::analysis::compare::{ComparisonRow, Table, compare as table_of};
 use crate::analysis::cost::is_affordable;
 use crate::export::Destination;
-use crate::export::csv::commented;
+use crate::export::comments::commented;
 use crate::physics::{SchemeInfo, scheme};
 use crate::run::{Clock, EnergyScale, Truth};
 use crate::scenario::Scenario;

@@ -3,6 +3,7 @@
 
 use super::Layout;
 use super::columns::{COLUMNS, Cell, Value};
+use super::comments::commented;
 use super::layout::Shape;
 use super::points::{NamedPoint, PlacedPoint};
 use crate::run::Sample;
@@ -165,16 +166,4 @@ fn field(text: &str, delimiter: u8) -> String {
     let mut field = String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default();
     field.truncate(field.trim_end_matches('\n').len());
     field
-}
-
-/// What stands above the run file in the header of a CSV whose lines have lost their `# `: the comments at its begin, without
-/// their marks.
-pub fn above_run_file(header: &str) -> String {
-    let comments = header.lines().map_while(|line| line.strip_prefix('#'));
-    comments.flat_map(|line| [line, "\n"]).collect()
-}
-
-/// `text` with "# " before every line, as the run file is written above the rows.
-pub fn commented(text: &str) -> String {
-    text.lines().flat_map(|line| ["# ", line, "\n"]).collect()
 }

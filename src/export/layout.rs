@@ -4,7 +4,7 @@
 //! `# # every = 10`: the CSV runs again as any other, and can be recomputed as it was written.
 
 use super::columns::{COLUMNS, Chosen};
-use super::csv::{above_run_file, commented};
+use super::comments::{above_run_file, commented};
 use super::points::{POINT_COLUMNS, PointColumn};
 use crate::run::{Clock, Step};
 use crate::scenario::Scenario;

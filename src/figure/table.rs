@@ -1,6 +1,6 @@
 //! A CSV that is no run: the table of a comparison, of a sweep, or of a fit.
 
-use crate::export::csv::above_run_file;
+use crate::export::comments::above_run_file;
 use crate::scenario::Problem;
 use crate::text::number::NONE;
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,7 @@
 //! The advice about doubtful numbers: what is offered, and the run that follows it.
 
 use super::Lab;
-use super::carry_out::{Answer, Done};
+use super::answer::{Answer, Done};
 use super::player::Player;
 use crate::analysis::health::{Advice, advise};
 use crate::observe::advisor::Advisor;

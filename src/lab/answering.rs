@@ -1,7 +1,7 @@
 //! The dialogs: the text that a dialog for a file offers, and the command that an answered dialog stands for.
 
 use super::action::Action;
-use super::carry_out::{Answer, Done};
+use super::answer::{Answer, Done};
 use super::command::{Command, Place};
 use super::dialog::{Dialog, Question};
 use super::view::Pane;

@@ -2,17 +2,14 @@
 
 use super::preview::{AT_ONCE, Loader, Preview, read};
 use super::sorting::Sorting;
+use super::typing::type_into;
 use crate::scenario::presets::PRESETS;
-use crate::text::printable::is_steering;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
 /// Files beyond this many are not listed.
 const MOST_FILES: usize = 1000;
-
-/// The most characters of the filter.
-pub(super) const MOST_TYPED: usize = 100;
 
 /// A preset or file that can be opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -202,12 +199,9 @@ impl Browser {
 
     /// Adds `text` to the filter, up to 100 characters; returns whether all of it had room.
     pub fn paste(&mut self, text: &str) -> bool {
-        let typed = text.chars().filter(|&c| !is_steering(c));
-        let room = MOST_TYPED.saturating_sub(self.filter.chars().count());
-        let is_cut = typed.clone().nth(room).is_some();
-        self.filter.extend(typed.take(room));
+        let had_room = type_into(&mut self.filter, text);
         self.refilter();
-        !is_cut
+        had_room
     }
 
     /// Removes the last character of the filter.

@@ -1,6 +1,7 @@
 //! Carries commands out. Each returns what it has done, or why it was refused.
 
 use super::Lab;
+use super::answer::{Answer, Done, UnderWay};
 use super::command::{Command, Force, PushChoice};
 use super::values::listed::ListedValue;
 use super::work::Way;
@@ -8,84 +9,8 @@ use crate::scenario::problem::nearest;
 use crate::scenario::{Scenario, keys};
 use crate::work::journal::Act;
 use crate::work::next_push::NextPush;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
-
-/// The result of a command that was carried out.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Done {
-    /// The message about it; `None` where the screen shows the result.
-    pub said: Option<String>,
-    /// Whether the message stays until the next key, instead of a few seconds.
-    pub stays: bool,
-    /// The action that the command has started and that takes time; `None` if the command is complete.
-    pub under_way: Option<UnderWay>,
-}
-
-/// An action that takes time; [`Lab::advance`] continues it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum UnderWay {
-    /// The run is on its way to a step.
-    Going,
-    /// The run plays until a condition holds.
-    Playing,
-    /// The script waits until the clock shows this time.
-    Waiting(Duration),
-    /// An export is being written.
-    Exporting,
-}
-
-/// Why a command was refused.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Refusal {
-    /// The file exists and may not be replaced.
-    #[error("{0} exists: force = true replaces it, as in {{ path = \"FILE\", force = true }}")]
-    Exists(PathBuf),
-    /// Any other reason, in words.
-    #[error("{0}")]
-    Because(String),
-}
-
-impl From<String> for Refusal {
-    fn from(reason: String) -> Self {
-        Self::Because(reason)
-    }
-}
-
-impl From<&str> for Refusal {
-    fn from(reason: &str) -> Self {
-        Self::Because(reason.to_owned())
-    }
-}
-
-impl Done {
-    /// The command is complete and there is no message.
-    pub(super) const SILENT: Self = Self {
-        said: None,
-        stays: false,
-        under_way: None,
-    };
-
-    /// The command is complete; the message `text` stays for a few seconds.
-    pub(super) fn saying(text: impl Into<String>) -> Self {
-        Self {
-            said: Some(text.into()),
-            ..Self::SILENT
-        }
-    }
-
-    /// The same for a command that has started `under_way`.
-    pub(super) fn going_on(self, under_way: UnderWay) -> Self {
-        Self {
-            under_way: Some(under_way),
-            ..self
-        }
-    }
-}
-
-/// The result of a command: what it has done, or why it was refused.
-pub type Answer = Result<Done, Refusal>;
 
 impl Lab {
     /// Carries `command` out. An action that takes time is only started: [`advance`](Self::advance) continues it.

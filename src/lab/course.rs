@@ -1,6 +1,6 @@
 //! Commands about the course of the run: steps, going to a place or a condition, play and pause, and the speed.
 
-use super::carry_out::{Answer, Done, UnderWay};
+use super::answer::{Answer, Done, UnderWay};
 use super::command::Place;
 use super::numbers::{self, Numbers};
 use super::player::Player;

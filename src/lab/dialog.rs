@@ -1,7 +1,7 @@
 //! A dialog: the form that the user fills in, and what the answer is for.
 
 use super::action::FieldEdit;
-use super::carry_out::Refusal;
+use super::answer::Refusal;
 use super::form::{Field, Form};
 use super::travel::WHERE;
 use super::values::Values;

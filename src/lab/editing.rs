@@ -1,7 +1,7 @@
 //! Changes of the run: values and pushes, undo and redo, and the change from one run to another.
 
 use super::Lab;
-use super::carry_out::{Answer, Done, UnderWay};
+use super::answer::{Answer, Done, UnderWay};
 use super::view::Pane;
 use super::work::{Turned, Way};
 use crate::run::Simulation;

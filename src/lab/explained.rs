@@ -2,7 +2,7 @@
 
 use super::Lab;
 use super::action::Direction;
-use super::carry_out::{Answer, Done};
+use super::answer::{Answer, Done};
 use super::command::{Command, Place};
 use super::player::Player;
 use super::view::View;

@@ -1,6 +1,6 @@
 //! The files of the lab: their folder, which of them may be read and written, and the export in progress.
 
-use super::carry_out::{Answer, Done, Refusal, UnderWay};
+use super::answer::{Answer, Done, Refusal, UnderWay};
 use crate::export::destination::DestinationError;
 use crate::export::{Destination, Layout};
 use crate::figure::Format;

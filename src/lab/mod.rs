@@ -14,6 +14,7 @@
 
 pub mod action;
 mod advised;
+mod answer;
 mod answering;
 pub mod browser;
 mod carry_out;
@@ -25,6 +26,7 @@ mod editing;
 pub mod explained;
 mod files;
 pub mod form;
+pub mod help_search;
 mod keeping;
 pub mod measured;
 mod messages;
@@ -41,11 +43,12 @@ mod sorting;
 mod steering;
 mod traces;
 mod travel;
+mod typing;
 pub mod values;
 pub mod view;
 mod work;
 
-pub use carry_out::{Answer, Done, Refusal, UnderWay};
+pub use answer::{Answer, Done, Refusal, UnderWay};
 pub use dialog::Dialog;
 pub use files::Files;
 pub use keeping::{Summary, Unreadable};

@@ -2,11 +2,12 @@
 //! the message at the bottom of the screen.
 
 use super::action::FieldEdit;
-use super::browser::{Browser, MOST_TYPED};
+use super::browser::Browser;
 use super::dialog::Dialog;
+use super::help_search::HelpSearch;
 use super::notice::Notice;
 use super::preview::Preview;
-use crate::text::printable::is_steering;
+use super::typing::MOST_TYPED;
 use std::path::Path;
 use std::time::Duration;
 
@@ -50,10 +51,7 @@ pub struct OnTop {
     /// The open dialog; `Some` exactly in [`Mode::Dialog`].
     dialog: Option<Dialog>,
     browser: Browser,
-    /// The part of a key, a text or a word that is searched for in the help.
-    help_search: String,
-    /// The number of the selected entry among those of the help that are found, from 0.
-    help_selected: usize,
+    help: HelpSearch,
     count: Option<u64>,
     notice: Notice,
     /// Whether the last key asked to leave while an export was in progress, and the user was warned.
@@ -78,8 +76,7 @@ impl Default for OnTop {
             under_help: Mode::Lab,
             dialog: None,
             browser: Browser::default(),
-            help_search: String::new(),
-            help_selected: 0,
+            help: HelpSearch::default(),
             count: None,
             notice: Notice::default(),
             was_warned: false,
@@ -103,14 +100,9 @@ impl OnTop {
         &self.browser
     }
 
-    /// The text that is searched for in the help.
-    pub fn help_search(&self) -> &str {
-        &self.help_search
-    }
-
-    /// The number of the selected entry among those of the help that are found, from 0.
-    pub fn help_selected(&self) -> usize {
-        self.help_selected
+    /// The search in the help, and the selected entry.
+    pub fn help(&self) -> &HelpSearch {
+        &self.help
     }
 
     /// The mode that is returned to when the help is closed.
@@ -201,7 +193,7 @@ impl OnTop {
 
     /// Says that the help has `entries` entries that are found: the selected one is among them.
     pub(super) fn limit_help(&mut self, entries: usize) {
-        self.help_selected = self.help_selected.min(entries.saturating_sub(1));
+        self.help.limit(entries);
     }
 
     /// Closes the browser.
@@ -230,7 +222,7 @@ impl OnTop {
 
     /// Opens the help on top of the present mode, or closes it.
     pub(super) fn toggle_help(&mut self) {
-        self.search_help(String::new());
+        self.help.clear();
         if self.mode == Mode::Help {
             self.mode = self.under_help;
         } else {
@@ -239,19 +231,13 @@ impl OnTop {
         }
     }
 
-    /// Searches the help for `text`; the first entry that is found is selected.
-    fn search_help(&mut self, text: String) {
-        self.help_search = text;
-        self.help_selected = 0;
-    }
-
     /// Closes the topmost of help, filters, browser and dialog; returns whether one of them was open. Of the help it first
     /// clears the search. The filter of the values is the caller's to clear.
     pub(super) fn close(&mut self) -> bool {
         match self.mode {
             Mode::Lab => return false,
             Mode::Find => self.close_find(),
-            Mode::Help if !self.help_search.is_empty() => self.search_help(String::new()),
+            Mode::Help if !self.help.text().is_empty() => self.help.clear(),
             Mode::Help => self.toggle_help(),
             Mode::Filter => {
                 self.browser.clear_filter();
@@ -268,7 +254,7 @@ impl OnTop {
     pub(super) fn shift(&mut self, rows: isize) {
         match self.mode {
             Mode::Browser | Mode::Filter => self.browser.shift(rows),
-            Mode::Help => self.help_selected = self.help_selected.saturating_add_signed(rows),
+            Mode::Help => self.help.shift(rows),
             Mode::Lab | Mode::Find | Mode::Dialog => {}
         }
     }
@@ -276,9 +262,7 @@ impl OnTop {
     pub(super) fn type_char(&mut self, typed: char) {
         match &mut self.dialog {
             Some(dialog) => dialog.type_char(typed),
-            None if self.mode == Mode::Help => {
-                self.paste_into_search(typed.encode_utf8(&mut [0; 4]));
-            }
+            None if self.mode == Mode::Help => self.help.type_text(typed.encode_utf8(&mut [0; 4])),
             None => self.browser.type_char(typed),
         }
     }
@@ -286,20 +270,9 @@ impl OnTop {
     pub(super) fn erase(&mut self) {
         match &mut self.dialog {
             Some(dialog) => dialog.erase(),
-            None if self.mode == Mode::Help => {
-                let mut text = std::mem::take(&mut self.help_search);
-                text.pop();
-                self.search_help(text);
-            }
+            None if self.mode == Mode::Help => self.help.erase(),
             None => self.browser.erase(),
         }
-    }
-
-    /// Adds `text` to what is searched for in the help, up to 100 characters.
-    fn paste_into_search(&mut self, text: &str) {
-        let mut search = std::mem::take(&mut self.help_search);
-        type_into(&mut search, text);
-        self.search_help(search);
     }
 
     pub(super) fn edit_field(&mut self, edit: FieldEdit) {
@@ -314,7 +287,7 @@ impl OnTop {
         self.clear();
         match (&mut self.dialog, self.mode) {
             (Some(dialog), _) => dialog.paste(text),
-            (None, Mode::Help) => self.paste_into_search(text),
+            (None, Mode::Help) => self.help.type_text(text),
             (None, Mode::Filter) => {
                 if !self.browser.paste(text) {
                     let text = format!(
@@ -329,12 +302,6 @@ impl OnTop {
             }
         }
     }
-}
-
-/// Adds `text` to the line `typed`, without line ends and other control characters, up to 100 characters.
-pub(super) fn type_into(typed: &mut String, text: &str) {
-    let room = MOST_TYPED.saturating_sub(typed.chars().count());
-    typed.extend(text.chars().filter(|&c| !is_steering(c)).take(room));
 }
 
 #[cfg(test)]
@@ -405,15 +372,15 @@ mod tests {
         on_top.toggle_help();
         on_top.shift(10);
         on_top.shift(-3);
-        assert_eq!(on_top.help_selected(), 7);
+        assert_eq!(on_top.help().selected(), 7);
         on_top.limit_help(5);
-        assert_eq!(on_top.help_selected(), 4);
+        assert_eq!(on_top.help().selected(), 4);
         on_top.shift(-30);
-        assert_eq!(on_top.help_selected(), 0);
+        assert_eq!(on_top.help().selected(), 0);
         on_top.shift(1);
         on_top.toggle_help();
         on_top.toggle_help();
-        assert_eq!(on_top.help_selected(), 0);
+        assert_eq!(on_top.help().selected(), 0);
     }
 
     #[test]
@@ -423,11 +390,11 @@ mod tests {
         on_top.shift(3);
         on_top.type_char('d');
         on_top.paste("t\n", NOW);
-        assert_eq!((on_top.help_search(), on_top.help_selected()), ("dt", 0));
+        assert_eq!((on_top.help().text(), on_top.help().selected()), ("dt", 0));
         on_top.erase();
-        assert_eq!(on_top.help_search(), "d");
+        assert_eq!(on_top.help().text(), "d");
         assert!(on_top.close() && on_top.mode() == Mode::Help);
-        assert_eq!(on_top.help_search(), "");
+        assert_eq!(on_top.help().text(), "");
         assert!(on_top.close() && on_top.mode() == Mode::Lab);
     }
 }

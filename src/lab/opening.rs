@@ -1,7 +1,7 @@
 //! Opening a preset or a file while the lab is on the screen.
 
 use super::Lab;
-use super::carry_out::{Answer, Done};
+use super::answer::{Answer, Done};
 use super::command::Command;
 use super::preview::Preview;
 use crate::export::Destination;

@@ -1,7 +1,7 @@
 //! The runs beside the present one: the run before an edit, kept as a ghost, and the pinned run. And the replay of a
 //! run that was begun anew, to the time at which the lab stood.
 
-use super::carry_out::Done;
+use super::answer::Done;
 use super::player::Player;
 use crate::observe::ghost::{Ghost, GhostToBe};
 use crate::observe::playback::Halt;

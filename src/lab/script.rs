@@ -2,7 +2,7 @@
 //! started is complete.
 
 use super::Lab;
-use super::carry_out::UnderWay;
+use super::answer::UnderWay;
 use super::command::{self, Command, Commands, Place, Placed};
 use crate::observe::playback::Halt;
 use indicatif::HumanCount;

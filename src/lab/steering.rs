@@ -2,7 +2,7 @@
 //! browser, the focus, dots and colours.
 
 use super::action::{Action, Direction, LessonKey};
-use super::carry_out::{Answer, Done};
+use super::answer::{Answer, Done};
 use super::command::{Command, CursorTo};
 use super::commands_of::{FAR, repeated};
 use super::dialog::Dialog;

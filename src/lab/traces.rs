@@ -2,7 +2,7 @@
 
 use super::Lab;
 use super::action::Direction;
-use super::carry_out::{Answer, Done};
+use super::answer::{Answer, Done};
 use super::command::{Command, CursorTo, MOST_MAGNIFIED, Place};
 use crate::observe::live::LiveRun;
 use crate::observe::lookup;

@@ -115,8 +115,8 @@ fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
             .render(area, buf);
         }
         Mode::Help => Help {
-            search: lab.on_top().help_search(),
-            selected: lab.on_top().help_selected(),
+            search: lab.on_top().help().text(),
+            selected: lab.on_top().help().selected(),
             theme,
         }
         .render(area, buf),

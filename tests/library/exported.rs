@@ -3,7 +3,7 @@
 use crate::support::scenarios::preset;
 use gyrolab::analysis::compare;
 use gyrolab::export::columns::COLUMNS;
-use gyrolab::export::csv::commented;
+use gyrolab::export::comments::commented;
 use gyrolab::export::layout::LayoutFile;
 use gyrolab::export::{CsvWriter, Layout, stream};
 use gyrolab::physics::SchemeInfo;

@@ -126,11 +126,11 @@ fn a_key_of_another_place_is_not_done_but_says_where_it_works() {
 fn the_selection_stops_at_both_ends_of_the_help() {
     let mut stage = open(Rect::new(0, 0, 40, 12));
     stage.press("?").press(&"↓".repeat(500)).press("↑");
-    let at = stage.lab.on_top().help_selected();
+    let at = stage.lab.on_top().help().selected();
     stage.press("↓");
-    assert_eq!(stage.lab.on_top().help_selected(), at + 1);
+    assert_eq!(stage.lab.on_top().help().selected(), at + 1);
     stage.press("cusps").press(ESC).press("↑");
-    assert_eq!(stage.lab.on_top().help_selected(), 0);
+    assert_eq!(stage.lab.on_top().help().selected(), 0);
 }
 
 #[test]

@@ -16,6 +16,8 @@ pub mod png;
 pub mod scene;
 pub mod svg;
 pub mod thin;
+mod unwritable;
 
-pub use format::{Format, Unwritable, write};
+pub use format::{Format, write};
 pub use scene::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
+pub use unwritable::Unwritable;

@@ -5,8 +5,8 @@ use tiny_skia::{
     StrokeDash, Transform,
 };
 
-use super::format::Unwritable;
 use super::svg::MITER_LIMIT;
+use super::unwritable::Unwritable;
 use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
 use crate::text::printable::printable;
 

@@ -3,7 +3,7 @@
 use super::Beside;
 use crate::export::Destination;
 use crate::lab::Lab;
-use crate::lab::carry_out::{Answer, Done};
+use crate::lab::answer::{Answer, Done};
 use crate::lab::files::Files;
 use crate::measured::{self, Measured, shipped};
 use crate::scenario::{Problem, Problems, Scenario};

@@ -7,7 +7,7 @@ use super::row::{SweepRow, line};
 use super::shard::Shard;
 use crate::analysis::at_end::readouts;
 use crate::analysis::readouts::{Readout, Value as Readable};
-use crate::export::csv::commented;
+use crate::export::comments::commented;
 use crate::run::Clock;
 use crate::run::resample::resampled;
 use crate::scenario::document::Document;

@@ -34,14 +34,14 @@ pub struct Help<'a> {
 
 /// The entry that is selected in the help of `lab`, if any is found.
 fn selected(lab: &Lab) -> Option<Entry> {
-    let found = found(lab.on_top().help_search());
-    found.get(lab.on_top().help_selected()).copied()
+    let found = found(lab.on_top().help().text());
+    found.get(lab.on_top().help().selected()).copied()
 }
 
 /// Keeps the selection of the help among the entries that are found.
 pub fn limit(lab: &mut Lab) {
     if lab.on_top().mode() == Mode::Help {
-        lab.limit_help(found(lab.on_top().help_search()).len());
+        lab.limit_help(found(lab.on_top().help().text()).len());
     }
 }
 

@@ -1,0 +1,49 @@
+//! The search in the help, and the entry that is selected among those found.
+
+use super::typing::type_into;
+
+/// The text that is searched for, and the selected entry.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HelpSearch {
+    text: String,
+    selected: usize,
+}
+
+impl HelpSearch {
+    /// The part of a key, a text or a word that is searched for; empty where every entry is shown.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The number of the selected entry among those found, from 0.
+    pub fn selected(&self) -> usize {
+        self.selected
+    }
+
+    /// Shows every entry; the first is selected.
+    pub(super) fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Adds `text` to the text that is searched for, up to 100 characters; the first entry found is selected.
+    pub(super) fn type_text(&mut self, text: &str) {
+        type_into(&mut self.text, text);
+        self.selected = 0;
+    }
+
+    /// Removes the last character; the first entry found is selected.
+    pub(super) fn erase(&mut self) {
+        self.text.pop();
+        self.selected = 0;
+    }
+
+    /// Moves the selection by `rows`.
+    pub(super) fn shift(&mut self, rows: isize) {
+        self.selected = self.selected.saturating_add_signed(rows);
+    }
+
+    /// Moves the selection to the last of `entries` entries, if it is beyond it.
+    pub(super) fn limit(&mut self, entries: usize) {
+        self.selected = self.selected.min(entries.saturating_sub(1));
+    }
+}
