@@ -7,7 +7,7 @@ use super::LiveRun;
 use crate::observe::checkpoints::bare;
 use crate::run::{Batch, NotFinite, Step};
 use std::panic;
-use std::sync::mpsc::{self, Receiver, SendError, SyncSender};
+use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::thread::{self, Scope, ScopedJoinHandle};
 
 /// Fewer steps than this are not worth a thread.
@@ -67,13 +67,13 @@ impl LiveRun {
             let (to_measure, to_be_measured) = mpsc::sync_channel(WAITING);
             let (to_hold, to_be_held) = mpsc::sync_channel(WAITING);
             let (seen_by_all, blank) = mpsc::channel();
+            // Sending fails only where the other thread has panicked, which is reported where it is joined, or where no more
+            // blank batches are wanted.
+            let measured = move |batch| drop(to_hold.send(batch));
+            let held = move |batch| drop(seen_by_all.send(batch));
             let following = [
-                follow(scope, "pictures", to_be_measured, measure, move |batch| {
-                    to_hold.send(batch)
-                })?,
-                follow(scope, "beside", to_be_held, hold, move |batch| {
-                    seen_by_all.send(batch)
-                })?,
+                follow(scope, "pictures", to_be_measured, measure, measured)?,
+                follow(scope, "beside", to_be_held, hold, held)?,
             ];
             let mut steps = HandOver::to(to_measure, blank);
             let stepped = loop {
@@ -104,13 +104,12 @@ fn follow<'scope>(
     name: &str,
     batches: Receiver<Batch>,
     mut look: impl FnMut(&Batch) + Send + 'scope,
-    pass_on: impl Fn(Batch) -> Result<(), SendError<Batch>> + Send + 'scope,
+    pass_on: impl Fn(Batch) + Send + 'scope,
 ) -> Option<ScopedJoinHandle<'scope, ()>> {
     let follow_all = move || {
         for batch in batches {
             look(&batch);
-            // It fails only where the next thread has panicked, or where no more blank batches are wanted.
-            let _ = pass_on(batch);
+            pass_on(batch);
         }
     };
     let thread = thread::Builder::new().name(name.to_owned());
@@ -149,8 +148,7 @@ impl HandOver {
 
     /// Hands over the steps so far, and goes on with `next`.
     fn give(&mut self, next: Batch) {
-        // It fails only where the other thread has panicked, which is reported where it is joined.
-        let _ = self.to.send(std::mem::replace(&mut self.batch, next));
+        drop(self.to.send(std::mem::replace(&mut self.batch, next)));
     }
 
     /// Hands over what is left. The followers end when they have seen it.

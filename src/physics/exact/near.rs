@@ -7,7 +7,7 @@
 use super::lagrange::LagrangeTop;
 use super::part::Part;
 use crate::physics::trig::kernels;
-use core::f64::consts::{FRAC_PI_2, TAU};
+use core::f64::consts::FRAC_PI_2;
 use nalgebra::{Complex, Matrix3, Vector3};
 
 /// So many times are taken at once.
@@ -57,10 +57,9 @@ impl LagrangeTop {
     ) -> Vector3<f64> {
         let since = t + self.since_origin;
         let local = since - whole(since * self.lattice.per_period) * period;
-        let fraction = local * self.lattice.per_period;
         let (sin, cos) = doubled_twice(0.5 * self.lattice.rate * local);
-        let [alpha, beta] = [&self.alpha, &self.beta]
-            .map(|part| parameter(part, part.turns_per_s * t, fraction, sin, cos));
+        let [alpha, beta] =
+            [&self.alpha, &self.beta].map(|part| parameter(part, part.turns_per_s * t, sin, cos));
         let norm2 = alpha.norm_sqr() + beta.norm_sqr();
         // The turn of `at` by the quaternion (alpha.re, beta.re, beta.im, alpha.im), whose square is norm2.
         let axis = Vector3::new(beta.re, beta.im, alpha.im);
@@ -70,12 +69,11 @@ impl LagrangeTop {
     }
 }
 
-/// Alpha or beta short of a common real factor, after so many turns and at this fraction of a period, whose angle has this
-/// sine and cosine.
+/// Alpha or beta short of a common real factor, after so many turns, where twice the argument of its sum has this sine and
+/// cosine. A sum of harmonics has no [lag](super::theta::Wave::lag).
 #[inline(always)]
-fn parameter(part: &Part, turns: f64, fraction: f64, sin: f64, cos: f64) -> Complex<f64> {
-    let angle = (turns - whole(turns)) + part.wave.lag / TAU * fraction;
-    let (turn_sin, turn_cos) = doubled_twice(FRAC_PI_2 * (angle - whole(angle)));
+fn parameter(part: &Part, turns: f64, sin: f64, cos: f64) -> Complex<f64> {
+    let (turn_sin, turn_cos) = doubled_twice(FRAC_PI_2 * (turns - whole(turns)));
     part.amplitude * Complex::new(turn_cos, turn_sin) * part.wave.value_at(sin, cos)
 }
 
@@ -120,7 +118,8 @@ mod tests {
             let mut most = 0.0_f64;
             for at in [Vector3::z(), Vector3::new(0.6, 0.0, 0.8)] {
                 for number in 0..2_500 {
-                    let begin = 0.0137 * f64::from(8 * number) - 3.0;
+                    // Up to eight days.
+                    let begin = 0.1096 * f64::from(number) * f64::from(1 + number) - 3.0;
                     let times = std::array::from_fn(|place| begin + 0.0137 * place as f64);
                     let Some(near) = top.positions_near(&at, &times) else {
                         continue;
