@@ -33,14 +33,18 @@ use ratatui::widgets::Widget;
 use shape::Shape;
 use std::f64::consts::TAU;
 
-/// Lengths of the arrows, of the scene's reach: their directions are what there is to see.
+/// Lengths of the arrows along the axle, of the axle's own: their directions are what there is to see, and they need no more
+/// than to come out at its top. A longer one would take room from the wheel.
 const MOMENTUM: f64 = 1.28;
+/// Where the axle is shorter than this part of the body's size, they go by that.
+const LEAST_ARM: f64 = 0.7;
+/// Length of the change of L, of the body's size.
 const CHANGE: f64 = 0.3;
 /// Length of the axes of the world, of the same.
-const GROUND: f64 = 0.6;
+const GROUND: f64 = 0.45;
 /// Height of the stand on whose tip the pivot is, and radius of its foot, of the same.
-const STAND: f64 = 0.3;
-const FOOT: f64 = 0.25;
+const STAND: f64 = 0.26;
+const FOOT: f64 = 0.22;
 /// The legs of the stand.
 const LEGS: usize = 3;
 /// A torque below this part of the largest that the weight can have is none.
@@ -161,6 +165,8 @@ struct Subject<'a> {
     shape: Shape,
     /// The size of the body, m: the unit of the arrows' lengths.
     reach: f64,
+    /// That of the arrows along the axle, m.
+    arm: f64,
     /// The direction of the torque of all forces about the pivot, where there is one.
     torque: Option<Vector3<f64>>,
     /// The phase that the step pane is at, where that is on the screen.
@@ -178,6 +184,7 @@ impl<'a> Subject<'a> {
         };
         let ages = pane.reading.map(|reading| Ages::of(&reading.readouts));
         let shape = Shape::of(run);
+        let reach = shape.reach();
         Self {
             run,
             ghost: pane.ghost,
@@ -186,7 +193,8 @@ impl<'a> Subject<'a> {
             ages: ages.unwrap_or(Ages::UNKNOWN),
             state,
             position: observables::position(mechanics, state, run.scenario().trace),
-            reach: shape.reach(),
+            reach,
+            arm: shape.arm().max(LEAST_ARM * reach),
             shape,
             torque: torque(run, state),
             shown_phase: phase::Shown::of(pane.explained, pane.view),
