@@ -12,6 +12,7 @@ mod block;
 
 pub use block::{Block, Curve, Extent, Moment};
 use std::collections::VecDeque;
+use std::ops::Range;
 
 /// The most blocks of one size that reach back to the start.
 const WHOLE: usize = 16_384;
@@ -206,18 +207,89 @@ impl Recording {
     /// Blocks in order of time that cover everything from `since_s` to `until_s` (s): those of the smallest size that
     /// reaches back so far and has not too many, followed by smaller ones for the newest moments.
     pub fn between(&self, since_s: f64, until_s: f64) -> impl Iterator<Item = &Block> {
-        let range = move |level: &Level| {
+        let (size, range) = self.covering(since_s, until_s);
+        let covering = self.levels.get(size..=size).into_iter().flatten();
+        let covering = covering.flat_map(move |level| level.blocks.range(range.clone()));
+        covering.chain(self.newest(size, since_s, until_s))
+    }
+
+    /// The same stretch for a picture in columns; `column` says in which one a time (s) is. Of the blocks of one column
+    /// those at its edges are as [`between`](Self::between) has them, and those inside are given as larger ones: of the same
+    /// moments, but far fewer.
+    pub fn in_columns(
+        &self,
+        since_s: f64,
+        until_s: f64,
+        column: impl Fn(f64) -> usize,
+    ) -> impl Iterator<Item = &Block> {
+        let (size, range) = self.covering(since_s, until_s);
+        let mut next = range.start;
+        let joined = std::iter::from_fn(move || {
+            let (block, count) = self.largest(size, next, &range, &column)?;
+            next += count;
+            Some(block)
+        });
+        joined.chain(self.newest(size, since_s, until_s))
+    }
+
+    /// The extremes of `curve` from `since_s` to `until_s` (s), in its unit; `None` where nothing is recorded.
+    pub fn extent_between(&self, since_s: f64, until_s: f64, curve: Curve) -> Option<Extent> {
+        let blocks = self.in_columns(since_s, until_s, |_| 0);
+        let stored = blocks.map(|block| block.stored(curve)).reduce(Extent::and);
+        stored.map(|stored| curve.in_its_unit(stored))
+    }
+
+    /// The smallest size of blocks that reaches back to `since_s` and has not too many up to `until_s` (s), and which of its
+    /// stored blocks those are.
+    fn covering(&self, since_s: f64, until_s: f64) -> (usize, Range<usize>) {
+        let range = |level: &Level| {
             let first = level.first_since(since_s);
             first..level.first_from(until_s).max(first)
         };
         let suits = |level: &Level| level.reaches(since_s) && range(level).len() <= 2 * FINEST;
         let size = self.levels.iter().position(suits).unwrap_or(0);
-        let covering = self.levels.get(size..=size).into_iter().flatten();
-        let covering = covering.flat_map(move |level| level.blocks.range(range(level)));
+        (size, self.levels.get(size).map_or(0..0, range))
+    }
+
+    /// The newest moments from `since_s` to `until_s` (s) that are in no block of `size` yet.
+    fn newest(&self, size: usize, since_s: f64, until_s: f64) -> impl Iterator<Item = &Block> {
         let newest = self.levels[..size.min(self.levels.len())].iter().rev();
         let newest = newest.filter_map(Level::waiting);
-        covering
-            .chain(newest.filter(move |block| block.begin_s <= until_s && block.end_s >= since_s))
+        newest.filter(move |block| block.begin_s <= until_s && block.end_s >= since_s)
+    }
+
+    /// The largest block that begins where the stored block `at` of `size` does, is inside `range` and has its neighbours
+    /// there in its own column; and how many blocks of `size` it is.
+    fn largest(
+        &self,
+        size: usize,
+        at: usize,
+        range: &Range<usize>,
+        column: &impl Fn(f64) -> usize,
+    ) -> Option<(&Block, usize)> {
+        let level = self.levels.get(size).filter(|_| at < range.end)?;
+        let mut largest = (level.blocks.get(at)?, 1);
+        if at == range.start {
+            return Some(largest);
+        }
+        let before = column(level.blocks[at - 1].end_s);
+        let index = level.dropped + at as u64;
+        for larger in &self.levels[size + 1..] {
+            let count = 2 * largest.1;
+            let (place, rest) = (index / count as u64, index % count as u64);
+            if rest != 0 || at + count >= range.end {
+                break;
+            }
+            let stored = place.checked_sub(larger.dropped);
+            let stored = stored.and_then(|place| larger.blocks.get(place as usize));
+            match stored {
+                Some(block) if column(level.blocks[at + count].begin_s) == before => {
+                    largest = (block, count);
+                }
+                _ => break,
+            }
+        }
+        Some(largest)
     }
 }
 
@@ -256,6 +328,37 @@ mod tests {
                 prop_assert_eq!(pair[0].end_s + 1.0, pair[1].begin_s);
             }
             prop_assert!(blocks.len() <= 2 * FINEST + 16);
+        }
+
+        #[test]
+        fn columns_have_the_same_moments_in_fewer_blocks(
+            length in 1usize..40_000, columns in 1usize..300, ends in (0.0..1.0f64, 0.0..1.2f64)
+        ) {
+            let values: Vec<f64> = (0..length).map(|step| (step as f64 * 0.37).sin()).collect();
+            let recording = recorded(&values);
+            let [since, until] = [ends.0, ends.1].map(|share| (share * length as f64).floor());
+            let column = |time_s: f64| (time_s / length as f64 * columns as f64) as usize;
+            let single: Vec<_> = recording.between(since, until).collect();
+            let joined: Vec<_> = recording.in_columns(since, until, column).collect();
+            let is_inside = |block: &&&Block| column(block.begin_s) == column(block.end_s);
+            let mut rest = single.iter();
+            for block in &joined {
+                let parts: Vec<_> = rest.by_ref().take_while(|part| part.end_s < block.end_s).collect();
+                // take_while() has taken the last part too.
+                prop_assert!(parts.first().is_none_or(|part| part.begin_s == block.begin_s));
+                prop_assert!(parts.is_empty() || is_inside(&block));
+            }
+            prop_assert_eq!(rest.count(), 0);
+            let moments = |blocks: &[&Block]| blocks.iter().map(|block| block.moments()).sum::<u64>();
+            prop_assert_eq!(moments(&single), moments(&joined));
+            // The first and the last of every column are the same, so that lines from column to column are.
+            for pair in joined.windows(2).filter(|pair| column(pair[0].end_s) != column(pair[1].begin_s)) {
+                prop_assert!(single.contains(&pair[0]) && single.contains(&pair[1]));
+            }
+            let most = single.len().min(columns.min(single.len()) * 26 + 16);
+            prop_assert!(joined.len() <= most, "{} of {} in {columns}", joined.len(), single.len());
+            let extent = single.iter().map(|block| block.extent(Curve::X)).reduce(Extent::and);
+            prop_assert_eq!(recording.extent_between(since, until, Curve::X), extent);
         }
 
         #[test]

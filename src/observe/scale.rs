@@ -85,8 +85,8 @@ impl Scale {
     }
 
     /// Both ends in at most `width` columns: close together where there is no room for spaces, else as the middle and the
-    /// distance of the ends from it, and then with fewer digits, as long as no end is seen to be elsewhere. `None` where
-    /// that has no room either.
+    /// distance of the ends from it, a middle of 0 left out if need be, and then with fewer digits, as long as no end is
+    /// seen to be elsewhere. `None` where that has no room either.
     pub fn in_words_within(&self, width: usize) -> Option<String> {
         let fits = |words: &String| words.chars().count() <= width;
         let digits = self.decimals();
@@ -101,7 +101,9 @@ impl Scale {
             let words = [" .. ", ".."].map(|between| self.with_digits(digits, between));
             let both = both.then_some(words).into_iter().flatten();
             let around = is_true(middle, &digits) && is_true(half, &digits);
-            both.chain(around.then(|| about(digits)))
+            let about_zero =
+                (around && middle == 0.0).then(|| format!("± {}", fixed(half, digits)));
+            both.chain(around.then(|| about(digits))).chain(about_zero)
         });
         let mut forms = forms;
         forms.find(fits)

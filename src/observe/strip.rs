@@ -6,7 +6,7 @@
 
 mod pen;
 
-use super::recording::{Curve, Extent, Recording};
+use super::recording::{Block, Curve, Extent, Recording};
 use pen::Pen;
 use std::ops::Range;
 
@@ -93,21 +93,47 @@ impl Strip {
         (column.max(0.0) as usize).min(usize::MAX / 2)
     }
 
-    /// `curve` of `recording` in each column; `None` where the recording has nothing. No line crosses a time of `cuts` (s).
+    /// `curve` of `recording` in each column, as [`Blocks::columns`] has it.
     pub fn columns(
         &self,
         recording: &Recording,
         curve: Curve,
         cuts: &[f64],
     ) -> Vec<Option<Column>> {
-        let mut pen = Pen::new(self.columns, curve, cuts);
-        for block in recording.between(self.begin_s, self.end_s()) {
-            let first = self.place(block.begin_s.max(self.begin_s));
+        self.blocks(recording).columns(curve, cuts)
+    }
+
+    /// Where the blocks of `recording` are on the columns: for all its curves at once.
+    pub fn blocks<'a>(&self, recording: &'a Recording) -> Blocks<'a> {
+        let column = |time_s: f64| self.place(time_s.max(self.begin_s));
+        let place = |block: &'a Block| {
             let last = match block.end_s <= self.end_s() {
                 true => self.place(block.end_s).min(self.columns.saturating_sub(1)),
                 false => self.place(block.end_s),
             };
-            pen.draw(block, first.min(last), last);
+            (block, column(block.begin_s).min(last), last)
+        };
+        let blocks = recording.in_columns(self.begin_s, self.end_s(), column);
+        Blocks {
+            columns: self.columns,
+            placed: blocks.map(place).collect(),
+        }
+    }
+}
+
+/// The blocks of a recording on the columns of a strip.
+pub struct Blocks<'a> {
+    columns: usize,
+    /// Each with its first and its last column.
+    placed: Vec<(&'a Block, usize, usize)>,
+}
+
+impl Blocks<'_> {
+    /// `curve` in each column; `None` where the recording has nothing. No line crosses a time of `cuts` (s).
+    pub fn columns(&self, curve: Curve, cuts: &[f64]) -> Vec<Option<Column>> {
+        let mut pen = Pen::new(self.columns, curve, cuts);
+        for &(block, first, last) in &self.placed {
+            pen.draw(block, first, last);
         }
         pen.finish()
     }

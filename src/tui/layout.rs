@@ -4,19 +4,18 @@
 //! 3-D view stand side by side, from 120 columns on that too. On smaller screens there are fewer, and the hint line says
 //! so.
 
+mod below;
+mod page;
+
 use super::panes::{PANES, PaneRow, Width};
 use crate::lab::view::{Pane, View};
+pub use below::Said;
 use ratatui::layout::Rect;
 
 /// The width the whole lab wants.
 const WIDTH: u16 = 80;
 /// From this width on two panes stand side by side.
 const TWO_FROM: u16 = 52;
-/// From this width on a page of a lesson stands beside a pane.
-const BESIDE_PAGE_FROM: u16 = 72;
-/// The fewest and the most columns of a page, and its share of the screen, %.
-const PAGE: (u16, u16) = (38, 64);
-const PAGE_SHARE: usize = 48;
 /// From this width on a hint fits on one line.
 const ONE_LINE_FROM: u16 = 140;
 /// The fewest columns of a pane beside the step pane.
@@ -50,6 +49,16 @@ pub struct Layout {
 impl Layout {
     /// The layout of `area`; `keys` says whether there is a line of keys.
     pub fn new(area: Rect, view: &View, keys: bool) -> Self {
+        let said = Said {
+            lines: 1,
+            warns: true,
+        };
+        Self::saying(said, area, view, keys)
+    }
+
+    /// The same, with room for what is to be said: on a low screen a hint that is too long for one line has more, and the
+    /// line about the numbers' health only where that warns.
+    pub fn saying(said: Said, area: Rect, view: &View, keys: bool) -> Self {
         if view.bare {
             return Self::bare(area, view);
         }
@@ -57,11 +66,12 @@ impl Layout {
         let title = cut(&mut rest, area.height >= 3, false);
         let keys = cut(&mut rest, keys && area.height >= 7, true);
         let hint = cut(&mut rest, area.height >= 6, true);
-        let hint = match area.height >= TWO_LINES_FROM && area.width < ONE_LINE_FROM {
-            true => hint.union(cut(&mut rest, true, true)),
-            false => hint,
+        let (lines, has_health) = match area.height >= TWO_LINES_FROM {
+            true => (1 + u16::from(area.width < ONE_LINE_FROM), true),
+            false => below::on_low_screen(said, area.height),
         };
-        let health = cut(&mut rest, area.height >= 9, true);
+        let hint = (1..lines).fold(hint, |hint, _| hint.union(cut(&mut rest, true, true)));
+        let health = cut(&mut rest, has_health, true);
         // The values have all the lines where they fill a screen that has no more than they need.
         let is_full = area.height == HEIGHT && view.is_filled_by(Pane::PARAMETERS);
         let timeline = cut(&mut rest, area.height >= HEIGHT && !is_full, true);
@@ -123,8 +133,8 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     if area.is_empty() {
         return Vec::new();
     }
-    if let Some((page, rest)) = beside_page(area, view) {
-        let mut panes = panes(rest, &without_page(view));
+    if let Some((page, rest)) = page::beside(area, view) {
+        let mut panes = panes(rest, &page::without(view));
         panes.insert(0, (Pane::LESSON, page));
         return panes;
     }
@@ -146,35 +156,6 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
 fn usual() -> impl Iterator<Item = &'static PaneRow> {
     let extra = [Pane::LESSON, Pane::STEP];
     PANES.iter().filter(move |row| !extra.contains(&row.id))
-}
-
-/// The place of a lesson's page, and the rest of `area`, where there is a page and room for both.
-fn beside_page(area: Rect, view: &View) -> Option<(Rect, Rect)> {
-    if view.filled || !view.may_show(Pane::LESSON) || area.width < BESIDE_PAGE_FROM {
-        return None;
-    }
-    let share = area.width as usize * PAGE_SHARE / 100;
-    let width = (share as u16).clamp(PAGE.0, PAGE.1);
-    let page = Rect { width, ..area };
-    let rest = Rect {
-        x: page.right(),
-        width: area.width - width,
-        ..area
-    };
-    Some((page, rest))
-}
-
-/// How the panes beside a page are shown: the page is not among them, and where there is room for one, it is the one that
-/// was there before the page had the focus.
-fn without_page(view: &View) -> View {
-    let mut view = view.clone();
-    view.sheet = None;
-    if view.focus == Pane::LESSON {
-        let beside = view.beside.filter(|pane| view.may_show(*pane));
-        let first = view.to_show().first().copied();
-        view.focus = beside.or(first).unwrap_or(Pane::TRACES);
-    }
-    view
 }
 
 /// The panes that have room beside each other on `width` columns, in the table's order: by their ranks, up to the first

@@ -71,7 +71,7 @@ impl Pointer {
         if !lab.view().mouse || !area.contains(at) {
             return None;
         }
-        let layout = Layout::new(area, lab.view(), true);
+        let layout = screen::layout(lab, true, area);
         match mouse.did {
             Did::Press => return self.press(&layout, at, lab),
             Did::Drag => self.drag(&layout, at, lab),

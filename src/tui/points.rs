@@ -1,7 +1,7 @@
 //! Measured points on a picture: a mark in the cell of each, and a bar where its uncertainty is larger than the cell.
 //!
 //! Nothing else on a picture has the shape of the mark. Bars do not cover the curve that the points are held against. Where
-//! marks stand close together, they would hide it: beside a mark that covers the curve, the next cell shows the curve.
+//! marks stand close together, they would hide it: after a mark that covers the curve, the next few cells show the curve.
 
 use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::Theme;
@@ -27,6 +27,9 @@ impl Marker {
         }
     }
 }
+
+/// So many cells of the curve are seen after one that a mark covers.
+const SEEN: u8 = 3;
 
 /// What stands in a cell, the least first: what comes later in this list covers what comes earlier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -135,7 +138,7 @@ impl Points {
     pub fn render(&self, theme: &Theme, buf: &mut Buffer) {
         let width = usize::from(self.area.width.max(1));
         for (cells, y) in self.cells.chunks(width).zip(self.area.y..) {
-            let mut has_covered = false;
+            let mut to_be_seen = 0u8;
             for (cell, x) in cells.iter().zip(self.area.x..) {
                 let Some(target) = buf.cell_mut((x, y)) else {
                     continue;
@@ -144,12 +147,15 @@ impl Points {
                 let (symbol, is_shown) = match cell.sign {
                     Sign::Nothing => (' ', false),
                     Sign::Bar(symbol) | Sign::End(symbol) => (symbol, is_free),
-                    Sign::Mark => (self.marker.point(), is_free || !has_covered),
+                    Sign::Mark => (self.marker.point(), is_free || to_be_seen == 0),
                 };
                 if is_shown {
                     target.set_char(symbol).set_style(theme.style(cell.role));
                 }
-                has_covered = is_shown && !is_free;
+                to_be_seen = match is_shown && !is_free {
+                    true => SEEN,
+                    false => to_be_seen.saturating_sub(1),
+                };
             }
         }
     }
@@ -219,9 +225,9 @@ mod tests {
     fn the_curve_is_seen_between_points_that_stand_close_together() {
         let mut points = Points::new(AREA, Marker::Braille);
         (0..7).for_each(|x| points.add((f64::from(x), 0.0), None, None, Role::Measured));
-        assert_eq!(drawn(&points, ".......")[0], "×.×.×.×");
+        assert_eq!(drawn(&points, ".......")[0], "×...×..");
         assert_eq!(drawn(&points, "")[0], "×××××××");
-        assert_eq!(drawn(&points, "... ...")[0], "×.×××.×");
+        assert_eq!(drawn(&points, "... ...")[0], "×..××..");
         let mut points = Points::new(AREA, Marker::Braille);
         points.add((2.0, 0.0), Some((1.0, 4.0)), None, Role::Measured);
         assert_eq!(drawn(&points, ".. . ..")[0], "..×.┤..");

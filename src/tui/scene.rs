@@ -1,7 +1,7 @@
 //! Lines in space on a sheet of dots. What is nearer hides what is farther and leaves a gap beside it, so that one sees
 //! which of two crossing lines passes in front of the other.
 
-use crate::observe::camera::Camera;
+use crate::observe::camera::{Camera, View};
 use crate::tui::dots::{Dots, Ink};
 use nalgebra::Vector3;
 
@@ -43,7 +43,7 @@ struct Speck {
 
 /// The camera's eye on a sheet of dots.
 pub struct Scene {
-    camera: Camera,
+    camera: View,
     /// Dots in a cell, and of the sheet.
     in_cell: (usize, usize),
     size: (usize, usize),
@@ -74,7 +74,7 @@ impl Scene {
         let down =
             (0.5 * size.1 as f64 / shown.half.1).min(0.5 * size.0 as f64 * aspect / shown.half.0);
         Self {
-            camera,
+            camera: camera.view(),
             in_cell: marker.dots(),
             size,
             middle: shown.middle,

@@ -5,6 +5,7 @@ use super::panes::browser::BrowserPane;
 use super::panes::chrome;
 use super::panes::form::FormPane;
 use super::panes::help::Help;
+use super::panes::hint;
 use super::panes::lesson;
 use super::panes::measured;
 use super::panes::timeline;
@@ -13,7 +14,7 @@ use crate::lab::action::Direction;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, Part};
 use crate::tui::keymap::Mode;
-use crate::tui::layout::Layout;
+use crate::tui::layout::{Layout, Said};
 use crate::tui::markers;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -35,16 +36,25 @@ pub fn refit(lab: &mut Lab, size: Rect) {
 
 /// Scrolls the page of the lesson, on a screen of this size.
 pub fn scroll_page(lab: &mut Lab, direction: Direction, size: Rect) {
-    let layout = Layout::new(size, lab.view(), true);
+    let layout = layout(lab, true, size);
     let place = layout.panes.iter().find(|(pane, _)| *pane == Pane::LESSON);
     if let Some(&(_, place)) = place {
         lesson::scroll(lab, direction, place);
     }
 }
 
+/// Where everything of `lab` stands on `area`; `keys` says whether there is a line of keys.
+pub fn layout(lab: &Lab, keys: bool, area: Rect) -> Layout {
+    let said = Said {
+        lines: hint::lines_of_note(lab, area.width),
+        warns: chrome::warns(lab),
+    };
+    Layout::saying(said, area, lab.view(), keys)
+}
+
 /// Draws `lab` on `area`; `keys` says whether with the line of keys.
 pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
-    let layout = Layout::new(area, lab.view(), keys);
+    let layout = layout(lab, keys, area);
     for &(pane, place) in &layout.panes {
         draw_pane(lab, pane, place, buf);
         if lab.view().pointed_at == Some(pane) {
@@ -54,12 +64,12 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
     chrome::title(lab, layout.title, buf);
     timeline::draw(lab, layout.timeline, buf);
     measured::draw(lab, layout.measured, buf);
-    let hint = chrome::place_of_hint(lab, &layout);
-    if !lab.view().hides(Part::Health) && hint == layout.hint {
+    let place = hint::place(lab, &layout);
+    if !lab.view().hides(Part::Health) && place == layout.hint {
         chrome::health(lab, layout.health, buf);
     }
-    if !lab.view().bare || chrome::has_message(lab) {
-        chrome::hint(lab, keys && layout.is_cramped, hint, buf);
+    if !lab.view().bare || hint::has_message(lab) {
+        hint::draw(lab, keys && layout.is_cramped, place, buf);
     }
     chrome::keys(lab, layout.keys, buf);
     draw_on_top(lab, body(&layout), buf);

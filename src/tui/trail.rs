@@ -91,30 +91,39 @@ impl Trail {
         (now_s, now): (f64, &Vector3<f64>),
         to_dot: impl Fn(&Vector3<f64>) -> (f64, f64),
     ) {
-        for block in recording.since(f64::NEG_INFINITY) {
-            if let Some(place) = self.place(to_dot(&block.end)) {
-                self.counts[place] = self.counts[place].saturating_add(1);
-            }
-        }
+        let now = to_dot(now);
+        let all = recording.since(f64::NEG_INFINITY);
+        let all = all.map(|block| (block.end_s, to_dot(&block.end)));
+        let all: Vec<_> = all.inspect(|(_, at)| self.count(*at)).collect();
+        let old = all.iter().filter(|(end_s, _)| *end_s <= now_s);
+        self.pass(old.map(|(_, at)| *at).chain([now]), LONGEST_LINE, Age::Old);
         let recent = LONGEST_RECENT_LINE * self.width.min(self.height) as f64;
-        for (age, longest) in [
-            (Age::Old, LONGEST_LINE),
-            (Age::Turn, LONGEST_LINE),
-            (Age::Recent, recent),
-        ] {
+        for (age, longest) in [(Age::Turn, LONGEST_LINE), (Age::Recent, recent)] {
             let since = ages.since(age, now_s);
             let blocks = recording
                 .since(since)
                 .filter(|block| block.end_s >= since && block.end_s <= now_s);
-            let mut last: Option<(f64, f64)> = None;
-            for at in blocks.map(|block| &block.end).chain([now]) {
-                let at = to_dot(at);
-                self.dot(at, age);
-                if let Some(last) = last.replace(at)
-                    && (at.0 - last.0).abs().max((at.1 - last.1).abs()) <= longest
-                {
-                    self.line(last, at, age);
-                }
+            let places = blocks.map(|block| to_dot(&block.end));
+            self.pass(places.chain([now]), longest, age);
+        }
+    }
+
+    /// The point was found at this dot.
+    fn count(&mut self, at: (f64, f64)) {
+        if let Some(place) = self.place(at) {
+            self.counts[place] = self.counts[place].saturating_add(1);
+        }
+    }
+
+    /// The path goes through these dots one after the other; those up to `longest` apart are joined by a line.
+    fn pass(&mut self, places: impl Iterator<Item = (f64, f64)>, longest: f64, age: Age) {
+        let mut last: Option<(f64, f64)> = None;
+        for at in places {
+            self.dot(at, age);
+            if let Some(last) = last.replace(at)
+                && (at.0 - last.0).abs().max((at.1 - last.1).abs()) <= longest
+            {
+                self.line(last, at, age);
             }
         }
     }

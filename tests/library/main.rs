@@ -42,6 +42,7 @@ mod run_until;
 mod same_bits;
 mod scenes;
 mod schemes;
+mod small_screens;
 mod start;
 mod step_pane;
 mod sweep;

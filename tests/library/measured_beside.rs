@@ -13,6 +13,7 @@ use gyrolab::measured::{self, Measured, Quantity};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::Scenario;
 use gyrolab::storage::confined::Confined;
+use ratatui::layout::Rect;
 use std::fmt::Write;
 use std::fs;
 use std::ops::ControlFlow;
@@ -119,6 +120,27 @@ fn points_stand_on_strips_and_from_above_and_residuals_about_zero() {
         stage.press("E").wait(6.0);
         insta::assert_snapshot!(format!("residuals_{name}"), stage.picture());
     }
+}
+
+#[test]
+fn on_a_small_screen_nothing_is_left_out_for_a_curve_shown_twice() {
+    let scenario = preset("cusps", &[]);
+    let columns = [("x_m", 0.05), ("tilt_deg", 0.6)];
+    let (_folder, path) = file(&data(&scenario, &columns, |_| 0.5));
+    let strips = |height: u16| {
+        let mut stage = Stage::open("cusps", &[], Rect::new(0, 0, 80, height));
+        stage.commands(&format!(
+            "pause = true\nmeasured = '{}'\ngo_to = 9000",
+            path.display()
+        ));
+        let picture = stage.picture();
+        let names = picture.lines().filter_map(|line| line.strip_prefix('│'));
+        let names = names.filter_map(|line| line.split(' ').next().map(str::to_owned));
+        let names = names.filter(|name| ["x", "y", "z", "tilt"].contains(&name.as_str()));
+        names.collect::<Vec<_>>()
+    };
+    assert_eq!(strips(24), ["tilt", "x", "y", "z", "tilt"]);
+    assert_eq!(strips(20), ["x", "y", "z", "tilt"]);
 }
 
 #[test]

@@ -157,6 +157,19 @@ fn place(rows: &[Vec<char>], sign: char) -> (usize, usize) {
     found.unwrap()
 }
 
+#[test]
+fn the_wheel_is_as_large_as_its_pane_allows() {
+    // A wheel that is wide for its axle: what is longer than the axle by as much as the wheel is wide took a third of it.
+    let mut stage = Stage::open("cusps", &[], Rect::new(0, 0, 120, 40));
+    stage.commands("pause = true\ngo_to = 0");
+    let picture = stage.picture();
+    let of_pane = picture.lines().skip_while(|line| !line.contains("┌ 3-D"));
+    let masses = of_pane.take_while(|line| !line.contains("angular momentum"));
+    let of_wheel = masses.filter(|line| line.contains('O') || line.contains('o'));
+    let rows = of_wheel.count();
+    assert!(rows >= 5, "{rows} rows of\n{picture}");
+}
+
 /// Whether legs lead down from the pivot to both sides, farther than the wheel reaches.
 fn has_stand(picture: &str) -> bool {
     let rows = rows(picture);

@@ -54,6 +54,22 @@ impl Curve {
         }
     }
 
+    /// A stored value of it in its unit.
+    fn of_stored(self, stored: f64) -> f64 {
+        match self {
+            Self::X | Self::Y | Self::Z => stored,
+            Self::Tilt => tilt_deg(stored),
+        }
+    }
+
+    /// Stored extremes of it in its unit.
+    pub(in crate::observe) fn in_its_unit(self, stored: Extent) -> Extent {
+        Extent {
+            min: self.of_stored(stored.min),
+            max: self.of_stored(stored.max),
+        }
+    }
+
     /// Name and unit.
     fn named(self) -> (&'static str, &'static str) {
         match self {
@@ -88,11 +104,7 @@ impl Moment {
 
     /// What `curve` has, in its unit.
     pub fn value(&self, curve: Curve) -> f64 {
-        let stored = self.values()[curve as usize];
-        match curve {
-            Curve::X | Curve::Y | Curve::Z => stored,
-            Curve::Tilt => tilt_deg(stored),
-        }
+        curve.of_stored(self.values()[curve as usize])
     }
 
     /// The stored value of each curve. For the tilt it is the negative cosine: it grows with the tilt, and saves computing
@@ -163,24 +175,18 @@ pub struct Block {
 impl Block {
     /// The extremes of `curve`, in its unit.
     pub fn extent(&self, curve: Curve) -> Extent {
-        let Extent { min, max } = self.extents[curve as usize];
-        match curve {
-            Curve::X | Curve::Y | Curve::Z => Extent { min, max },
-            Curve::Tilt => Extent {
-                min: tilt_deg(min),
-                max: tilt_deg(max),
-            },
-        }
+        curve.in_its_unit(self.stored(curve))
+    }
+
+    /// The extremes of the stored value of `curve`: of many blocks only what is drawn in the end is worth an arc cosine.
+    pub(in crate::observe) fn stored(&self, curve: Curve) -> Extent {
+        self.extents[curve as usize]
     }
 
     /// The mean of `curve` over its moments, in the curve's unit. That of the tilt is the tilt of the mean height of the
     /// axle.
     pub fn mean(&self, curve: Curve) -> f64 {
-        let mean = self.sums[curve as usize] / self.moments as f64;
-        match curve {
-            Curve::X | Curve::Y | Curve::Z => mean,
-            Curve::Tilt => tilt_deg(mean),
-        }
+        curve.of_stored(self.sums[curve as usize] / self.moments as f64)
     }
 
     /// How many moments it has.

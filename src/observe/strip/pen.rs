@@ -22,20 +22,23 @@ const LEAST_SWING_DEG: f64 = 0.01;
 /// What has been drawn in one column.
 #[derive(Clone, Copy, Debug, Default)]
 struct Drawn {
+    /// In the curve's unit; until [`Pen::finish`] that of the lines from block to block alone.
     extent: Option<Extent>,
+    /// The extremes of blocks, as they are stored.
+    stored: Option<Extent>,
     /// Sum of the means of blocks, each as often as it has moments here.
     sum: f64,
     moments: f64,
     turns: f64,
     /// The tilt swings with every nutation; the curve itself does not turn where slow motion is faster than that.
     turns_of_tilt: f64,
+    /// The extremes of the tilt, as they are stored.
     tilt: Option<Extent>,
 }
 
-impl Drawn {
-    fn include(&mut self, extent: Extent) {
-        self.extent = Some(self.extent.map_or(extent, |old| old.and(extent)));
-    }
+/// Makes `all` include `extent`.
+fn include(all: &mut Option<Extent>, extent: Extent) {
+    *all = Some(all.map_or(extent, |old| old.and(extent)));
 }
 
 /// Draws a curve block by block.
@@ -43,7 +46,7 @@ pub(super) struct Pen<'a> {
     columns: Vec<Drawn>,
     curve: Curve,
     cuts: &'a [f64],
-    /// Of the previous block: its end, s, its last column and its extremes.
+    /// Of the previous block: its end, s, its last column and its stored extremes.
     before: Option<(f64, usize, Extent)>,
 }
 
@@ -59,28 +62,29 @@ impl<'a> Pen<'a> {
 
     /// Draws `block` from column `first` to `last`; columns beyond the right edge are left out.
     pub fn draw(&mut self, block: &Block, first: usize, last: usize) {
-        let extent = block.extent(self.curve);
+        let stored = block.stored(self.curve);
         if let Some((end_s, column, from)) = self.before
             && column < first
             && !self.is_cut(end_s, block.begin_s)
         {
-            join(&mut self.columns, (column, from), (first, extent));
+            let [from, to] = [from, stored].map(|stored| self.curve.in_its_unit(stored));
+            join(&mut self.columns, (column, from), (first, to));
         }
         let share = 1.0 / (last + 1 - first) as f64;
         let moments = block.moments() as f64 * share;
-        let mean = block.mean(self.curve);
+        let sum = block.mean(self.curve) * moments;
         let turns = f64::from(block.turns(self.curve)) * share;
         let turns_of_tilt = f64::from(block.turns(Curve::Tilt)) * share;
-        let tilt = block.extent(Curve::Tilt);
+        let tilt = block.stored(Curve::Tilt);
         for drawn in self.columns.iter_mut().take(last + 1).skip(first) {
-            drawn.include(extent);
-            drawn.sum += mean * moments;
+            include(&mut drawn.stored, stored);
+            drawn.sum += sum;
             drawn.moments += moments;
             drawn.turns += turns;
             drawn.turns_of_tilt += turns_of_tilt;
-            drawn.tilt = Some(drawn.tilt.map_or(tilt, |old| old.and(tilt)));
+            include(&mut drawn.tilt, tilt);
         }
-        self.before = Some((block.end_s, last, extent));
+        self.before = Some((block.end_s, last, stored));
     }
 
     /// Whether there is a cut at `from_s` or later and before `to_s`.
@@ -106,7 +110,7 @@ impl<'a> Pen<'a> {
         let turns: f64 = about().map(|drawn| drawn.turns).sum();
         let turns_of_tilt: f64 = about().map(|drawn| drawn.turns_of_tilt).sum();
         let tilt = about().filter_map(|drawn| drawn.tilt).reduce(Extent::and);
-        match tilt {
+        match tilt.map(|stored| Curve::Tilt.in_its_unit(stored)) {
             Some(tilt) if tilt.max - tilt.min > LEAST_SWING_DEG => {
                 turns.max(turns_of_tilt) / columns
             }
@@ -127,7 +131,12 @@ impl<'a> Pen<'a> {
     }
 
     /// The curve in each column; `None` where nothing was drawn.
-    pub fn finish(self) -> Vec<Option<Column>> {
+    pub fn finish(mut self) -> Vec<Option<Column>> {
+        for drawn in &mut self.columns {
+            if let Some(stored) = drawn.stored {
+                include(&mut drawn.extent, self.curve.in_its_unit(stored));
+            }
+        }
         let is_drawn = |drawn: &Drawn| drawn.extent.is_some();
         let first = self.columns.iter().position(is_drawn).unwrap_or(0);
         let last = self.columns.iter().rposition(is_drawn).unwrap_or(0);
@@ -196,7 +205,8 @@ fn join(columns: &mut [Drawn], from: (usize, Extent), to: (usize, Extent)) {
     let way = columns.iter_mut().take(end + 1).skip(begin);
     for (place, drawn) in way.enumerate() {
         let place = place as f64;
-        drawn.include(Extent::of(at(place - 0.5)).and(Extent::of(at(place + 0.5))));
+        let line = Extent::of(at(place - 0.5)).and(Extent::of(at(place + 0.5)));
+        include(&mut drawn.extent, line);
     }
 }
 

@@ -1,27 +1,23 @@
-//! The lines around the panes: title, health, hint and keys.
+//! The lines around the panes: title, health and keys.
 
-use super::{shortened, wrapped_to, write};
+use super::{shortened, write};
 use crate::analysis::remarks::{Remark, remarks};
+use crate::lab::Lab;
 use crate::lab::action::{Action, LessonKey};
-use crate::lab::{Lab, MOST_COUNTED};
+use crate::lab::view::Part;
 use crate::observe::reading::Reading;
 use crate::text::number::{fixed, shortest};
-use crate::text::wrap::wrapped;
 use crate::tui::keymap::{BINDINGS, Binding, Key, Mode};
-use crate::tui::layout::Layout;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::widgets::{Clear, Widget};
 
 /// A title of up to so many columns is written whole before scheme and time step have room.
 const LEAST_TITLE: usize = 32;
-/// What a screen says that has no room for everything.
-const CRAMPED: &str = "80x24 shows more";
 /// Remarks before what would mend the numbers: the turns in a step and the distance.
 const BEFORE_OFFER: usize = 2;
 /// Between two remarks.
-const SEPARATOR: &str = " · ";
+pub(super) const SEPARATOR: &str = " · ";
 
 /// Title, scheme and time step on the left, what fits of it; time, step and pace on the right, in fixed columns.
 pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
@@ -139,83 +135,10 @@ pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
 }
 
-/// Where the hint of `lab` stands: on its lines, or, for a message that has no room there, on the line above too, that
-/// about the numbers or on a bare screen the last of a pane, as long as the message stays.
-pub fn place_of_hint(lab: &Lab, layout: &Layout) -> Rect {
-    let place = layout.hint;
-    let width = place.width.saturating_sub(2) as usize;
-    let is_long = || wrapped(&said(lab).0, width).len() > place.height as usize;
-    if !has_message(lab) || !is_long() {
-        return place;
-    }
-    match lab.view().bare {
-        true if place.y > 1 => Rect {
-            y: place.y - 1,
-            height: place.height + 1,
-            ..place
-        },
-        true => place,
-        false if layout.health.is_empty() => place,
-        false => place.union(layout.health),
-    }
-}
-
-/// What is to be said now; else what there is to see. On a small screen, that there would be more, if there is room.
-pub fn hint(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
-    let (text, role) = said(lab);
-    let theme = &lab.view().theme;
-    let width = area.width.saturating_sub(2) as usize;
-    let lines = wrapped_to(&text, width, area.height as usize);
-    if lab.view().bare {
-        Clear.render(area, buf); // the line lies over the panes
-    }
-    let mut end = 0;
-    for (line, y) in lines.iter().zip(0..area.height) {
-        end = write(area, (1, y), line, theme.style(role), buf);
-    }
-    let last = area.height.saturating_sub(1);
-    if lines.len() < area.height as usize {
-        end = 0; // the last line is free
-    }
-    let x = area.width.saturating_sub(CRAMPED.len() as u16 + 1);
-    if is_cramped && x >= end + 2 {
-        write(area, (x, last), CRAMPED, theme.style(Role::Quiet), buf);
-    }
-}
-
-/// Whether there is something to be said now, besides what there is to see.
-pub fn has_message(lab: &Lab) -> bool {
-    let on_top = lab.on_top();
-    on_top.count().is_some() || lab.notice().is_some() || on_top.notice().trouble().is_some()
-}
-
-/// Before whatever is said while the session is not kept.
-const NOT_KEPT: &str = "session not kept";
-
-/// What stands in the line of hints. That the session is not kept stands there as long as it is so.
-fn said(lab: &Lab) -> (String, Role) {
-    let is_quiet = lab.on_top().count().is_none() && lab.notice().is_none();
-    let (text, role) = said_of_run(lab);
-    match lab.on_top().notice().trouble() {
-        None => (text, role),
-        Some(trouble) if is_quiet => (trouble.to_owned(), Role::Warning),
-        Some(_) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), role),
-    }
-}
-
-fn said_of_run(lab: &Lab) -> (String, Role) {
-    match (lab.on_top().count(), lab.notice()) {
-        (Some(MOST_COUNTED), _) => (
-            format!("{MOST_COUNTED} is the most that is counted: now the key; Esc forgets it"),
-            Role::Focus,
-        ),
-        (Some(count), _) => (
-            format!("{count}: now the key, such as . for that many steps; Esc forgets it"),
-            Role::Focus,
-        ),
-        (None, Some(notice)) => (notice, Role::Focus),
-        (None, None) => (lab.note().into_owned(), Role::Text),
-    }
+/// Whether the line about the numbers' health warns of something.
+pub fn warns(lab: &Lab) -> bool {
+    let remarks = remarks(&lab.player().reading().readouts.health, None);
+    remarks.iter().any(|remark| remark.warns) && !lab.view().hides(Part::Health)
 }
 
 /// The keys of the mode, as many as fit; help and quit always.

@@ -8,6 +8,7 @@ pub mod chrome;
 pub mod form;
 pub mod from_above;
 pub mod help;
+pub mod hint;
 pub mod lesson;
 pub mod measured;
 pub mod parameters;

@@ -33,14 +33,18 @@ use ratatui::widgets::Widget;
 use shape::Shape;
 use std::f64::consts::TAU;
 
-/// Lengths of the arrows, as shares of the scene's reach. Only their directions have a meaning.
+/// Length of the arrow of L, in lengths of the axle. Only its direction has a meaning; it ends a little above the axle's
+/// top, as a longer arrow would leave less room for the wheel.
 const MOMENTUM: f64 = 1.28;
+/// The least length that the axle counts as in these lengths, as a share of the body's size.
+const LEAST_ARM: f64 = 0.7;
+/// Length of the arrow of the change of L, as a share of the body's size.
 const CHANGE: f64 = 0.3;
 /// Length of the axes of the world, as such a share.
-const GROUND: f64 = 0.6;
+const GROUND: f64 = 0.45;
 /// Height of the stand that carries the pivot, and radius of its foot, as such shares.
-const STAND: f64 = 0.3;
-const FOOT: f64 = 0.25;
+const STAND: f64 = 0.26;
+const FOOT: f64 = 0.22;
 /// The legs of the stand.
 const LEGS: usize = 3;
 /// A torque smaller than this share of the largest torque of the weight counts as zero.
@@ -161,6 +165,8 @@ struct Subject<'a> {
     shape: Shape,
     /// The size of the body, m: the unit of the arrows' lengths.
     reach: f64,
+    /// That of the arrows along the axle, m.
+    arm: f64,
     /// The direction of the torque of all forces about the pivot, where there is one.
     torque: Option<Vector3<f64>>,
     /// The phase that the step pane is at, where that is on the screen.
@@ -178,6 +184,7 @@ impl<'a> Subject<'a> {
         };
         let ages = pane.reading.map(|reading| Ages::of(&reading.readouts));
         let shape = Shape::of(run);
+        let reach = shape.reach();
         Self {
             run,
             ghost: pane.ghost,
@@ -186,7 +193,8 @@ impl<'a> Subject<'a> {
             ages: ages.unwrap_or(Ages::UNKNOWN),
             state,
             position: observables::position(mechanics, state, run.scenario().trace),
-            reach: shape.reach(),
+            reach,
+            arm: shape.arm().max(LEAST_ARM * reach),
             shape,
             torque: torque(run, state),
             shown_phase: phase::Shown::of(pane.explained, pane.view),

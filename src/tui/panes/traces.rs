@@ -9,6 +9,7 @@ mod pointing;
 mod points;
 mod pushes;
 mod range;
+mod shared;
 mod title;
 mod uprights;
 
@@ -22,7 +23,7 @@ use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::marks::Marks;
 use crate::observe::scale::Scale;
-use crate::observe::strip::{Column, Strip};
+use crate::observe::strip::Column;
 use crate::run::Sample;
 use crate::tui::dots::{Dots, Ink};
 use crate::tui::keymap::{Binding, Key, Mode, row};
@@ -33,6 +34,7 @@ use groups::Group;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
+use shared::Shared;
 
 /// Fewest rows of a strip: its label and one row of dots.
 const STRIP: u16 = 2;
@@ -140,8 +142,9 @@ impl Widget for Traces<'_> {
 
 impl Traces<'_> {
     fn group(&self, group: &Group, marks: &Marks, buf: &mut Buffer) {
+        let mut columns = Shared::on(&group.strip);
         for &(content, place) in &group.strips {
-            self.strip(content, group, marks, place, buf);
+            self.strip(content, group, marks, &mut columns, place, buf);
         }
         let axis = Rect {
             x: group.area.x + group.beside,
@@ -156,7 +159,15 @@ impl Traces<'_> {
     }
 
     /// One strip with its name and its values.
-    fn strip(&self, content: Content, group: &Group, marks: &Marks, area: Rect, buf: &mut Buffer) {
+    fn strip<'s>(
+        &'s self,
+        content: Content,
+        group: &'s Group,
+        marks: &Marks,
+        columns: &mut Shared<'s>,
+        area: Rect,
+        buf: &mut Buffer,
+    ) {
         let is_detail = self.is_detail(&group.strip);
         let is_residual = self.is_residual(content, is_detail);
         let scale = match is_residual {
@@ -169,7 +180,7 @@ impl Traces<'_> {
         };
         match is_residual {
             true => self.draw_zero(&scale, sheet, buf),
-            false => self.curves(content, &group.strip, &scale, marks, sheet, buf),
+            false => self.curves(content, columns, &scale, marks, sheet, buf),
         }
         self.draw_points(content, &group.strip, &scale, is_residual, sheet, buf);
         self.cursor(content, group, sheet, buf);
@@ -263,10 +274,10 @@ impl Traces<'_> {
         }
     }
 
-    fn curves(
-        &self,
+    fn curves<'s>(
+        &'s self,
         content: Content,
-        strip: &Strip,
+        shared: &mut Shared<'s>,
         scale: &Scale,
         marks: &Marks,
         area: Rect,
@@ -274,8 +285,9 @@ impl Traces<'_> {
     ) {
         let mut dots = Dots::new(area, self.view.marker);
         // Where swings are shown one by one, few columns are no reason for a band.
+        let is_detail = self.is_detail(shared.strip);
         let without_bands = |mut columns: Vec<Option<Column>>| {
-            if self.is_detail(strip) {
+            if is_detail {
                 let columns = columns.iter_mut().flatten();
                 columns.for_each(|column| column.band = None);
             }
@@ -283,22 +295,22 @@ impl Traces<'_> {
         };
         if let (Some(ghost), Some((recording, curve))) = (self.ghost, self.recorded_before(content))
         {
-            let before = strip.columns(recording, curve, &ghost.marks().edits);
+            let before = shared.columns(recording, curve, &ghost.marks().edits);
             let before = without_bands(before);
             draw(&mut dots, &before, scale, Stroke::Dotted, Ink::Ghost);
         }
         if let (Some(pinned), Content::Curve(curve)) = (self.pinned, content) {
-            let kept = strip.columns(pinned.recording(), curve, &pinned.marks().edits);
+            let kept = shared.columns(pinned.recording(), curve, &pinned.marks().edits);
             let kept = without_bands(kept);
             let ink = Ink::Faint(Role::Pinned);
             draw(&mut dots, &kept, scale, Stroke::LongAndShort, ink);
         }
         if let (Some(overlay), Content::Curve(curve)) = (self.run.overlay(), content) {
-            let exact = without_bands(strip.columns(overlay.recording(), curve, &[]));
+            let exact = without_bands(shared.columns(overlay.recording(), curve, &[]));
             let ink = Ink::Faint(Role::Exact);
             draw(&mut dots, &exact, scale, Stroke::Dashed, ink);
         }
-        let run = without_bands(self.columns_of_run(content, strip, &marks.edits));
+        let run = without_bands(self.columns_of_run(content, shared, &marks.edits));
         let ink = Ink::Strong(Self::role(content));
         draw(&mut dots, &run, scale, Stroke::Full, ink);
         dots.render(&self.view.theme, buf);

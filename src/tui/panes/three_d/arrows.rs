@@ -10,8 +10,9 @@ use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// Lengths of the arrows, as shares of the scene's reach. Only their directions have a meaning.
+/// Length of the arrow of the angular velocity, in lengths of the axle.
 const OMEGA: f64 = 1.12;
+/// Lengths of the other arrows, as shares of the body's size. Only their directions have a meaning.
 const WEIGHT: f64 = 0.35;
 const TORQUE: f64 = 0.5;
 const PUSH: f64 = 0.4;
@@ -24,7 +25,7 @@ impl Subject<'_> {
         let simulation = self.run.simulation();
         let state = self.state;
         let body = &self.run.scenario().body.mechanics;
-        let reach = self.reach;
+        let (reach, arm) = (self.reach, self.arm);
         let direction = |vector: &Vector3<f64>| vector.try_normalize(f64::MIN_POSITIVE);
         let mut labels = Vec::new();
         let mut arrow = |name, role, from: Vector3<f64>, to: Vector3<f64>| {
@@ -43,10 +44,10 @@ impl Subject<'_> {
         }
         let omega = direction(&observables::angular_velocity(body, state));
         if let Some(along) = self.direction("Ω", omega) {
-            arrow("Ω", Role::Y, pivot, along * (OMEGA * reach));
+            arrow("Ω", Role::Y, pivot, along * (OMEGA * arm));
         }
         let momentum = self.direction("L", direction(&state.momentum));
-        let momentum = momentum.map(|along| along * (MOMENTUM * reach));
+        let momentum = momentum.map(|along| along * (MOMENTUM * arm));
         if let Some(torque) = self.direction("τ", self.torque) {
             arrow("τ", Role::X, pivot, torque * (TORQUE * reach));
             if let Some(momentum) = momentum {
@@ -54,7 +55,7 @@ impl Subject<'_> {
             }
         }
         if let Some(new) = self.new_momentum() {
-            arrow("new L", Role::Z, pivot, new * (MOMENTUM * reach));
+            arrow("new L", Role::Z, pivot, new * (MOMENTUM * arm));
         }
         if let Some(momentum) = momentum {
             arrow("L", Role::Z, pivot, momentum);

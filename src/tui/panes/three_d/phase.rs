@@ -104,7 +104,7 @@ impl Subject<'_> {
             return labels;
         };
         if let Some(axis) = shown.direction("u").filter(|_| self.draws("u")) {
-            let end = axis * (AXIS * MOMENTUM * self.reach);
+            let end = axis * (AXIS * MOMENTUM * self.arm);
             scene.line(&-end, &end, Stroke::Thin, Ink::Strong(Role::Y));
             labels.push(("u", Role::Y, end * 1.04));
         }

@@ -47,7 +47,7 @@ impl Subject<'_> {
             let angle = libm::acos(axis.z.clamp(-1.0, 1.0)).to_degrees() / (3.0 * TILT_DEG);
             for angle in [angle.floor(), angle.ceil()] {
                 let (sin, cos) = (angle * 3.0 * TILT_DEG).to_radians().sin_cos();
-                let length = MOMENTUM * self.reach;
+                let length = MOMENTUM * self.arm;
                 circles.push(((length * sin).hypot(CHANGE * self.reach), length * cos));
             }
         }

@@ -52,6 +52,11 @@ impl Shape {
         }
     }
 
+    /// The distance of the farther end of the axle from the pivot, m.
+    pub fn arm(&self) -> f64 {
+        self.axle.0.abs().max(self.axle.1.abs())
+    }
+
     /// The size of the body, m.
     pub fn reach(&self) -> f64 {
         let reaches = self

@@ -21,15 +21,22 @@ pub fn times(strip: &Strip, width: usize) -> Vec<Placed> {
     if strip.end_s() >= LONG_TIME_S {
         return both_ends(strip, width);
     }
-    let most = (1..=width / 3).rev();
-    let mut fitting = most.filter_map(|most| round_times(strip, width, most));
-    fitting.next().unwrap_or_default()
+    let mut most = width / 3;
+    loop {
+        let ticks = scale::ticks(strip.begin_s, strip.end_s(), most);
+        let count = ticks.len();
+        match round_times(strip, width, &ticks) {
+            Some(placed) => return placed,
+            // As many times or more would be the same again.
+            None if count > 1 => most = count - 1,
+            None => return Vec::new(),
+        }
+    }
 }
 
-/// At most `most` round times, if there is room for them all.
-fn round_times(strip: &Strip, width: usize, most: usize) -> Option<Vec<Placed>> {
-    let ticks = scale::ticks(strip.begin_s, strip.end_s(), most);
-    let apart = match ticks[..] {
+/// The labels of `ticks` (s), if there is room for them all.
+fn round_times(strip: &Strip, width: usize, ticks: &[f64]) -> Option<Vec<Placed>> {
+    let apart = match ticks {
         [first, second, ..] => second - first,
         _ => strip.window_s,
     };

@@ -1,9 +1,10 @@
 //! The contents of the strips: the curves that every run has, and the measured quantities that are none of these.
 
 use super::Traces;
+use super::shared::Shared;
 use crate::lab::measured::Shown;
 use crate::observe::recording::{Curve, Recording};
-use crate::observe::strip::{Column, Strip};
+use crate::observe::strip::Column;
 use crate::text::number::fixed;
 use crate::tui::theme::Role;
 
@@ -100,21 +101,21 @@ impl Traces<'_> {
         }
     }
 
-    /// The run's curve of `content` in the columns of `strip`, up to where the run stands. No line crosses a time of `cuts`.
-    pub(super) fn columns_of_run(
-        &self,
+    /// The run's curve of `content` in the columns of its strip, up to where the run stands. No line crosses a time of `cuts`.
+    pub(super) fn columns_of_run<'s>(
+        &'s self,
         content: Content,
-        strip: &Strip,
+        shared: &mut Shared<'s>,
         cuts: &[f64],
     ) -> Vec<Option<Column>> {
         let Some((recording, curve)) = self.recorded(content) else {
             return Vec::new();
         };
-        let mut columns = strip.columns(recording, curve, cuts);
+        let mut columns = shared.columns(recording, curve, cuts);
         if let Content::Measured(_) = content {
             // What follows the run may have been further than where it stands.
             let now_s = self.run.now().time_s;
-            let end = strip.shown(strip.begin_s, now_s).end;
+            let end = shared.strip.shown(shared.strip.begin_s, now_s).end;
             columns
                 .iter_mut()
                 .skip(end)

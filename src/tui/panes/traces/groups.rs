@@ -8,9 +8,8 @@ use ratatui::layout::Rect;
 
 /// From this width on the values stand beside the strips, and not on a line above each.
 const BESIDE_FROM: u16 = 48;
-/// The fewest rows of a strip where something was measured, and the shares of the remaining rows that a strip with
-/// points has.
-const STRIP_MEASURED: u16 = 3;
+/// The fewest rows of a strip with measured points, and the shares of the remaining rows that it gets.
+const STRIP_WITH_POINTS: u16 = 3;
 const WITH_POINTS: u16 = 3;
 
 /// Strips one above the other over the same time, and the axis below them.
@@ -56,14 +55,13 @@ impl Traces<'_> {
         };
         let detail = Strip::new(self.detail.begin_s, self.detail.window_s, columns);
         let is_magnified = self.is_detail(&detail);
-        let least = match (self.measured.is_some(), beside > 0) {
-            (true, _) => STRIP_MEASURED,
-            (false, true) => 1,
-            (false, false) => STRIP,
+        let least = |content: Content| match (self.points(content), beside > 0) {
+            (Some(_), _) => STRIP_WITH_POINTS,
+            (None, true) if self.measured.is_none() => 1,
+            (None, _) => STRIP,
         };
-        let axes = 1 + u16::from(is_magnified);
-        let strips = inside.height.saturating_sub(axes) / least;
-        let (upper, lower) = self.shown(strips as usize, is_magnified);
+        let (upper, lower) = self.shown(inside.height, is_magnified, least);
+        let axes = 1 + u16::from(!upper.is_empty());
         let rows = inside.height.saturating_sub(axes);
         let weigh = |list: &[Content]| {
             list.iter()
@@ -130,24 +128,46 @@ impl Traces<'_> {
         }
     }
 
-    /// The contents for `most` strips, from the top: that of the strip of the fast motion, and those of the others, in
-    /// their order. Measured quantities go before the others. Where there is no room for all of these, z goes before y,
-    /// and x before both.
-    fn shown(&self, most: usize, is_magnified: bool) -> (Vec<Content>, Vec<Content>) {
+    /// The contents of the strips that fit into `height` rows with their axes, from the top: that of the strip of the fast
+    /// motion, and those of the others, in their order. `least` is the fewest rows of a strip with a content. Measured
+    /// quantities go before the others. Where there is no room for all of these, z goes before y, and x before both. A
+    /// curve that was measured gets a second strip, that of the fast motion, only if no other curve is left out for it.
+    fn shown(
+        &self,
+        height: u16,
+        is_magnified: bool,
+        least: impl Fn(Content) -> u16,
+    ) -> (Vec<Content>, Vec<Content>) {
         let first = Content::Curve(self.detail.curve);
         let measured = self.measured_contents();
-        let has_fast = is_magnified && most > usize::from(!measured.is_empty());
-        let upper: Vec<_> = has_fast.then_some(first).into_iter().collect();
         let by_worth = [Curve::X, Curve::Z, Curve::Tilt, Curve::Y].map(Content::Curve);
+        let fast = STRIP.min(least(first));
+        let room_beside_fast = height.saturating_sub(2 + fast);
+        let needed: u16 = if measured.contains(&first) {
+            let others = by_worth
+                .into_iter()
+                .filter(|other| !measured.contains(other));
+            measured.iter().copied().chain(others).map(&least).sum()
+        } else {
+            measured.first().copied().map_or(0, &least)
+        };
+        let has_fast = is_magnified && height >= 2 + fast && needed <= room_beside_fast;
+        let upper: Vec<_> = has_fast.then_some(first).into_iter().collect();
         let is_left = |content: &Content| {
-            let is_above = is_magnified && *content == first;
+            let is_above = has_fast && *content == first;
             !is_above && !measured.contains(content)
         };
-        let lead = [first].into_iter().filter(|_| !is_magnified && most > 0);
+        let lead = [first].into_iter().filter(|_| !has_fast);
         let others = by_worth.into_iter().filter(is_left);
+        let mut room = if has_fast {
+            room_beside_fast
+        } else {
+            height.saturating_sub(1)
+        };
         let mut chosen: Vec<Content> = Vec::new();
         for content in measured.iter().copied().chain(lead).chain(others) {
-            if chosen.len() + upper.len() < most && !chosen.contains(&content) {
+            if least(content) <= room && !chosen.contains(&content) {
+                room -= least(content);
                 chosen.push(content);
             }
         }

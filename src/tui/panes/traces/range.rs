@@ -68,10 +68,7 @@ impl Traces<'_> {
             pinned.and_then(of_every_run),
         ];
         let extent = |(recording, curve): (&Recording, Curve)| match strip {
-            Some(strip) => recording
-                .between(strip.begin_s, strip.end_s())
-                .map(|block| block.extent(curve))
-                .reduce(Extent::and),
+            Some(strip) => recording.extent_between(strip.begin_s, strip.end_s(), curve),
             None => recording.whole().map(|block| block.extent(curve)),
         };
         let extents = recordings.into_iter().flatten().filter_map(extent);

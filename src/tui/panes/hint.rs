@@ -1,0 +1,113 @@
+//! The lines of hints: what there is to see, and for a while what is to be said now.
+
+use super::chrome::SEPARATOR;
+use super::{wrapped_to, write};
+use crate::lab::{Lab, MOST_COUNTED};
+use crate::text::wrap::wrapped;
+use crate::tui::layout::Layout;
+use crate::tui::theme::Role;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::widgets::{Clear, Widget};
+
+/// What a screen says that has no room for everything.
+const CRAMPED: &str = "80x24 shows more";
+/// Lines that a message may take on a small screen.
+const MOST_LINES: u16 = 4;
+
+/// Lines that the hint takes on a screen of this width while there is no message.
+pub fn lines_of_note(lab: &Lab, width: u16) -> u16 {
+    lines_of(&lab.note(), width)
+}
+
+fn lines_of(text: &str, width: u16) -> u16 {
+    let lines = wrapped(text, width.saturating_sub(2) as usize).len();
+    lines.min(u16::MAX.into()) as u16
+}
+
+/// Where the hint of `lab` stands: on its lines, or, for a message that has no room there, on as many lines above as it
+/// needs too, as long as the message stays: that about the numbers, and on a small or a bare screen the last of a pane.
+pub fn place(lab: &Lab, layout: &Layout) -> Rect {
+    let place = layout.hint;
+    let needed = match has_message(lab) {
+        true => lines_of(&said(lab).0, place.width),
+        false => 0,
+    };
+    if needed <= place.height || place.is_empty() {
+        return place;
+    }
+    let (is_bare, own) = (lab.view().bare, place.union(layout.health).height);
+    let most = match (is_bare, layout.is_cramped) {
+        (true, _) => place.height + 1,
+        (false, true) => own.max(MOST_LINES),
+        (false, false) if layout.health.is_empty() => place.height,
+        (false, false) => own,
+    };
+    let height = needed
+        .min(most)
+        .min(place.bottom().saturating_sub(2))
+        .max(place.height);
+    Rect {
+        y: place.bottom() - height,
+        height,
+        ..place
+    }
+}
+
+/// What is to be said now; else what there is to see. On a small screen, that there would be more, if there is room.
+pub fn draw(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
+    let (text, role) = said(lab);
+    let theme = &lab.view().theme;
+    let width = area.width.saturating_sub(2) as usize;
+    let lines = wrapped_to(&text, width, area.height as usize);
+    if has_message(lab) {
+        Clear.render(area, buf); // it may lie over the panes
+    }
+    let mut end = 0;
+    for (line, y) in lines.iter().zip(0..area.height) {
+        end = write(area, (1, y), line, theme.style(role), buf);
+    }
+    let last = area.height.saturating_sub(1);
+    if lines.len() < area.height as usize {
+        end = 0; // the last line is free
+    }
+    let x = area.width.saturating_sub(CRAMPED.len() as u16 + 1);
+    if is_cramped && x >= end + 2 {
+        write(area, (x, last), CRAMPED, theme.style(Role::Quiet), buf);
+    }
+}
+
+/// Whether there is something to be said now, besides what there is to see.
+pub fn has_message(lab: &Lab) -> bool {
+    let on_top = lab.on_top();
+    on_top.count().is_some() || lab.notice().is_some() || on_top.notice().trouble().is_some()
+}
+
+/// Before whatever is said while the session is not kept.
+const NOT_KEPT: &str = "session not kept";
+
+/// What stands in the line of hints. That the session is not kept stands there as long as it is so.
+fn said(lab: &Lab) -> (String, Role) {
+    let is_quiet = lab.on_top().count().is_none() && lab.notice().is_none();
+    let (text, role) = said_of_run(lab);
+    match lab.on_top().notice().trouble() {
+        None => (text, role),
+        Some(trouble) if is_quiet => (trouble.to_owned(), Role::Warning),
+        Some(_) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), role),
+    }
+}
+
+fn said_of_run(lab: &Lab) -> (String, Role) {
+    match (lab.on_top().count(), lab.notice()) {
+        (Some(MOST_COUNTED), _) => (
+            format!("{MOST_COUNTED} is the most that is counted: now the key; Esc forgets it"),
+            Role::Focus,
+        ),
+        (Some(count), _) => (
+            format!("{count}: now the key, such as . for that many steps; Esc forgets it"),
+            Role::Focus,
+        ),
+        (None, Some(notice)) => (notice, Role::Focus),
+        (None, None) => (lab.note().into_owned(), Role::Text),
+    }
+}

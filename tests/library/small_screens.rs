@@ -1,0 +1,84 @@
+//! What is said on screens with few rows and columns can be read there to its end.
+
+use crate::support::stage::Stage;
+use gyrolab::scenario::presets::PRESETS;
+use ratatui::layout::Rect;
+
+const TEACHERS: Rect = Rect {
+    x: 0,
+    y: 0,
+    width: 40,
+    height: 12,
+};
+/// Rows above which the lines below the panes begin: the title and the least that panes have.
+const ABOVE: usize = 7;
+/// Letters that three lines of 38 columns hold, broken between words.
+const HELD: usize = 95;
+
+/// The words of the lines below the panes, without the one about a larger screen and without the keys.
+fn said(stage: &Stage) -> String {
+    let picture = stage.picture();
+    let lines: Vec<_> = picture.lines().skip(ABOVE).collect();
+    let (_keys, lines) = lines.split_last().unwrap();
+    let text = lines.join(" ").replace("80x24 shows more", "");
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn what_there_is_to_see_is_said_to_its_end() {
+    let mut told = 0;
+    for preset in PRESETS {
+        let mut stage = Stage::open(preset.name, &[], TEACHERS);
+        stage.wait(0.3).commands("pause = true");
+        stage.wait(6.0);
+        let note = stage.lab.note().into_owned();
+        if note.len() > HELD {
+            continue;
+        }
+        told += 1;
+        let said = said(&stage);
+        assert!(
+            said.contains(&note),
+            "{}: {note:?} in {said:?}",
+            preset.name
+        );
+        let frames = stage
+            .picture()
+            .lines()
+            .filter(|line| line.ends_with('┘'))
+            .count();
+        assert_eq!(frames, 1, "{}: the pane is whole", preset.name);
+    }
+    assert!(told > 15, "{told}");
+}
+
+#[test]
+fn a_warning_stands_beside_what_there_is_to_see() {
+    let mut stage = Stage::open("method-2", &[], TEACHERS);
+    stage.wait(1.0).commands("pause = true");
+    stage.wait(6.0).shows("strobed").shows("that swing.");
+}
+
+#[test]
+fn a_long_message_has_the_rows_that_it_needs() {
+    let mut stage = Stage::open("cusps", &[], TEACHERS);
+    stage.wait(0.3).commands("pause = true");
+    stage.wait(6.0).press("t");
+    let notice = stage.lab.notice().unwrap();
+    assert!(
+        notice.len() > 38 && said(&stage).contains(&notice),
+        "{notice}"
+    );
+    // Without a hint there is one line for it, and that about the numbers' health, which comes back.
+    stage.commands("hide = ['look_at']").wait(6.0);
+    stage.shows("turns a step").press("E");
+    let notice = stage.lab.notice().unwrap();
+    assert!(
+        notice.len() > 38 && said(&stage).contains(&notice),
+        "{notice}"
+    );
+    stage
+        .shows_no("turns a step")
+        .wait(6.0)
+        .shows("turns a step");
+}
