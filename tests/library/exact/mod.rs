@@ -2,5 +2,6 @@
 
 mod common;
 mod laws;
+mod near;
 mod reference;
 mod taylor;
