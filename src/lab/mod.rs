@@ -39,6 +39,7 @@ pub mod preview;
 mod rerun;
 mod script;
 pub mod sheet;
+mod show_sheet;
 mod sorting;
 mod steering;
 mod traces;
@@ -55,6 +56,7 @@ pub use keeping::{Summary, Unreadable};
 pub use on_top::{MOST_COUNTED, Mode, OnTop};
 pub use player::Player;
 pub use script::Script;
+pub use show_sheet::scrolled_by;
 pub use values::Values;
 pub use work::Work;
 

@@ -1,11 +1,11 @@
 //! The page of a lesson beside the run: its text, the question with its answers, what is to be reached, and the keys.
 
 use super::{PaneRow, Width, frame, write};
-use crate::lab::Lab;
 use crate::lab::action::{Action, Direction, LessonKey};
-use crate::lab::sheet::{Kind, Look, Paragraph, Sheet, scrolled_by};
+use crate::lab::sheet::{Kind, Look, Paragraph, Sheet};
 use crate::lab::view::Pane;
 use crate::lab::view::theme::Theme;
+use crate::lab::{Lab, scrolled_by};
 use crate::text::wrap::{columns, wrapped};
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
