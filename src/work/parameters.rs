@@ -55,7 +55,7 @@ pub fn parameters(table: &Table, scenario: &Scenario) -> Vec<Parameter> {
         let Some(array) = array_of(&keys[0]) else {
             list.extend(
                 keys.iter()
-                    .flat_map(|key| rows(key, key.path, table, &names, scenario)),
+                    .flat_map(|key| parameters_of(key, key.path, table, &names, scenario)),
             );
             continue;
         };
@@ -63,7 +63,7 @@ pub fn parameters(table: &Table, scenario: &Scenario) -> Vec<Parameter> {
             let inside = |key: &Key| key.path.replacen('*', &index.to_string(), 1);
             list.extend(
                 keys.iter()
-                    .flat_map(|key| rows(key, &inside(key), table, &names, scenario)),
+                    .flat_map(|key| parameters_of(key, &inside(key), table, &names, scenario)),
             );
         }
     }
@@ -175,7 +175,7 @@ impl Names {
 }
 
 /// The parameters of one key, at its `place` in `table`: none, one, or the three components of a vector.
-fn rows(
+fn parameters_of(
     key: &'static Key,
     place: &str,
     table: &Table,
@@ -190,7 +190,7 @@ fn rows(
     let Some(value) = written.cloned().or_else(unwritten) else {
         return Vec::new();
     };
-    let row = Parameter {
+    let parameter = Parameter {
         key: place.to_owned(),
         spec: key,
         group: group(place, table),
@@ -207,8 +207,8 @@ fn rows(
         lab,
     };
     match key.kind {
-        Kind::Vector => row.components(),
-        _ => vec![row],
+        Kind::Vector => parameter.components(),
+        _ => vec![parameter],
     }
 }
 

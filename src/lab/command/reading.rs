@@ -68,7 +68,7 @@ pub(super) fn line(value: &Value) -> Result<&str, Vec<Problem>> {
     checked(Kind::Line, value).map(text_in)
 }
 
-pub(super) fn told(value: &Value, command: Command) -> Read {
+pub(super) fn if_true(value: &Value, command: Command) -> Read {
     match value {
         Value::Boolean(true) => Ok(command),
         other => wrong(other, "must be true"),

@@ -7,7 +7,7 @@ use super::looking::{
     point_at, residuals, show, since, speed, sum_to, window, zoom,
 };
 use super::reading::{
-    Read, chapter, count, go_to, next_push, nudge, open, push, run_until, save, set, step, told,
+    Read, chapter, count, go_to, if_true, next_push, nudge, open, push, run_until, save, set, step,
     wait,
 };
 use crate::scenario::Problem;
@@ -59,8 +59,8 @@ pub static COMMANDS: &[CommandRow] = &[
     row("step", "10", "take so many time steps, or go so many back", step),
     row("go_to", "400, \"60 s\", \"start\" or \"end\"", "go to a step or a time and stop there", go_to),
     row("run_until", "\"t_s >= 60\"", "play at the speed that is set until this holds, and stop; given up after 10000000 steps", run_until),
-    row("run", "true", "let the run go on", |value| told(value, Command::Run)),
-    row("pause", "true", "stop the run", |value| told(value, Command::Pause)),
+    row("run", "true", "let the run go on", |value| if_true(value, Command::Run)),
+    row("pause", "true", "stop the run", |value| if_true(value, Command::Pause)),
     row("wait_s", "2.5", "let so many seconds pass on the clock before the next command", wait),
     row("chapter", "\"one line\"", "say this line; a recording (gyrolab cast) has a marker there", chapter),
     row("undo", "1", "take back so many of the things done last", |value| Ok(Command::Undo(count(value)?))),
@@ -80,7 +80,7 @@ pub static COMMANDS: &[CommandRow] = &[
     row("measured", "\"heidelberg-spin-decay\", \"data.csv\" or \"none\"", "put measured data beside the run: data that come with gyrolab, or a CSV file with a column t_s", measured),
     row("residuals", "true or false", "whether measured data are shown less what the run says", residuals),
     row("pin", "true or false", "pin the present run as the reference, which stays in view; false: none is pinned", pin),
-    row("take_advice", "true", "begin the run anew at the time step, or by the scheme, that mends doubtful numbers, up to the same time", |value| told(value, Command::TakeAdvice)),
+    row("take_advice", "true", "begin the run anew at the time step, or by the scheme, that mends doubtful numbers, up to the same time", |value| if_true(value, Command::TakeAdvice)),
     row("show", "[\"traces\", \"3d\"]", "the panes that share the screen, of traces, above, 3d, parameters, step; none: as many as there is room for, without step", show),
     row("hide", "[\"health\"]", "what is not shown: panes, health, predicted, look_at", hide),
     row("fill", "\"above\"", "the pane that fills the screen, or \"none\"", fill),
