@@ -19,6 +19,8 @@ const HEAD_STROKES: i32 = 3;
 const SHORTEST: f64 = 4.0;
 /// A rod is nearer than what lies along it by this part of the scene's reach.
 const IN_FRONT: f64 = 0.03;
+/// An arrow in front of everything is nearer than it is by this part of the scene's reach.
+const FRONT: f64 = 10.0;
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -185,8 +187,21 @@ impl Scene {
 
     /// A line with a filled head at its tip, which is seen on a small sheet too.
     pub fn arrow(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink) {
-        self.line(from, tip, Stroke::Thin, ink);
-        let (begin, end) = (self.dot(from), self.dot(tip));
+        self.arrow_nearer(from, tip, ink, 0.0);
+    }
+
+    /// As [`arrow`](Self::arrow), in front of everything but the arrows of this kind that are nearer: nothing hides a part
+    /// of it.
+    pub fn arrow_in_front(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink) {
+        self.arrow_nearer(from, tip, ink, FRONT * self.reach);
+    }
+
+    /// An arrow that counts as nearer to the eye than it is by `nearer`, m.
+    fn arrow_nearer(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink, nearer: f64) {
+        let end = |point| (self.dot(point), self.camera.depth(point) - nearer);
+        let ends = (end(from), end(tip));
+        self.line_of_dots(ends.0, ends.1, Stroke::Thin, ink);
+        let ((begin, _), (end, depth)) = ends;
         let (x, y) = (begin.0 - end.0, begin.1 - end.1);
         let length = x.hypot(y);
         if length < SHORTEST {
@@ -194,7 +209,6 @@ impl Scene {
         }
         let head = (HEAD * self.reach * self.scale.1).max(LEAST_HEAD);
         let share = head.min(MOST_OF_ARROW * length) / length;
-        let depth = self.camera.depth(tip);
         for part in -HEAD_STROKES..=HEAD_STROKES {
             let angle = HEAD_ANGLE * f64::from(part) / f64::from(HEAD_STROKES);
             let (sin, cos) = angle.sin_cos();
@@ -270,8 +284,10 @@ mod tests {
     use ratatui::buffer::Buffer;
     use ratatui::layout::Rect;
 
-    #[test]
-    fn what_is_nearer_hides_what_is_farther() {
+    const INK: Ink = Ink::Strong(Role::Text);
+
+    /// What `draw` draws, seen along y from in front: whether a dot is set, and the dot in the middle.
+    fn drawn(draw: impl Fn(&mut Scene)) -> (impl Fn(usize, usize) -> bool, (usize, usize)) {
         let area = Rect::new(0, 0, 20, 10);
         let mut dots = Dots::new(area, Marker::Braille);
         let camera = Camera {
@@ -284,11 +300,7 @@ mod tests {
             reach: 1.0,
         };
         let mut scene = Scene::new(&dots, camera, &shown);
-        // Upright and in front; level and behind.
-        let ink = Ink::Strong(Role::Text);
-        let at = |x, y, z| Vector3::new(x, y, z);
-        scene.line(&at(0.0, -0.5, -0.9), &at(0.0, -0.5, 0.9), Stroke::Thin, ink);
-        scene.line(&at(-0.9, 0.5, 0.0), &at(0.9, 0.5, 0.0), Stroke::Thin, ink);
+        draw(&mut scene);
         let (x, y) = scene.dot(&Vector3::zeros());
         scene.draw(&mut dots);
         let theme = Theme {
@@ -297,7 +309,7 @@ mod tests {
         };
         let mut buf = Buffer::empty(area);
         dots.render(&theme, &mut buf);
-        let is_set = |x: usize, y: usize| {
+        let is_set = move |x: usize, y: usize| {
             let sign = buf[((x / 2) as u16, (y / 4) as u16)].symbol();
             let bits = sign
                 .chars()
@@ -306,9 +318,42 @@ mod tests {
                 .saturating_sub(0x2800);
             bits as u8 & Marker::Braille.bit(x % 2, y % 4) != 0
         };
-        let (x, y) = (x as usize, y as usize);
+        (is_set, (x as usize, y as usize))
+    }
+
+    /// Upright and in front.
+    fn upright(scene: &mut Scene) {
+        let [from, to] = [-0.9, 0.9].map(|z| Vector3::new(0.0, -0.5, z));
+        scene.line(&from, &to, Stroke::Thin, INK);
+    }
+
+    /// The ends of what is level and behind.
+    fn level() -> [Vector3<f64>; 2] {
+        [-0.9, 0.9].map(|x| Vector3::new(x, 0.5, 0.0))
+    }
+
+    #[test]
+    fn what_is_nearer_hides_what_is_farther() {
+        let (is_set, (x, y)) = drawn(|scene| {
+            upright(scene);
+            let [from, to] = level();
+            scene.line(&from, &to, Stroke::Thin, INK);
+        });
         assert!((5..35).all(|row| is_set(x, row)), "the near line is whole");
         assert!(!is_set(x - 1, y) && !is_set(x + 1, y), "a gap beside it");
         assert!(is_set(x - 3, y) && is_set(x + 3, y), "the far line goes on");
+    }
+
+    #[test]
+    fn nothing_hides_an_arrow_in_front() {
+        let (is_set, (x, y)) = drawn(|scene| {
+            upright(scene);
+            let [from, to] = level();
+            scene.arrow_in_front(&from, &to, INK);
+        });
+        assert!((x - 5..x + 5).all(|x| is_set(x, y)), "the arrow is whole");
+        let beside = [is_set(x, y - 1), is_set(x, y + 1)];
+        assert_eq!(beside, [false, false], "a gap in the line before it");
+        assert!(is_set(x, y - 3) && is_set(x, y + 3), "the line goes on");
     }
 }

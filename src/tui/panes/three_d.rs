@@ -202,7 +202,7 @@ impl<'a> Subject<'a> {
     }
 
     /// The stand on which the axle rests, or a level circle about a pivot that carries no weight; and the directions of x,
-    /// y and z.
+    /// y and z. Where there is a stand, z has no letter, which would lie over the hub: the stand shows what is up.
     fn ground(&self, scene: &mut Scene) -> Vec<Label> {
         let stands = self.stands();
         let floor = Vector3::z() * if stands { -STAND * self.reach } else { 0.0 };
@@ -233,15 +233,18 @@ impl<'a> Subject<'a> {
         }
         let length = GROUND * self.reach;
         let axes = [
-            ("x", Role::X, floor, Vector3::x()),
-            ("y", Role::Y, floor, Vector3::y()),
-            ("z", Role::Z, Vector3::zeros(), Vector3::z()),
+            ("x", floor, Vector3::x()),
+            ("y", floor, Vector3::y()),
+            ("z", Vector3::zeros(), Vector3::z()),
         ];
-        for (_, _, from, axis) in axes {
-            scene.line(&from, &(from + axis * length), Stroke::Dotted(3), ink);
-        }
-        axes.map(|(name, role, from, axis)| (name, role, from + axis * length))
-            .to_vec()
+        let drawn = &axes[..if stands { 2 } else { 3 }];
+        let label = |(name, from, axis): &(&'static str, Vector3<f64>, Vector3<f64>)| {
+            let tip = from + axis * length;
+            scene.line(from, &tip, Stroke::Dotted(3), ink);
+            // The colours of the traces of x, y and z are those of arrows here.
+            (*name, Role::Quiet, tip)
+        };
+        drawn.iter().map(label).collect()
     }
 
     /// Whether the pivot carries a weight that is off it, so that a stand is seen under it.

@@ -33,7 +33,12 @@ impl Subject<'_> {
                 return;
             }
             let tip = from + to;
-            scene.arrow(&from, &tip, Ink::Strong(role));
+            // The torque and the change of L are short and cross the rim. The others lie along the axle, which they
+            // would cover.
+            match name {
+                "τ" | "dL" => scene.arrow_in_front(&from, &tip, Ink::Strong(role)),
+                _ => scene.arrow(&from, &tip, Ink::Strong(role)),
+            }
             labels.push((name, role, scene.beyond(&from, &tip)));
         };
         let pivot = Vector3::zeros();
@@ -74,7 +79,7 @@ impl Subject<'_> {
             let from = self.state.orientation * points[push.point].at;
             if let Some(direction) = push.force.try_normalize(f64::MIN_POSITIVE) {
                 let tip = from + direction * length;
-                scene.arrow(&from, &tip, Ink::Strong(Role::Push));
+                scene.arrow_in_front(&from, &tip, Ink::Strong(Role::Push));
                 labels.push(("F", Role::Push, scene.beyond(&from, &tip)));
             }
         }
@@ -131,10 +136,7 @@ impl Subject<'_> {
 
     fn arrows_in_words(&self, is_pushed: bool) -> Vec<Words> {
         let (torque, change) = match self.torque {
-            Some(_) => (
-                ["τ torque", "τ torque", "τ"],
-                ["dL where L goes", "dL", "dL"],
-            ),
+            Some(_) => (["τ torque", "τ torque", "τ"], ["dL = τ dt", "dL", "dL"]),
             None => (["no torque", "no torque", ""], ["L stays", "", ""]),
         };
         let weight = match self.run.simulation().loads().gravity == 0.0 {
