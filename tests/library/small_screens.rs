@@ -60,6 +60,15 @@ fn a_warning_stands_beside_what_there_is_to_see() {
 }
 
 #[test]
+fn a_form_says_how_it_is_left() {
+    for key in ["g", "S", "X", "x"] {
+        let mut stage = Stage::open("cusps", &[], TEACHERS);
+        stage.wait(0.3).commands("pause = true");
+        stage.press(key).shows("Enter").shows("Esc leaves it");
+    }
+}
+
+#[test]
 fn a_long_message_has_the_rows_that_it_needs() {
     let mut stage = Stage::open("cusps", &[], TEACHERS);
     stage.wait(0.3).commands("pause = true");
