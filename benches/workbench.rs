@@ -225,20 +225,20 @@ fn main() {
     }
     report_edit();
     report(
-        "method-2 with the exact motion",
-        &["--set", "motion.steps=100000"],
+        "method-2 with the exact motion, 10 frames a second (budget 2 %)",
+        &["--fps", "10", "--set", "motion.steps=100000"],
         "t",
         SMALL,
     );
     report(
-        "cusps with the exact motion",
-        &["cusps", "--set", "motion.steps=1000000"],
+        "cusps with the exact motion, 10 frames a second (budget 2 %)",
+        &["cusps", "--fps", "10", "--set", "motion.steps=1000000"],
         "t",
         SMALL,
     );
     report(
-        "cusps with the exact motion at 200x50",
-        &["cusps", "--set", "motion.steps=1000000"],
+        "cusps with the exact motion at 200x50, 10 frames a second (budget 2 %)",
+        &["cusps", "--fps", "10", "--set", "motion.steps=1000000"],
         "t",
         LARGE,
     );
@@ -330,9 +330,9 @@ fn report_presets() {
     println!("bytes/s and % of a core at 10 frames a second (budgets 3000 and 10000, 2 %)");
     for preset in PRESETS {
         print!("{:26}", preset.name);
-        for (keys, size) in [("", SMALL), ("t", SMALL), ("df", SMALL), ("99+", SMALL)]
+        for (keys, size) in [("", SMALL), ("t", SMALL), ("d", SMALL), ("99+", SMALL)]
             .into_iter()
-            .chain([("", LARGE), ("t", LARGE), ("df", LARGE)])
+            .chain([("", LARGE), ("t", LARGE), ("d", LARGE), ("dt", LARGE)])
         {
             let args = [
                 preset.name,

@@ -8,7 +8,7 @@ mod below;
 mod page;
 
 use super::panes::{PANES, PaneRow, Width};
-use crate::lab::view::{Pane, View};
+use crate::lab::view::{Pane, Part, View};
 pub use below::Said;
 use ratatui::layout::Rect;
 
@@ -68,7 +68,7 @@ impl Layout {
         let hint = cut(&mut rest, area.height >= 6, true);
         let (lines, has_health) = match area.height >= TWO_LINES_FROM {
             true => (1 + u16::from(area.width < ONE_LINE_FROM), true),
-            false => below::on_low_screen(said, area.height),
+            false => below::on_low_screen(said, area.height, view.hides(Part::Health)),
         };
         let hint = (1..lines).fold(hint, |hint, _| hint.union(cut(&mut rest, true, true)));
         let health = cut(&mut rest, has_health, true);

@@ -60,6 +60,25 @@ fn a_warning_stands_beside_what_there_is_to_see() {
 }
 
 #[test]
+fn a_hidden_line_leaves_its_row_to_the_page() {
+    let mut stage = Stage::open("method-2", &[], TEACHERS);
+    stage.lesson("is-the-wobble-real", 1).wait(6.0);
+    stage.commands("hide = ['health', 'look_at']");
+    let picture = stage.picture();
+    let inside = picture.lines().filter(|line| line.starts_with('│')).count();
+    assert_eq!(inside, 7, "{picture}");
+}
+
+#[test]
+fn a_form_says_how_it_is_left() {
+    for key in ["g", "S", "X", "x"] {
+        let mut stage = Stage::open("cusps", &[], TEACHERS);
+        stage.wait(0.3).commands("pause = true");
+        stage.press(key).shows("Enter").shows("Esc leaves it");
+    }
+}
+
+#[test]
 fn a_long_message_has_the_rows_that_it_needs() {
     let mut stage = Stage::open("cusps", &[], TEACHERS);
     stage.wait(0.3).commands("pause = true");

@@ -14,10 +14,12 @@ pub struct Said {
     pub warns: bool,
 }
 
-/// Lines of the hint on a screen of this `height` that is low, and whether the health of the numbers has one too.
-pub(super) fn on_low_screen(said: Said, height: u16) -> (u16, bool) {
+/// Lines of the hint on a screen of this `height` that is low, and whether the health of the numbers has one too, which it
+/// has not where it is hidden.
+pub(super) fn on_low_screen(said: Said, height: u16, hides_health: bool) -> (u16, bool) {
     let below = height.saturating_sub(2 + ROWS_OF_PANES);
     let lines = below.saturating_sub(said.warns.into());
     let lines = lines.min(MOST_LINES).min(said.lines).max(1);
-    (lines, height >= 9 && (said.warns || lines == 1))
+    let has_health = said.warns || lines == 1;
+    (lines, height >= 9 && has_health && !hides_health)
 }

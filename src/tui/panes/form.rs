@@ -75,7 +75,11 @@ impl FormPane<'_> {
         room += reserved;
         let complaint = self.complaint(width, room.min(MOST_COMPLAINT));
         room -= complaint.len();
-        let keys = taken(&mut room, 1);
+        let keys = wrapped(form.keys, width as usize).len();
+        let keys = match taken(&mut room, keys) {
+            0 => Vec::new(),
+            taken => wrapped_to(form.keys, width as usize, taken),
+        };
         let info = form
             .info
             .iter()
@@ -90,7 +94,7 @@ impl FormPane<'_> {
         lines.extend(info.iter().map(|text| quiet(text)));
         let complaint = complaint.into_iter();
         lines.extend(complaint.map(|text| Line::Text(text, Role::Warning)));
-        lines.extend((keys == 1).then(|| quiet(form.keys)));
+        lines.extend(keys.iter().map(|text| quiet(text)));
         lines
     }
 
