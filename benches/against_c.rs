@@ -30,8 +30,8 @@ use std::process::{Command, ExitCode};
 use std::sync::Arc;
 use std::time::Instant;
 
-const STEPS: u64 = 100_000;
-const ROUNDS: usize = 60;
+const STEPS: u64 = 20_000;
+const ROUNDS: usize = 300;
 
 fn report_in_rust() -> f64 {
     let scenario = Document::open("method-2").unwrap().scenario().unwrap();

@@ -5,6 +5,12 @@
 //!
 //! `cargo bench --bench time_travel`, with `-- 1000000` for a run of that many steps alone, or with `-- threads` for the
 //! threads alone.
+//!
+//! Of a run of 14 points by the report's scheme (Zen 4, baseline x86-64, ns a step, each the least of many short rounds):
+//! bare step 69; stepping and handing over 79; measuring and pictures 62; the exact motion beside it 33. So with a core for
+//! each thread playing ahead can come to 1.14 of the bare steps, and with two cores to 1.25. What is left: taking a step
+//! into a batch is 10 ns; of the pictures' thread the recording takes half, most of it the writing of blocks. Where other
+//! programs need the cores, the threads wait for one another, and playing ahead takes two to three times the bare steps.
 
 #![allow(clippy::unwrap_used)]
 
