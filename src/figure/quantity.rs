@@ -51,10 +51,7 @@ pub fn axis_in(scenario: &toml::Table, key: &str) -> Axis {
     let Some(name) = named.and_then(toml::Value::as_str) else {
         return axis(key);
     };
-    let own = axis(
-        rest.strip_prefix("at_m.")
-            .map_or(rest, |_| &rest["at_m.".len()..]),
-    );
+    let own = axis(rest.strip_prefix("at_m.").unwrap_or(rest));
     let unit = axis(rest).unit;
     Axis::new(format!("{} of {}", own.name, letters::escape(name)), unit)
 }
@@ -70,10 +67,7 @@ fn at_start(symbol: &str) -> String {
 /// A name as words in markup, and its unit.
 pub fn words(name: &str) -> (String, &'static str) {
     let mut unit = "";
-    let part = |part: &str| -> String {
-        if let Some((_, letter)) = PARTS.iter().find(|(number, _)| *number == part) {
-            return (*letter).to_owned();
-        }
+    let mut in_words = |part: &str| -> String {
         let (bare, of_part) = match Unit::of(part) {
             Some(unit) => (&part[..part.len() - unit.end.len()], unit.name),
             None => (part, ""),
@@ -87,7 +81,15 @@ pub fn words(name: &str) -> (String, &'static str) {
     if parts.len() > 1 && ["motion", "body"].contains(&parts[0]) {
         parts.remove(0);
     }
-    let words: Vec<String> = parts.into_iter().map(part).collect();
+    // A number at the end is that of a component, elsewhere that of a point, a part or a push.
+    let component = PARTS
+        .iter()
+        .find(|(number, _)| parts.last() == Some(number));
+    if component.is_some() {
+        parts.pop();
+    }
+    let mut words: Vec<String> = parts.into_iter().map(&mut in_words).collect();
+    words.extend(component.map(|(_, letter)| (*letter).to_owned()));
     (words.join(" "), unit)
 }
 
