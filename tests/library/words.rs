@@ -97,14 +97,15 @@ fn what_to_try_next_is_not_on_the_screen_already() {
 }
 
 #[test]
-fn a_long_message_has_the_line_above_it_on_a_small_screen() {
+fn a_long_message_and_a_warning_are_both_read_on_a_small_screen() {
     let mut stage = Stage::open("method-2", &[], Rect::new(0, 0, 40, 12));
     stage.commands("pause = true\ngo_to = 100");
     stage.shows("strobed").press("e");
     stage
         .shows("Up, Down choose a value; Left, Right")
-        .shows("nudge it; Enter types it; u undoes");
-    stage.shows_no("strobed").wait(6.0).shows("strobed");
+        .shows("nudge it; Enter types it; u undoes")
+        .shows("strobed");
+    stage.wait(6.0).shows_no("nudge it").shows("strobed");
 }
 
 #[test]
