@@ -564,7 +564,7 @@ fn a_phase_shows_its_own_arrows_in_space() {
     stage
         .commands("show = ['3d', 'above']")
         .shows("Ω angular velocity")
-        .shows("where L goes");
+        .shows("dL = τ dt");
 }
 
 #[test]

@@ -164,7 +164,7 @@ fn a_legend_names_every_mark_of_the_exact_motion() {
     stage.press("t").wait(1.0).press("d").wait(0.3);
     for word in [
         "L angular momentum",
-        "dL where",
+        "dL = τ dt",
         "F push",
         "+ pivot",
         "* axle top",
@@ -180,7 +180,7 @@ fn a_legend_names_every_mark_of_the_exact_motion() {
         "Ω angular velocity",
         "g weight",
         "τ torque",
-        "dL where",
+        "dL = τ dt",
         "F push",
     ] {
         stage.shows(word);
