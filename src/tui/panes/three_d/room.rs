@@ -21,12 +21,12 @@ impl Subject<'_> {
         });
         let (first, last) = ((tilts.0 / TILT_DEG).floor(), (tilts.1 / TILT_DEG).ceil());
         // Circles about the vertical, radius and height.
-        let floor = if self.stands() {
-            -STAND * self.reach
+        let ground = GROUND * self.reach;
+        let mut circles = if self.stands() {
+            vec![(ground, -STAND * self.reach)]
         } else {
-            0.0
+            vec![(ground, 0.0), (0.0, ground)] // z too has a letter
         };
-        let mut circles = vec![(GROUND * self.reach, floor), (0.0, GROUND * self.reach)];
         for tilt in first as i32..=last as i32 {
             let (sin, cos) = (f64::from(tilt) * TILT_DEG).to_radians().sin_cos();
             for &(across, height) in &self.shape.corners {
