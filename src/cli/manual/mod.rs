@@ -19,7 +19,7 @@ use std::process::{self, ExitCode, Stdio};
 
 #[derive(Debug, Args)]
 pub(super) struct ManArgs {
-    /// A topic or a command; a name that is none gets the list [without it: the whole manual]
+    /// A topic or a command; an unknown name gets the nearest one, or the list [without it: the whole manual]
     topic: Option<String>,
 
     /// Write every page, gyrolab.1 and one for each command, into the folder of -o: for packages
