@@ -15,7 +15,7 @@ const FEWEST: u64 = 4096;
 /// The most steps that are handed over together.
 const TOGETHER: usize = 1024;
 /// So many batches may wait for a thread that is slower than the one before it; then that one waits too.
-const WAITING: usize = 8;
+const WAITING: usize = 48;
 
 impl LiveRun {
     /// Steps until the run stands at `step`. All that is read off it then is as if it had taken them
