@@ -64,11 +64,9 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let readouts = played.readouts();
     let mut meter = Meter::new();
     if let Some(beside) = &mut beside {
-        let goes_on = |step| {
-            meter.show(step, scenario.steps);
-            !interruption.has_come()
-        };
-        if !beside.hold(&scenario, readouts.sample.time_s, goes_on)? {
+        let end_s = readouts.sample.time_s;
+        let held = beside.hold(&scenario, end_s, &|| !interruption.has_come());
+        if !held.map_err(anyhow::Error::msg)? {
             return Ok(ExitCode::from(INTERRUPTED));
         }
     }

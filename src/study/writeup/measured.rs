@@ -2,17 +2,13 @@
 
 use super::{CSV, LATEX, PAGE, READOUTS_FILE, RUN_FILE};
 use crate::measured::compared::{Compared, Sum};
-use crate::measured::{Measured, Quantity, Reader, Series};
-use crate::run::Simulation;
-use crate::scenario::{Problems, Scenario};
+use crate::measured::{Measured, Quantity, Series, at_times};
+use crate::scenario::Scenario;
 use crate::text::number::{NONE, shortest, significant};
 use serde_json::{Value, json};
 use std::fmt::{self, Write};
 use std::path::Path;
 use std::sync::Arc;
-
-/// Steps that are taken without asking whether to go on.
-const BLOCK: u64 = 4096;
 
 /// Measured data beside the run of a write-up.
 #[derive(Clone, Debug)]
@@ -46,8 +42,8 @@ impl Beside {
         &self.measured.origin
     }
 
-    /// Holds the data against the run of `scenario` up to `end_s`; whether it came to the end, and not `go_on` said no. A
-    /// run whose numbers stop being finite is held as far as it goes.
+    /// Holds the data against the run of `scenario` up to `end_s`, the last time at which its numbers are finite. Returns
+    /// false where `go_on` said no on the way.
     ///
     /// # Errors
     /// Where the data are a table of runs: what to do with it.
@@ -55,23 +51,21 @@ impl Beside {
         &mut self,
         scenario: &Arc<Scenario>,
         end_s: f64,
-        mut go_on: impl FnMut(u64) -> bool,
-    ) -> Result<bool, Problems> {
-        let series = self.measured.series()?;
-        let mut reader = Reader::new(series);
-        let mut simulation = Simulation::new(Arc::clone(scenario));
-        while reader.next_time_s().is_some_and(|time_s| time_s <= end_s) {
-            if reader.take(&simulation).is_err() || simulation.step().is_err() {
-                break;
-            }
-            let step = simulation.step_number();
-            if step.is_multiple_of(BLOCK) && !go_on(step) {
-                return Ok(false);
-            }
-        }
-        let traced = scenario.body.mechanics.points()[scenario.trace].at;
-        self.compared = Compared::new(series, reader.values(), end_s, &traced);
+        go_on: &dyn Fn() -> bool,
+    ) -> Result<bool, String> {
         self.end_s = end_s;
+        let reached = self.reached();
+        let values = at_times(
+            reached.series().map_err(|e| e.to_string())?,
+            scenario,
+            go_on,
+        );
+        let Some(values) = values.map_err(|error| error.to_string())? else {
+            return Ok(false);
+        };
+        let traced = scenario.body.mechanics.points()[scenario.trace].at;
+        let series = self.measured.series().map_err(|e| e.to_string())?;
+        self.compared = Compared::new(series, &values, end_s, &traced);
         Ok(true)
     }
 
