@@ -9,10 +9,12 @@ use std::num::NonZero;
 use std::process::Command;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use std::thread;
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 const PATIENCE: Duration = Duration::from_secs(20);
+/// How long the last bytes of a program that has ended may take to arrive.
+const LAST_BYTES: Duration = Duration::from_secs(2);
 pub const LEAVES_ALTERNATE_SCREEN: &str = "\u{1b}[?1049l";
 pub const SHOWS_CURSOR: &str = "\u{1b}[?25h";
 
@@ -73,6 +75,8 @@ pub struct Terminal {
     keys: Option<Box<dyn Write + Send>>,
     pty: Option<Box<dyn MasterPty + Send>>,
     shown: Arc<Mutex<Shown>>,
+    /// Reads what the program sends; it ends when nobody has the pty open any more.
+    reader: JoinHandle<()>,
     size: (u16, u16),
     /// Whether the reader closes the line at the next byte.
     lost: Arc<AtomicBool>,
@@ -102,7 +106,7 @@ impl Terminal {
         let lost = Arc::new(AtomicBool::new(false));
         let stopped = Arc::new(AtomicBool::new(false));
         let (kept, cut, shut) = (shown.clone(), lost.clone(), stopped.clone());
-        thread::spawn(move || {
+        let reader = thread::spawn(move || {
             let mut buffer = [0; 65536];
             while let Ok(length @ 1..) = output.read(&mut buffer) {
                 if let Ok(mut shown) = kept.lock() {
@@ -124,6 +128,7 @@ impl Terminal {
             keys,
             pty: Some(pty.master),
             shown,
+            reader,
             size,
             lost,
             stopped,
@@ -249,18 +254,21 @@ impl Terminal {
         while !is_so(self) {
             assert!(
                 begin.elapsed() < PATIENCE,
-                "no {wanted:?} in\n{}",
-                self.screen()
+                "no {wanted:?} in\n{}\nin the folder of sessions: {:?}",
+                self.screen(),
+                self.ground.kept("")
             );
             thread::sleep(Duration::from_millis(10));
         }
     }
 
+    /// Waits until the program has ended and all it has sent is read.
     #[track_caller]
     pub fn wait_for_end(&mut self) -> ExitStatus {
         let begin = Instant::now();
         loop {
             if let Some(status) = self.child.try_wait().unwrap() {
+                self.read_the_rest();
                 return status;
             }
             assert!(
@@ -269,6 +277,15 @@ impl Terminal {
                 self.screen()
             );
             thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Waits for the last bytes. There is no end of them where the terminal is stopped, or a shell has left a program.
+    fn read_the_rest(&self) {
+        let begin = Instant::now();
+        let is_stopped = || self.stopped.load(Ordering::Relaxed);
+        while !self.reader.is_finished() && !is_stopped() && begin.elapsed() < LAST_BYTES {
+            thread::sleep(Duration::from_millis(2));
         }
     }
 
