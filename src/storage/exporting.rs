@@ -52,6 +52,8 @@ struct Shared {
     steps: u64,
     is_cancelled: AtomicBool,
     has_ended: AtomicBool,
+    /// Whether the end of the process has cancelled it.
+    is_cut_off: AtomicBool,
 }
 
 struct Job {
@@ -94,6 +96,7 @@ impl Exporting {
             steps,
             is_cancelled: AtomicBool::new(false),
             has_ended: AtomicBool::new(false),
+            is_cut_off: AtomicBool::new(false),
         });
         let (at_work, at_end) = (Arc::clone(&shared), Arc::clone(&shared));
         let work = move || {
@@ -127,9 +130,12 @@ impl Exporting {
         self.shared.cancel();
     }
 
-    /// Returns what was written, or why nothing was. `None` while the export is in progress, and after the result has
-    /// been returned once.
+    /// Returns what was written, or why nothing was. `None` while the export is in progress, after the result has been
+    /// returned once, and where the end of the process cuts the export off: the session then keeps that it was under way.
     pub fn outcome(&mut self) -> Option<Result<Written, String>> {
+        if self.shared.is_cut_off.load(Ordering::SeqCst) {
+            return None;
+        }
         let worker = self.worker.take_if(|worker| worker.is_finished())?;
         let broken = || Err("the export broke off, and nothing was written".to_owned());
         Some(worker.join().unwrap_or_else(|_| broken()))
@@ -159,6 +165,9 @@ impl Shared {
     fn prepare_for(&self, release: Release) {
         if release == Release::Suspend {
             return;
+        }
+        if !self.has_ended.load(Ordering::SeqCst) {
+            self.is_cut_off.store(true, Ordering::SeqCst);
         }
         self.cancel();
         let begin = Instant::now();
@@ -322,6 +331,42 @@ mod tests {
         for (last, every, count) in [(0, 1, 1), (10, 1, 11), (10, 5, 3), (10, 7, 3), (10, 20, 2)] {
             assert_eq!(rows(last, every), count, "{last} {every}");
         }
+    }
+
+    /// An export that does nothing until it is cancelled.
+    fn waiting() -> Exporting {
+        let write = |shared: &Shared| {
+            while !shared.is_cancelled() {
+                thread::yield_now();
+            }
+            Err("stopped".to_owned())
+        };
+        Exporting::spawn(PathBuf::from("run.csv"), 10, write).unwrap()
+    }
+
+    fn wait(exporting: &Exporting) {
+        while !exporting
+            .worker
+            .as_ref()
+            .is_some_and(JoinHandle::is_finished)
+        {
+            thread::yield_now();
+        }
+    }
+
+    #[test]
+    fn an_export_that_the_user_stops_has_an_outcome_and_one_that_the_end_cuts_off_has_none() {
+        let mut stopped = waiting();
+        stopped.cancel();
+        wait(&stopped);
+        assert_eq!(stopped.outcome(), Some(Err("stopped".to_owned())));
+        let mut suspended = waiting();
+        suspended.shared.prepare_for(Release::Suspend);
+        assert!(!suspended.shared.is_cancelled());
+        let mut cut_off = waiting();
+        cut_off.shared.prepare_for(Release::Exit);
+        wait(&cut_off);
+        assert_eq!((suspended.outcome(), cut_off.outcome()), (None, None));
     }
 
     fn line(port: &str, user: &str, host: &str, path: &str) -> Result<String, &'static str> {
