@@ -1,0 +1,173 @@
+use super::level::{RECENT, WHOLE};
+use super::stretch::FINEST;
+use super::*;
+use nalgebra::Vector3;
+use proptest::prelude::*;
+
+fn moment(step: u64, value: f64) -> Moment {
+    Moment {
+        time_s: step as f64,
+        position: Vector3::new(value, 0.0, 0.0),
+        axle_height: value,
+    }
+}
+
+fn recorded(values: &[f64]) -> Recording {
+    let mut recording = Recording::default();
+    values
+        .iter()
+        .zip(0..)
+        .for_each(|(&value, step)| recording.push(&moment(step, value)));
+    recording
+}
+
+proptest! {
+    #[test]
+    fn every_step_is_in_exactly_one_block_of_a_stretch(length in 1usize..20_000, share in 0.0..1.0f64) {
+        let recording = recorded(&vec![0.0; length]);
+        let since = (share * length as f64).floor();
+        let blocks: Vec<_> = recording.since(since).collect();
+        prop_assert!(blocks[0].begin_s <= since);
+        prop_assert_eq!(blocks[blocks.len() - 1].end_s, (length - 1) as f64);
+        for pair in blocks.windows(2) {
+            prop_assert_eq!(pair[0].end_s + 1.0, pair[1].begin_s);
+        }
+        prop_assert!(blocks.len() <= 2 * FINEST as usize + 16);
+    }
+
+    #[test]
+    fn columns_have_the_same_moments_in_fewer_blocks(
+        length in 1usize..40_000, columns in 1usize..300, ends in (0.0..1.0f64, 0.0..1.2f64)
+    ) {
+        let values: Vec<f64> = (0..length).map(|step| (step as f64 * 0.37).sin()).collect();
+        let recording = recorded(&values);
+        let [since, until] = [ends.0, ends.1].map(|share| (share * length as f64).floor());
+        let column = |time_s: f64| (time_s / length as f64 * columns as f64) as usize;
+        let single: Vec<_> = recording.between(since, until).collect();
+        let joined: Vec<_> = recording.in_columns(since, until, column).collect();
+        let is_inside = |block: &&&Block| column(block.begin_s) == column(block.end_s);
+        let mut rest = single.iter();
+        for block in &joined {
+            let parts: Vec<_> = rest.by_ref().take_while(|part| part.end_s < block.end_s).collect();
+            // take_while() has taken the last part too.
+            prop_assert!(parts.first().is_none_or(|part| part.begin_s == block.begin_s));
+            prop_assert!(parts.is_empty() || is_inside(&block));
+        }
+        prop_assert_eq!(rest.count(), 0);
+        let moments = |blocks: &[&Block]| blocks.iter().map(|block| block.moments()).sum::<u64>();
+        prop_assert_eq!(moments(&single), moments(&joined));
+        // The first and the last of every column are the same, so that lines from column to column are.
+        for pair in joined.windows(2).filter(|pair| column(pair[0].end_s) != column(pair[1].begin_s)) {
+            prop_assert!(single.contains(&pair[0]) && single.contains(&pair[1]));
+        }
+        let most = single.len().min(columns.min(single.len()) * 26 + 16);
+        prop_assert!(joined.len() <= most, "{} of {} in {columns}", joined.len(), single.len());
+        let extent = single.iter().map(|block| block.extent(Curve::X)).reduce(Extent::and);
+        prop_assert_eq!(recording.extent_between(since, until, Curve::X), extent);
+    }
+
+    #[test]
+    fn no_extreme_is_lost(at in 0usize..9_000, length in 9_000usize..10_000) {
+        let mut values = vec![0.0; length];
+        values[at] = 7.0;
+        let recording = recorded(&values);
+        let largest = recording.since(0.0).map(|block| block.extents[0].max).fold(0.0, f64::max);
+        prop_assert_eq!(largest, 7.0);
+    }
+}
+
+/// Checks that from `since` on every moment is in exactly one block, and that the blocks are in order.
+fn covers(recording: &Recording, since: f64) -> Result<(), TestCaseError> {
+    let blocks: Vec<_> = recording.since(since).collect();
+    prop_assert!(blocks[0].begin_s <= since);
+    prop_assert_eq!(
+        blocks[blocks.len() - 1].end_s,
+        (recording.moments() - 1) as f64
+    );
+    for pair in blocks.windows(2) {
+        prop_assert_eq!(pair[0].end_s + 1.0, pair[1].begin_s);
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn cut_back_and_filled_it_is_as_fine_as_ever(
+        length in 1u64..200_000, shares in prop::collection::vec(0.0..1.0f64, 1..4), at in 0.0..1.0f64
+    ) {
+        let value = |step: u64| if step == (at * length as f64) as u64 { 7.0 } else { (step as f64 * 0.01).sin() };
+        let mut recording = Recording::default();
+        (0..length).for_each(|step| recording.push(&moment(step, value(step))));
+        prop_assert_eq!(recording.coarse_since(), None);
+        for share in shares {
+            let wanted = 1 + (share * (length - 1) as f64) as u64;
+            let mut kept = recording.cut_back(wanted);
+            prop_assert!(kept <= wanted);
+            if let Some(from) = recording.coarse_since() {
+                prop_assert!(wanted - from <= length / 8, "{} of {}", wanted - from, length);
+                kept = recording.cut_back(from);
+            }
+            (kept..wanted).for_each(|step| recording.push(&moment(step, value(step))));
+            prop_assert_eq!(recording.moments(), wanted);
+            prop_assert_eq!(recording.coarse_since(), None);
+            for since in [0.0, 0.4, 0.9, 0.999] {
+                let since = (since * wanted as f64).floor();
+                covers(&recording, since)?;
+                let blocks = recording.since(since).count() as f64;
+                prop_assert!(blocks >= (wanted as f64 - since).min(0.45 * COARSE as f64), "{blocks} since {since} of {wanted}");
+            }
+            let largest = (0..wanted).map(value).fold(-1.0, f64::max);
+            prop_assert_eq!(recording.whole().unwrap().extents[0].max, largest);
+            (wanted..length).for_each(|step| recording.push(&moment(step, value(step))));
+            covers(&recording, 0.0)?;
+        }
+    }
+}
+
+#[test]
+fn a_block_knows_its_mean_and_how_often_the_curve_turns() {
+    // Ten swings of a triangle about 5, from 0 to 10 and back in 20 steps each.
+    let triangle = |step: u64| (10.0 - (step % 20) as f64).abs();
+    let values: Vec<f64> = (0..=200).map(triangle).collect();
+    let recording = recorded(&values);
+    let whole = recording.whole().unwrap();
+    assert_eq!((whole.moments(), whole.turns(Curve::X)), (201, 19));
+    let mean = values.iter().sum::<f64>() / 201.0;
+    assert!((whole.mean(Curve::X) - mean).abs() < 1e-12);
+    let turns: u32 = recording
+        .since(0.0)
+        .map(|block| block.turns(Curve::X))
+        .sum();
+    assert_eq!(turns, 19);
+    // It stands still, and goes on in the same direction: no turn.
+    assert_eq!(
+        recorded(&[0.0, 1.0, 1.0, 2.0, 2.0, 1.0])
+            .whole()
+            .unwrap()
+            .turns(Curve::X),
+        1
+    );
+}
+
+#[test]
+fn a_stretch_long_ago_has_more_blocks_than_a_part_of_all() {
+    let values: Vec<f64> = (0..100_000).map(f64::from).collect();
+    let recording = recorded(&values);
+    let blocks: Vec<_> = recording.between(10_000.0, 11_000.0).collect();
+    assert!(blocks[0].begin_s <= 10_000.0 && blocks[blocks.len() - 1].end_s >= 11_000.0);
+    assert!(
+        blocks
+            .windows(2)
+            .all(|pair| pair[0].end_s + 1.0 == pair[1].begin_s)
+    );
+    assert!((100..200).contains(&blocks.len()), "{}", blocks.len());
+}
+
+#[test]
+fn memory_is_bounded() {
+    let mut recording = Recording::default();
+    (0..1_000_000).for_each(|step| recording.push(&moment(step, 0.0)));
+    let kept: usize = recording.levels.iter().map(Level::stored).sum();
+    assert!(kept <= RECENT * 10 + 2 * WHOLE, "{kept} blocks");
+}
