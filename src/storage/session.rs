@@ -9,14 +9,19 @@
 //! The content is two texts, which this module does not interpret: the work, which changes seldom and may be long, and the
 //! place in it, which changes all the time.
 
+mod content;
+mod files;
 mod format;
+mod lock;
 pub(super) mod own;
 mod slot;
 mod text;
 mod writer;
 
-pub use slot::{Check, Content, KeptAside};
-pub(super) use slot::{lock_folder, make_folder};
+pub use content::{Check, Content};
+pub(super) use files::make_folder;
+pub(super) use lock::lock_folder;
+pub use slot::KeptAside;
 pub use text::Text;
 
 use super::at_exit::{self, Registered, Release};
@@ -110,7 +115,7 @@ pub fn resume<T>(
     folder: &Path,
     read: impl FnMut(&Content) -> Result<T, String>,
 ) -> io::Result<Found<T>> {
-    let _lock = slot::lock_folder(folder);
+    let _lock = lock_folder(folder);
     resume_one_of(folder, &earlier(folder)?, read)
 }
 
@@ -123,7 +128,7 @@ pub fn resume_named<T>(
     name: &str,
     read: impl FnMut(&Content) -> Result<T, String>,
 ) -> io::Result<Found<T>> {
-    let _lock = slot::lock_folder(folder);
+    let _lock = lock_folder(folder);
     let named: Vec<_> = earlier(folder)?
         .into_iter()
         .filter(|id| id == name)
@@ -149,11 +154,11 @@ fn resume_one_of<T>(
         in_use_by: Vec::new(),
     };
     for id in ids {
-        let taken = slot::check_own(folder, id).and_then(|()| Slot::take(folder, id));
+        let taken = files::check_own(folder, id).and_then(|()| Slot::take(folder, id));
         let mut slot = match taken {
             Ok(Some(slot)) => slot,
             Ok(None) => {
-                found.in_use_by.extend(slot::owner(folder, id));
+                found.in_use_by.extend(files::owner(folder, id));
                 continue;
             }
             Err(error) => {
@@ -185,8 +190,8 @@ fn resume_one_of<T>(
 /// When `folder` cannot be listed. A `folder` that does not exist yet is no error.
 pub fn list(folder: &Path) -> io::Result<Vec<Listed>> {
     let mut ids = earlier(folder)?;
-    ids.retain(|id| slot::check_own(folder, id).is_ok());
-    let _lock = (!ids.is_empty()).then(|| slot::lock_folder(folder));
+    ids.retain(|id| files::check_own(folder, id).is_ok());
+    let _lock = (!ids.is_empty()).then(|| lock_folder(folder));
     let listed = ids.into_iter().map(|name| listed(folder, name));
     Ok(listed.collect())
 }
@@ -195,35 +200,35 @@ pub fn list(folder: &Path) -> io::Result<Vec<Listed>> {
 pub fn look_at(folder: &Path, name: &str) -> Option<Listed> {
     let mut ids = earlier(folder).ok()?.into_iter();
     let id = ids.find(|id| id == name)?;
-    slot::check_own(folder, &id).ok()?;
-    let _lock = slot::lock_folder(folder);
+    files::check_own(folder, &id).ok()?;
+    let _lock = lock_folder(folder);
     Some(listed(folder, id))
 }
 
 /// Whether a running process holds the session called `name` in `folder`.
 pub fn is_in_use(folder: &Path, name: &str) -> bool {
-    slot::is_in_use(folder, name)
+    files::is_in_use(folder, name)
 }
 
 /// When the session called `name` in `folder` was saved last; long ago if there is none.
 pub fn saved_at(folder: &Path, name: &str) -> SystemTime {
-    slot::written_at(folder, name)
+    files::written_at(folder, name)
 }
 
 fn listed(folder: &Path, name: String) -> Listed {
-    let is_in_use = slot::is_in_use(folder, &name);
+    let is_in_use = files::is_in_use(folder, &name);
     Listed {
-        written: slot::written_at(folder, &name),
+        written: files::written_at(folder, &name),
         is_in_use,
-        owner: slot::owner(folder, &name).filter(|_| is_in_use),
-        content: slot::stored(folder, &name).map(|stored| stored.content),
+        owner: files::owner(folder, &name).filter(|_| is_in_use),
+        content: content::stored(folder, &name).map(|stored| stored.content),
         name,
     }
 }
 
 /// The IDs of all sessions in `folder`, the one saved last first; none where there is no such folder.
 fn earlier(folder: &Path) -> io::Result<Vec<String>> {
-    match slot::sessions(folder) {
+    match files::sessions(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
         Err(error) => {
             let text = format!("cannot look for sessions in {}: {error}", Shown(folder));
@@ -240,13 +245,10 @@ impl Session {
     /// # Errors
     /// When the folder cannot be written to.
     pub fn begin(folder: &Path) -> io::Result<Self> {
-        slot::make_folder(folder)?;
-        let _lock = slot::lock_folder(folder);
+        make_folder(folder)?;
+        let _lock = lock_folder(folder);
         slot::prune(folder);
-        let slot = Slot::new(folder).map_err(|error| {
-            let text = format!("sessions cannot be kept in {}: {error}", Shown(folder));
-            io::Error::new(error.kind(), text)
-        })?;
+        let slot = Slot::new(folder).map_err(|error| files::not_kept(folder, &error))?;
         Self::start(slot)
     }
 

@@ -1,4 +1,4 @@
-//! The files of the sessions in their folder, and the locks that say which process holds which session.
+//! The files of one session, and the lock by which this process holds it.
 //!
 //! ```text
 //! ID.lock    locked by the process that holds the session; kill -9 unlocks it
@@ -13,35 +13,16 @@
 //! written. The ID of a new session is one more than the largest number in the folder; older versions had longer IDs with
 //! hyphens.
 
-use super::text::Text;
+use super::content::{Check, Content, stored};
+use super::files::{check_own, file, make_folder, names, sessions};
+use super::lock::{self, Lock};
 use super::{format, own};
-use crate::text::printable::Shown;
-use signal_hook::consts::SIGXFSZ;
-use std::fs::{self, DirBuilder, File, OpenOptions, TryLockError};
-use std::io::{self, Write};
-use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Once};
-use std::thread;
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 /// The most unused sessions that are kept.
 const MOST_KEPT: usize = 20;
-/// How long to wait for the folder's lock.
-const PATIENCE: Duration = Duration::from_millis(200);
-
-/// The content of a session, as two texts.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Content {
-    /// What changes seldom, such as the runs and their journals. It may be long and is saved only when it has changed.
-    pub work: Text,
-    /// What changes all the time, such as the step at which the lab stands. It is short.
-    pub place: String,
-}
-
-/// Checks whether a content can be read back as what was saved; else says why not.
-pub type Check = fn(&Content) -> Result<(), String>;
-
 /// The files of one session, locked by this process as long as this value lives.
 pub(super) struct Slot {
     folder: PathBuf,
@@ -52,27 +33,6 @@ pub(super) struct Slot {
     written: Option<Content>,
 }
 
-/// What was read from the files of a session.
-pub(super) struct Stored {
-    /// The work and the place.
-    pub content: Content,
-    /// Revision of the work.
-    pub revision: u64,
-    /// Why the place file could not be read, if so; the content then has the older place from the work file.
-    pub damage: Option<String>,
-}
-
-/// A lock file that is locked.
-pub(in crate::storage) struct Lock(File);
-
-impl Drop for Lock {
-    /// Unlocks explicitly: closing alone keeps the lock while a child process that is just being started still has the
-    /// file open.
-    fn drop(&mut self) {
-        let _ = self.0.unlock();
-    }
-}
-
 /// A file that could not be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KeptAside {
@@ -80,115 +40,6 @@ pub struct KeptAside {
     pub path: PathBuf,
     /// Why it could not be read.
     pub reason: String,
-}
-
-/// Creates the folder if it does not exist, accessible to the user alone.
-pub(in crate::storage) fn make_folder(folder: &Path) -> io::Result<()> {
-    DirBuilder::new()
-        .recursive(true)
-        .mode(0o700)
-        .create(folder)
-        .and_then(|()| own::check_folder(folder))
-        .map_err(|error| {
-            let text = format!("sessions cannot be kept in {}: {error}", Shown(folder));
-            io::Error::new(error.kind(), text)
-        })
-}
-
-/// Locks the folder, so that other processes wait before they choose or remove sessions. `None` if another process keeps
-/// the lock longer than 0.2 s: it may have been suspended. Sessions are protected by their own locks; this lock only keeps
-/// a process that briefly locks a session to look at it from being mistaken for its user.
-pub(in crate::storage) fn lock_folder(folder: &Path) -> Option<Lock> {
-    let begin = Instant::now();
-    loop {
-        match take(&folder.join("lock")) {
-            Ok(Some(lock)) => return Some(lock),
-            Ok(None) if begin.elapsed() < PATIENCE => thread::sleep(Duration::from_millis(2)),
-            Ok(None) | Err(_) => return None,
-        }
-    }
-}
-
-/// The sessions in `folder`, the one written last first.
-pub(super) fn sessions(folder: &Path) -> io::Result<Vec<String>> {
-    own::check_folder(folder)?;
-    let mut found: Vec<_> = names(folder)?
-        .iter()
-        .filter_map(|name| name.strip_suffix(".work"))
-        .map(|id| (written_at(folder, id), id.to_owned()))
-        .collect();
-    found.sort_unstable();
-    Ok(found.into_iter().rev().map(|(_, id)| id).collect())
-}
-
-fn names(folder: &Path) -> io::Result<Vec<String>> {
-    let names =
-        fs::read_dir(folder)?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    Ok(names.collect())
-}
-
-/// When the session `id` was written last.
-pub(super) fn written_at(folder: &Path, id: &str) -> SystemTime {
-    let modified = |kind| {
-        fs::symlink_metadata(file(folder, id, kind))
-            .ok()?
-            .modified()
-            .ok()
-    };
-    let times = ["work", "place"].into_iter().filter_map(modified);
-    times.max().unwrap_or(UNIX_EPOCH)
-}
-
-/// Checks that the session `id` is the user's own.
-///
-/// # Errors
-/// When it belongs to another user.
-pub(super) fn check_own(folder: &Path, id: &str) -> io::Result<()> {
-    own::metadata(&file(folder, id, "work")).map(drop)
-}
-
-/// Whether a running process holds the session `id`.
-pub(super) fn is_in_use(folder: &Path, id: &str) -> bool {
-    let lock = own::open(&file(folder, id, "lock"), OpenOptions::new().read(true));
-    lock.is_ok_and(|lock| matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)))
-}
-
-/// Reads the session `id`, whether or not a process holds it.
-///
-/// # Errors
-/// Why the work file cannot be read.
-pub(super) fn stored(folder: &Path, id: &str) -> Result<Stored, String> {
-    let text = own::read(&file(folder, id, "work"))?;
-    let (revision, carried, work) = format::parse_work(&text)
-        .ok_or("it has been cut off or changed, or another version of gyrolab wrote it")?;
-    let (place, damage) = match stored_place(folder, id, revision) {
-        Ok(place) => (place, None),
-        Err(reason) => (None, Some(reason)),
-    };
-    let content = Content {
-        work: Text::from(work),
-        place: place.unwrap_or_else(|| carried.to_owned()),
-    };
-    Ok(Stored {
-        content,
-        revision,
-        damage,
-    })
-}
-
-/// The place written last, if it belongs to the work of that `revision`.
-fn stored_place(folder: &Path, id: &str, revision: u64) -> Result<Option<String>, String> {
-    let path = file(folder, id, "place");
-    if !own::exists(&path) {
-        return Ok(None);
-    }
-    let text = own::read(&path)?;
-    let (of, place) = format::parse_place(&text).ok_or("it has been cut off or changed")?;
-    Ok((of == revision).then(|| place.to_owned()))
-}
-
-fn file(folder: &Path, id: &str, kind: &str) -> PathBuf {
-    folder.join(format!("{id}.{kind}"))
 }
 
 /// Removes all but the newest unused sessions, and lock files of sessions without a work file. What cannot be removed
@@ -205,48 +56,6 @@ pub(super) fn prune(folder: &Path) {
         {
             slot.remove();
         }
-    }
-}
-
-/// Handles SIGXFSZ, so that a write past `ulimit -f` fails, like one to a full disk, instead of ending the process.
-fn handle_file_size_signal() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
-    });
-}
-
-/// Locks the file at `path`; `None` if a running process holds the lock. On a file system without locks it always succeeds.
-fn take(path: &Path) -> io::Result<Option<Lock>> {
-    handle_file_size_signal();
-    let mut options = OpenOptions::new();
-    options.write(true).create(true).truncate(false).mode(0o600);
-    let mut lock = own::open(path, &mut options)?;
-    match lock.try_lock() {
-        Err(TryLockError::WouldBlock) => Ok(None),
-        // The last owner may have removed the file between opening and locking; the lock then protects nothing.
-        Ok(()) | Err(TryLockError::Error(_)) => {
-            // The process number serves messages of other processes; the lock holds without it.
-            let _ = lock
-                .set_len(0)
-                .and_then(|()| write!(lock, "{}", std::process::id()));
-            let lock = Lock(lock);
-            Ok(is_same_file(&lock.0, path).then_some(lock))
-        }
-    }
-}
-
-/// The number of the process that holds, or last held, the session `id`; `None` where its lock file does not tell.
-pub(super) fn owner(folder: &Path, id: &str) -> Option<u32> {
-    own::read(&file(folder, id, "lock")).ok()?.parse().ok()
-}
-
-/// Whether the file at `path` is still `file`.
-fn is_same_file(file: &File, path: &Path) -> bool {
-    let identity = |of: fs::Metadata| (of.dev(), of.ino());
-    match (file.metadata(), fs::symlink_metadata(path)) {
-        (Ok(ours), Ok(there)) => identity(ours) == identity(there),
-        _ => false,
     }
 }
 
@@ -273,7 +82,7 @@ impl Slot {
 
     /// Locks the session `id`; `None` if a running process holds it.
     pub(super) fn take(folder: &Path, id: &str) -> io::Result<Option<Self>> {
-        let lock = take(&file(folder, id, "lock"))?;
+        let lock = lock::take(&file(folder, id, "lock"))?;
         Ok(lock.map(|lock| Self {
             folder: folder.to_owned(),
             id: id.to_owned(),
@@ -319,7 +128,7 @@ impl Slot {
     /// Creates the folder and the lock again after somebody has removed the folder; everything is then written anew.
     fn create_again(&mut self) -> io::Result<()> {
         make_folder(&self.folder)?;
-        if let Some(lock) = take(&self.file("lock"))? {
+        if let Some(lock) = lock::take(&self.file("lock"))? {
             self.lock = lock;
         }
         self.written = None;

@@ -1,6 +1,7 @@
 //! The state that a session's loop, its saving thread and its flush share.
 
-use super::slot::{Check, Content, Slot};
+use super::content::{Check, Content};
+use super::slot::Slot;
 use std::io;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
