@@ -32,13 +32,16 @@
 //! Source: F. Klein and A. Sommerfeld, Ueber die Theorie des Kreisels, chapter VI; E. T. Whittaker, A Treatise on the
 //! Analytical Dynamics of Particles and Rigid Bodies, sections 71-72. The forms used here were derived afresh.
 
+mod start;
+
 use super::part::{Part, Sums};
 use super::phases;
 use super::theta::{Harmonics, Lattice, Parity, SinCos, Zero};
 use super::turning::{Start, Turning};
 use crate::physics::trig::{round, sin_cos};
 use crate::physics::workings::{Listener, Nobody};
-use nalgebra::{Complex, Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{Complex, Matrix3, Quaternion, UnitQuaternion, Vector3};
+use start::{InFrame, cayley_klein, frame_along, quaternion, start, up};
 
 /// Closed-form motion of a heavy symmetric top about a fixed point, under a constant load on its axle.
 ///
@@ -244,91 +247,6 @@ impl LagrangeTop {
     }
 }
 
-/// The direction that the energy and the constant part of L refer to, of a length near one: against the load, or along L
-/// for a free top.
-fn up(load: Vector3<f64>, momentum: Vector3<f64>, axle: Vector3<f64>) -> Vector3<f64> {
-    let candidates = [-load, momentum, axle];
-    let up = candidates
-        .into_iter()
-        .find(|v| v.amax() != 0.0)
-        .unwrap_or(axle);
-    // Scaled by a power of two, which is exact: products of its components then neither vanish nor overflow.
-    let (_, exponent) = libm::frexp(up.amax());
-    up.map(|x| libm::scalbn(x, -exponent))
-}
-
-/// The shortest turn that brings the third axis along `up`, by way of a flip if that is below the horizon.
-fn frame_along(up: Vector3<f64>) -> UnitQuaternion<f64> {
-    if up.z >= 0.0 {
-        UnitQuaternion::new_normalize(Quaternion::new(1.0 + up.z, -up.y, up.x, 0.0))
-    } else {
-        UnitQuaternion::new_normalize(Quaternion::new(-up.y, 1.0 - up.z, 0.0, up.x))
-    }
-}
-
-fn quaternion(orientation: Matrix3<f64>) -> UnitQuaternion<f64> {
-    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(orientation))
-}
-
-/// The frame along the vertical, with the exact vector `up` that it is rounded from.
-#[derive(Clone, Copy)]
-struct InFrame {
-    vertical: UnitQuaternion<f64>,
-    up: Vector3<f64>,
-}
-
-impl InFrame {
-    /// Horizontal part of `v` as x + i y, to full relative accuracy: a small tilt is as well known as a large one.
-    fn level(&self, v: Vector3<f64>) -> Complex<f64> {
-        let across = self.vertical.inverse() * (cross(self.up, v) / self.up.norm());
-        Complex::new(across.y, -across.x)
-    }
-
-    fn vertical_part(&self, v: Vector3<f64>) -> f64 {
-        self.up.dot(&v) / self.up.norm()
-    }
-}
-
-/// a x b with each component to full relative accuracy.
-fn cross(a: Vector3<f64>, b: Vector3<f64>) -> Vector3<f64> {
-    Vector3::new(
-        difference_of_products(a.y, b.z, a.z, b.y),
-        difference_of_products(a.z, b.x, a.x, b.z),
-        difference_of_products(a.x, b.y, a.y, b.x),
-    )
-}
-
-/// a b - c d without loss when the products nearly cancel (Kahan; C.-P. Jeannerod et al., Math. Comp. 82 (2013) 2245).
-fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
-    let product = c * d;
-    libm::fma(a, b, -product) + libm::fma(-c, d, product)
-}
-
-/// The state at the start, in the frame along the vertical.
-fn start(
-    across: f64,
-    load: Vector3<f64>,
-    frame: &InFrame,
-    axle: Vector3<f64>,
-    momentum: Vector3<f64>,
-) -> Start {
-    let level = frame.level(axle) / axle.norm();
-    let rise = frame.vertical_part(axle) / axle.norm();
-    // The larger part of the axle follows the smaller one: a length off by rounding would pass for a tilt.
-    let height = if level.norm_sqr() < 0.5 {
-        (1.0 - level.norm_sqr()).sqrt().copysign(rise)
-    } else {
-        rise
-    };
-    Start {
-        pull: load.norm() / across,
-        axle: level,
-        height,
-        spin: frame.level(momentum) / across,
-        spin_vertical: frame.vertical_part(momentum) / across,
-    }
-}
-
 /// Time from the turning point nearer to the start (negative before it), s, and whether that is the lower one.
 fn origin(turning: &Turning, lattice: &Lattice, start: &Start, one_minus_m: f64) -> (f64, bool) {
     let (above, below) = (turning.start_above, turning.start_below);
@@ -387,19 +305,6 @@ fn zeros(start: &Start, t: &Turning, starts_low: bool) -> (Zero, Zero) {
 
 fn sign(x: f64) -> f64 {
     if x < 0.0 { -1.0 } else { 1.0 }
-}
-
-/// alpha and beta at the start; the smaller one from the axle, which knows it to full relative accuracy.
-fn cayley_klein(start: &Start, turn: UnitQuaternion<f64>) -> (Complex<f64>, Complex<f64>) {
-    let (alpha, beta) = (Complex::new(turn.w, turn.k), Complex::new(turn.i, turn.j));
-    let half_i_axle = start.axle * Complex::new(0.0, 0.5);
-    if start.height > 0.0 {
-        let alpha = alpha * ((1.0 - 0.5 * start.below_top()).sqrt() / alpha.norm_sqr().sqrt());
-        (alpha, half_i_axle / alpha)
-    } else {
-        let beta = beta * ((1.0 - 0.5 * start.above_bottom()).sqrt() / beta.norm_sqr().sqrt());
-        (half_i_axle / beta, beta)
-    }
 }
 
 /// Rotation matrix of a quaternion with squared length 1/`scale`.
