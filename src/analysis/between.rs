@@ -1,11 +1,15 @@
 //! A symmetric top whose time steps are short enough to follow it: its turning points, found between the rows.
 
-use super::swing::{Interpolation, Swing};
-use super::turns::{Measured, ROUNDING, StraightLine, Turn, Turns};
-use crate::physics::observables::Azimuth;
-use crate::physics::{LagrangeTop, SymmetricTop};
+mod equations;
+mod rows;
+
+use super::swing::Swing;
+use super::turns::{Measured, ROUNDING, StraightLine, Turns};
+use crate::physics::{LagrangeTop, SchemeInfo, SymmetricTop};
 use crate::run::Step;
+use equations::Equations;
 use nalgebra::Vector3;
+use rows::{Crossing, Row};
 use std::f64::consts::{PI, TAU};
 
 /// A swing of the height below this part of the squared sine of the tilt is no nutation.
@@ -35,16 +39,12 @@ const BEYOND_ERROR: f64 = 2.0;
 pub(super) struct Between {
     /// One over the moment across the axle, 1/(kg m²).
     per_across: f64,
-    /// The load over that moment, 1/s².
-    pull: Vector3<f64>,
-    time_step_s: f64,
-    /// Rates that the motion is made of, rad/s: of the body, and of the axle.
-    rates: [f64; 2],
+    equations: Equations,
     is_first_order: bool,
     is_exact: bool,
     /// Whether the azimuth's way has to be followed in every time step.
     may_turn_far: bool,
-    /// The least and greatest height of the axle that the start leads to; `None` where it swings.
+    /// The greatest height of the axle, less the least, that the start leads to, where that counts as no swing.
     steady_swing: Option<f64>,
     /// The axle must have gone so far from a turning point to confirm it.
     confirmed_by: f64,
@@ -61,33 +61,6 @@ pub(super) struct Between {
     least_level: f64,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Row {
-    time_s: f64,
-    swing: Swing,
-    azimuth: Azimuth,
-}
-
-/// Two rows with a turning point between them, or a start that stands at one.
-#[derive(Clone, Copy, Debug)]
-struct Crossing {
-    before: Row,
-    after: Option<Row>,
-    missed: i64,
-    is_top: bool,
-}
-
-impl Crossing {
-    /// The height of the row nearer to the turning point.
-    fn height(&self) -> f64 {
-        let [a, b] = [self.before, self.after.unwrap_or(self.before)].map(|row| row.swing.axle.z);
-        match self.is_top {
-            true => a.max(b),
-            false => a.min(b),
-        }
-    }
-}
-
 impl Between {
     /// Instruments for the run that begins at `step`; `None` where its rows do not show the motion between them.
     pub fn new(step: &Step) -> Option<Self> {
@@ -98,46 +71,22 @@ impl Between {
         if !step.loads().friction.is_none() || load.x.hypot(load.y) > 1e-12 * load.z.abs() {
             return None;
         }
-        let (state, motion) = (step.after(), step.motion());
         let per_across = 1.0 / top.across;
-        let start = Row::of(step, per_across);
-        let pull = load * per_across;
-        let (swing, length) = (start.swing, start.swing.momentum.norm());
-        let exact = LagrangeTop::new(
-            top.across,
-            top.along,
-            load,
-            state.orientation,
-            state.momentum,
-        );
-        let spin = step.angular_velocity().norm();
-        let axle_rate = length + pull.norm().sqrt();
-        let is_followed = match (motion.scheme.order, motion.scheme.turns_exactly) {
-            (None, _) => axle_rate * motion.time_step_s < TOO_FAR_RAD,
-            (Some(_), true) => axle_rate * motion.time_step_s < FOLLOWED_RAD,
-            (Some(_), false) => spin.max(axle_rate) * motion.time_step_s < FOLLOWED_RAD,
+        let (start, motion) = (Row::of(step, per_across), step.motion());
+        let (swing, pull) = (start.swing, load * per_across);
+        let axle_rate = swing.momentum.norm() + pull.norm().sqrt();
+        let equations = Equations {
+            pull,
+            time_step_s: motion.time_step_s,
+            rates: [step.angular_velocity().norm(), axle_rate],
         };
-        let is_free = pull.norm() == 0.0;
-        let period = match is_free {
-            true => TAU / length,
-            false => exact.nutation_period().unwrap_or(f64::INFINITY),
-        };
-        if !is_followed || 2.0 * motion.time_step_s >= period {
+        let (period_s, range) = swing_of_height(step, &top, load, &swing);
+        let hides_turn = 2.0 * motion.time_step_s >= period_s;
+        if hides_turn || !is_followed(motion.scheme, &equations) {
             return None;
         }
-        let range = match is_free {
-            true => {
-                let along = swing.momentum / length;
-                2.0 * along.cross(&swing.axle).norm() * along.x.hypot(along.y)
-            }
-            false => {
-                let (low, high) = exact.tilt_range();
-                2.0 * (0.5 * (high + low)).sin() * (0.5 * (high - low)).sin()
-            }
-        };
-        let range = if range.is_finite() { range } else { 0.0 };
         let rate_error = 0.5 * motion.time_step_s * pull.norm() * swing.level();
-        if motion.scheme.order == Some(1) && range * PI / period < BEYOND_ERROR * rate_error {
+        if motion.scheme.order == Some(1) && range * PI / period_s < BEYOND_ERROR * rate_error {
             return None;
         }
         let is_steady = range < (STEADY * swing.level().powi(2)).max(LEAST_SWING);
@@ -150,9 +99,7 @@ impl Between {
         };
         Some(Self {
             per_across,
-            pull,
-            time_step_s: motion.time_step_s,
-            rates: [spin, axle_rate],
+            equations,
             may_turn_far: axle_rate * motion.time_step_s > HIDES_RAD,
             is_first_order: motion.scheme.order == Some(1),
             is_exact: motion.scheme.order.is_none(),
@@ -188,7 +135,7 @@ impl Between {
         let (a, b) = (&before.swing.axle, &now.swing.axle);
         let missed = self.missed;
         if self.may_turn_far || a.x * b.x + a.y * b.y < 0.0 {
-            self.count_missed_turns(&before);
+            self.missed += self.equations.missed_turns(&before, &now);
         }
         self.heights = [self.heights[0].min(b.z), self.heights[1].max(b.z)];
         self.confirm();
@@ -225,7 +172,7 @@ impl Between {
             return;
         }
         if self.turns.wants(self.count) {
-            let turn = self.turn(&candidate);
+            let turn = self.equations.turn(&candidate);
             self.least_level = self.least_level.min(turn.level);
             self.turns.keep(self.count, turn);
         }
@@ -233,115 +180,9 @@ impl Between {
         self.count += 1;
     }
 
-    /// When the motion from `row` on comes to its highest point (else its lowest), s from it, between `low` and `high`.
-    fn time_of_turn(
-        &self,
-        row: &Swing,
-        is_top: bool,
-        guess: f64,
-        [mut low, mut high]: [f64; 2],
-    ) -> (f64, Swing) {
-        let mut time = guess.clamp(low, high);
-        let mut swing = row.after(time, &self.pull);
-        for _ in 0..16 {
-            let (climb, bend) = (swing.climb(), swing.bend(&self.pull));
-            match (climb > 0.0) == is_top {
-                true => low = time,
-                false => high = time,
-            }
-            let next = time - climb / bend;
-            let next = match next >= low && next <= high {
-                true => next,
-                false => 0.5 * (low + high),
-            };
-            let is_found = (next - time).abs() <= f64::EPSILON * self.time_step_s;
-            if !next.is_finite() {
-                break;
-            }
-            (time, swing) = (next, row.after(next, &self.pull));
-            if is_found {
-                break;
-            }
-        }
-        (time, swing)
-    }
-
-    /// The turning point by interpolation, and how far it is off the one by the equations of motion.
-    fn turn(&self, crossing: &Crossing) -> Turn {
-        let (before, step, is_top) = (crossing.before, self.time_step_s, crossing.is_top);
-        let from = before.swing;
-        // The equations of motion from the row before it, and from the one after it.
-        let (guess, range) = match crossing.after {
-            None => (0.0, [-AT_TURN * step, AT_TURN * step]),
-            Some(after) => {
-                let climb = from.climb();
-                (climb / (climb - after.swing.climb()) * step, [0.0, step])
-            }
-        };
-        let (time, swing) = self.time_of_turn(&from, is_top, guess, range);
-        let (mut apart_s, mut apart) = (0.0, 0.0);
-        let (mut off_s, mut off) = (0.0, 0.0);
-        if let Some(after) = crossing.after {
-            let to = after.swing;
-            let (late, other) = self.time_of_turn(&to, is_top, time - step, [-step, 0.0]);
-            (apart_s, apart) = (late + step - time, swing.azimuth_to(&other));
-            let seen = Interpolation::between(&from, &to, step);
-            let at = seen.time_of_turn(is_top);
-            (off_s, off) = (at - time, swing.azimuth_to(&seen.at(at)));
-        }
-        let way = self.way(&from, time);
-        let (bend, level) = (swing.bend(&self.pull), swing.level());
-        let time_s = before.time_s + time + off_s;
-        let [_, of_time, of_azimuth] = ROUNDINGS.map(|n| n * f64::EPSILON);
-        let rounding_s = of_time * (self.rates[1] / bend.abs() + time_s.abs());
-        let rounding = of_azimuth * (1.0 / level + self.rates[1] * time_s);
-        Turn {
-            time_s,
-            time_off_s: off_s,
-            time_error_s: rounding_s.hypot(0.5 * apart_s),
-            azimuth: before.azimuth_rad() + TAU * crossing.missed as f64 + way + off,
-            azimuth_off: off,
-            azimuth_error: rounding.hypot(0.5 * apart),
-            azimuth_rate: swing.azimuth_rate(),
-            level,
-        }
-    }
-
-    /// The azimuth's way in `time_s` from `from` on, rad.
-    fn way(&self, from: &Swing, time_s: f64) -> f64 {
-        let mut at = *from;
-        let pieces = (4.0 * self.rates[1] * time_s.abs()).ceil().max(1.0);
-        let mut way = 0.0;
-        for _ in 0..pieces as u32 {
-            let next = at.after(time_s / pieces, &self.pull);
-            way += at.azimuth_to(&next);
-            at = next;
-        }
-        way
-    }
-
-    /// Whether the azimuth has turned by more than half a turn since `before`, where its change seems to be less.
-    #[cold]
-    fn count_missed_turns(&mut self, before: &Row) {
-        let (from, to) = (before.swing, self.now.swing);
-        let (begin, end) = (from.climb(), to.climb());
-        // Near the vertical it turns fast where the tilt turns back: no piece of the way leads past that point.
-        let turn = if (begin > 0.0) != (end > 0.0) {
-            let guess = begin / (begin - end) * self.time_step_s;
-            self.time_of_turn(&from, begin > 0.0, guess, [0.0, self.time_step_s])
-        } else {
-            (0.0, from)
-        };
-        let rest = self.time_step_s - turn.0;
-        let arrived = turn.1.after(rest, &self.pull);
-        let way = self.way(&from, turn.0) + self.way(&turn.1, rest) + arrived.azimuth_to(&to);
-        let seen = from.azimuth_to(&to);
-        self.missed += ((way - seen) / TAU).round() as i64;
-    }
-
     fn line(&self) -> Option<StraightLine> {
         let (number, crossing) = self.last.as_ref()?;
-        self.turns.line_to(*number, self.turn(crossing))
+        self.turns.line_to(*number, self.equations.turn(crossing))
     }
 
     /// What the error of a scheme may do to a single turning point, s. Where the scheme lets the tilt drift, highest points
@@ -351,14 +192,14 @@ impl Between {
             return 0.0; // more of them show it
         }
         if self.is_first_order {
-            return 0.5 * self.time_step_s;
+            return 0.5 * self.equations.time_step_s;
         }
         if line.intervals.is_multiple_of(2) {
             return 0.0;
         }
         // The error of a step is known in the rate of the height; the drift is that of the height, by so many times more.
         let of_ends = line.first.time_error_s.hypot(line.last.time_error_s);
-        of_ends / (self.rates[1] * self.time_step_s)
+        of_ends / (self.equations.rates[1] * self.equations.time_step_s)
     }
 
     pub fn nutation_period_s(&self) -> Option<Measured> {
@@ -377,7 +218,8 @@ impl Between {
         if self.least_level < PASSES_RAD {
             return None;
         }
-        let of_rates = ROUNDINGS[0] * f64::EPSILON * (self.rates[0] + self.rates[1]);
+        let of_rates =
+            ROUNDINGS[0] * f64::EPSILON * (self.equations.rates[0] + self.equations.rates[1]);
         let Some(line) = self.line() else {
             return self.steady_precession(of_rates);
         };
@@ -404,7 +246,8 @@ impl Between {
         let (level, along) = (self.start.swing.level().powi(2), momentum.dot(&axle));
         // The azimuth's rate is (l_z - l3 u)/(1 - u²) at the height u.
         let by_height = (2.0 * axle.z * (momentum.z - along * axle.z) / level - along) / level;
-        let of_ends = ROUNDINGS[2] * f64::EPSILON * (1.0 / level.sqrt() / time + self.rates[1]);
+        let of_ends =
+            ROUNDINGS[2] * f64::EPSILON * (1.0 / level.sqrt() / time + self.equations.rates[1]);
         let of_swing = 0.25 * by_height * swing;
         Some(Measured {
             value,
@@ -414,20 +257,36 @@ impl Between {
     }
 }
 
-impl Row {
-    fn of(step: &Step, per_across: f64) -> Self {
+/// How the height of the axle swings from the state after `step` on, by nutation or, of a free top, as it turns about L: the
+/// period, s, and the greatest height less the least.
+fn swing_of_height(
+    step: &Step,
+    top: &SymmetricTop,
+    load: Vector3<f64>,
+    swing: &Swing,
+) -> (f64, f64) {
+    let length = swing.momentum.norm();
+    let (period_s, range) = if (load * (1.0 / top.across)).norm() == 0.0 {
+        let along = swing.momentum / length;
+        let range = 2.0 * along.cross(&swing.axle).norm() * along.x.hypot(along.y);
+        (TAU / length, range)
+    } else {
         let state = step.after();
-        Self {
-            time_s: state.time_s,
-            swing: Swing {
-                axle: state.axle(),
-                momentum: state.momentum * per_across,
-            },
-            azimuth: *step.azimuth(),
-        }
-    }
+        let (across, along) = (top.across, top.along);
+        let exact = LagrangeTop::new(across, along, load, state.orientation, state.momentum);
+        let (low, high) = exact.tilt_range();
+        let range = 2.0 * (0.5 * (high + low)).sin() * (0.5 * (high - low)).sin();
+        (exact.nutation_period().unwrap_or(f64::INFINITY), range)
+    };
+    (period_s, if range.is_finite() { range } else { 0.0 })
+}
 
-    fn azimuth_rad(&self) -> f64 {
-        self.azimuth.degrees().to_radians()
+/// Whether the time step is short enough to follow, by the equations of motion, what `scheme` computes from row to row.
+fn is_followed(scheme: &SchemeInfo, equations: &Equations) -> bool {
+    let [spin, axle_rate] = equations.rates.map(|rate| rate * equations.time_step_s);
+    match (scheme.order, scheme.turns_exactly) {
+        (None, _) => axle_rate < TOO_FAR_RAD,
+        (Some(_), true) => axle_rate < FOLLOWED_RAD,
+        (Some(_), false) => spin.max(axle_rate) < FOLLOWED_RAD,
     }
 }
