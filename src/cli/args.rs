@@ -1,97 +1,11 @@
-//! The command line, as clap reads it.
+//! Arguments that several commands have, and those that several files read.
 
-use super::cast::CastArgs;
-use super::figure::FigureArgs;
-use super::fit::FitArgs;
-use super::layout::LayoutArgs;
-use super::manual::ManArgs;
-use super::sweep::SweepArgs;
-use super::verify::VerifyArgs;
-use super::writeup::WriteupArgs;
+use super::values::{frames, length, one_or_more, positive, setting, steps};
 use crate::physics::scheme;
 use clap::builder::PossibleValuesParser;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, ValueEnum};
 use std::num::NonZeroU64;
 use std::path::PathBuf;
-
-/// A terminal lab for the precession of a gyroscope: a report's stepper, better schemes, and any run as CSV.
-#[derive(Debug, Parser)]
-#[command(name = "gyrolab", bin_name = "gyrolab", version, about, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
-pub(super) struct Cli {
-    #[command(subcommand)]
-    pub(super) command: Option<Command>,
-
-    #[command(flatten)]
-    pub(super) workbench: WorkbenchArgs,
-}
-
-const EXAMPLES: &str = "\
-Examples:
-  gyrolab                                           open the lab: the report's Method 2, live
-  gyrolab cusps --paused --at 500                   a screen prepared for the class
-  gyrolab --resume                                  back to where the lab was left, or the line was lost
-  gyrolab --do demo.toml                            play the commands in a file
-  gyrolab lesson is-the-wobble-real                 a lesson beside the running lab
-  gyrolab sessions                                  which labs were left; gyrolab --resume 3 takes the one named 3
-  gyrolab presets                                   what there is to run
-  gyrolab run method-2                              the report's Method 2, how it ends
-  gyrolab run method-2 -o method-2.csv              every step of it as CSV
-  gyrolab run wobble-push --time-step 0.01 -o -
-  gyrolab run method-2.csv -o again.csv             a CSV runs again: its header is the run file";
-
-#[derive(Debug, Subcommand)]
-pub(super) enum Command {
-    /// Run a scenario without a terminal: a summary, or with -o its CSV
-    Run(RunArgs),
-    /// Print the lab's picture at the end of a run, as plain text
-    Show(ShowArgs),
-    /// Hold schemes and time steps against the exact motion: errors, drifts, cost, measured order
-    Compare(CompareArgs),
-    /// Draw runs, or a table of compare, of a sweep or of a fit, on paper: SVG, PDF or PNG
-    Figure(FigureArgs),
-    /// Make a folder for a write-up of a run: CSV, figures, measured numbers beside theory, and how to make it again
-    Writeup(WriteupArgs),
-    /// Compute a CSV again from its header: the same, or the first row that differs
-    Verify(VerifyArgs),
-    /// Record the lab while it carries out a file of commands, as asciinema plays it
-    Cast(CastArgs),
-    /// Run a grid of runs on all cores and write a row for each, or list the shipped sweeps
-    Sweep(SweepArgs),
-    /// Fit keys of a scenario to measured data: values with uncertainties, and whether the model fits
-    Fit(FitArgs),
-    /// List the shipped presets, or print one, or a shipped sweep, as TOML, or shipped measured data as CSV
-    Presets {
-        /// The preset, sweep or measured data to print
-        name: Option<String>,
-    },
-    /// List the sessions that --resume can come back to: name, time, step, whether it is in use, run
-    Sessions {
-        /// Those of gyrolab --folder DIR
-        #[arg(long, value_name = "DIR")]
-        folder: Option<PathBuf>,
-    },
-    /// List the numerical schemes
-    Schemes,
-    /// List the lessons, open the lab with one, or print it for paper
-    Lesson(LessonArgs),
-    /// Validate scenario files, run files, sweep files, the headers of CSVs, files of commands, and lessons (.md), which are played
-    Check {
-        /// Files to look at; a preset is none
-        #[arg(required = true, value_name = "FILE")]
-        files: Vec<PathBuf>,
-    },
-    /// List every key that a scenario or run file may hold; the keys to press are in gyrolab man, and ? in the lab
-    Keys,
-    /// List every number that is read off a run: name, unit, meaning, where it comes from
-    Readouts,
-    /// Print a completion script for a shell
-    Completions {
-        /// The shell
-        shell: clap_complete::Shell,
-    },
-    /// Print the manual: all of it, the page of a command, or a topic
-    Man(ManArgs),
-}
 
 /// What is run, and what is changed in it first.
 #[derive(Debug, Args)]
@@ -214,36 +128,6 @@ pub(super) enum Markers {
     Ascii,
 }
 
-#[derive(Debug, Args)]
-pub(super) struct ShowArgs {
-    /// A preset's name, or a file (.toml or .csv): a scenario, a run file, or a CSV that gyrolab wrote [with --do by default: method-2]
-    #[arg(required_unless_present = "commands")]
-    pub(super) scenario: Option<String>,
-
-    #[command(flatten)]
-    pub(super) changes: Changes,
-
-    /// Show this step instead of the run's end
-    #[arg(long, value_name = "STEP", allow_negative_numbers = true, value_parser = steps)]
-    pub(super) at: Option<u64>,
-
-    /// Show what the commands in this file, [[do]] tables, or of stdin for -, lead to from step 0; gyrolab man lists them
-    #[arg(long = "do", value_name = "FILE")]
-    pub(super) commands: Option<PathBuf>,
-
-    /// Put measured data beside the run: a CSV with a column t_s, or data that come with gyrolab (heidelberg-spin-decay)
-    #[arg(long, value_name = "FILE")]
-    pub(super) measured: Option<String>,
-
-    /// Columns and lines of the picture
-    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "80x24", value_parser = size)]
-    pub(super) size: (u16, u16),
-
-    /// What dots are made of [default: by locale and terminal]
-    #[arg(long, value_enum, value_name = "KIND")]
-    pub(super) markers: Option<Markers>,
-}
-
 /// How long a run is.
 #[derive(Debug, Args)]
 pub(super) struct LengthArgs {
@@ -261,30 +145,6 @@ impl LengthArgs {
     pub(super) fn is_some(&self) -> bool {
         self.steps.is_some() || self.duration.is_some()
     }
-}
-
-#[derive(Debug, Args)]
-pub(super) struct RunArgs {
-    #[command(flatten)]
-    pub(super) scenario: ScenarioArgs,
-
-    /// Write the CSV to this file, or to stdout for -
-    #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
-
-    #[command(flatten)]
-    pub(super) length: LengthArgs,
-
-    #[command(flatten)]
-    pub(super) layout: LayoutArgs,
-
-    /// Give the summary as one JSON object
-    #[arg(long)]
-    pub(super) json: bool,
-
-    /// Replace an existing file
-    #[arg(long)]
-    pub(super) force: bool,
 }
 
 #[derive(Debug, Args)]
@@ -322,86 +182,4 @@ pub(super) struct LessonArgs {
 
     #[command(flatten)]
     pub(super) look: Look,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct CompareArgs {
-    #[command(flatten)]
-    pub(super) scenario: ScenarioArgs,
-
-    #[command(flatten)]
-    pub(super) length: LengthArgs,
-
-    /// The schemes to compare [default: all that make an error]
-    #[arg(long, value_name = "A,B", value_delimiter = ',', value_parser = PossibleValuesParser::new(scheme::names()))]
-    pub(super) schemes: Vec<String>,
-
-    /// The time steps, s [default: the scenario's, and a half, a quarter and an eighth of it]
-    #[arg(long, value_name = "0.1,0.05", value_delimiter = ',', value_parser = positive)]
-    pub(super) time_steps: Vec<f64>,
-
-    /// Write the table as CSV to this file, or to stdout for -
-    #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
-
-    /// Give the table as one JSON object
-    #[arg(long)]
-    pub(super) json: bool,
-
-    /// Replace an existing file
-    #[arg(long)]
-    pub(super) force: bool,
-}
-
-pub(super) fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
-    text.parse()
-        .map_err(|_| "must be a whole number, 1 or more".to_owned())
-}
-
-fn steps(text: &str) -> Result<u64, String> {
-    text.parse()
-        .map_err(|_| "must be a whole number of steps, 0 or more, in digits".to_owned())
-}
-
-fn length(text: &str) -> Result<u64, String> {
-    match text.parse() {
-        Ok(steps) if (1..=i64::MAX as u64).contains(&steps) => Ok(steps),
-        Ok(0) | Err(_) => Err("must be a whole number of steps, 1 or more, in digits".to_owned()),
-        Ok(_) => Err("is more steps than can be counted".to_owned()),
-    }
-}
-
-fn frames(text: &str) -> Result<u32, String> {
-    match text.parse() {
-        Ok(frames) if (1..=60).contains(&frames) => Ok(frames),
-        _ => Err("must be a whole number from 1 to 60".to_owned()),
-    }
-}
-
-fn setting(text: &str) -> Result<String, String> {
-    match text.contains('=') {
-        true => Ok(text.to_owned()),
-        false => Err("must be KEY=VALUE, such as motion.time_step_s=0.05".to_owned()),
-    }
-}
-
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
-        _ => Err("must be a number greater than zero".to_owned()),
-    }
-}
-
-/// The largest picture, columns and lines.
-const LARGEST: u16 = 1000;
-
-pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
-    let number = |text: &str| {
-        text.parse()
-            .ok()
-            .filter(|number| (1..=LARGEST).contains(number))
-    };
-    text.split_once('x')
-        .and_then(|(width, height)| Some((number(width)?, number(height)?)))
-        .ok_or_else(|| format!("must be columns x lines, such as 80x24, each from 1 to {LARGEST}"))
 }

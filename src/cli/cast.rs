@@ -3,9 +3,10 @@
 //! The lab's own clock tells the time: it goes on by the same step from picture to picture, however long the computer needs
 //! for one. Neither settings nor the environment are read, so that a file of commands has one recording.
 
-use super::args::{Changes, Markers, size};
+use super::args::{Changes, Markers};
+use super::new_lab::{DEFAULT, lab};
 use super::progress::{self, Interruption};
-use super::workbench::{DEFAULT, lab};
+use super::values::size;
 use super::{INTERRUPTED, tell};
 use crate::export::Destination;
 use crate::lab::Lab;

@@ -1,8 +1,9 @@
 //! `gyrolab compare`: schemes and time steps against the exact motion.
 
-use super::args::CompareArgs;
+use super::args::{LengthArgs, ScenarioArgs};
 use super::progress::{self, Meter};
 use super::scenario::scenario_of;
+use super::values::positive;
 use super::{INTERRUPTED, one_on_stdout, print};
 use crate::analysis::compare::{ComparisonRow, Table, compare as table_of};
 use crate::analysis::cost::is_affordable;
@@ -14,10 +15,42 @@ use crate::scenario::Scenario;
 use crate::scenario::rescale::MOST_STEPS;
 use crate::text::number::{short, shortest};
 use anyhow::{Context, bail};
+use clap::Args;
+use clap::builder::PossibleValuesParser;
 use std::collections::HashSet;
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
+
+#[derive(Debug, Args)]
+pub(super) struct CompareArgs {
+    #[command(flatten)]
+    pub(super) scenario: ScenarioArgs,
+
+    #[command(flatten)]
+    pub(super) length: LengthArgs,
+
+    /// The schemes to compare [default: all that make an error]
+    #[arg(long, value_name = "A,B", value_delimiter = ',', value_parser = PossibleValuesParser::new(scheme::names()))]
+    pub(super) schemes: Vec<String>,
+
+    /// The time steps, s [default: the scenario's, and a half, a quarter and an eighth of it]
+    #[arg(long, value_name = "0.1,0.05", value_delimiter = ',', value_parser = positive)]
+    pub(super) time_steps: Vec<f64>,
+
+    /// Write the table as CSV to this file, or to stdout for -
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+
+    /// Give the table as one JSON object
+    #[arg(long)]
+    pub(super) json: bool,
+
+    /// Replace an existing file
+    #[arg(long)]
+    pub(super) force: bool,
+}
 
 pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let on_stdout = one_on_stdout("compare", args.output.as_deref(), args.json);

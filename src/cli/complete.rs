@@ -1,7 +1,8 @@
 //! Completion in the shell: what fits after the words that are typed. The script that `gyrolab completions` prints asks
 //! the program itself, so that presets, keys and names are always those of this version.
 
-use super::{command, manual, print};
+use super::manual::topics::names_and_commands;
+use super::{command, print};
 use crate::analysis::readouts::READOUTS;
 use crate::export::columns::{COLUMNS, OPTIONAL_COLUMNS};
 use crate::export::points::POINT_COLUMNS;
@@ -235,7 +236,7 @@ fn free_keys(current: &OsStr) -> Vec<CompletionCandidate> {
 }
 
 fn topics(current: &OsStr) -> Vec<CompletionCandidate> {
-    let topics = manual::names();
+    let topics = names_and_commands(&command());
     named(current, topics.iter().map(|name| (name.as_str(), "")))
 }
 

@@ -1,9 +1,10 @@
 //! `gyrolab figure`: runs, or a table of runs, drawn on paper.
 
-use super::args::{Changes, LengthArgs, ScenarioArgs, positive};
+use super::args::{Changes, LengthArgs, ScenarioArgs};
 use super::layout::time;
 use super::progress::{self, Interruption, Meter};
 use super::scenario::scenario_of;
+use super::values::positive;
 use super::{INTERRUPTED, complain, refuse, tell};
 use crate::analysis::cost::is_affordable;
 use crate::export::Destination;

@@ -1,7 +1,7 @@
 //! The options that say which rows and columns a CSV has.
 
-use super::args::one_or_more;
 use super::refuse;
+use super::values::one_or_more;
 use crate::export::Layout;
 use crate::export::layout::LayoutFile;
 use clap::Args;

@@ -4,6 +4,7 @@
 
 mod args;
 mod cast;
+mod commands;
 mod compare;
 mod complete;
 mod examples;
@@ -13,6 +14,7 @@ mod info;
 mod layout;
 mod lesson;
 mod manual;
+mod new_lab;
 mod notes;
 mod pager;
 mod played;
@@ -23,6 +25,7 @@ mod sessions;
 mod settings;
 mod show;
 mod sweep;
+mod values;
 mod verify;
 mod workbench;
 mod writeup;
@@ -31,10 +34,11 @@ use crate::export::destination::Destination;
 use crate::scenario::presets;
 use crate::text::printable::{is_steering, printable, printable_lines};
 use anyhow::Context;
-use args::{Cli, Command};
+use args::WorkbenchArgs;
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches};
+use commands::{Cli, Command};
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -74,7 +78,7 @@ fn command() -> clap::Command {
 
 fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
     let Some(command) = cli.command else {
-        return workbench::open(&cli.workbench);
+        return open_lab(&cli.workbench);
     };
     match command {
         Command::Run(args) => run::run(&args),
@@ -96,6 +100,16 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Completions { shell } => complete::completions(shell),
         Command::Man(args) => manual::man(&args),
     }
+}
+
+/// Opens the lab, unless a command's name stands behind options, where clap takes it for a scenario's.
+fn open_lab(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
+    let name = args.scenario.as_deref().unwrap_or_default();
+    anyhow::ensure!(
+        Cli::command().find_subcommand(name).is_none(),
+        "{name} is a command, and commands come before their options: gyrolab {name} ..."
+    );
+    workbench::open(args)
 }
 
 /// Wrong usage, as clap counts it.

@@ -1,8 +1,8 @@
 //! A lesson that a command plays without a terminal, and where what comes of it is written.
 
 use super::args::{Changes, LessonArgs, Look};
+use super::new_lab::{DEFAULT, lab};
 use super::progress::{self, Interruption, Meter};
-use super::workbench::{self, DEFAULT};
 use super::{INTERRUPTED, print};
 use crate::export::Destination;
 use crate::lab::Lab;
@@ -18,7 +18,7 @@ pub(super) fn new_lab(look: Look) -> anyhow::Result<Lab> {
         colour: false,
         background: Background::Dark,
     };
-    workbench::lab(DEFAULT, &Changes::default(), look.markers, plain, false)
+    lab(DEFAULT, &Changes::default(), look.markers, plain, false)
 }
 
 pub(super) fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {

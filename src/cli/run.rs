@@ -1,6 +1,7 @@
 //! `gyrolab run`: a run from its start to its end, without a terminal.
 
-use super::args::RunArgs;
+use super::args::{LengthArgs, ScenarioArgs};
+use super::layout::LayoutArgs;
 use super::progress::{self, Interruption, Meter};
 use super::scenario::scenario_of;
 use super::{INTERRUPTED, complain, one_on_stdout, print, tell};
@@ -13,12 +14,37 @@ use crate::scenario::Scenario;
 use crate::text::number::shortest;
 use crate::text::printable::Shown;
 use anyhow::{Context, bail};
+use clap::Args;
 use std::cell::RefCell;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
+
+#[derive(Debug, Args)]
+pub(super) struct RunArgs {
+    #[command(flatten)]
+    pub(super) scenario: ScenarioArgs,
+
+    /// Write the CSV to this file, or to stdout for -
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(super) length: LengthArgs,
+
+    #[command(flatten)]
+    pub(super) layout: LayoutArgs,
+
+    /// Give the summary as one JSON object
+    #[arg(long)]
+    pub(super) json: bool,
+
+    /// Replace an existing file
+    #[arg(long)]
+    pub(super) force: bool,
+}
 
 pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let to_stdout = one_on_stdout("run", args.output.as_deref(), args.json);

@@ -2,8 +2,8 @@
 //! the lab.
 
 use super::args::{Look, WorkbenchArgs};
+use super::new_lab::variable;
 use super::tell;
-use super::workbench::variable;
 use crate::lab::Lab;
 use crate::lab::view::markers::Marker;
 use crate::scenario::Problems;

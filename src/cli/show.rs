@@ -1,8 +1,9 @@
 //! `gyrolab show`: the lab's picture as plain text, at one step or after commands.
 
-use super::args::{Changes, Markers, ShowArgs};
+use super::args::{Changes, Markers};
+use super::new_lab::{DEFAULT, lab};
 use super::progress::{self, Meter};
-use super::workbench::{DEFAULT, lab};
+use super::values::{size, steps};
 use super::{INTERRUPTED, print};
 use crate::lab::Lab;
 use crate::lab::command;
@@ -11,10 +12,41 @@ use crate::run::NotFinite;
 use crate::storage::confined::Confined;
 use crate::tui::screen;
 use anyhow::Context;
+use clap::Args;
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
+
+#[derive(Debug, Args)]
+pub(super) struct ShowArgs {
+    /// A preset's name, or a file (.toml or .csv): a scenario, a run file, or a CSV that gyrolab wrote [with --do by default: method-2]
+    #[arg(required_unless_present = "commands")]
+    pub(super) scenario: Option<String>,
+
+    #[command(flatten)]
+    pub(super) changes: Changes,
+
+    /// Show this step instead of the run's end
+    #[arg(long, value_name = "STEP", allow_negative_numbers = true, value_parser = steps)]
+    pub(super) at: Option<u64>,
+
+    /// Show what the commands in this file, [[do]] tables, or of stdin for -, lead to from step 0; gyrolab man lists them
+    #[arg(long = "do", value_name = "FILE")]
+    pub(super) commands: Option<PathBuf>,
+
+    /// Put measured data beside the run: a CSV with a column t_s, or data that come with gyrolab (heidelberg-spin-decay)
+    #[arg(long, value_name = "FILE")]
+    pub(super) measured: Option<String>,
+
+    /// Columns and lines of the picture
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "80x24", value_parser = size)]
+    pub(super) size: (u16, u16),
+
+    /// What dots are made of [default: by locale and terminal]
+    #[arg(long, value_enum, value_name = "KIND")]
+    pub(super) markers: Option<Markers>,
+}
 
 /// Prints the lab's picture at the end of a run, or after commands.
 pub(super) fn show(args: &ShowArgs) -> anyhow::Result<ExitCode> {

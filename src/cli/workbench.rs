@@ -2,37 +2,28 @@
 
 mod resuming;
 
-use super::args::{Changes, Cli, Color, Look, Markers, Screen, WorkbenchArgs};
-use super::scenario::change;
+use super::args::{Look, WorkbenchArgs};
+use super::new_lab::{DEFAULT, lab, theme, variable};
 use super::show::{Picture, go_to, print_picture};
 use super::{sessions, settings, tell};
 use crate::lab::Lab;
 use crate::lab::command;
-use crate::lab::view::markers::Marker;
-use crate::lab::view::theme::{Background, Theme};
-use crate::lab::view::{FPS, View};
-use crate::scenario::Document;
+use crate::lab::view::FPS;
 use crate::storage::confined::Confined;
 use crate::storage::exporting;
 use crate::storage::settings::Keeper;
 use crate::teach::{Class, Lesson, Page};
 use crate::text::printable::{Shown, printable};
 use crate::tui::app;
-use crate::tui::panes;
 use crate::tui::surroundings::{self, ColourChoice};
 use anyhow::Context;
-use clap::CommandFactory;
 use resuming::{begun, come_back, come_back_to, tell_of_session};
 use std::fs;
 use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 use std::time::Duration;
-
-/// What is opened where nothing is named.
-pub(super) const DEFAULT: &str = "method-2";
 
 /// How long the end waits for the disk before it says that the session is not kept.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -50,10 +41,6 @@ pub(super) fn open_lesson(lesson: &Lesson, page: &Page, look: Look) -> anyhow::R
 /// Opens the lab; without a terminal shows its picture instead.
 pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     let name = args.scenario.as_deref().unwrap_or(DEFAULT);
-    anyhow::ensure!(
-        Cli::command().find_subcommand(name).is_none(),
-        "{name} is a command, and commands come before their options: gyrolab {name} ..."
-    );
     let confined = args.folder.as_deref().map(confined_to).transpose()?;
     if let Some(folder) = &confined {
         folder
@@ -200,58 +187,4 @@ fn tell_of_exports(lab: &Lab) -> io::Result<()> {
         )?;
     }
     Ok(())
-}
-
-/// A lab with what `name` names, changed.
-pub(super) fn lab(
-    name: &str,
-    changes: &Changes,
-    markers: Option<Markers>,
-    theme: Theme,
-    running: bool,
-) -> anyhow::Result<Lab> {
-    // Read once: what is read from a FIFO is not there again.
-    let mut document = Document::open(name)?;
-    // What a change has mended is no scenario before it, and has no note to lose.
-    let file = document.scenario().ok();
-    change(&mut document, changes)?;
-    let scenario = Arc::new(document.scenario()?);
-    let view = View::new(&scenario, marker(markers), theme, &panes::IDS);
-    let mut lab = Lab::new(name, scenario, view, running);
-    if let Some(file) = file {
-        lab.set_file(Arc::new(file));
-    }
-    Ok(lab)
-}
-
-pub(super) fn variable(name: &str) -> Option<String> {
-    std::env::var(name).ok()
-}
-
-fn theme(look: Look) -> Theme {
-    let choice = match look.color {
-        None | Some(Color::Auto) => ColourChoice::Auto,
-        Some(Color::Always) => ColourChoice::Always,
-        Some(Color::Never) => ColourChoice::Never,
-    };
-    let theme = surroundings::theme(choice, variable);
-    let background = match look.background {
-        None => theme.background,
-        Some(Screen::Dark) => Background::Dark,
-        Some(Screen::Light) => Background::Light,
-    };
-    Theme {
-        background,
-        ..theme
-    }
-}
-
-fn marker(markers: Option<Markers>) -> Marker {
-    match markers {
-        None => surroundings::marker(variable),
-        Some(Markers::Braille) => Marker::Braille,
-        Some(Markers::HalfBlock) => Marker::HalfBlock,
-        Some(Markers::Dot) => Marker::Dot,
-        Some(Markers::Ascii) => Marker::Ascii,
-    }
 }

@@ -3,7 +3,7 @@
 mod around;
 mod lab;
 mod roff;
-mod topics;
+pub(super) mod topics;
 
 use super::{command, examples, pager, print, tell};
 use crate::export::Destination;
@@ -52,13 +52,13 @@ pub(super) fn man(args: &ManArgs) -> anyhow::Result<ExitCode> {
     if let Some(text) = topics::text(topic)? {
         return show_text(&text, args);
     }
-    match commands(&gyrolab).find(|command| command.get_name() == topic) {
+    match topics::commands(&gyrolab).find(|command| command.get_name() == topic) {
         Some(command) => {
             let plain = || command.clone().render_long_help().to_string();
             show(&page_of(command)?, plain, args)
         }
         None => {
-            let names = names();
+            let names = topics::names_and_commands(&gyrolab);
             let near = nearest(topic, names.iter().map(String::as_str));
             bail!(
                 "no topic named {}, and no command: {near}",
@@ -68,25 +68,12 @@ pub(super) fn man(args: &ManArgs) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// The topics, and the commands that are none.
-pub(super) fn names() -> Vec<String> {
-    let gyrolab = command();
-    let commands = commands(&gyrolab).map(|command| command.get_name().to_owned());
-    let commands = commands.filter(|name| topics::names().all(|topic| topic != name));
-    topics::names().map(str::to_owned).chain(commands).collect()
-}
-
-fn commands(gyrolab: &Command) -> impl Iterator<Item = &Command> {
-    let commands = gyrolab.get_subcommands();
-    commands.filter(|command| !command.is_hide_set() && command.get_name() != "help")
-}
-
 /// Writes every page into `folder`.
 fn write_all(gyrolab: &Command, folder: &Path, replace: bool) -> anyhow::Result<ExitCode> {
     let cannot = || format!("cannot make the folder {}", Shown(folder));
     std::fs::create_dir_all(folder).with_context(cannot)?;
     let mut pages = vec![("gyrolab.1".to_owned(), page(gyrolab)?)];
-    for command in commands(gyrolab) {
+    for command in topics::commands(gyrolab) {
         let name = format!("gyrolab-{}.1", command.get_name());
         pages.push((name, page_of(command)?));
     }
@@ -136,7 +123,7 @@ fn plain_text(gyrolab: &mut Command) -> String {
             command.clone().render_long_help()
         )
     };
-    commands(gyrolab)
+    topics::commands(gyrolab)
         .map(help)
         .fold(whole, |text, help| text + &help)
 }
@@ -155,7 +142,7 @@ fn page(gyrolab: &Command) -> anyhow::Result<String> {
     let examples = examples.unwrap_or_default();
     let examples = examples.trim_start_matches("Examples:\n");
     page.extend(verbatim("Examples", examples).as_bytes());
-    for command in commands(gyrolab) {
+    for command in topics::commands(gyrolab) {
         let title = format!("gyrolab {}", command.get_name());
         let man = Man::new(command.clone());
         writeln!(page, ".SH \"{}\"", title.to_uppercase())?;

@@ -4,6 +4,7 @@
 use crate::cli::info;
 use crate::export::columns::{COLUMNS, OPTIONAL_COLUMNS};
 use crate::export::points::POINT_COLUMNS;
+use clap::Command;
 use std::fmt;
 
 /// Name, and text.
@@ -22,6 +23,19 @@ const TOPICS: &[(&str, &str)] = &[
 /// The names of the topics.
 pub(super) fn names() -> impl Iterator<Item = &'static str> + Clone {
     TOPICS.iter().map(|(name, _)| *name)
+}
+
+/// The topics, and the commands of `gyrolab` that are none.
+pub(in crate::cli) fn names_and_commands(gyrolab: &Command) -> Vec<String> {
+    let commands = commands(gyrolab).map(|command| command.get_name().to_owned());
+    let commands = commands.filter(|name| names().all(|topic| topic != name));
+    names().map(str::to_owned).chain(commands).collect()
+}
+
+/// The commands of `gyrolab` that have a page.
+pub(super) fn commands(gyrolab: &Command) -> impl Iterator<Item = &Command> {
+    let commands = gyrolab.get_subcommands();
+    commands.filter(|command| !command.is_hide_set() && command.get_name() != "help")
 }
 
 /// The text of the topic `name`, if there is one.

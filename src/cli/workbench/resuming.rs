@@ -1,7 +1,8 @@
 //! The session of a lab: coming back to one, beginning one, and what is said of it on the shell's screen.
 
-use super::{DEFAULT, PATIENCE, marker, new, theme};
+use super::{PATIENCE, new};
 use crate::cli::args::{Look, WorkbenchArgs};
+use crate::cli::new_lab::{DEFAULT, marker, theme};
 use crate::cli::tell;
 use crate::lab::view::View;
 use crate::lab::{Lab, Summary};
