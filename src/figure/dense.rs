@@ -2,9 +2,9 @@
 
 use super::chart::Chart;
 use super::chart::layout::Layout;
-use super::of_runs::{Drawn, Request};
 use super::page::cover::range;
 use super::page::scene::Point;
+use super::request::{Drawn, Request};
 use crate::text::ladder;
 use crate::text::number::{shortest, significant};
 

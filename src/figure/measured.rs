@@ -3,10 +3,11 @@
 use super::chart::legend::longest_name;
 use super::chart::{Axis, Chart, Panel, Series, Style};
 use super::kind::Plotted;
-use super::of_runs::{Figure, Request, Run, charts::both_ranges};
+use super::of_runs::charts::both_ranges;
 use super::page::ink::LABEL_PT;
 use super::page::letters;
 use super::quantity;
+use super::request::{Figure, Request, Run};
 use crate::measured::{self, Curve, Measured, Point, at_times, places, residuals as held_against};
 use crate::run::Clock;
 use crate::scenario::Scenario;

@@ -19,6 +19,7 @@ pub mod of_table;
 pub mod over_time;
 pub mod page;
 pub mod quantity;
+mod request;
 mod space;
 pub mod table;
 

@@ -1,8 +1,8 @@
 //! What runs are called beside each other: by what differs.
 
-use super::of_runs::Run;
 use super::page::ink::LABEL_PT;
 use super::page::letters;
+use super::request::Run;
 use crate::text::number::significant;
 
 /// What of a run may differ from the others.

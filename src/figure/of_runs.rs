@@ -4,62 +4,17 @@ pub(super) mod charts;
 
 use super::chart::Style;
 use super::chart::legend::longest_name;
-use super::course::{self, Course, Wanted};
+use super::course::{self, Wanted};
 use super::dense;
 use super::kind::Kind;
 use super::measured;
 use super::names::names;
 use super::page::letters;
-use super::page::scene::Scene;
+use super::request::Drawn;
+pub use super::request::{Figure, Request, Run};
 use super::space;
-use crate::measured::Measured;
-use crate::scenario::Scenario;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-
-/// What a figure of runs is to show.
-#[derive(Clone, Debug)]
-pub struct Request {
-    /// What of the runs.
-    pub kind: Kind,
-    /// From when on, s.
-    pub from_s: f64,
-    /// Until when, s; `None`: to the end of the longest run.
-    pub to_s: Option<f64>,
-    /// Whether the exact motion is drawn beside them.
-    pub exact: bool,
-    /// What was measured on a run, to be drawn with them.
-    pub measured: Option<Arc<Measured>>,
-    /// Width of the page, pt.
-    pub width_pt: f64,
-}
-
-/// A run that is drawn.
-#[derive(Clone, Debug)]
-pub struct Run {
-    /// What is run.
-    pub scenario: Arc<Scenario>,
-    /// How the user named it.
-    pub named: String,
-}
-
-/// A figure, and what its reader should know of it.
-#[derive(Clone, Debug)]
-pub struct Figure {
-    /// The page.
-    pub scene: Scene,
-    /// Warnings, each a sentence without its end.
-    pub warnings: Vec<String>,
-    /// Which run's numbers stopped being finite, and at which step.
-    pub broke: Option<String>,
-}
-
-/// A run with its numbers, or the exact motion beside it.
-pub(super) struct Drawn {
-    pub name: String,
-    pub style: Style,
-    pub course: Course,
-}
 
 /// The runs of a figure with their numbers.
 struct Played {
@@ -115,29 +70,6 @@ pub fn figures(
         }
     }
     Ok(Some(figures.into_iter().flatten().collect()))
-}
-
-impl Request {
-    /// Whether both are drawn from the same numbers of the runs under the same names.
-    fn is_alike(&self, other: &Self) -> bool {
-        let alike = |it: &Self| {
-            let is_of_runs = !matches!(it.kind, Kind::Residuals);
-            (
-                it.from_s,
-                it.to_s,
-                it.width_pt,
-                it.exact,
-                it.is_beside(),
-                is_of_runs,
-            )
-        };
-        alike(self) == alike(other)
-    }
-
-    /// Whether something is drawn beside the runs, from which a single one is told by its name.
-    fn is_beside(&self) -> bool {
-        self.exact || self.measured.is_some()
-    }
 }
 
 /// Plays `runs` for figures of those `kinds`.

@@ -11,10 +11,10 @@ use super::chart::layout::EDGE;
 use super::chart::legend::Legend;
 use super::chart::ticks::{Tick, Ticks};
 use super::dense;
-use super::of_runs::{Drawn, Request, Run};
 use super::page::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
 use super::page::scene::{Color, Pen, Point, Scene};
 use super::quantity;
+use super::request::{Drawn, Request, Run};
 use crate::observe::camera::{Camera, View};
 use nalgebra::Vector3;
 

@@ -1,6 +1,5 @@
 //! Dotted keys: the way to a value in a table, with numbers from 0 for the places in arrays (`push.0.force_N`).
 
-use super::keys;
 use super::problem::Problem;
 use toml::Value;
 
@@ -24,6 +23,15 @@ pub(super) fn names(key: &str) -> Result<Vec<&str>, Problem> {
     }
 }
 
+/// `name` below the dotted path `under`.
+pub fn join(under: &str, name: &str) -> String {
+    if under.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{under}.{name}")
+    }
+}
+
 /// The rule that a number beyond the end of an array of `length` elements breaks.
 pub(super) fn past_the_end(length: usize) -> String {
     format!("leads past the end: the array has {length} elements, numbered from 0")
@@ -41,7 +49,7 @@ pub fn set_key(table: &mut toml::Table, key: &str, value: Value) -> Result<(), P
     let mut path = String::new();
     let mut inside = Place::Table(table);
     for (index, name) in way.iter().enumerate() {
-        path = keys::join(&path, name);
+        path = join(&path, name);
         let next_is_number = names[index + 1].parse::<usize>().is_ok();
         let empty = if next_is_number {
             Value::Array(Vec::new())
@@ -52,7 +60,7 @@ pub fn set_key(table: &mut toml::Table, key: &str, value: Value) -> Result<(), P
             Value::Table(table) => Place::Table(table),
             Value::Array(array) => Place::Array(array),
             other => {
-                let rule = format!("holds no {}", keys::join("", names[index + 1]));
+                let rule = format!("holds no {}", join("", names[index + 1]));
                 return Err(Problem::with_value(path, other, rule));
             }
         };

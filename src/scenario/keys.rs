@@ -253,15 +253,6 @@ const SHAPES: [&str; solids::FORMS.len()] = solids::names();
 
 const SCHEME_NAMES: [&str; scheme::SCHEMES.len()] = scheme::names();
 
-/// `name` below the dotted path `under`.
-pub fn join(under: &str, name: &str) -> String {
-    if under.is_empty() {
-        name.to_owned()
-    } else {
-        format!("{under}.{name}")
-    }
-}
-
 /// The row of the dotted `key`, numbers for places in arrays, and what a value there may be: of a number in a vector any
 /// finite number.
 ///

@@ -4,6 +4,7 @@ use super::problem::nearest;
 use crate::text::printable::is_steering;
 use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole, WholeOr, Words};
 use Range::{NotNegative, Positive};
+use nalgebra::Vector3;
 use toml::Value;
 
 /// Characters of a name, a title or another text on one line, at most.
@@ -200,4 +201,9 @@ fn check_word(word: &str, words: &[&str]) -> Result<(), String> {
         String::new()
     };
     Err(format!("must be one of {}{near}", words.join(", ")))
+}
+
+/// `vector` as the value of a key that holds one.
+pub(crate) fn vector(vector: &Vector3<f64>) -> Value {
+    Value::Array(vector.iter().map(|&number| Value::Float(number)).collect())
 }

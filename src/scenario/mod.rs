@@ -32,6 +32,7 @@ mod tables;
 
 pub use document::Document;
 pub use file::ScenarioFile;
+pub(crate) use kind::vector;
 pub use model::{Body, Edit, Motion, Scenario, Touches};
 pub use problem::{Problem, Problems};
 pub use pushes::{Push, Pushes, Window};

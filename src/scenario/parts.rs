@@ -1,8 +1,9 @@
 //! The parts of a scenario, each from its table in the file: points that exist, an inertia that can be inverted, pushes
 //! that say how long they act.
 
+use super::dotted::join;
 use super::file::{BodyFile, MotionFile, PushFile};
-use super::keys::{self, GRAVITY, MOST_POINTS};
+use super::keys::{GRAVITY, MOST_POINTS};
 use super::model::{Body, Motion};
 use super::problem::{Found, Problem};
 use super::pushes::Pushes;
@@ -92,7 +93,7 @@ impl Named {
     /// What is wrong with the part of this index, whose keys are those in its table.
     fn refuse(&mut self, problems: Vec<Problem>, index: usize) {
         for problem in problems {
-            let key = keys::join(&format!("body.part.{index}"), &problem.key);
+            let key = join(&format!("body.part.{index}"), &problem.key);
             let key = key.trim_end_matches('.').to_owned();
             self.problems.add(|| Problem { key, ..problem });
         }

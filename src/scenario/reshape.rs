@@ -3,8 +3,8 @@
 
 use super::dotted::find;
 use super::file::PartFile;
+use super::kind::vector;
 use super::solids::{self, has_dimension};
-use super::start::vector;
 use crate::physics::part::Shape;
 use nalgebra::Vector3;
 use toml::{Table, Value};

@@ -1,8 +1,8 @@
 //! The solid parts of a body: from `[[body.part]]` to [`Part`], with the dimensions that each shape has.
 
 use super::file::PartFile;
+use super::kind::vector;
 use super::problem::Problem;
-use super::start::vector;
 use crate::physics::part::{Part, PartError, Shape};
 use crate::text::number::shortest;
 use nalgebra::Vector3;

@@ -4,6 +4,7 @@
 use super::dotted::find;
 use super::file::{Frame, PartFile, StartFile};
 use super::keys::STATED;
+use super::kind::vector;
 use super::model::{Body, Scenario};
 use super::problem::Problem;
 use super::rotor;
@@ -286,8 +287,4 @@ pub(super) fn tell_other_way(table: &mut Table, key: &str, value: &Value, now: &
     if let Some(Value::Table(table)) = table.get_mut("start") {
         table.insert(name.to_owned(), told);
     }
-}
-
-pub(crate) fn vector(vector: &Vector3<f64>) -> Value {
-    Value::Array(vector.iter().map(|&number| Value::Float(number)).collect())
 }

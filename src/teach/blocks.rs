@@ -6,7 +6,7 @@ use super::lesson::{Asked, Check, Compare, Keep, Predict, Setup};
 use super::names::Names;
 use crate::lab::command::{Command, Placed};
 use crate::scenario::Problem;
-use crate::scenario::keys;
+use crate::scenario::dotted::join;
 use crate::text::printable::is_steering;
 use crate::work::expression::Expression;
 use content::Content;
@@ -113,7 +113,7 @@ pub(super) fn setup(
             }),
             Err(problems) => {
                 for problem in problems {
-                    let key = keys::join(name, &problem.key);
+                    let key = join(name, &problem.key);
                     let key = key.trim_end_matches('.').to_owned();
                     content.refuse(Problem { key, ..problem });
                 }
@@ -153,7 +153,7 @@ fn keep(content: &mut Content, names: &mut Names, page: usize, known_from: usize
     let earlier = names.clone();
     let mut kept = Vec::new();
     for (name, value) in table {
-        let key = keys::join(KEEP, &name);
+        let key = join(KEEP, &name);
         if let Err(rule) = names.keep(&name, known_from) {
             content.refuse(Problem::at(key, rule));
             continue;

@@ -4,9 +4,9 @@
 mod offered;
 
 use crate::physics::scheme;
-use crate::scenario::dotted::{find, set_key};
+use crate::scenario::dotted::{find, join, set_key};
 use crate::scenario::file::{BodyFile, ScenarioFile};
-use crate::scenario::keys::{EDITABLE_MOTION, InLab, KEYS, Key, Kind, Nudge, Range, join};
+use crate::scenario::keys::{EDITABLE_MOTION, InLab, KEYS, Key, Kind, Nudge, Range};
 use crate::scenario::{Document, Problems, Scenario, nudge};
 use crate::text::number::shortest;
 use crate::text::printable::brief;

@@ -5,7 +5,8 @@ use super::layout::Placed;
 use crate::figure::page::clip::clipped;
 use crate::figure::page::ink::{Frame, at};
 use crate::figure::page::scene::{Path, Pen, Point, Scene};
-use crate::figure::page::thin::{Thinned, plane_curve, simplified};
+use crate::figure::page::simplify::simplified;
+use crate::figure::page::thin::{Thinned, plane_curve};
 
 /// Width of a column of which only first, lowest, highest and last point are drawn, pt. It is well below the width of a line,
 /// and below a dot at 300 dpi.

@@ -1,9 +1,9 @@
 //! The charts of runs: their curves over time, their paths from above.
 
-use super::{Drawn, Request, Run};
 use crate::figure::chart::layout::Layout;
 use crate::figure::chart::{Axis, Chart, Panel, Series};
 use crate::figure::kind::Plotted;
+use crate::figure::request::{Drawn, Request, Run};
 use crate::figure::{dense, quantity};
 use crate::run::Truth;
 use std::sync::Arc;

@@ -4,7 +4,7 @@
 //! again. The grid is finer than the dots of a printer, and what it cannot tell apart is one area.
 
 use super::scene::{Path, Point, Segment};
-use super::thin::simplified;
+use super::simplify::simplified;
 
 /// Sides of a cell, pt: at 1200 and at 600 dots an inch. The coarser one is taken where the finer one gives too many points.
 const CELLS_PT: [f64; 2] = [0.06, 0.12];

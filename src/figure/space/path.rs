@@ -3,8 +3,8 @@
 use super::{Space, round};
 use crate::figure::chart::axis::Scale;
 use crate::figure::chart::curve;
-use crate::figure::of_runs::Drawn;
 use crate::figure::page::scene::{Color, Pen, Point, Scene};
+use crate::figure::request::Drawn;
 use foldhash::fast::FixedState;
 use nalgebra::Vector3;
 use std::collections::HashSet;

@@ -3,6 +3,7 @@
 use super::write::map;
 use super::{Command, Force, Place, PushChoice};
 use crate::lab::numbers;
+use crate::scenario::dotted::join;
 use crate::scenario::keys::{self, Kind, Range};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Problem, presets};
@@ -107,9 +108,7 @@ pub(super) fn field<T>(
     read: impl FnOnce(&Value) -> Result<T, Vec<Problem>>,
 ) -> Result<Option<T>, Vec<Problem>> {
     let below = |problem: Problem| Problem {
-        key: keys::join(name, &problem.key)
-            .trim_end_matches('.')
-            .to_owned(),
+        key: join(name, &problem.key).trim_end_matches('.').to_owned(),
         ..problem
     };
     let value = table.get(name).map(read).transpose();
@@ -167,7 +166,7 @@ pub(super) fn set(value: &Value) -> Read {
 /// The dotted key of the first value in `value`, which stands at `key`.
 fn first_inside(key: &str, value: &Value) -> String {
     match value.as_table().and_then(|table| table.iter().next()) {
-        Some((name, inner)) => first_inside(&keys::join(key, name), inner),
+        Some((name, inner)) => first_inside(&join(key, name), inner),
         None => key.to_owned(),
     }
 }

@@ -12,6 +12,7 @@ mod near;
 mod part;
 mod phases;
 mod scheme;
+mod series;
 mod sliding;
 mod taylor;
 mod theta;

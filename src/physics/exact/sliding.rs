@@ -4,7 +4,7 @@
 //! quadratic friction has a kink, at a spin of zero, the series ends: it is begun anew with the other sign, or, where dry
 //! friction is strong enough, with the torque that holds the spin at zero, until it is not strong enough any more.
 
-use super::taylor::{ORDER, convolve};
+use super::series::{ORDER, convolve};
 use crate::physics::Damping;
 use crate::physics::loads::axial;
 use nalgebra::{Matrix3, Vector3};

@@ -15,13 +15,12 @@
 //! Source: A. Jorba and M. Zou, A software package for the numerical integration of ODEs by means of high-order Taylor
 //! methods, Experimental Mathematics 14 (2005) 99-117.
 
+use super::series::{ORDER, convolve};
 use super::sliding::{Before, Known, Sliding};
 use crate::physics::Damping;
 use crate::physics::loads::axial;
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-/// Order of the series. At 53 bits the cost per second of motion is lowest near 20 (Jorba and Zou, section 3.2).
-pub(super) const ORDER: usize = 22;
 /// Size of the last term of a step against the whole: below rounding, so that rounding alone is left.
 const LAST_TERM: f64 = f64::EPSILON / 16.0;
 
@@ -301,14 +300,6 @@ impl Rubbing {
             friction: self.sliding.before(),
         });
     }
-}
-
-/// The k-th coefficient of a product of two series, from the products of their coefficients.
-pub(super) fn convolve<T: core::ops::Add<Output = T>>(
-    k: usize,
-    product: impl Fn(usize, usize) -> T,
-) -> T {
-    (1..=k).fold(product(0, k), |sum, i| sum + product(i, k - i))
 }
 
 /// The rotation matrix as a bilinear form of two quaternions, half of the symmetric one; summed over both it is the matrix.

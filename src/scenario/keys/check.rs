@@ -1,6 +1,7 @@
 //! Checks files against the table of keys.
 
-use super::{KEYS, Key, join};
+use super::{KEYS, Key};
+use crate::scenario::dotted::join;
 use crate::scenario::problem::{Found, Problem, nearest};
 use std::collections::HashMap;
 use std::sync::LazyLock;

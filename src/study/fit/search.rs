@@ -3,8 +3,8 @@
 use super::free::Free;
 use super::levenberg::{self, Bounds, Failure, Minimum, Problem, Stop};
 use super::model::Model;
+use super::quality::{self, Quality};
 use super::solution::{SILENT, Solution};
-use super::verdict::{self, Quality};
 use super::weights::Weights;
 use crate::measured::Residual;
 use crate::text::number::significant;
@@ -196,7 +196,7 @@ fn finished(
             Quality::unweighted(sum.sqrt() * unit, freedom)
         }
     };
-    let scattered = || verdict::variance(sum, freedom);
+    let scattered = || quality::variance(sum, freedom);
     let variance = weights.are_stated.then_some(1.0).or_else(scattered);
     let places = model.free.iter().enumerate();
     let keys = places.map(|(index, free)| Fitted {

@@ -2,6 +2,7 @@
 
 use super::file::VaryFile;
 use crate::scenario::document::toml_or_text;
+use crate::scenario::dotted::join;
 use crate::scenario::keys::{self, Kind};
 use crate::scenario::{Problem, Problems};
 use crate::text::number::rounded;
@@ -29,7 +30,7 @@ impl Axis {
     /// # Errors
     /// A key that there is not, values that it cannot have, a range without end or count; `place` is where it stands.
     pub(super) fn new(vary: &VaryFile, place: &str) -> Result<Self, Vec<Problem>> {
-        let at = |name: &str| keys::join(place, name);
+        let at = |name: &str| join(place, name);
         let kind = kind(&vary.key).map_err(|rule| {
             let key = Value::String(vary.key.clone());
             vec![Problem::with_value(at("key"), &key, rule)]

@@ -1,7 +1,7 @@
 //! What differs between two sweeps, for one who meant them to be the same.
 
 use crate::scenario::document::Document;
-use crate::scenario::keys::join;
+use crate::scenario::dotted::join;
 use crate::text::printable::brief;
 use toml::{Table, Value};
 

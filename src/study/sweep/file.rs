@@ -1,7 +1,7 @@
 //! The shape of sweep files, read with a place for everything that is wrong.
 
 use crate::scenario::document::Document;
-use crate::scenario::keys::join;
+use crate::scenario::dotted::join;
 use crate::scenario::problem::nearest;
 use crate::scenario::{Problem, Problems, ScenarioFile};
 use serde::Serialize;

@@ -1,9 +1,9 @@
 //! Which values of a scenario are listed, and the values that a file implies by leaving keys out.
 
-use crate::scenario::dotted::find;
-use crate::scenario::keys::{Key, join};
+use crate::scenario::dotted::{find, join};
+use crate::scenario::keys::Key;
 use crate::scenario::solids::has_dimension;
-use crate::scenario::{Scenario, start};
+use crate::scenario::{Scenario, start, vector};
 use nalgebra::Vector3;
 use toml::{Table, Value};
 
@@ -13,10 +13,10 @@ pub(super) fn present(key: &Key, place: &str, table: &Table, scenario: &Scenario
     let start = &scenario.start;
     let spin = || scenario.spin_rad_per_s(start);
     match key.path {
-        "start.momentum_Js" => Some(start::vector(&start.momentum)),
+        "start.momentum_Js" => Some(vector(&start.momentum)),
         "start.spin_rpm" => Some(start::rpm(spin()).into()),
         "start.spin_rad_per_s" => Some(spin().into()),
-        "body.part.*.axis" => Some(start::vector(&Vector3::z())),
+        "body.part.*.axis" => Some(vector(&Vector3::z())),
         "body.part.*.length_m" => is_dimension(place, table).then_some(Value::Float(0.0)),
         _ => None,
     }

@@ -1,0 +1,76 @@
+//! What a figure of runs is to show, and what it is drawn from.
+
+use super::chart::Style;
+use super::course::Course;
+use super::kind::Kind;
+use super::page::scene::Scene;
+use crate::measured::Measured;
+use crate::scenario::Scenario;
+use std::sync::Arc;
+
+/// What a figure of runs is to show.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// What of the runs.
+    pub kind: Kind,
+    /// From when on, s.
+    pub from_s: f64,
+    /// Until when, s; `None`: to the end of the longest run.
+    pub to_s: Option<f64>,
+    /// Whether the exact motion is drawn beside them.
+    pub exact: bool,
+    /// What was measured on a run, to be drawn with them.
+    pub measured: Option<Arc<Measured>>,
+    /// Width of the page, pt.
+    pub width_pt: f64,
+}
+
+/// A run that is drawn.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// What is run.
+    pub scenario: Arc<Scenario>,
+    /// How the user named it.
+    pub named: String,
+}
+
+/// A figure, and what its reader should know of it.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// The page.
+    pub scene: Scene,
+    /// Warnings, each a sentence without its end.
+    pub warnings: Vec<String>,
+    /// Which run's numbers stopped being finite, and at which step.
+    pub broke: Option<String>,
+}
+
+/// A run with its numbers, or the exact motion beside it.
+pub(super) struct Drawn {
+    pub name: String,
+    pub style: Style,
+    pub course: Course,
+}
+
+impl Request {
+    /// Whether both are drawn from the same numbers of the runs under the same names.
+    pub(super) fn is_alike(&self, other: &Self) -> bool {
+        let alike = |it: &Self| {
+            let is_of_runs = !matches!(it.kind, Kind::Residuals);
+            (
+                it.from_s,
+                it.to_s,
+                it.width_pt,
+                it.exact,
+                it.is_beside(),
+                is_of_runs,
+            )
+        };
+        alike(self) == alike(other)
+    }
+
+    /// Whether something is drawn beside the runs, from which a single one is told by its name.
+    pub(super) fn is_beside(&self) -> bool {
+        self.exact || self.measured.is_some()
+    }
+}

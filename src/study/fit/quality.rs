@@ -1,0 +1,72 @@
+//! How well a model fits its data, in numbers.
+
+use crate::measured::Residual;
+use statrs::function::gamma::checked_gamma_ur;
+
+/// Below this probability a model does not fit; above 1 less this, the uncertainties are too large.
+pub(super) const RARE: f64 = 0.01;
+/// The fewest degrees of freedom from which the scatter of data without uncertainties says how uncertain they are: with
+/// fewer, two data that agree by chance would make the keys as sure as one likes.
+pub(super) const LEAST_FREEDOM: u64 = 3;
+
+/// How well a model fits its data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quality {
+    /// The sum of the squared residuals in units of their uncertainties; `None` where none are stated.
+    pub chi_squared: Option<f64>,
+    /// How many data there are beyond those that the fitted values take up.
+    pub degrees_of_freedom: u64,
+    /// The probability that a model that is right has so large a chi^2 or a larger one.
+    pub probability: Option<f64>,
+    /// The largest residual in units of its uncertainty.
+    pub worst: Option<f64>,
+    /// The scatter of data without uncertainties about the model, in their unit: the root of the sum of the squared residuals
+    /// over the degrees of freedom.
+    pub scatter: Option<f64>,
+}
+
+/// The variance that data without uncertainties have by their scatter, of which `sum` is that of the squares; `None` where it
+/// cannot be stated.
+pub(super) fn variance(sum: f64, freedom: u64) -> Option<f64> {
+    (freedom >= LEAST_FREEDOM).then(|| sum / freedom as f64)
+}
+
+impl Quality {
+    /// Of data with uncertainties.
+    pub(super) fn weighted(
+        chi_squared: f64,
+        degrees_of_freedom: u64,
+        residuals: &[Residual],
+    ) -> Self {
+        let half = 0.5 * degrees_of_freedom as f64;
+        let probability = match degrees_of_freedom {
+            0 => None,
+            _ => checked_gamma_ur(half, 0.5 * chi_squared).ok(),
+        };
+        let worst = residuals.iter().filter_map(Residual::in_sigmas);
+        Self {
+            chi_squared: Some(chi_squared),
+            degrees_of_freedom,
+            probability: probability.filter(|probability| probability.is_finite()),
+            worst: worst.map(f64::abs).reduce(f64::max),
+            scatter: None,
+        }
+    }
+
+    /// Whether the model fits, where that can be said: its chi^2 is not rare. Uncertainties that are too large are no reason
+    /// against it.
+    pub fn fits(&self) -> Option<bool> {
+        self.probability.map(|probability| probability >= RARE)
+    }
+
+    /// Of data without; `size` is the root of the sum of their squared residuals, in their unit.
+    pub(super) fn unweighted(size: f64, degrees_of_freedom: u64) -> Self {
+        Self {
+            chi_squared: None,
+            degrees_of_freedom,
+            probability: None,
+            worst: None,
+            scatter: (degrees_of_freedom > 0).then(|| size / (degrees_of_freedom as f64).sqrt()),
+        }
+    }
+}
