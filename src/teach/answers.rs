@@ -1,7 +1,7 @@
 //! What a student predicted in a lesson beside what came out, to hand in.
 
-use super::class::Place;
 use super::lesson::{Block, Compare, Lesson, Page, Predict};
+use super::place::Place;
 use super::play::{GoOn, Walk};
 use crate::lab::Lab;
 use crate::scenario::Problem;

@@ -1,8 +1,8 @@
 //! The lessons of a lab: the list of them, the one that is taken, and where the others were left.
 
-use super::predictions::Predictions;
+use super::place::Place;
 use super::taken::Taken;
-use super::{Kept, page, reading, shipped};
+use super::{page, reading, shipped};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
 use crate::lab::sheet::Sheet;
@@ -37,26 +37,6 @@ enum Shown {
         from: Option<String>,
     },
     Lesson(Box<Taken>),
-}
-
-/// Where a lesson was left.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Place {
-    /// The number of the page, from 1.
-    pub page: usize,
-    /// What was predicted.
-    #[serde(default)]
-    pub predictions: Predictions,
-    /// The numbers that were kept.
-    #[serde(default)]
-    pub kept: Kept,
-    /// Whether its last page was opened.
-    #[serde(default)]
-    pub has_ended: bool,
-    /// When it was opened first: seconds since 1970 (UTC).
-    #[serde(default)]
-    pub began_unix_s: u64,
 }
 
 /// What a session keeps of the lessons.

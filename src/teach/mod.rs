@@ -23,6 +23,7 @@ pub mod markdown;
 pub mod names;
 mod opening;
 pub mod page;
+pub mod place;
 pub mod play;
 pub mod predictions;
 pub mod reading;

@@ -1,8 +1,8 @@
 //! The page of a lesson, and the list of lessons, as a sheet beside the panes.
 
-use super::class::Place;
 use super::lesson::{Asked, Block, Compare, Page, Predict};
 use super::markdown::paragraphs;
+use super::place::Place;
 use super::taken::Taken;
 use super::{reading, shipped};
 use crate::lab::Lab;

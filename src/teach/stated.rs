@@ -1,8 +1,8 @@
 //! What a page states: its texts with the numbers that the run had when it had arrived where the page wants it. They stay
 //! as they are while the student plays on.
 
-use super::class::Place;
 use super::lesson::{Block, Compare, Lesson};
+use super::place::Place;
 use crate::lab::Lab;
 use std::collections::BTreeMap;
 

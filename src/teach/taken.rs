@@ -2,10 +2,10 @@
 
 mod keys;
 
-use super::class::Place;
 use super::clock::{self, Clock};
 use super::lesson::{Lesson, Page, Predict};
 use super::names::value;
+use super::place::Place;
 use super::stage::Stage;
 use super::stated::Stated;
 use super::watch::Watch;

@@ -1,13 +1,11 @@
 //! The main loop: it carries out what keys mean, advances the run with time, and draws a frame when something has changed.
 
-use crate::lab::action::Action;
 use crate::lab::{Lab, Request};
 use crate::storage::session::Session;
 use crate::teach::Class;
-use crate::tui::keymap::{self, Key};
 use crate::tui::mouse::Pointer;
 use crate::tui::pacing::Pacing;
-use crate::tui::panes::{self, help};
+use crate::tui::press::press;
 use crate::tui::screen;
 use crate::tui::terminal::{Event, Screen};
 use ratatui::layout::Rect;
@@ -167,20 +165,4 @@ pub fn do_in_class(
         other => return Some(other),
     }
     None
-}
-
-/// Carries out the action of `key`, or shows a message that it has none.
-pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
-    match keymap::action_with(panes::keys_of(lab), lab.on_top().mode(), key) {
-        Some(Action::DoEntry) => help::do_entry(lab),
-        Some(action) => {
-            let request = lab.update(action);
-            help::limit(lab);
-            request
-        }
-        None => {
-            lab.refuse(keymap::refusal(lab.on_top().mode(), key));
-            None
-        }
-    }
 }

@@ -9,7 +9,7 @@
 //! - [`app`] is the loop, [`pacing`] says how often it draws, [`terminal`] is the only file that talks to the terminal,
 //!   [`surroundings`] what the environment says about it.
 //! - [`keyboard`] takes the terminal's bytes, [`decoder`] makes keys of them; [`mouse`] says what is done where it points.
-//! - [`keymap`] is the one table of keys.
+//! - [`keymap`] is the one table of keys, [`press`](mod@press) carries out what a key stands for.
 //! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`layout`] says which
 //!   places those are, [`theme`] and [`markers`] what colours and dots look like, [`dots`] sets the dots,
 //!   [`points`] what was measured, [`trail`] those of a path that fades, [`dashes`] of those of other runs some, [`scene`] those of lines in space.
@@ -29,6 +29,7 @@ pub mod mouse;
 pub mod pacing;
 pub mod panes;
 pub mod points;
+pub mod press;
 pub mod recorder;
 pub mod scene;
 pub mod screen;

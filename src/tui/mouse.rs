@@ -1,18 +1,21 @@
 //! The mouse: what a press, a drag or the wheel does where it points. Nothing needs it; every act has keys too.
 
-use super::app;
+pub mod event;
+
 use super::keymap::Mode;
 use super::layout::Layout;
 use super::panes::browser;
 use super::panes::chrome;
 use super::panes::timeline::Timeline;
 use super::panes::traces::Traces;
+use super::press::press;
 use super::screen;
 use crate::lab::action::{Action, Direction, LessonKey};
 use crate::lab::command::{Command, CursorTo, Place};
 use crate::lab::view::Pane;
 use crate::lab::{Lab, Request};
 use crate::run::Clock;
+use event::{Did, Mouse};
 use ratatui::layout::{Position, Rect};
 
 /// Degrees by which the 3-D view turns where it is dragged by a column, and by a row, which is twice as high.
@@ -20,32 +23,6 @@ const DEGREES_A_COLUMN: f64 = 3.0;
 const DEGREES_A_ROW: f64 = 6.0;
 /// Lines that one notch of the wheel moves a list by.
 const LINES: usize = 3;
-
-/// What the mouse did, and at which cell of the screen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Mouse {
-    /// What it did.
-    pub did: Did,
-    /// The column, from 0.
-    pub x: u16,
-    /// The line, from 0.
-    pub y: u16,
-}
-
-/// What the mouse can do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Did {
-    /// The left button was pressed.
-    Press,
-    /// It was moved with the left button held.
-    Drag,
-    /// A button was released.
-    Release,
-    /// The wheel was turned away from the user.
-    WheelUp,
-    /// The wheel was turned towards the user.
-    WheelDown,
-}
 
 /// What a held button drags.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,7 +63,7 @@ impl Pointer {
         self.held = None;
         if layout.keys.contains(at) {
             let key = chrome::key_at(lab, layout.keys, at.x)?;
-            return app::press(key, lab);
+            return press(key, lab);
         }
         match lab.on_top().mode() {
             Mode::Lab => {}

@@ -10,7 +10,7 @@ use crate::tui::counted::Counted;
 use crate::tui::decoder::Typed;
 use crate::tui::keyboard::{self, Keyboard};
 use crate::tui::keymap::Key;
-use crate::tui::mouse::Mouse;
+use crate::tui::mouse::event::Mouse;
 use crossterm::cursor::{Hide, Show};
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
 use crossterm::terminal::{self, Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};

@@ -3,8 +3,8 @@
 use crate::support::desk::Desk;
 use gyrolab::lab::Mode;
 use gyrolab::scenario::presets;
-use gyrolab::tui::app;
 use gyrolab::tui::keymap::Key;
+use gyrolab::tui::press::press;
 use std::fmt::Write;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -31,7 +31,7 @@ fn browsing() -> (TempDir, Desk) {
 }
 
 fn enter(desk: &mut Desk) {
-    app::press(Key::Enter, &mut desk.lab);
+    press(Key::Enter, &mut desk.lab);
 }
 
 /// Lets time pass until `is_so`.
@@ -62,7 +62,7 @@ fn it_opens_when_it_has_been_read() {
 fn esc_means_that_it_is_not_opened() {
     let (_folder, mut desk) = browsing();
     enter(&mut desk);
-    app::press(Key::Esc, &mut desk.lab);
+    press(Key::Esc, &mut desk.lab);
     assert_eq!(desk.lab.on_top().mode(), Mode::Browser);
     wait_until(&mut desk, |desk| !desk.lab.on_top().browser().is_loading());
     desk.wait(5);

@@ -2,7 +2,8 @@
 
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::tui::layout::Layout;
-use gyrolab::tui::mouse::{Did, Mouse, Pointer};
+use gyrolab::tui::mouse::Pointer;
+use gyrolab::tui::mouse::event::{Did, Mouse};
 use ratatui::layout::Rect;
 
 /// A stage and its mouse.

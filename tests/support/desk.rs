@@ -8,8 +8,8 @@ use gyrolab::lab::view::markers::Marker;
 use gyrolab::lab::{Answer, Lab};
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
-use gyrolab::tui::app;
 use gyrolab::tui::keymap::Key;
+use gyrolab::tui::press::press;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
@@ -42,14 +42,14 @@ impl Desk {
     /// Presses `keys`, and waits until the lab has finished the steps that they request.
     pub fn press(&mut self, keys: &[Key]) {
         for &key in keys {
-            app::press(key, &mut self.lab);
+            press(key, &mut self.lab);
         }
         self.wait(2);
     }
 
     pub fn type_text(&mut self, text: &str) {
         text.chars().for_each(|c| {
-            app::press(Key::Char(c), &mut self.lab);
+            press(Key::Char(c), &mut self.lab);
         });
     }
 

@@ -7,6 +7,7 @@ use gyrolab::lab::{Lab, Request};
 use gyrolab::teach::Class;
 use gyrolab::tui::app;
 use gyrolab::tui::keymap::Key;
+use gyrolab::tui::press::press;
 use gyrolab::tui::screen;
 use ratatui::layout::Rect;
 use std::sync::Arc;
@@ -55,7 +56,7 @@ impl Stage {
     }
 
     pub fn key(&mut self, key: Key) -> Option<Request> {
-        let request = app::press(key, &mut self.lab)?;
+        let request = press(key, &mut self.lab)?;
         app::do_in_class(request, &mut self.lab, &mut self.class, self.size)
     }
 

@@ -3,6 +3,7 @@
 //! With the focus it is an editor: the values above, one on each line, one of them selected; the readouts to watch
 //! below.
 
+mod digits;
 mod edited;
 mod fitting;
 mod lines;
@@ -16,7 +17,8 @@ use crate::scenario::{Motion, Scenario};
 use crate::text::wrap::columns;
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
-use edited::{around_selected, edited_lines, fewer_digits, key_lines, needed, title};
+use digits::fewer_digits;
+use edited::{around_selected, edited_lines, key_lines, needed, title};
 use fitting::{by_group, fitting, read_lines, shown, without_dashes};
 use lines::{
     COLUMN, Line, PREDICTED, VALUE_END, body_lines, derived_lines, further_lines, heading,

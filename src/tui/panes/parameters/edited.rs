@@ -8,7 +8,6 @@ use crate::lab::values::listed::ListedValue;
 use crate::text::printable::printable;
 use crate::text::wrap::columns;
 use crate::tui::theme::Role;
-use std::borrow::Cow;
 
 /// The pane's title, which says where in the list the selected value is, and what is searched for.
 pub(super) fn title(list: Option<&ValueList>, is_searched: bool) -> String {
@@ -107,23 +106,4 @@ pub(super) fn around_selected(lines: &[Line], room: usize) -> (Vec<Line>, bool, 
         top.clone_from(heading);
     }
     (shown, first > 0, end < lines.len())
-}
-
-/// `text`, or with fewer decimals where it is a number that is wider than `room`.
-pub(super) fn fewer_digits(text: &str, room: usize) -> Cow<'_, str> {
-    let is_wide = text.len() > room;
-    let number = text.parse::<f64>().ok().filter(|_| is_wide);
-    let Some(number) = number else {
-        return text.into();
-    };
-    let decimals = (1..room).rev().map(|digits| format!("{number:.digits$}"));
-    let exponents = (0..room).rev().map(|digits| format!("{number:.digits$e}"));
-    let is_told = |text: &String| text.parse::<f64>().is_ok_and(|told| near(told, number));
-    let mut fitting = decimals.chain(exponents).filter(|text| text.len() <= room);
-    fitting.find(is_told).map_or(text.into(), Cow::from)
-}
-
-/// Whether `told` is `number` to within a thousandth of it.
-fn near(told: f64, number: f64) -> bool {
-    (told - number).abs() <= 1e-3 * number.abs()
 }

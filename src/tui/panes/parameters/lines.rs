@@ -1,6 +1,6 @@
 //! The lines of the pane. Each number has as many decimals as there is room for.
 
-use super::edited::fewer_digits;
+use super::digits::fewer_digits;
 use crate::analysis::remarks::{short_no_drift, short_unit};
 use crate::analysis::theory::{Axis, Path};
 use crate::observe::reading::Reading;

@@ -1,0 +1,22 @@
+//! What a key that is pressed does in the lab.
+
+use super::keymap::{self, Key};
+use super::panes::{self, help};
+use crate::lab::action::Action;
+use crate::lab::{Lab, Request};
+
+/// Carries out the action of `key`, or shows a message that it has none.
+pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
+    match keymap::action_with(panes::keys_of(lab), lab.on_top().mode(), key) {
+        Some(Action::DoEntry) => help::do_entry(lab),
+        Some(action) => {
+            let request = lab.update(action);
+            help::limit(lab);
+            request
+        }
+        None => {
+            lab.refuse(keymap::refusal(lab.on_top().mode(), key));
+            None
+        }
+    }
+}
