@@ -44,6 +44,18 @@ impl Monitor {
         (&mut self.gauges, &mut self.beside)
     }
 
+    /// What is measured on the steps.
+    pub fn gauges(&self) -> &Gauges {
+        &self.gauges
+    }
+
+    /// A copy of how far the steps stray from the exact motion, all of them held against it.
+    pub fn beside(&self) -> Beside {
+        let mut beside = self.beside.clone();
+        self.unheld.iter().for_each(|state| beside.hold(state));
+        beside
+    }
+
     /// Goes on with a run of `scenario`, whose past is the same.
     pub fn go_on_in(&mut self, scenario: &Arc<Scenario>) {
         self.beside.go_on_in(scenario);

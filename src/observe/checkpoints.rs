@@ -85,24 +85,23 @@ pub struct Checkpoints {
 
 impl Checkpoints {
     /// The checkpoints of a run that stands at step 0.
-    pub fn new(simulation: &Simulation, monitor: &mut Monitor) -> Self {
+    pub fn new(simulation: &Simulation, monitor: &Monitor) -> Self {
         let points = simulation.scenario().body.mechanics.points().len();
         let most = (MEMORY / (PER_CHECKPOINT + PER_POINT * points)).max(FEWEST);
-        let (gauges, beside) = monitor.parts();
         Self {
             simulations: Series::new(bare(simulation), most),
-            gauges: Series::new(gauges.clone(), most),
-            besides: Series::new(beside.clone(), most),
+            gauges: Series::new(monitor.gauges().clone(), most),
+            besides: Series::new(monitor.beside(), most),
         }
     }
 
     /// Offers a run as it stands, with the measurements on its steps, to all series. To be called after every step.
     #[inline]
-    pub fn offer(&mut self, simulation: &Simulation, monitor: &mut Monitor) {
+    pub fn offer(&mut self, simulation: &Simulation, monitor: &Monitor) {
         let step = simulation.step_number();
         self.simulations.offer(step, || bare(simulation));
-        self.gauges.offer(step, || monitor.parts().0.clone());
-        self.besides.offer(step, || monitor.parts().1.clone());
+        self.gauges.offer(step, || monitor.gauges().clone());
+        self.besides.offer(step, || monitor.beside());
     }
 
     /// The run at the last checkpoint that is at `step` or earlier.

@@ -66,9 +66,9 @@ impl LiveRun {
     pub fn new(scenario: Arc<Scenario>) -> Self {
         let reach = scenario.arm_m();
         let simulation = Simulation::new(scenario);
-        let mut monitor = Monitor::new(simulation.now());
+        let monitor = Monitor::new(simulation.now());
         Self {
-            checkpoints: Checkpoints::new(&simulation, &mut monitor),
+            checkpoints: Checkpoints::new(&simulation, &monitor),
             pictures: Pictures::new(simulation.now(), reach),
             monitor,
             simulation,
@@ -86,7 +86,7 @@ impl LiveRun {
         let step = self.simulation.step()?;
         self.monitor.follow(step);
         self.pictures.follow(step);
-        self.checkpoints.offer(&self.simulation, &mut self.monitor);
+        self.checkpoints.offer(&self.simulation, &self.monitor);
         Ok(())
     }
 
