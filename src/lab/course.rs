@@ -183,13 +183,7 @@ pub(super) fn halt_in_words(halt: Halt) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{Document, Scenario};
-    use std::sync::Arc;
-
-    fn scenario() -> Arc<Scenario> {
-        let document = Document::open("method-2").unwrap();
-        Arc::new(document.scenario().unwrap())
-    }
+    use crate::lab::for_tests::scenario;
 
     #[test]
     fn steps_and_places_lead_where_they_say() {

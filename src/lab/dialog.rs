@@ -260,11 +260,10 @@ fn about(parameter: &Parameter) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Document;
+    use crate::lab::for_tests::scenario;
 
     fn export() -> Dialog {
-        let scenario = Document::open("method-2").unwrap().scenario().unwrap();
-        Dialog::export(Arc::new(scenario), "method-2.csv".to_owned())
+        Dialog::export(scenario(), "method-2.csv".to_owned())
     }
 
     #[test]

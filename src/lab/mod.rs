@@ -25,6 +25,8 @@ mod dialog;
 mod editing;
 pub mod explained;
 mod files;
+#[cfg(test)]
+mod for_tests;
 pub mod form;
 pub mod help_search;
 mod keeping;

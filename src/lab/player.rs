@@ -250,12 +250,7 @@ fn begins_with_exact(scenario: &Scenario) -> Option<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Document;
-
-    fn scenario() -> Arc<Scenario> {
-        let document = Document::open("method-2").unwrap();
-        Arc::new(document.scenario().unwrap())
-    }
+    use crate::lab::for_tests::scenario;
 
     #[test]
     fn a_run_that_was_played_stays_as_a_ghost() {

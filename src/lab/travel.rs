@@ -47,13 +47,11 @@ impl Player {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Document;
-    use std::sync::Arc;
+    use crate::lab::for_tests::scenario;
 
     #[test]
     fn steps_and_times_count_from_the_start_or_from_here() {
-        let scenario = Document::open("method-2").unwrap().scenario().unwrap();
-        let mut player = Player::new(Arc::new(scenario), false);
+        let mut player = Player::new(scenario(), false);
         player.step(100).unwrap();
         for (text, step) in [
             ("421", 421),

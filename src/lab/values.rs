@@ -244,13 +244,12 @@ fn rank(group: &str) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Document;
+    use crate::lab::for_tests::scenario;
     use crate::work::history::History;
     use std::sync::Arc;
 
     fn listed() -> (Values, Arc<Scenario>) {
-        let scenario = Document::open("method-2").unwrap().scenario().unwrap();
-        let scenario = Arc::new(scenario);
+        let scenario = scenario();
         let run = LiveRun::new(Arc::clone(&scenario));
         let history = History::new("method-2", &scenario);
         let mut values = Values::new(&scenario);

@@ -92,12 +92,12 @@ impl ValueList {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Document;
+    use crate::lab::for_tests::scenario;
     use crate::work::parameters::{parameters, table_of};
 
     /// A value of a scenario that is listed as `label` of `group`.
     fn value(group: &str, label: &str) -> ListedValue {
-        let scenario = Document::open("method-2").unwrap().scenario().unwrap();
+        let scenario = scenario();
         let mut parameter = parameters(&table_of(&scenario.file), &scenario).remove(0);
         parameter.key.clear();
         parameter.group = group.to_owned();

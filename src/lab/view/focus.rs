@@ -95,10 +95,10 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lab::for_tests::scenario;
     use crate::lab::view::Part;
     use crate::lab::view::markers::Marker;
     use crate::lab::view::theme::{Background, Theme};
-    use crate::scenario::Document;
 
     static ALL: [Pane; 4] = [
         Pane::TRACES,
@@ -108,12 +108,11 @@ mod tests {
     ];
 
     fn view() -> View {
-        let scenario = Document::open("method-2").unwrap().scenario().unwrap();
         let theme = Theme {
             colour: false,
             background: Background::Dark,
         };
-        View::new(&scenario, Marker::Braille, theme, &ALL)
+        View::new(&scenario(), Marker::Braille, theme, &ALL)
     }
 
     #[test]
