@@ -188,6 +188,13 @@ impl Traces<'_> {
         self.edits(marks, &group.strip, sheet, buf);
     }
 
+    /// Writes the name of `content` at the upper left of `area`; gives the column after it, and the unit.
+    fn name(&self, content: Content, area: Rect, buf: &mut Buffer) -> (u16, &'static str) {
+        let (name, unit) = self.named(content);
+        let style = self.view.theme.style(Self::role(content));
+        (write(area, (0, 0), &name, style, buf), unit)
+    }
+
     /// The name of a strip and its values, beside it; gives the area of its curves.
     fn beside_strip(
         &self,
@@ -197,11 +204,9 @@ impl Traces<'_> {
         area: Rect,
         buf: &mut Buffer,
     ) -> Rect {
+        let (_, unit) = self.name(content, area, buf);
         let is_detail = self.is_detail(&group.strip);
-        let theme = &self.view.theme;
-        let quiet = theme.style(Role::Quiet);
-        let (name, unit) = self.named(content);
-        write(area, (0, 0), &name, theme.style(Self::role(content)), buf);
+        let quiet = self.view.theme.style(Role::Quiet);
         let further = match (is_detail, self.detail.is_snapshot) {
             (true, true) => [unit, ZOOM, STILL],
             (true, false) => [unit, ZOOM, ""],
@@ -232,11 +237,10 @@ impl Traces<'_> {
         area: Rect,
         buf: &mut Buffer,
     ) -> Rect {
+        let (mut after, unit) = self.name(content, area, buf);
         let is_detail = self.is_detail(&group.strip);
         let theme = &self.view.theme;
         let quiet = theme.style(Role::Quiet);
-        let (name, unit) = self.named(content);
-        let mut after = write(area, (0, 0), &name, theme.style(Self::role(content)), buf);
         if self.is_residual(content, is_detail) {
             after = write(area, (after, 0), LESS_RUN, quiet, buf);
         }
