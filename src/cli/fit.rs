@@ -3,7 +3,7 @@
 use super::args::Changes;
 use super::progress::{self, Ticker};
 use super::scenario::change;
-use super::{INTERRUPTED, one_on_stdout, print, tell};
+use super::{INTERRUPTED, one_on_stdout, print_result, tell};
 use crate::export::Destination;
 use crate::measured::{self, Measured};
 use crate::physics::SchemeInfo;
@@ -248,16 +248,9 @@ fn write(mut output: Destination, report: &Report<'_>, args: &FitArgs) -> anyhow
     Ok(())
 }
 
-/// The result: on stdout, or on stderr where stdout or a file has the rows.
+/// The result, and where its rows are written.
 fn tell_of(report: &Report<'_>, args: &FitArgs) -> anyhow::Result<ExitCode> {
-    if args.output.is_some() {
-        tell(report);
-    }
-    if args.json {
-        print(&format!("{}\n", serde_json::to_string(report)?))?;
-    } else if args.output.is_none() {
-        print(&format!("{report}\n"))?;
-    }
+    print_result(report, args.output.as_deref(), args.json)?;
     if let Some(path) = args
         .output
         .as_deref()

@@ -39,6 +39,7 @@ use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches};
 use commands::{Cli, Command};
+use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -239,6 +240,27 @@ fn print(text: &str) -> anyhow::Result<ExitCode> {
     let printed = stdout.write_all(text.as_bytes());
     printed.and_then(|()| stdout.flush()).context(NO_STDOUT)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Prints what came out: on stdout, with `json` as one object; and as text on stderr where stdout or a file, `output`, has
+/// the rows.
+///
+/// # Errors
+/// As [`print`].
+fn print_result<T: Display + Serialize>(
+    result: &T,
+    output: Option<&Path>,
+    json: bool,
+) -> anyhow::Result<()> {
+    if output.is_some() {
+        tell(result);
+    }
+    if json {
+        print(&format!("{}\n", serde_json::to_string(result)?))?;
+    } else if output.is_none() {
+        print(&format!("{result}\n"))?;
+    }
+    Ok(())
 }
 
 /// Says `text` on stderr. Where that cannot be written there is nobody to tell, and what was to be done is done all the

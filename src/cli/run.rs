@@ -4,7 +4,7 @@ use super::args::{LengthArgs, ScenarioArgs};
 use super::layout::LayoutArgs;
 use super::progress::{self, Interruption, Meter};
 use super::scenario::scenario_of;
-use super::{INTERRUPTED, complain, one_on_stdout, print, tell};
+use super::{INTERRUPTED, complain, one_on_stdout, print_result, tell};
 use crate::analysis::health::{Advice, advise};
 use crate::analysis::{Health, Monitor, Readouts};
 use crate::export::stream::{self, Ended};
@@ -75,7 +75,7 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::from(INTERRUPTED));
     }
     let summary = Summary::new(played.readouts(), played.wall).with_time_steps_of(&scenario);
-    report(args, &summary)?;
+    print_result(&summary, args.output.as_deref(), args.json)?;
     if let Some(rows) = played.rows.filter(|_| !to_stdout) {
         let plural = if rows == 1 { "" } else { "s" };
         tell(format_args!(
@@ -171,19 +171,6 @@ fn play<W: Write>(
     });
     meter.clear();
     ended
-}
-
-/// The summary: on stdout, or on stderr where stdout or a file has the rows.
-fn report(args: &RunArgs, summary: &Summary) -> anyhow::Result<()> {
-    if args.output.is_some() {
-        tell(summary);
-    }
-    if args.json {
-        print(&format!("{}\n", serde_json::to_string(summary)?))?;
-    } else if args.output.is_none() {
-        print(&format!("{summary}\n"))?;
-    }
-    Ok(())
 }
 
 /// What would mend the run, sought only where it is not to be believed.
