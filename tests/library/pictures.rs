@@ -93,17 +93,24 @@ fn undivided(run: &LiveRun, view: &View) -> Detail {
 }
 
 fn from_above(run: &LiveRun, ghost: Option<&Ghost>, marker: Marker) -> String {
-    let view = &view(run, marker);
-    let reading = None;
+    let view = view(run, marker);
     let pane = FromAbove {
-        run,
         ghost,
+        ..pane_above(run, &view)
+    };
+    drawn(pane, ROUND)
+}
+
+/// The pane of `run` alone.
+fn pane_above<'a>(run: &'a LiveRun, view: &'a View) -> FromAbove<'a> {
+    FromAbove {
+        run,
+        ghost: None,
         pinned: None,
         measured: None,
         view,
-        reading,
-    };
-    drawn(pane, ROUND)
+        reading: None,
+    }
 }
 
 /// An edited run after `steps`, and the previous run, which had less tilt and lasted 7 s.
@@ -304,14 +311,8 @@ fn no_mark_covers_the_word_for_a_push_straight_down() {
         for step in 1..=200 {
             now.step().unwrap();
             now.follow_exact(|| false);
-            let pane = FromAbove {
-                run: &now,
-                ghost: None,
-                pinned: None,
-                measured: None,
-                view: &view(&now, Marker::Braille),
-                reading: None,
-            };
+            let view = view(&now, Marker::Braille);
+            let pane = pane_above(&now, &view);
             let picture = drawn(pane, (width, height));
             assert!(picture.contains("F down"), "step {step}:\n{picture}");
             let (path, _) = picture.split_once("0.").unwrap(); // the legend begins with a scale in m
@@ -398,14 +399,7 @@ fn a_circle_is_round_to_a_dot() {
         let mut view = view(&run, Marker::Braille);
         view.zoom.above = zoom;
         for size in [(36, 19), (80, 20), (47, 23), (30, 40)] {
-            let pane = FromAbove {
-                run: &run,
-                ghost: None,
-                pinned: None,
-                measured: None,
-                view: &view,
-                reading: None,
-            };
+            let pane = pane_above(&run, &view);
             let picture = drawn(pane, size);
             let dots = braille(&picture);
             let extent = |along: fn(&(usize, usize)) -> usize| {
@@ -443,14 +437,7 @@ fn the_point_stays_in_the_picture_however_large_it_is() {
         for zoom in [0.5, 1.0, 2.0, 5.0, 100.0] {
             let mut view = view(&run, Marker::Dot);
             view.zoom.above = zoom;
-            let pane = FromAbove {
-                run: &run,
-                ghost: None,
-                pinned: None,
-                measured: None,
-                view: &view,
-                reading: None,
-            };
+            let pane = pane_above(&run, &view);
             let picture = drawn(pane, ROUND);
             // Where it is enlarged, not at the edge either, where it would be put if it were outside.
             let edge = usize::from(zoom > 1.0);

@@ -1,6 +1,7 @@
 //! Damaged session files, and session folders in which another user has placed links, FIFOs or files.
 
-use gyrolab::storage::session::{Content, Session, resume};
+use crate::session::{content, folder};
+use gyrolab::storage::session::{Session, resume};
 use rustix::fs::{CWD, FileType, Mode, mknodat};
 use std::fs;
 use std::os::unix::fs::{chown, symlink};
@@ -8,24 +9,9 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
-use tempfile::TempDir;
 
 /// A call that takes longer than this counts as hanging.
 const PATIENCE: Duration = Duration::from_secs(20);
-
-fn content(work: &str, place: &str) -> Content {
-    Content {
-        work: work.into(),
-        place: place.to_owned(),
-    }
-}
-
-/// A sessions' folder in a temporary folder.
-fn folder() -> (TempDir, PathBuf) {
-    let outer = tempfile::tempdir().unwrap();
-    let folder = outer.path().join("gyrolab");
-    (outer, folder)
-}
 
 /// Saves a session and closes it.
 fn kept(folder: &Path, work: &str, places: &[&str]) {

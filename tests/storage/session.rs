@@ -17,7 +17,7 @@ const END: &str = "end";
 /// Environment variable that names the sessions' folder for the child process.
 const CHILD: &str = "GYROLAB_TEST_SESSION";
 
-fn content(work: &str, place: &str) -> Content {
+pub(crate) fn content(work: &str, place: &str) -> Content {
     Content {
         work: work.into(),
         place: place.to_owned(),
@@ -25,7 +25,7 @@ fn content(work: &str, place: &str) -> Content {
 }
 
 /// A sessions' folder in a temporary folder.
-fn folder() -> (TempDir, PathBuf) {
+pub(crate) fn folder() -> (TempDir, PathBuf) {
     let outer = tempfile::tempdir().unwrap();
     let folder = outer.path().join("state/gyrolab");
     (outer, folder)
