@@ -6,7 +6,7 @@ pub fn above_run_file(header: &str) -> String {
     comments.flat_map(|line| [line, "\n"]).collect()
 }
 
-/// `text` with `# ` before every line: so the run file is written above the rows.
+/// `text` with `# ` before every line, as the run file is written above the rows.
 pub fn commented(text: &str) -> String {
     text.lines().flat_map(|line| ["# ", line, "\n"]).collect()
 }

@@ -18,7 +18,7 @@ const BYTE_ORDER_MARK: &str = "\u{feff}";
 pub struct CsvWriter<W: Write> {
     rows: Rows<W>,
     layout: Layout,
-    /// Of whose run the rows are.
+    /// The scenario of the run.
     scenario: Scenario,
     /// The points of the body, where each of them has a row.
     points: Vec<NamedPoint>,
@@ -74,7 +74,8 @@ impl<W: Write> CsvWriter<W> {
         &self.layout
     }
 
-    /// Adds the row of `sample`, or its rows where every point has one. Whether the layout has it is the caller's to ask.
+    /// Adds the row of `sample`, or its rows where every point has one. The caller
+    /// has asked the layout whether there is one.
     ///
     /// # Errors
     /// When the row cannot be written.

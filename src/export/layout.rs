@@ -14,7 +14,7 @@ use crate::text::printable::printable;
 use serde::{Deserialize, Serialize};
 use std::num::NonZeroU64;
 
-/// A layout as it is asked for, and as it stands in a header: nothing in it has been checked.
+/// A layout as the user states it, or as a header holds it, before it is checked.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LayoutFile {
@@ -150,7 +150,7 @@ impl Layout {
         file.check().unwrap_or_default() // only columns and times can be refused
     }
 
-    /// The layout in words that can be checked again.
+    /// The layout as it stands in a header, from which it can be read again.
     pub fn file(&self) -> &LayoutFile {
         &self.file
     }
@@ -188,9 +188,9 @@ impl Layout {
         }
     }
 
-    /// Whether `step` has a row, the run's last step being `last`. Cutting leaves rows out of those that there are without
-    /// it: the steps 0, every, twice every and so on, and the last. A time within a billionth of a time step of an end, or
-    /// within the rounding of times, lies on it.
+    /// Whether `step` has a row, in a run whose last step is `last`. The steps 0, every, twice every and so on and the last
+    /// have one, unless their times lie outside the two ends. A time within a billionth of a time step of an end, or within
+    /// the rounding of times, counts as on it.
     pub fn has_row(&self, step: &Step, last: u64) -> bool {
         let number = step.number();
         let is_counted = number.is_multiple_of(self.steps_between()) || number == last;

@@ -32,8 +32,8 @@ pub enum Ended {
     NotFinite(NotFinite),
 }
 
-/// Plays `simulation` to the step `steps` and writes the rows that its layout has to `csv`, if given, the present one
-/// among them. It shows `each` every step, and calls `watch` after each block of steps; `watch` may stop it.
+/// Plays `simulation` to the step `steps`. To `csv`, if given, it writes the rows that the layout of the CSV asks for, from
+/// the present step on. It calls `each` with every step, and `watch` after each block of steps; `watch` may stop it.
 ///
 /// Returns how the stream ended, and the time spent on stepping alone.
 ///
@@ -104,8 +104,8 @@ fn take_block(
     Ok(())
 }
 
-/// Writes the row of the last finite step, unless it is written already: it is the run's last row, however many are left
-/// out.
+/// Writes the row of the last finite step, unless it is written already: the last row is written whichever rows the layout
+/// leaves out between.
 fn write_last<W: Write>(
     last: &Step,
     written: Option<&Sample>,

@@ -1,22 +1,23 @@
-//! How old the parts of a path are, in the measures of the motion itself: the last swings, the last turn, and what came
+//! The age of each part of a path, measured in swings and turns of the motion: the last swings, the last turn, and all
 //! before.
 
 use crate::analysis::{Measured, Readouts};
 use std::f64::consts::TAU;
 
-/// So many swings are recent.
+/// The number of swings that count as recent.
 const RECENT_SWINGS: f64 = 10.0;
-/// And fewer where they would stand closer than so many dots on the picture, but never fewer than `LEAST_SWINGS`.
+/// Where swings are closer together on the picture than this many dots, fewer of them count as recent, but at least
+/// `LEAST_SWINGS`.
 const CLOSEST_DOTS: f64 = 4.0;
 const LEAST_SWINGS: f64 = 2.0;
-/// Recent is at most this part of a turn, so that the way behind the point has a beginning and an end.
+/// The recent part of a path is at most this share of a turn, so that its beginning and its end can be told apart.
 const RECENT_TURN: f64 = 1.0 / 3.0;
-/// Where no turn is known, the last turn is so many times as long as what is recent.
+/// Where the time of a turn is not known, it is taken to be this many times the recent time.
 const TURN: f64 = 6.0;
-/// Ages grow by this factor's exponential, or not at all: what is measured changes a little all the time, and the
-/// picture shall not.
+/// Lengths of time are rounded up to a power of e to this number: measured periods change a little all the time, and the
+/// picture should not.
 const GRADE: f64 = 0.1;
-/// What is recent begins at a multiple of this part of its length.
+/// The recent part of a path begins at a multiple of this share of its length.
 const NOTCH: f64 = 1.0 / 16.0;
 
 /// How long a part of a path counts as recent, and as of the last turn.
@@ -61,7 +62,7 @@ impl Ages {
         Self::new(readouts.swing_s(), turn_s)
     }
 
-    /// The ages where a swing and a turn take so long, s.
+    /// The ages for a swing and a turn of these times, s.
     pub fn new(swing_s: Option<f64>, turn_s: Option<f64>) -> Self {
         let is_time = |time_s: &f64| time_s.is_finite() && *time_s > 0.0;
         let (swing_s, turn_s) = (swing_s.filter(is_time), turn_s.filter(is_time));
@@ -80,8 +81,8 @@ impl Ages {
         }
     }
 
-    /// The same for a picture on which a turn is `turn_dots` long: where the swings stand so close that they cover each
-    /// other, only the last of them are recent.
+    /// The same for a picture on which a turn is `turn_dots` long: where the swings are so close that they cover each
+    /// other, fewer of them are recent.
     pub fn on_picture(self, turn_dots: f64) -> Self {
         let Some(swing_s) = self.swing_s else {
             return self;
@@ -95,8 +96,8 @@ impl Ages {
         }
     }
 
-    /// The time since when the motion is of `age` where it is now `now_s`, s. It stands still for a while and then moves by a
-    /// notch: what changes on the screen has to be sent.
+    /// The time at which the part of `age` begins when the run is at `now_s`, s. It moves on in steps and not in every
+    /// frame, because each change of the picture has to be sent to the terminal.
     pub fn since(&self, age: Age, now_s: f64) -> f64 {
         let length_s = match age {
             Age::Old => return f64::NEG_INFINITY,

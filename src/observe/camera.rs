@@ -14,18 +14,18 @@ pub struct Camera {
     pub pitch_deg: f64,
 }
 
-/// Seen shorter than this part of its length, the axle points too much at the eye to be read; seen longer than the other,
-/// the wheel across it is no more than a line.
+/// The apparent length of an axle that can be read, as a share of its length: a shorter one points too much at the eye, and
+/// of a longer one the wheel is seen as a line.
 const READ: std::ops::RangeInclusive<f64> = 0.75..=0.97;
-/// Where an axle that is to be read points: from the picture's right so far towards the eye, degrees. As long as
-/// it is not below the horizontal, the wheel is then an open ellipse.
+/// The direction to which the camera turns an axle that cannot be read: this angle from the picture's right towards the
+/// eye, degrees. If the axle is not below the horizontal, the wheel is then an open ellipse.
 const ASIDE_DEG: f64 = 25.0;
 /// An axle nearer to the vertical than this, degrees, is seen from every side alike.
 const UPRIGHT_DEG: f64 = 8.0;
 /// Directions that are chosen are multiples of this, degrees.
 const NOTCH_DEG: f64 = 10.0;
 
-/// How much larger than the whole a round picture shows what it shows: 1 where it shows the whole.
+/// The enlargement of the pictures in space: 1 where a picture shows the whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zoom {
     /// The path from above.
@@ -44,7 +44,7 @@ impl Default for Zoom {
 }
 
 impl Zoom {
-    /// What a file says; 1 where it says nothing, and the nearest that there is where that is out of range.
+    /// The zoom that a file states, brought into range; 1 where it states none.
     pub fn of(file: ZoomFile) -> Self {
         let read = |zoom: Option<f64>| zoom.unwrap_or(1.0).max(ZOOM.0).min(ZOOM.1);
         Self {
@@ -53,14 +53,14 @@ impl Zoom {
         }
     }
 
-    /// `zoom` so many rungs of 1, 2, 5 higher, or lower where that is negative; `None` where it is at its limit already.
+    /// `zoom` moved by `rungs` on the ladder 1, 2, 5, ..., down if negative; `None` if it is at its limit already.
     pub fn shifted(zoom: f64, rungs: i32) -> Option<f64> {
         let next = ladder::climbed(zoom, rungs).clamp(ZOOM.0, ZOOM.1);
         (next != zoom).then_some(next)
     }
 
-    /// Where the middle of a picture is that shows half a side of `half` around a point at `at`: the point is never farther
-    /// from it than half of that, and the middle stands still while the point moves, as long as it can.
+    /// The middle of a picture that reaches `half` to each side and shows a point at `at`. It is a multiple of `half`, so
+    /// that the picture stands still while the point moves, and the point is at most half of `half` away from it.
     pub fn middle(at: f64, half: f64) -> f64 {
         (at / half).round() * half
     }
@@ -76,7 +76,7 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// What a file says, and the usual direction where it says nothing.
+    /// The direction that a file states, or the usual one.
     pub fn of(file: CameraFile) -> Self {
         let usual = Self::default();
         Self {

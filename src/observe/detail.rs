@@ -1,8 +1,8 @@
 //! The window of time in which the fast motion is drawn swing by swing, while the others show the slow motion.
 //!
 //! It is about ten swings of the tilt long and begins where the tilt is greatest; where only x swings, it is chosen by x.
-//! While the run is played so fast that the window would pass before anyone had seen it, it stands still, and is taken
-//! anew now and then: of a motion that repeats itself it then shows the same picture.
+//! While the run is played so fast that nobody could follow the window, the window stands still and is replaced by a later
+//! one now and then; for a periodic motion the picture then stays the same.
 
 use super::live::LiveRun;
 use super::recording::{Curve, Recording};
@@ -11,14 +11,14 @@ use crate::text::ladder;
 
 /// The most swings that the window shows.
 const MOST_SWINGS: f64 = 12.0;
-/// With so many swings or fewer in the window, a longer one is taken.
+/// With this number of swings or fewer in the window, a longer window is taken.
 const FEWEST_SWINGS: f64 = 4.0;
-/// Where the run comes to the end of the window, this part of it is taken off its beginning.
+/// When the run comes to the end of the window, the window moves on by this share of its length.
 const PAGE: f64 = 0.25;
-/// x is shown where it turns so many times as often as the tilt, and no longer where it does not turn this often.
+/// x is shown once it turns `BECOMES_X` times as often as the tilt, until it turns less than `STAYS_X` times as often.
 const BECOMES_X: f64 = 3.0;
 const STAYS_X: f64 = 1.5;
-/// The least window, time steps.
+/// The shortest window, in time steps.
 const LEAST_STEPS: f64 = 10.0;
 
 /// A window of time, and the curve that it shows.
@@ -30,7 +30,7 @@ pub struct Detail {
     pub begin_s: f64,
     /// Its length, s.
     pub window_s: f64,
-    /// Whether it stands still for a while, because it would pass before anyone had seen it.
+    /// Whether it stands still for a while, because the run is too fast for anyone to follow it.
     pub is_snapshot: bool,
 }
 
@@ -48,9 +48,9 @@ pub struct Wanted {
 /// Which time the window shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Placement {
-    /// The present, as the window fills; where it is full, a part is taken off its beginning.
+    /// The present: the run fills the window, which moves on when it is full.
     Following,
-    /// The latest whole window that begins at the top of a swing.
+    /// The latest time for a whole window that begins at the top of a swing.
     Latest,
     /// The time up to now.
     UpToNow,

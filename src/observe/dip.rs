@@ -8,22 +8,22 @@ use std::sync::Arc;
 const MOST_STEPS: u64 = 4000;
 /// The most steps times points of the body.
 const MOST_COST: u64 = 2_000_000;
-/// Of an axle whose tilt has a smaller sine than this no side is down.
+/// An axle whose tilt has a smaller sine than this counts as upright: none of its sides is the lower one.
 const UPRIGHT: f64 = 1e-6;
 
 /// The first dip of a run: where the axle points after each step, as its top would draw it on the sphere about the pivot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dip {
-    /// How far the axle has gone sideways, the way in which the weight's torque points, and down, as arcs as long as the
-    /// traced point's distance from the pivot makes them, m; of each step from 0 on.
+    /// For each step from 0 on, how far the axle has gone sideways, in the direction of the weight's torque, and down: arcs
+    /// whose radius is the distance of the traced point from the pivot, m.
     pub way_m: Vec<(f64, f64)>,
-    /// Whether the axle has come up again at its end; otherwise the run has not been further, or it is not looked further.
+    /// Whether the axle has come up again at the end; if not, the run has not gone further, or the search was given up.
     pub is_whole: bool,
 }
 
 impl Dip {
-    /// Of the run of `scenario` up to step `last`, and no further than the first dip: the same steps are taken again.
-    /// `None` where the axle is upright at the start: no side of it is down.
+    /// The first dip of the run of `scenario`, or the part of it up to step `last`. The steps are computed again for it.
+    /// `None` if the axle is upright at the start: it has no lower side.
     pub fn of(scenario: &Arc<Scenario>, last: u64) -> Option<Self> {
         let mut run = Simulation::new(Arc::clone(scenario));
         let (tilt_deg, azimuth_deg) = (run.now().tilt_deg(), run.now().azimuth().degrees());

@@ -2,7 +2,7 @@
 //!
 //! - [`live`] plays a run, and returns to earlier steps by [`checkpoints`]; [`recording`] and [`path`] store the data of
 //!   its pictures, [`overlay`] the exact motion beside it.
-//! - [`outline`] is what of a solid part is seen. [`strip`], [`scale`] and [`camera`] are the geometry of the pictures,
+//! - [`outline`] gives the lines by which a solid part is drawn. [`strip`], [`scale`] and [`camera`] are the geometry of the pictures,
 //!   for a screen and for a figure alike: a curve in each column of a window of time, the values at an axis, and the
 //!   position of a point in space in a plane picture. [`detail`] is the window of time in which fast motion is seen;
 //!   [`ages`] says which parts of a path are old.

@@ -1,4 +1,4 @@
-//! Solid parts as lines: what of a part is seen in a picture.
+//! Solid parts drawn as lines.
 
 use crate::physics::part::{Part, Shape};
 use nalgebra::Vector3;
@@ -14,11 +14,11 @@ const SIDES: usize = 4;
 pub struct Polyline {
     /// The points that it goes through, body frame, m; at least two.
     pub points: Vec<Vector3<f64>>,
-    /// Whether it is the one line that tells a round part from itself turned about its axis.
+    /// Whether it is the one line by which the rotation of a round part about its axis is seen.
     pub is_mark: bool,
 }
 
-/// The lines of `part`. Of a part that is given by its moments those of the thin ellipsoid that has them.
+/// The lines of `part`. A part that is given by its moments is drawn as the thin ellipsoid that has them.
 pub fn lines(part: &Part) -> Vec<Polyline> {
     let mut lines = own_lines(part);
     for line in &mut lines {

@@ -4,7 +4,7 @@ use crate::text::ladder::rung;
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
-/// A frame counts as no longer than this: after a suspension or on a slow line the run does not catch up.
+/// The longest time that one frame counts: after a suspension, or on a slow line, the run does not make up for more.
 const LONGEST_FRAME: Duration = Duration::from_millis(250);
 
 /// Rungs of the 1-2-5 ladder that are playback speeds: 1e-4 to 5e5 simulated seconds a second.

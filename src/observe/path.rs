@@ -23,8 +23,8 @@ pub struct Path {
     home: Home,
 }
 
-/// The inside of the cell in which the last position is, least and greatest x and y: a slow point stays there for many
-/// steps, which then take no computing. It leaves out the cell's edges by more than rounding.
+/// The inside of the cell in which the last position is: least and greatest x, least and greatest y. A slow point stays
+/// in it for many steps, for which nothing needs to be computed. A margin wider than rounding is left out at each edge.
 #[derive(Clone, Copy, Debug)]
 struct Home([f64; 4]);
 

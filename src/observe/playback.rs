@@ -262,7 +262,7 @@ impl Playback {
         self.run.set_overlay(shown);
     }
 
-    /// The numbers as they are now.
+    /// Reads the numbers at the present step.
     pub fn read(&mut self) -> Reading {
         Reading::new(&mut self.run, &self.pace)
     }

@@ -1,5 +1,5 @@
-//! The numbers on the screen. They are updated only four times a second: nobody can read digits that change in every frame,
-//! and sending them would load a slow line.
+//! The numbers on the screen. They are updated four times a second: nobody can read digits that change in every frame,
+//! and sending them would load a slow line. Of a very fast run they are updated for every frame, so that they belong to it.
 
 use super::live::LiveRun;
 use super::pace::{Pace, Speed};

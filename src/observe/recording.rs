@@ -2,7 +2,8 @@
 //!
 //! They are stored in blocks of one step, of two, of four and so on. Two blocks of one size make one of the next, so that
 //! every step's value is within the extremes of some block. A size that still reaches back to the start has up to 16 384
-//! blocks, a smaller one the newest 2048; any stretch of the run up to now is covered by a thousand blocks or more.
+//! blocks, a smaller one the newest 2048; any stretch of the run up to now is covered by a thousand blocks or more, or by
+//! one for each step if it has fewer steps.
 //!
 //! A recording can be [cut back](Recording::cut_back) to an earlier moment. Its blocks there are coarser than they were
 //! when that moment was the newest; [`coarse_since`](Recording::coarse_since) tells from which moment on it should be
@@ -72,7 +73,7 @@ impl Recording {
             .since(f64::NEG_INFINITY)
             .copied()
             .reduce(|whole, block| whole.and(&block));
-        // A turn at the very place of the cut is not counted.
+        // A turn at the newest moment that is left is not counted.
         self.directions = Directions::default();
         self.moments
     }

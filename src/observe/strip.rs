@@ -10,7 +10,7 @@ use super::recording::{Block, Curve, Extent, Recording};
 use pen::Pen;
 use std::ops::Range;
 
-/// A part of a column below this share is rounding.
+/// A stretch shorter than this share of a column is rounding.
 const ROUNDING: f64 = 1e-6;
 
 /// The longest window, s: small enough that adding it to a time does not overflow.

@@ -1,7 +1,7 @@
 //! A run: a scenario and its journal of edits, played forward from step 0.
 //!
-//! [`Simulation`] is the one road forward in time; the command line, the exporters, the tests and any screen all
-//! travel on it. [`step`] is what it publishes of each time step. [`clock`] says what time a step has, [`pushes`] which
+//! [`Simulation`] alone takes a run forward in time; the command line, exports, tests and the screen all use it.
+//! [`step`] is what it publishes of each time step. [`clock`] says what time a step has, [`pushes`] which
 //! forces act on it, [`sample`] what of it leaves the program, [`energy`] what its drift is measured in. [`truth`] is the
 //! exact motion beside it, [`resample`] the same run at another time step, and [`batch`] hands steps over to another core.
 

@@ -12,19 +12,19 @@ use crate::scenario::{Push, Scenario, Window};
 /// Parts of a step smaller than this are rounding, not time.
 const ROUNDING: f64 = 1e-9;
 
-/// How pushes that count steps are understood: as they stand, or as the seconds they stood for.
+/// How the windows of pushes that are given in steps are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Counting {
-    /// Steps are steps.
+    /// As steps.
     Steps,
-    /// The time step has been edited: steps stand for seconds at the time step the scenario was written for.
+    /// As seconds, because the time step has been edited: each step stands for the time step of the scenario as written.
     Seconds {
         /// That time step, s.
         written_for_s: f64,
     },
 }
 
-/// A stretch of time from `begin` to `end`, s, on the way of one step.
+/// A time step of the run, or a part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
     /// The step it belongs to: step 1 leads from the start to t = dt.
@@ -65,7 +65,7 @@ pub fn acting<'a>(
     }
 }
 
-/// How many times its force a push has, on the mean, during `stretch`.
+/// The mean force of a push during `stretch`, as a multiple of its stated force.
 fn factor(push: &Push, counting: Counting, stretch: &Stretch) -> f64 {
     match (push.window, counting) {
         (Window::Steps { first, count }, Counting::Steps) => {
@@ -92,7 +92,7 @@ fn factor(push: &Push, counting: Counting, stretch: &Stretch) -> f64 {
     }
 }
 
-/// The mean factor of an accumulating push between two times that are counted in its own steps from its beginning.
+/// The mean factor of an accumulating push between two times, given as numbers of its own steps since its beginning.
 fn mean_growth(begin: f64, end: f64, count: f64) -> f64 {
     let nth = (end - ROUNDING).ceil();
     let is_full = begin + ROUNDING >= count;
@@ -119,7 +119,7 @@ impl Counting {
     }
 }
 
-/// From when to when `push` of `scenario` acts, s: an accumulating one does not end.
+/// The times at which `push` of `scenario` begins and ends to act, s; infinity for the end of an accumulating one.
 pub fn acts_s(push: &Push, scenario: &Scenario) -> (f64, f64) {
     let (begin, end) = seconds(push.window, Counting::in_seconds(scenario));
     let grows = push.accumulates && matches!(push.window, Window::Steps { .. });

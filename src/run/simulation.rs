@@ -1,4 +1,4 @@
-//! The one road forward in time.
+//! Steps a scenario forward in time.
 
 mod between;
 
@@ -11,23 +11,23 @@ use crate::physics::{Loads, PointForce, Scheme, State, Workings};
 use crate::scenario::{Edit, Motion, Push, Scenario};
 use std::sync::Arc;
 
-/// A run as it stands at one step; [`step`](Self::step) takes it to the next. A clone goes its own way from here,
-/// with the same bits.
+/// A run that stands at one of its steps; [`step`](Self::step) takes it to the next. A clone is independent of it and
+/// computes the same bits.
 #[derive(Clone)]
 pub struct Simulation {
     /// The step it stands at, as it is published.
     now: Step,
     scheme: Box<dyn Scheme>,
     pushes: Arc<[Push]>,
-    /// The pushes of the step to come, before they are known to differ from the loads.
+    /// The forces of the pushes on the step to come, until they are compared with those of the step before.
     acting: Vec<PointForce>,
     clock: Clock,
     counting: Counting,
     edits_made: usize,
-    /// The step of the next edit; the last step there could be where there is none.
+    /// The step of the next edit; [`u64::MAX`] if there is none.
     next_edit: u64,
     ended: Option<NotFinite>,
-    /// The forces that were replaced last, and those of which step they were.
+    /// The forces that were replaced last, and the step at which they were replaced.
     replaced: Loads,
     replaced_at: Option<u64>,
     /// While |L|² is below this, every number read off a finite state is finite too.
@@ -126,10 +126,10 @@ impl Simulation {
         let work = self.advance(workings.as_mut());
         let now = &mut self.now;
         now.after.time_s = self.clock.time_s(now.number + 1);
-        // Far inside the range nothing can leave it: only what comes near the edge is looked at number by number.
+        // Only near the largest numbers can one of them overflow: there each is checked.
         let is_safe = now.after.momentum.norm_squared() < self.safe_below;
         if !now.after.is_finite() || !(is_safe || now.can_be_read()) {
-            // This step's edits and forces have led nowhere: the run is read as it stood before them.
+            // The step failed: its edits and forces are undone, so that the run is read as it stood before them.
             if self.replaced_at == Some(now.number) {
                 now.loads.clone_from(&self.replaced);
             }
@@ -264,7 +264,7 @@ impl Simulation {
         }
     }
 
-    /// Counts a change of the loads, and keeps those of the step before, in case the coming one leads nowhere.
+    /// Counts a change of the loads, and keeps those of the step before, in case the coming step fails.
     fn change_loads(&mut self) {
         if self.replaced_at != Some(self.now.number) {
             self.replaced.clone_from(&self.now.loads);
@@ -368,7 +368,7 @@ fn step_of_edit(scenario: &Scenario, index: usize) -> u64 {
     scenario.edits.get(index).map_or(u64::MAX, |edit| edit.step)
 }
 
-/// Step counts are steps, unless they were written for another time step.
+/// How the step counts of pushes are read: as steps, unless they were written for another time step.
 fn counting(scenario: &Scenario) -> Counting {
     match scenario.written_for_s == scenario.motion.time_step_s {
         true => Counting::Steps,

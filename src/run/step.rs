@@ -75,8 +75,8 @@ impl Step {
         &self.loads
     }
 
-    /// How often the forces have changed so far, edits of the time step and the scheme counted in: what is measured
-    /// across such a change is the motion of neither side.
+    /// How often the forces have changed so far, edits of the time step and the scheme counted in: a period
+    /// or rate that is measured across such a change is that of no motion.
     pub fn changes(&self) -> u64 {
         self.changes
     }

@@ -1,7 +1,7 @@
 //! The exact motion of a scenario, beside which a run is shown.
 //!
-//! It begins at the scenario's start and lives through the same pushes and edits of gravity, in seconds; it never
-//! adopts the scheme's state, and edits of the time step or the scheme do not touch it.
+//! It has the scenario's start, and its pushes and edits of gravity at the same times in seconds. It never takes over the
+//! state that the scheme has computed, and edits of the time step or the scheme do not change it.
 
 use super::Clock;
 use super::pushes::{self, Counting, Stretch};
@@ -15,7 +15,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Truth {
     scenario: Arc<Scenario>,
-    /// From when on which gravity and pushes are in force; the first from 0.
+    /// The stretches of time between edits of gravity and pushes, in order; the first begins at 0.
     eras: Vec<Era>,
     /// The motion since the forces last changed, and when they change next.
     piece: ExactMotion,
@@ -137,7 +137,8 @@ impl Truth {
         self.piece.kind()
     }
 
-    /// The number of times the forces have changed so far: who keeps something of [`motion`](Self::motion) looks here.
+    /// The number of times the forces have changed so far. What a caller keeps of [`motion`](Self::motion) is valid as long
+    /// as this number stays the same.
     pub fn changes(&self) -> u64 {
         self.pieces
     }

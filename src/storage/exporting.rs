@@ -42,7 +42,7 @@ pub struct Written {
     pub rows: Option<u64>,
     /// Size of the file.
     pub bytes: u64,
-    /// What the reader of a figure should know of it.
+    /// Warnings about a figure, for its reader.
     pub warnings: Vec<String>,
     /// Where the run's numbers stopped being finite, if they did. The file has the rows before that.
     pub not_finite: Option<NotFinite>,

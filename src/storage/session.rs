@@ -210,7 +210,7 @@ pub fn is_in_use(folder: &Path, name: &str) -> bool {
     files::is_in_use(folder, name)
 }
 
-/// When the session called `name` in `folder` was saved last; long ago if there is none.
+/// When the session called `name` in `folder` was saved last; the beginning of 1970 if there is none.
 pub fn saved_at(folder: &Path, name: &str) -> SystemTime {
     files::written_at(folder, name)
 }

@@ -185,7 +185,7 @@ fn write(folder: &Path, chosen: &Table) -> Result<(), String> {
     let mut table = Table::new();
     if own::exists(&path) {
         let text = own::read(&path).map_err(cannot)?;
-        let there = text.parse().unwrap_or_default(); // what is no TOML was reported when the lab was opened
+        let there = text.parse().unwrap_or_default(); // text that is no TOML was reported when the lab was opened
         table = sifted(&there).0;
     }
     table.extend(chosen.clone());

@@ -22,15 +22,16 @@ const LEAST_SWING_DEG: f64 = 0.01;
 /// What has been drawn in one column.
 #[derive(Clone, Copy, Debug, Default)]
 struct Drawn {
-    /// In the curve's unit; until [`Pen::finish`] that of the lines from block to block alone.
+    /// The extremes of the lines from block to block, in the curve's unit; [`Pen::finish`] adds those of the blocks.
     extent: Option<Extent>,
     /// The extremes of blocks, as they are stored.
     stored: Option<Extent>,
-    /// Sum of the means of blocks, each as often as it has moments here.
+    /// Sum of the means of blocks, each multiplied by the number of its moments in this column.
     sum: f64,
     moments: f64,
     turns: f64,
-    /// The tilt swings with every nutation; the curve itself does not turn where slow motion is faster than that.
+    /// How often the tilt turns, which swings with every nutation; the curve itself does not turn where slow motion is
+    /// faster than its swings.
     turns_of_tilt: f64,
     /// The extremes of the tilt, as they are stored.
     tilt: Option<Extent>,

@@ -20,8 +20,8 @@ impl Simulation {
     /// have ended, this is the run between its steps: it begins where the step begins and leads to where it leads, and is as
     /// accurate. A time that is not after the present one changes nothing.
     ///
-    /// The run that this one goes on as is another one, whose steps have other lengths: of a run that is to go on, a clone
-    /// is taken there.
+    /// From there on its steps end at other times than those of the run: where the run is still needed, call this on a
+    /// clone.
     ///
     /// # Errors
     /// When the numbers stop being finite.

@@ -14,7 +14,7 @@ pub struct Content {
     pub place: String,
 }
 
-/// Checks whether a content can be read back as what was saved; else says why not.
+/// Checks whether a content, once saved, can be read back as the same; the error says why not.
 pub type Check = fn(&Content) -> Result<(), String>;
 
 /// What was read from the files of a session.
