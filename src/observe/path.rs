@@ -1,13 +1,13 @@
 //! The whole path of the traced point seen from above, in bounded memory.
 //!
-//! It is a square raster about the pivot that stores for each cell the step of its first visit. It begins small and doubles
-//! its width when the path leaves it, so that the path of a nearly upright top is as fine as that of a falling one.
+//! It is a list of the cells of a square raster about the pivot, each with the step of the path's first visit. The raster
+//! begins small and doubles its width when the path leaves it, so that the path of a nearly upright top is as fine as that
+//! of a falling one.
 
 use nalgebra::Vector3;
 
 /// Cells along one side; a power of two, so that the raster can be halved about its middle.
 const SIDE: usize = 512;
-const NEVER: u64 = u64::MAX;
 /// The longest distance between two positions, in cells, that is drawn as a line. A longer one is left open, because the
 /// motion in between is unknown.
 const LONGEST_LINE: f64 = 24.0;
@@ -16,11 +16,20 @@ const LONGEST_LINE: f64 = 24.0;
 #[derive(Clone, Debug)]
 pub struct Path {
     half_width: f64,
-    first_visit: Vec<u64>,
-    visited: Vec<u32>,
+    /// Whether a cell has been visited, row by row.
+    is_visited: Vec<bool>,
+    /// The visited cells, in the order of their first visits.
+    visits: Vec<Visit>,
     last: Option<(f64, f64)>,
     radius: f64,
     home: Home,
+}
+
+/// The first visit of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Visit {
+    step: u64,
+    cell: u32,
 }
 
 /// The inside of the cell in which the last position is: least and greatest x, least and greatest y. A slow point stays
@@ -45,8 +54,8 @@ impl Path {
         let half_width = if reach > 0.0 { reach / 64.0 } else { 1.0 };
         Self {
             half_width,
-            first_visit: vec![NEVER; SIDE * SIDE],
-            visited: Vec::new(),
+            is_visited: vec![false; SIDE * SIDE],
+            visits: Vec::new(),
             last: None,
             radius: 0.0,
             home: Home::NONE,
@@ -100,9 +109,13 @@ impl Path {
 
     fn visit(&mut self, step: u64, x: f64, y: f64) {
         let cell = self.row_or_column(y) * SIDE + self.row_or_column(x);
-        if self.first_visit[cell] == NEVER {
-            self.first_visit[cell] = step;
-            self.visited.push(cell as u32);
+        self.visit_cell(step, cell);
+    }
+
+    fn visit_cell(&mut self, step: u64, cell: usize) {
+        if !std::mem::replace(&mut self.is_visited[cell], true) {
+            let cell = cell as u32;
+            self.visits.push(Visit { step, cell });
         }
     }
 
@@ -115,12 +128,9 @@ impl Path {
     /// cell. Call [`stand_at`](Self::stand_at) before following the point further.
     pub fn cut_back(&mut self, step: u64) {
         self.home = Home::NONE;
-        // Cells stand in the order of their first visit.
-        let kept = self
-            .visited
-            .partition_point(|&cell| self.first_visit[cell as usize] <= step);
-        for cell in self.visited.drain(kept..) {
-            self.first_visit[cell as usize] = NEVER;
+        let kept = self.visits.partition_point(|visit| visit.step <= step);
+        for visit in self.visits.drain(kept..) {
+            self.is_visited[visit.cell as usize] = false;
         }
         self.radius = self
             .dots()
@@ -136,17 +146,16 @@ impl Path {
 
     /// Doubles the width of the raster: four cells become one.
     fn double(&mut self) {
-        let old = std::mem::replace(&mut self.first_visit, vec![NEVER; SIDE * SIDE]);
-        let cells = std::mem::take(&mut self.visited);
+        let visits = std::mem::take(&mut self.visits);
+        for visit in &visits {
+            self.is_visited[visit.cell as usize] = false;
+        }
         self.half_width *= 2.0;
         self.home = Home::NONE;
-        for cell in cells.into_iter().map(|cell| cell as usize) {
+        for Visit { step, cell } in visits {
+            let cell = cell as usize;
             let halved = |place: usize| SIDE / 4 + place / 2;
-            let merged = halved(cell / SIDE) * SIDE + halved(cell % SIDE);
-            if self.first_visit[merged] == NEVER {
-                self.visited.push(merged as u32);
-            }
-            self.first_visit[merged] = self.first_visit[merged].min(old[cell]);
+            self.visit_cell(step, halved(cell / SIDE) * SIDE + halved(cell % SIDE));
         }
     }
 
@@ -167,9 +176,8 @@ impl Path {
     pub fn dots(&self) -> impl Iterator<Item = (f64, f64)> {
         let middle =
             |place: usize| ((place as f64 + 0.5) / SIDE as f64 * 2.0 - 1.0) * self.half_width;
-        self.visited
-            .iter()
-            .map(move |&cell| (middle(cell as usize % SIDE), middle(cell as usize / SIDE)))
+        let cells = self.visits.iter().map(|visit| visit.cell as usize);
+        cells.map(move |cell| (middle(cell % SIDE), middle(cell / SIDE)))
     }
 }
 
@@ -213,13 +221,13 @@ mod tests {
             let (x, y) = positions[at];
             long.cut_back(at as u64);
             long.stand_at(&Vector3::new(x, y, 0.0));
-            prop_assert_eq!(&short.visited, &long.visited);
+            prop_assert_eq!(&short.visits, &long.visits);
             prop_assert_eq!(short.last, long.last);
             let cell = 4.0 / SIDE as f64;
             prop_assert!((short.radius - long.radius).abs() <= cell);
             follow(&mut short, at + 1..positions.len());
             follow(&mut long, at + 1..positions.len());
-            prop_assert_eq!(short.visited, long.visited);
+            prop_assert_eq!(short.visits, long.visits);
         }
     }
 
@@ -258,8 +266,8 @@ mod tests {
                     }
                 }
             }
-            prop_assert_eq!(&path.visited, &every.visited);
-            prop_assert_eq!(&path.first_visit, &every.first_visit);
+            prop_assert_eq!(&path.visits, &every.visits);
+            prop_assert_eq!(&path.is_visited, &every.is_visited);
             prop_assert_eq!((path.last, path.radius), (every.last, every.radius));
         }
     }
