@@ -275,6 +275,18 @@ mod tests {
     }
 
     #[test]
+    fn the_search_for_advice_about_a_run_ends_when_an_edit_begins_another() {
+        let mut player = Player::new(scenario(), false);
+        let ask = |player: &mut Player| player.advisor = Some(Advisor::ask(scenario()));
+        ask(&mut player);
+        player.begin(scenario(), false);
+        assert!(player.advisor.is_none());
+        ask(&mut player);
+        player.begin_with_act(&scenario(), false);
+        assert!(player.advisor.is_none());
+    }
+
+    #[test]
     fn what_is_kept_is_where_it_is_on_its_way_back_to() {
         let mut player = Player::new(scenario(), false);
         player.return_to(100_000_000);
