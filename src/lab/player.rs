@@ -146,8 +146,10 @@ impl Player {
         self.choose_detail(now, view);
         let is_other = of_this_run.is_some_and(|before| before != self.detail.curve);
         self.explain(view);
+        // Not while the user waits for a step to be reached: the search would take a processor from the stepping.
         if self.is_advised
             && self.advisor.is_none()
+            && self.playback.steps_to_go().is_none()
             && self.reading.readouts.health.is_believed() == Some(false)
         {
             self.advisor = Some(Advisor::ask(self.to_be_mended()));
@@ -251,6 +253,8 @@ fn begins_with_exact(scenario: &Scenario) -> Option<bool> {
 mod tests {
     use super::*;
     use crate::lab::for_tests::scenario;
+    use crate::lab::view::markers::Marker;
+    use crate::lab::view::theme::{Background, Theme};
 
     #[test]
     fn a_run_that_was_played_stays_as_a_ghost() {
@@ -284,6 +288,25 @@ mod tests {
         ask(&mut player);
         player.begin_with_act(&scenario(), false);
         assert!(player.advisor.is_none());
+    }
+
+    #[test]
+    fn advice_is_sought_where_the_run_stands_and_not_on_its_way() {
+        let theme = Theme {
+            colour: false,
+            background: Background::Dark,
+        };
+        let view = View::new(&scenario(), Marker::Braille, theme, &[]);
+        let mut player = Player::new(scenario(), false);
+        player.is_advised = true;
+        player.return_to(100_000_000);
+        player.step(1000).unwrap();
+        player.return_to(100_000_000);
+        player.read(Duration::ZERO, &view);
+        assert!(player.advisor.is_none());
+        player.pause();
+        player.read(Duration::ZERO, &view);
+        assert!(player.advisor.is_some());
     }
 
     #[test]
