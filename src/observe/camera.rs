@@ -148,6 +148,11 @@ impl View {
         (right, self.cos_pitch * point.z + self.sin_pitch * depth)
     }
 
+    /// The direction to the picture's right, world frame.
+    pub fn right(&self) -> Vector3<f64> {
+        Vector3::new(self.cos_yaw, self.sin_yaw, 0.0)
+    }
+
     /// As [`Camera::depth`].
     pub fn depth(&self, point: &Vector3<f64>) -> f64 {
         let depth = self.cos_yaw * point.y - self.sin_yaw * point.x;

@@ -105,6 +105,15 @@ impl Dots {
         }
     }
 
+    /// Takes all dots of a cell away, in which the dot at column `x`, row `y` is.
+    pub fn clear_cell(&mut self, x: usize, y: usize) {
+        let (across, down) = self.marker.dots();
+        let cell = y / down * self.area.width as usize + x / across;
+        if let Some(cell) = self.cells.get_mut(cell) {
+            *cell = Cell::default();
+        }
+    }
+
     /// What the dots are made of.
     pub fn marker(&self) -> Marker {
         self.marker

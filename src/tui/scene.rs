@@ -17,15 +17,16 @@ const MOST_OF_ARROW: f64 = 0.6;
 const HEAD_STROKES: i32 = 3;
 /// An arrow that is seen as short as this, dots, has no head.
 const SHORTEST: f64 = 4.0;
-/// A rod is nearer than what lies along it by this part of the scene's reach.
-const IN_FRONT: f64 = 0.03;
+/// An arrow over another one, and a rod, are nearer than what lies along them by these parts of the scene's reach.
+const OVER: f64 = 0.01;
+const IN_FRONT: f64 = 0.15;
 /// An arrow in front of everything is nearer than it is by this part of the scene's reach.
 const FRONT: f64 = 10.0;
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stroke {
-    /// Every dot, and those on both of its sides.
+    /// Every dot, and those on both of its sides. What passes in front leaves no gap beside itself.
     Heavy,
     /// Every dot, and those beside them.
     Thick,
@@ -41,14 +42,17 @@ struct Speck {
     depth: f64,
     ink: Ink,
     hides: bool,
+    /// Whether what passes in front leaves a gap beside itself.
+    is_parted: bool,
 }
 
 /// The camera's eye on a sheet of dots.
 pub struct Scene {
     camera: View,
-    /// Dots in a cell, and of the sheet.
-    in_cell: (usize, usize),
-    size: (usize, usize),
+    /// Dots in a cell, across and down.
+    pub in_cell: (usize, usize),
+    /// Dots of the sheet, across and down.
+    pub size: (usize, usize),
     /// What stands in the middle of the sheet, m to the right and up.
     middle: (f64, f64),
     /// Dots in a metre, across and down.
@@ -108,6 +112,12 @@ impl Scene {
         )
     }
 
+    /// The cell of the dot `at`, if it is on the sheet.
+    pub fn cell_of(&self, at: (f64, f64)) -> Option<(u16, u16)> {
+        let (x, y) = self.place(at)?;
+        Some(((x / self.in_cell.0) as u16, (y / self.in_cell.1) as u16))
+    }
+
     /// Whether `point` is on the sheet.
     pub fn shows(&self, point: &Vector3<f64>) -> bool {
         let (x, y) = self.dot(point);
@@ -162,6 +172,7 @@ impl Scene {
                     depth,
                     ink,
                     hides,
+                    is_parted: stroke != Stroke::Heavy,
                 });
             };
             speck(at);
@@ -188,6 +199,11 @@ impl Scene {
     /// A line with a filled head at its tip, which is seen on a small sheet too.
     pub fn arrow(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink) {
         self.arrow_nearer(from, tip, ink, 0.0);
+    }
+
+    /// As [`arrow`](Self::arrow), over another arrow that lies along it.
+    pub fn arrow_over(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink) {
+        self.arrow_nearer(from, tip, ink, OVER * self.reach);
     }
 
     /// As [`arrow`](Self::arrow), in front of everything but the arrows of this kind that are nearer: nothing hides a part
@@ -228,7 +244,20 @@ impl Scene {
         }
     }
 
-    /// A heavy line that is in front of what lies along it: arrows along the axle do not cover it.
+    /// A place two columns beside `tip` on the side that `direction` does not point to, for the letter of an arrow beyond
+    /// whose tip there is something else.
+    pub fn beside(&self, tip: &Vector3<f64>, direction: &Vector3<f64>) -> Vector3<f64> {
+        let right = self.camera.right();
+        let side = if right.dot(direction) > 0.0 {
+            -2.0
+        } else {
+            2.0
+        };
+        tip + right * (side * self.in_cell.0 as f64 / self.scale.0)
+    }
+
+    /// A heavy line that is in front of what lies along it: arrows along the axle do not cover it. What crosses it in front
+    /// leaves no gap in it, so that it is seen as one line.
     pub fn rod(&mut self, from: &Vector3<f64>, to: &Vector3<f64>, ink: Ink) {
         let nearer = |point| self.camera.depth(point) - IN_FRONT * self.reach;
         let ends = ((self.dot(from), nearer(from)), (self.dot(to), nearer(to)));
@@ -240,14 +269,21 @@ impl Scene {
         inside.then_some((x as usize, y as usize))
     }
 
-    /// Sets the dots that are to be seen, and takes away those beside and behind them that were set before.
+    /// Sets the dots that are to be seen, and takes away those beside and behind them that were set before: in a cell with a
+    /// strong line all of them, as a cell has one colour.
     pub fn draw(mut self, dots: &mut Dots) {
         let (width, height) = self.size;
         let mut nearest = vec![f64::INFINITY; width * height];
+        let mut at_dot = nearest.clone();
         for speck in self.specks.iter().filter(|speck| speck.hides) {
             let Some((x, y)) = self.place(speck.at) else {
                 continue;
             };
+            if matches!(speck.ink, Ink::Strong(_)) {
+                dots.clear_cell(x, y);
+            }
+            let at_dot = &mut at_dot[y * width + x];
+            *at_dot = at_dot.min(speck.depth);
             for y in y.saturating_sub(1)..(y + 2).min(height) {
                 for x in x.saturating_sub(1)..(x + 2).min(width) {
                     let nearest = &mut nearest[y * width + x];
@@ -265,6 +301,7 @@ impl Scene {
         // The nearest last: it decides how a cell looks that several lines cross.
         self.specks.sort_by(|a, b| b.depth.total_cmp(&a.depth));
         for speck in &self.specks {
+            let nearest = if speck.is_parted { &nearest } else { &at_dot };
             let is_seen = self
                 .place(speck.at)
                 .is_some_and(|(x, y)| speck.depth <= nearest[y * width + x] + BEHIND * self.reach);

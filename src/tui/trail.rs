@@ -97,8 +97,8 @@ impl Trail {
         let all: Vec<_> = all.inspect(|(_, at)| self.count(*at)).collect();
         let old = all.iter().filter(|(end_s, _)| *end_s <= now_s);
         self.pass(old.map(|(_, at)| *at).chain([now]), LONGEST_LINE, Age::Old);
-        let recent = LONGEST_RECENT_LINE * self.width.min(self.height) as f64;
-        for (age, longest) in [(Age::Turn, LONGEST_LINE), (Age::Recent, recent)] {
+        for age in [Age::Turn, Age::Recent] {
+            let longest = longest_line((self.width, self.height), age == Age::Recent);
             let since = ages.since(age, now_s);
             let blocks = recording
                 .since(since)
@@ -202,6 +202,14 @@ impl Trail {
             Age::Turn => Ink::Strong(turn),
             Age::Old => Ink::Under(old),
         }
+    }
+}
+
+/// The longest line between two places of the last turn, recent or not, on a sheet of `width` and `height` dots.
+pub fn longest_line((width, height): (usize, usize), is_recent: bool) -> f64 {
+    match is_recent {
+        true => LONGEST_RECENT_LINE * width.min(height) as f64,
+        false => LONGEST_LINE,
     }
 }
 

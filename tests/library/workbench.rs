@@ -669,7 +669,7 @@ fn half_blocks_need_no_rare_glyphs() {
     for keys in ["mt", "md", "m?", "mo/loops"] {
         let mut stage = Stage::open("method-2", &[], LARGE);
         stage.wait(2.0).press(keys);
-        let rare = |c: &char| !c.is_ascii() && !"─│┌┐└┘├┤═▀▄█·°×►▲▼Ωτ".contains(*c);
+        let rare = |c: &char| !c.is_ascii() && !"─│┌┐└┘├┤═▀▄█■·°×►◄▲▼Ωτ".contains(*c);
         let picture = stage.picture();
         assert_eq!(picture.chars().find(rare), None, "{picture}");
     }

@@ -8,6 +8,7 @@ mod phase;
 mod room;
 mod shape;
 mod solids;
+mod way;
 mod wheel;
 
 use super::{PaneRow, Width, frame, round_title, write};
@@ -35,7 +36,7 @@ use std::f64::consts::TAU;
 
 /// Length of the arrow of L, in lengths of the axle. Only its direction has a meaning; it ends a little above the axle's
 /// top, as a longer arrow would leave less room for the wheel.
-const MOMENTUM: f64 = 1.28;
+const MOMENTUM: f64 = 1.5;
 /// The least length that the axle counts as in these lengths, as a share of the body's size.
 const LEAST_ARM: f64 = 0.7;
 /// Length of the arrow of the change of L, as a share of the body's size.
@@ -45,8 +46,6 @@ const GROUND: f64 = 0.45;
 /// Height of the stand that carries the pivot, and radius of its foot, as such shares.
 const STAND: f64 = 0.26;
 const FOOT: f64 = 0.22;
-/// The legs of the stand.
-const LEGS: usize = 3;
 /// A torque smaller than this share of the largest torque of the weight counts as zero.
 const NO_TORQUE: f64 = 1e-9;
 /// Rows of the pane for each line of its legend.
@@ -120,6 +119,7 @@ impl Widget for ThreeD<'_> {
         labels.extend(subject.phase(&mut scene));
         labels.extend(subject.vectors(&mut scene));
         labels.extend(subject.pushes(&mut scene));
+        let way = subject.way(&scene);
         let mut masses = subject.signs_of_phase(&scene);
         masses.extend(subject.masses(&scene));
         let cells: Vec<_> = labels
@@ -131,11 +131,12 @@ impl Widget for ThreeD<'_> {
         let pivot = Vector3::zeros();
         let pivot = scene.shows(&pivot).then(|| scene.cell(&pivot));
         scene.draw(&mut dots);
+        way.join(&mut dots);
         dots.render(theme, buf);
         let pivot = pivot.map(|cell| ("+", Role::Heading, cell));
         let here = here.map(|cell| ("*", Role::Focus, cell));
         let mut places = Labels::new(picture);
-        for (sign, role, cell) in masses.into_iter().chain(pivot).chain(here) {
+        for (sign, role, cell) in way.head.into_iter().chain(masses).chain(pivot).chain(here) {
             write(picture, cell, sign, theme.style(role), buf);
             places.take(cell);
         }
@@ -215,15 +216,7 @@ impl<'a> Subject<'a> {
         let circle: Vec<_> = (0..PARTS).map(|part| around(part, PARTS)).collect();
         if stands {
             scene.ring(&circle, |_| (Stroke::Thin, ink));
-            for leg in 0..LEGS {
-                let foot = around(2 * leg + 1, 2 * LEGS);
-                scene.line(
-                    &Vector3::zeros(),
-                    &foot,
-                    Stroke::Thin,
-                    Ink::Strong(Role::Quiet),
-                );
-            }
+            scene.line(&Vector3::zeros(), &floor, Stroke::Thin, ink);
         } else {
             for pair in circle.chunks(2) {
                 if let [from, to] = pair {

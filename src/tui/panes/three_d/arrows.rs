@@ -11,7 +11,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 /// Length of the arrow of the angular velocity, in lengths of the axle.
-const OMEGA: f64 = 1.12;
+const OMEGA: f64 = 1.22;
 /// Lengths of the other arrows, as shares of the body's size. Only their directions have a meaning.
 const WEIGHT: f64 = 0.35;
 const TORQUE: f64 = 0.5;
@@ -37,9 +37,16 @@ impl Subject<'_> {
             // would cover.
             match name {
                 "τ" | "dL" => scene.arrow_in_front(&from, &tip, Ink::Strong(role)),
+                // Shorter than L, in which it would vanish where both lie along the axle.
+                "Ω" => scene.arrow_over(&from, &tip, Ink::Strong(role)),
                 _ => scene.arrow(&from, &tip, Ink::Strong(role)),
             }
-            labels.push((name, role, scene.beyond(&from, &tip)));
+            let place = match (name, self.torque) {
+                // L goes on beyond the tip, and dL stands on the other side.
+                ("Ω", Some(torque)) => scene.beside(&tip, &torque),
+                _ => scene.beyond(&from, &tip),
+            };
+            labels.push((name, role, place));
         };
         let pivot = Vector3::zeros();
         let weight = Vector3::z() * -simulation.loads().gravity;
@@ -159,10 +166,15 @@ impl Subject<'_> {
     /// What is drawn besides the arrows.
     fn signs_in_words(&self) -> Vec<Words> {
         let mut words = vec![(["+ pivot"; 3], Role::Heading)];
+        words.push((["thick: axle", "", ""], Role::Focus));
         if self.run.scenario().file.trace.is_none() {
             words.push((["* axle top", "* top", "* top"], Role::Focus));
         } else {
             words.push((["* traced point", "* traced", "* traced"], Role::Focus));
+        }
+        words.push((["►▲ its way", "", ""], Role::Focus));
+        if self.shape.rim.is_some() {
+            words.push((["■ hub", "■ hub", ""], Role::Heading));
         }
         words.push((
             ["O o · masses, near to far", "O o · masses", ""],

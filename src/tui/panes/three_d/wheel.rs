@@ -8,10 +8,10 @@ use crate::tui::theme::Role;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-/// Spokes, and free masses, that are drawn at most.
-const MOST_SPOKES: usize = 6;
-/// Radius of the hub, of that of the rim.
+/// Where the spoke begins, of the radius of the rim.
 const HUB: f64 = 0.14;
+/// The hub. It is no letter, as those stand for vectors and masses.
+pub(super) const HUB_SIGN: &str = "■";
 /// A mass is near or far where it is nearer or farther than the hub by this part of the rim's radius.
 const NEAR: f64 = 0.33;
 /// The least distance of the signs of masses on the rim, cells.
@@ -26,7 +26,7 @@ impl Subject<'_> {
         let state = self.state;
         let axle = state.axle();
         let (foot, top) = self.shape.axle;
-        scene.rod(&(axle * foot), &(axle * top), Ink::Strong(Role::Heading));
+        scene.rod(&(axle * foot), &(axle * top), Ink::Strong(Role::Focus));
         for at in &self.shape.free {
             let foot = axle * at.z;
             scene.line(
@@ -42,22 +42,13 @@ impl Subject<'_> {
             let look = |depth: f64| match is_near(depth, middle, radius) {
                 Some(true) => (Stroke::Thick, Ink::Strong(Role::Text)),
                 None => (Stroke::Thin, Ink::Strong(Role::Text)),
-                Some(false) => (Stroke::Dotted(2), Ink::Faint(Role::Quiet)),
+                Some(false) => (Stroke::Thin, Ink::Faint(Role::Quiet)),
             };
             scene.ring(&circle(state, radius, height), look);
-            let hub = circle(state, HUB * radius, height);
-            scene.ring(&hub, |_| (Stroke::Thin, Ink::Strong(Role::Text)));
-            let every = points.div_ceil(MOST_SPOKES).max(1);
-            for point in (0..points).step_by(every) {
-                let at = on_circle(state, radius, height, point, points);
-                let hub = on_circle(state, HUB * radius, height, point, points);
-                // One spoke is drawn differently, so that the wheel is seen to turn.
-                let stroke = match point {
-                    0 => Stroke::Thin,
-                    _ => Stroke::Dotted(3),
-                };
-                scene.line(&hub, &at, stroke, Ink::Strong(Role::Text));
-            }
+            // One spoke only: it shows that the wheel turns, and more of them would hide the axle.
+            let at = on_circle(state, radius, height, 0, points);
+            let hub = on_circle(state, HUB * radius, height, 0, points);
+            scene.line(&hub, &at, Stroke::Thin, Ink::Strong(Role::Text));
         }
     }
 
@@ -79,7 +70,7 @@ impl Subject<'_> {
         self.solids_before(state, scene);
     }
 
-    /// The masses, the nearest last: a larger sign is nearer.
+    /// The hub and the masses, the nearest last: a larger sign is nearer.
     pub(super) fn masses(&self, scene: &Scene) -> Vec<Sign> {
         let middle = scene.depth(&self.wheel());
         let radius = self.shape.rim.map_or(self.reach, |(radius, ..)| radius);
@@ -93,7 +84,10 @@ impl Subject<'_> {
             };
             (sign, role, scene.cell(at))
         });
-        signs.collect()
+        let hub = self.wheel();
+        let has_hub = self.shape.rim.is_some() && scene.shows(&hub);
+        let hub = has_hub.then(|| (HUB_SIGN, Role::Heading, scene.cell(&hub)));
+        hub.into_iter().chain(signs).collect()
     }
 
     /// The masses where they were at `state`.
