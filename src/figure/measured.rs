@@ -35,8 +35,8 @@ pub(super) fn over_time(
         return Ok(None);
     };
     let series = series(measured)?;
-    let mut is_shown = false;
-    for (panel, column) in chart.panels.iter_mut().zip(columns) {
+    let mut drawn_on = Vec::new();
+    for (index, column) in columns.iter().enumerate().take(chart.panels.len()) {
         let is_this = |curve: &&Curve| curve.quantity.name == column.name();
         let Some(curve) = series.curves.iter().find(is_this) else {
             continue;
@@ -50,10 +50,13 @@ pub(super) fn over_time(
             let last = shown.last().map_or(range.1, |(at, _)| at[0]);
             range.1 = range.1.max(last);
         }
-        is_shown |= !shown.is_empty();
+        drawn_on.push((index, shown));
+    }
+    let count = drawn_on.iter().map(|(_, shown)| shown.len()).sum();
+    for (index, shown) in drawn_on {
         let (points, errors): (Vec<_>, Vec<_>) = shown.into_iter().unzip();
-        panel.series.push(Series {
-            name: name(measured, request),
+        chart.panels[index].series.push(Series {
+            name: name(measured, count, request),
             style: Style::measured(points.len()),
             points,
             errors,
@@ -61,7 +64,7 @@ pub(super) fn over_time(
         });
     }
     let columns: Vec<_> = names(series).collect();
-    Ok((!is_shown).then(|| {
+    Ok((count == 0).then(|| {
         format!(
             "no point of {} is in this figure: it has {}; --kind {} shows them",
             measured.origin,
@@ -101,7 +104,7 @@ pub(super) fn above(
         sigmas.map(|sigma| sigma.unwrap_or(f64::NAN)).collect()
     };
     let added = Series {
-        name: name(measured, request),
+        name: name(measured, shown.len(), request),
         points: shown.iter().map(|place| [place.at.x, place.at.y]).collect(),
         errors: errors(1),
         errors_across: errors(0),
@@ -174,6 +177,10 @@ pub(super) fn residuals(
         ..Panel::default()
     };
     let mut panels: Vec<Panel> = series.curves.iter().map(panel).collect();
+    let all = series.curves.iter().flat_map(|curve| &curve.points);
+    let count = all
+        .filter(|point| is_wanted(series.times_s[point.row], request))
+        .count();
     for (index, (scenario, name)) in runs.iter().enumerate() {
         let go_on = || watch.borrow_mut()(0, scenario.steps).is_continue();
         let model = at_times(series, scenario, &go_on).map_err(|error| error.to_string())?;
@@ -195,7 +202,7 @@ pub(super) fn residuals(
             let (points, errors) = drawn(series, &points, request).into_iter().unzip();
             panel.series.push(Series {
                 name: match runs.len() {
-                    1 => self::name(measured, request),
+                    1 => self::name(measured, count, request),
                     _ => name.clone(),
                 },
                 points,
@@ -232,13 +239,13 @@ fn names(series: &measured::Series) -> impl Iterator<Item = &'static str> + '_ {
     series.curves.iter().map(|curve| curve.quantity.name)
 }
 
-/// The name of the data in the legend, as markup.
-fn name(measured: &Measured, request: &Request) -> String {
+/// The name of the data in the legend, as markup, with the `count` of the points that the figure has of them.
+fn name(measured: &Measured, count: usize, request: &Request) -> String {
     let file = Path::new(&measured.origin).file_stem();
     let file = file.map_or(measured.origin.as_str().into(), |file| {
         file.to_string_lossy()
     });
-    let count = match measured.count() {
+    let count = match count {
         1 => "1 point".to_owned(),
         count => format!("{count} points"),
     };

@@ -357,3 +357,17 @@ fn a_figure_that_shows_no_point_says_so() {
         ]
     );
 }
+
+#[test]
+fn the_legend_counts_the_points_that_the_figure_has() {
+    // Two places and three tilts; what is drawn of the legend is as wide as its words.
+    let data = "t_s,x_m,tilt_deg\n1,0.5,45\n2,0.4,45\n3,,45\n";
+    let fewer = "t_s,x_m\n1,0.5\n2,0.4\n";
+    let paths = |kind: &str, data: &str| -> Vec<String> {
+        let items = figure(Some(kind), data).scene.items;
+        items.iter().map(|item| format!("{item:?}")).collect()
+    };
+    assert_eq!(paths("x_m", data), paths("x_m", fewer), "2 points");
+    let more = "t_s,x_m\n1,0.5\n2,0.4\n3,0.4\n";
+    assert_ne!(paths("x_m", data), paths("x_m", more), "3 points");
+}
