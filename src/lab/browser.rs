@@ -4,26 +4,34 @@ use super::preview::{AT_ONCE, Loader, Preview, read};
 use super::sorting::Sorting;
 use super::typing::type_into;
 use crate::scenario::presets::PRESETS;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Files beyond this many are not listed.
+/// Files beyond this many are not listed, nor are folders.
 const MOST_FILES: usize = 1000;
+/// The name of the entry that leads to the folder above.
+const ABOVE: &str = "../";
 
-/// A preset or file that can be opened.
+/// A preset or file that can be opened, or a folder of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// The name of the preset or the path of the file, as SCENARIO on the command line.
+    /// The name of the preset or the path of the file, as SCENARIO on the command line; that of a folder ends in `/`.
     pub name: String,
     /// Whether it is a file.
     pub is_file: bool,
+    /// Whether it is a folder.
+    pub is_folder: bool,
 }
 
 /// The state of the browser.
 #[derive(Debug, Default)]
 pub struct Browser {
     entries: Vec<Entry>,
+    /// The folder whose files are listed, the one whose files were listed first, and those through which the way led down.
+    folder: PathBuf,
+    first: PathBuf,
+    passed: Vec<PathBuf>,
     /// How many files of the folder are left out because they hold no run.
     others: usize,
     /// The search for files that hold no run, while it is in progress.
@@ -50,25 +58,76 @@ impl Browser {
     /// Lists presets and files again, as [`new`](Self::new) does, but of the files only those for which `may_be_read`
     /// is true.
     pub fn begin(&mut self, folder: &Path, name: &str, may_be_read: impl Fn(&Path) -> bool) {
+        self.passed.clear();
+        self.first = folder.to_owned();
+        self.open = name.to_owned();
+        self.list(folder, may_be_read);
+        self.refilter();
+    }
+
+    /// Lists the files of the selected folder instead; where that is the one above, the folder from which the way led up is
+    /// selected. Returns whether a folder was selected.
+    pub fn enter(&mut self, may_be_read: impl Fn(&Path) -> bool) -> bool {
+        let chosen = self.choice().filter(|entry| entry.is_folder);
+        let Some(name) = chosen.map(|entry| entry.name.clone()) else {
+            return false;
+        };
+        let (is_up, from) = (name == ABOVE, self.folder.clone());
+        let to = match is_up {
+            true => self.passed.pop().or_else(|| above(&from)),
+            false => {
+                self.passed.push(from.clone());
+                Some(PathBuf::from(name.trim_end_matches('/')))
+            }
+        };
+        let Some(to) = to else {
+            return false;
+        };
+        self.list(&to, may_be_read);
+        self.filter.clear();
+        let from = std::fs::canonicalize(&from).unwrap_or(from);
+        let of_folder = || self.entries.iter().skip(PRESETS.len());
+        let came_from =
+            |entry: &Entry| is_up && Path::new(&entry.name).file_name() == from.file_name();
+        let is_below = |entry: &Entry| !is_up && entry.name != ABOVE;
+        let found = of_folder().position(|entry| came_from(entry) || is_below(entry));
+        let last = self.entries.len().saturating_sub(1);
+        self.selected = (PRESETS.len() + found.unwrap_or(0)).min(last);
+        self.load_preview();
+        true
+    }
+
+    /// Lists presets, and of `folder` the way up, folders and files, as far as `may_be_read` is true for them.
+    fn list(&mut self, folder: &Path, may_be_read: impl Fn(&Path) -> bool) {
         let presets = PRESETS.iter().map(|preset| Entry {
             name: preset.name.to_owned(),
             is_file: false,
+            is_folder: false,
         });
         let mut names = files(folder);
         names.retain(|name| may_be_read(Path::new(name)));
         self.others = 0;
         self.sorting = Some(Sorting::begin(&names));
+        let leads_up =
+            !self.passed.is_empty() || above(folder).is_some_and(|above| may_be_read(&above));
+        let mut folders = folders(folder);
+        folders.retain(|name| may_be_read(Path::new(name.trim_end_matches('/'))));
+        let above = leads_up.then(|| ABOVE.to_owned());
+        let folders = above.into_iter().chain(folders).map(|name| Entry {
+            name,
+            is_file: false,
+            is_folder: true,
+        });
         let files = names.into_iter().map(|name| Entry {
             name,
             is_file: true,
+            is_folder: false,
         });
-        self.entries = presets.chain(files).collect();
-        self.open = name.to_owned();
-        self.filter.clear();
+        self.entries = presets.chain(folders).chain(files).collect();
+        self.folder = folder.to_owned();
         self.preview = None;
         self.is_chosen = false;
         self.leave_out_others(AT_ONCE);
-        self.refilter();
     }
 
     /// Removes the files that hold no run from the list, if the search has found them or finds them within `wait`.
@@ -128,6 +187,11 @@ impl Browser {
             .iter()
             .filter(|entry| entry.name.to_lowercase().contains(&wanted))
             .collect()
+    }
+
+    /// The folder whose files are listed, where that is not the first one.
+    pub fn folder(&self) -> Option<&Path> {
+        (self.folder != self.first).then_some(&self.folder)
     }
 
     /// How many of all entries are files.
@@ -235,7 +299,7 @@ impl Browser {
             return;
         }
         self.is_chosen = false;
-        self.preview = choice.map(|entry| {
+        self.preview = choice.filter(|entry| !entry.is_folder).map(|entry| {
             let preview = match entry.is_file {
                 true => self.loader.ask(&entry.name),
                 false => Preview::Known(Arc::new(read(&entry.name))),
@@ -247,14 +311,32 @@ impl Browser {
 
 /// The files in `folder` that may hold a scenario, as SCENARIO names them, in the order of their names.
 fn files(folder: &Path) -> Vec<String> {
+    let is_wanted = |name: &str| name.ends_with(".toml") || name.ends_with(".csv");
+    names(folder, Path::is_file, is_wanted)
+}
+
+/// The folders in `folder`, in the order of their names, each with a `/` at its end. Those that the system hides are left
+/// out.
+fn folders(folder: &Path) -> Vec<String> {
+    let mut names = names(folder, Path::is_dir, |name| !name.starts_with('.'));
+    names.iter_mut().for_each(|name| name.push('/'));
+    names
+}
+
+/// The paths of what is in `folder`, is of a kind and has a name that is wanted.
+fn names(
+    folder: &Path,
+    is_kind: fn(&Path) -> bool,
+    is_wanted: impl Fn(&str) -> bool,
+) -> Vec<String> {
     let Ok(entries) = std::fs::read_dir(folder) else {
         return Vec::new(); // a folder that cannot be read has nothing to offer
     };
     let mut names: Vec<_> = entries
         .flatten()
-        .filter(|entry| entry.path().is_file())
+        .filter(|entry| is_kind(&entry.path()))
         .filter_map(|entry| entry.file_name().into_string().ok())
-        .filter(|name| name.ends_with(".toml") || name.ends_with(".csv"))
+        .filter(|name| is_wanted(name))
         .take(MOST_FILES)
         .map(|name| {
             if folder == Path::new(".") {
@@ -266,4 +348,10 @@ fn files(folder: &Path) -> Vec<String> {
         .collect();
     names.sort_unstable();
     names
+}
+
+/// The folder above `folder`, if there is one.
+fn above(folder: &Path) -> Option<PathBuf> {
+    let folder = std::fs::canonicalize(folder).ok()?;
+    folder.parent().map(Path::to_owned)
 }

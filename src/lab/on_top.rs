@@ -176,6 +176,12 @@ impl OnTop {
         self.mode = Mode::Browser;
     }
 
+    /// Lists what is in the selected folder, as [`open_browser`](Self::open_browser) does; returns whether it could.
+    pub(super) fn enter_folder(&mut self, may_be_read: impl Fn(&Path) -> bool) -> bool {
+        self.mode = Mode::Browser;
+        self.browser.enter(may_be_read)
+    }
+
     /// Opens the line for the browser's filter.
     pub(super) fn open_filter(&mut self) {
         self.mode = Mode::Filter;

@@ -23,11 +23,20 @@ pub(super) fn read(name: &str) -> Result<Document, Problems> {
 }
 
 impl Lab {
-    /// Opens the entry that is selected in the browser, and plays its run.
+    /// Opens the entry that is selected in the browser: plays its run, or lists what is in the folder.
     pub(super) fn open_chosen(&mut self) {
         let Some(entry) = self.on_top.browser().choice().cloned() else {
             return self.say("nothing is selected: Esc clears the filter");
         };
+        if entry.is_folder {
+            let files = &self.files;
+            let may_be_read = |path: &Path| files.admit(path).is_ok();
+            if !self.on_top.enter_folder(may_be_read) {
+                self.say(format!("{} cannot be opened any more", entry.name));
+            }
+            self.changed = true;
+            return;
+        }
         let path = Path::new(&entry.name);
         if !entry.is_file || Destination::may_wait(path) || self.files.admit(path).is_err() {
             let answer = self.carry_out(&Command::Open(entry.name));

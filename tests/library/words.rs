@@ -156,3 +156,83 @@ fn the_list_of_files_has_those_that_hold_a_run() {
     );
     assert_eq!((browser.files(), browser.others()), (4, 2));
 }
+
+#[test]
+fn the_browser_goes_into_folders_and_comes_back() {
+    let root = tempfile::tempdir().unwrap();
+    let inner = root.path().join("runs").join("june");
+    std::fs::create_dir_all(&inner).unwrap();
+    std::fs::create_dir(root.path().join(".hidden")).unwrap();
+    let preset = gyrolab::scenario::presets::find("cusps").unwrap().text;
+    std::fs::write(inner.join("mine.toml"), preset).unwrap();
+    std::fs::write(root.path().join("first.toml"), preset).unwrap();
+    // As a lab that stays in its folder.
+    let may_be_read = |path: &std::path::Path| path.starts_with(root.path());
+    let mut browser = gyrolab::lab::browser::Browser::default();
+    browser.begin(root.path(), "", may_be_read);
+    let shown = |browser: &gyrolab::lab::browser::Browser| -> Vec<String> {
+        let all = browser.shown().into_iter();
+        let listed = all.filter(|entry| entry.is_file || entry.is_folder);
+        let below = |name: &str| name.replace(root.path().to_str().unwrap(), "");
+        listed.map(|entry| below(&entry.name)).collect()
+    };
+    assert_eq!(
+        shown(&browser),
+        ["/runs/", "/first.toml"],
+        "no way out of it"
+    );
+    assert!(!browser.enter(may_be_read), "a preset is no folder");
+    assert!(browser.paste("runs/") && browser.enter(may_be_read));
+    assert_eq!(shown(&browser), ["../", "/runs/june/"]);
+    assert!(
+        browser.enter(may_be_read),
+        "what is in the folder is selected"
+    );
+    assert_eq!(shown(&browser), ["../", "/runs/june/mine.toml"]);
+    assert!(browser.choice().unwrap().is_file);
+    for above in ["/runs", ""] {
+        assert!(browser.paste("../") && browser.enter(may_be_read));
+        let folder = browser
+            .folder()
+            .map(|folder| folder.to_str().unwrap().to_owned());
+        let wanted = (!above.is_empty()).then(|| root.path().to_str().unwrap().to_owned() + above);
+        assert_eq!(folder, wanted);
+        assert!(browser.choice().unwrap().is_folder, "the one that was left");
+    }
+    assert_eq!(shown(&browser), ["/runs/", "/first.toml"]);
+    // Where it may go anywhere, the way leads up from the first folder too.
+    let runs = root.path().join("runs");
+    browser.begin(&runs, "", |_| true);
+    assert_eq!(shown(&browser)[0], "../");
+    assert!(browser.paste("../") && browser.enter(|_| true));
+    let wanted = std::fs::canonicalize(&runs).unwrap();
+    assert_eq!(browser.folder(), wanted.parent());
+    let back = browser.choice().unwrap().name.clone();
+    assert_eq!(std::path::Path::new(&back), wanted, "the one that was left");
+}
+
+#[test]
+fn a_file_in_a_folder_is_opened_with_enter() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("runs")).unwrap();
+    let preset = gyrolab::scenario::presets::find("cusps").unwrap().text;
+    let title = preset.replace("title = \"Cusps\"", "title = \"Cusps of June\"");
+    std::fs::write(folder.path().join("runs/mine.toml"), title).unwrap();
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.lab.files_mut().work_in(folder.path());
+    stage
+        .press("o/runs")
+        .shows("Enter lists its files")
+        .press("\n");
+    stage.shows("file of").shows("mine.toml").shows("../");
+    for _ in 0..200 {
+        thread::sleep(Duration::from_millis(5));
+        stage.wait(0.1);
+    }
+    stage.press("\n").wait(0.2);
+    for _ in 0..200 {
+        thread::sleep(Duration::from_millis(5));
+        stage.wait(0.0);
+    }
+    stage.shows("Cusps of June");
+}

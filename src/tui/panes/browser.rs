@@ -12,7 +12,9 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
 use ratatui::widgets::Widget;
+use std::path::Path;
 
+const TITLE: &str = "open a preset or a file";
 /// Width of the list; the preview has the rest.
 const LIST: u16 = 30;
 
@@ -28,7 +30,11 @@ pub struct BrowserPane<'a> {
 
 impl Widget for BrowserPane<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let inside = frame_on_top("open a preset or a file", area, self.theme, buf);
+        let title = match self.browser.folder() {
+            None => TITLE.to_owned(),
+            Some(folder) => format!("{TITLE} of {}", folder.display()),
+        };
+        let inside = frame_on_top(&title, area, self.theme, buf);
         if inside.is_empty() {
             return;
         }
@@ -133,7 +139,8 @@ impl BrowserPane<'_> {
             let selected = index == self.browser.selected();
             let role = if selected { Role::Selected } else { Role::Text };
             let mark = if selected { ">" } else { " " };
-            let line = format!("{mark} {:<width$}", entry.name, width = LIST as usize - 4);
+            let name = below(&entry.name, self.browser.folder());
+            let line = format!("{mark} {name:<width$}", width = LIST as usize - 4);
             let room = Rect {
                 width: area.width.min(LIST - 1),
                 ..area
@@ -157,6 +164,9 @@ impl BrowserPane<'_> {
                 "no preview: the system is out of threads".to_owned(),
                 Role::Quiet,
             )],
+            None if self.browser.choice().is_some_and(|entry| entry.is_folder) => {
+                vec![("a folder: Enter lists its files".to_owned(), Role::Quiet)]
+            }
             None => Vec::new(),
         };
         let more = lines.len() > area.height as usize;
@@ -181,6 +191,15 @@ impl BrowserPane<'_> {
             );
         }
     }
+}
+
+/// `name` without the `folder` in which it is, which the frame names.
+fn below<'a>(name: &'a str, folder: Option<&Path>) -> &'a str {
+    let folder = folder.and_then(Path::to_str);
+    let rest = folder
+        .and_then(|folder| name.strip_prefix(folder))
+        .map(|rest| rest.trim_start_matches('/'));
+    rest.filter(|rest| !rest.is_empty()).unwrap_or(name)
 }
 
 fn described(scenario: &Scenario, width: usize) -> Vec<(String, Role)> {
