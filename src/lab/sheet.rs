@@ -9,6 +9,8 @@ pub struct Sheet {
     pub paragraphs: Vec<Paragraph>,
     /// The paragraph that is to be seen: the sheet is scrolled to it where it is longer than its place.
     pub seen: Option<usize>,
+    /// What Enter does here, in one word; empty where it does nothing.
+    pub enter: &'static str,
 }
 
 /// A paragraph.

@@ -17,6 +17,7 @@ const SOON: &str = "…";
 pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Place>) -> Sheet {
     let mut sheet = Sheet {
         title: "lessons".to_owned(),
+        enter: if names.is_empty() { "" } else { "open" },
         ..Sheet::default()
     };
     for (index, name) in names.iter().enumerate() {
@@ -190,6 +191,7 @@ impl Writer<'_> {
             }
         }
         if is_open {
+            self.sheet.enter = "answer";
             let keys = match &predict.asked {
                 Asked::Choice(_) => "Up, Down choose; Enter locks your prediction.",
                 Asked::Number { .. } => "Enter: type your prediction.",

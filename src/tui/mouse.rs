@@ -136,7 +136,11 @@ fn read_off(place: Rect, at: Position, lab: &mut Lab) {
 
 /// Selects the entry at `at`, or opens it if it is selected already.
 fn press_in_browser(layout: &Layout, at: Position, lab: &mut Lab) -> Option<Request> {
-    let row = browser::row_at(lab.on_top().browser(), screen::body(layout), at)?;
+    let row = browser::row_at(
+        lab.on_top().browser(),
+        screen::place_on_top(lab, layout),
+        at,
+    )?;
     if lab.on_top().browser().selected() == row {
         return lab.update(Action::Choose);
     }

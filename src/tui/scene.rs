@@ -20,6 +20,8 @@ const SHORTEST: f64 = 4.0;
 /// An arrow over another one, and a rod, are nearer than what lies along them by these parts of the scene's reach.
 const OVER: f64 = 0.01;
 const IN_FRONT: f64 = 0.15;
+/// An arrow behind a rod is farther than it is by this part of the scene's reach.
+const FARTHER: f64 = 0.5;
 /// An arrow in front of everything is nearer than it is by this part of the scene's reach.
 const FRONT: f64 = 10.0;
 
@@ -204,6 +206,11 @@ impl Scene {
     /// As [`arrow`](Self::arrow), over another arrow that lies along it.
     pub fn arrow_over(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink) {
         self.arrow_nearer(from, tip, ink, OVER * self.reach);
+    }
+
+    /// As [`arrow`](Self::arrow), behind a rod that is nearly as near.
+    pub fn arrow_behind(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink) {
+        self.arrow_nearer(from, tip, ink, -FARTHER * self.reach);
     }
 
     /// As [`arrow`](Self::arrow), in front of everything but the arrows of this kind that are nearer: nothing hides a part

@@ -72,7 +72,7 @@ pub fn draw(lab: &Lab, keys: bool, area: Rect, buf: &mut Buffer) {
         hint::draw(lab, keys && layout.is_cramped, place, buf);
     }
     chrome::keys(lab, layout.keys, buf);
-    draw_on_top(lab, body(&layout), buf);
+    draw_on_top(lab, place_on_top(lab, &layout), buf);
     if lab.view().marker == Marker::Ascii {
         to_ascii(area, buf);
     }
@@ -141,6 +141,21 @@ pub(super) fn body(layout: &Layout) -> Rect {
         .map(|(_, area)| *area)
         .reduce(Rect::union)
         .unwrap_or_default()
+}
+
+/// The area of what lies on top of the panes: all of theirs, without the lines that a message takes of it.
+pub(super) fn place_on_top(lab: &Lab, layout: &Layout) -> Rect {
+    let body = body(layout);
+    let message = hint::place(lab, layout);
+    let end = if message.is_empty() {
+        body.bottom()
+    } else {
+        message.y
+    };
+    Rect {
+        height: body.height.min(end.saturating_sub(body.y)),
+        ..body
+    }
 }
 
 /// Nothing but ASCII, whatever a scenario's title holds.

@@ -9,6 +9,7 @@ mod beside;
 mod chosen;
 mod commands;
 mod coverage;
+mod every_key;
 mod exact;
 mod exported;
 mod figure_files;

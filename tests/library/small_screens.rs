@@ -12,8 +12,6 @@ const TEACHERS: Rect = Rect {
 };
 /// Rows above which the lines below the panes begin: the title and the least that panes have.
 const ABOVE: usize = 7;
-/// Letters that three lines of 38 columns hold, broken between words.
-const HELD: usize = 95;
 
 /// The words of the lines below the panes, without the one about a larger screen and without the keys.
 fn said(stage: &Stage) -> String {
@@ -26,16 +24,11 @@ fn said(stage: &Stage) -> String {
 
 #[test]
 fn what_there_is_to_see_is_said_to_its_end() {
-    let mut told = 0;
     for preset in PRESETS {
         let mut stage = Stage::open(preset.name, &[], TEACHERS);
         stage.wait(0.3).commands("pause = true");
         stage.wait(6.0);
         let note = stage.lab.note().into_owned();
-        if note.len() > HELD {
-            continue;
-        }
-        told += 1;
         let said = said(&stage);
         assert!(
             said.contains(&note),
@@ -49,7 +42,6 @@ fn what_there_is_to_see_is_said_to_its_end() {
             .count();
         assert_eq!(frames, 1, "{}: the pane is whole", preset.name);
     }
-    assert!(told > 15, "{told}");
 }
 
 #[test]

@@ -182,19 +182,21 @@ fn length(key: Key, word: &str) -> u16 {
 
 fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
     let (mode, is_running) = (lab.on_top().mode(), lab.player().playback().is_running());
+    let enter = lab.view().sheet.as_ref().map_or("", |sheet| sheet.enter);
     let of_pane = super::keys_of(lab);
     let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
     let is_new = |row: &&Binding| of_mode.clone().all(|other| other.keys[0] != row.keys[0]);
     let rows = of_pane
         .chain(BINDINGS.iter().filter(is_new))
         .filter(|row| row.modes.contains(&mode) && !row.footer.is_empty())
-        .filter(|row| row.action != Action::ToggleResiduals || lab.player().measured().is_some());
+        .filter(|row| row.action != Action::ToggleResiduals || lab.player().measured().is_some())
+        .filter(|row| row.action != Action::Lesson(LessonKey::Take) || !enter.is_empty());
     let mut words: Vec<_> = rows
         .map(|row| {
-            let word = if row.footer == "pause" && !is_running {
-                "go on"
-            } else {
-                row.footer
+            let word = match row.action {
+                Action::TogglePause if !is_running => "go on",
+                Action::Lesson(LessonKey::Take) => enter,
+                _ => row.footer,
             };
             (row.keys[0], word, worth(row.action, lab))
         })
@@ -236,8 +238,8 @@ enum Worth {
 fn worth(action: Action, lab: &Lab) -> Worth {
     use Action::{
         Accept, Browse, Choose, Export, Help, Lesson, NarrowerWindow, NextPhase, Pan, Parameters,
-        PhaseBack, Push, Quit, Step, ToggleExact, TogglePause, ToggleResiduals, WholeView, Why,
-        ZoomIn,
+        PhaseBack, Push, Quit, Step, ToggleExact, TogglePause, ToggleResiduals, ToggleStep,
+        WholeView, Why, ZoomIn,
     };
     match action {
         ToggleExact | Export => Worth::Useful,
@@ -248,6 +250,7 @@ fn worth(action: Action, lab: &Lab) -> Worth {
         | TogglePause
         | Step
         | NextPhase
+        | ToggleStep
         | PhaseBack
         | Why
         | Parameters

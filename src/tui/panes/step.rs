@@ -52,6 +52,7 @@ pub const ROW: PaneRow = PaneRow {
 const KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Char('.')], Action::NextPhase, "next phase", "the next phase of the time step; after the last, the next time step"),
     row(&[Mode::Lab], &[Key::Char(',')], Action::PhaseBack, "back", "the phase before; before the first, the time step before"),
+    row(&[Mode::Lab], &[Key::Char('v')], Action::ToggleStep, "close", "the panes without the time step again"),
     row(&[Mode::Lab], &[Key::Char('y')], Action::Why, "why sideways", "why the axle goes sideways, not down; y shows the phases again"),
     row(&[Mode::Lab], &[Key::Down, Key::Char('j')], Action::Move(Direction::Down), "add up", "add up the table point by point: one more"),
     row(&[Mode::Lab], &[Key::Up, Key::Char('k')], Action::Move(Direction::Up), "", "one point fewer"),

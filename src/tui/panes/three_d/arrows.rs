@@ -37,6 +37,8 @@ impl Subject<'_> {
             // would cover.
             match name {
                 "τ" | "dL" => scene.arrow_in_front(&from, &tip, Ink::Strong(role)),
+                // The axle is whole where it is seen upright.
+                "g" => scene.arrow_behind(&from, &tip, Ink::Strong(role)),
                 // Shorter than L, in which it would vanish where both lie along the axle.
                 "Ω" => scene.arrow_over(&from, &tip, Ink::Strong(role)),
                 _ => scene.arrow(&from, &tip, Ink::Strong(role)),

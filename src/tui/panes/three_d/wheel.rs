@@ -70,7 +70,7 @@ impl Subject<'_> {
         self.solids_before(state, scene);
     }
 
-    /// The hub and the masses, the nearest last: a larger sign is nearer.
+    /// The masses, the nearest last: a larger sign is nearer; and the hub, which no mass covers.
     pub(super) fn masses(&self, scene: &Scene) -> Vec<Sign> {
         let middle = scene.depth(&self.wheel());
         let radius = self.shape.rim.map_or(self.reach, |(radius, ..)| radius);
@@ -87,7 +87,7 @@ impl Subject<'_> {
         let hub = self.wheel();
         let has_hub = self.shape.rim.is_some() && scene.shows(&hub);
         let hub = has_hub.then(|| (HUB_SIGN, Role::Heading, scene.cell(&hub)));
-        hub.into_iter().chain(signs).collect()
+        signs.chain(hub).collect()
     }
 
     /// The masses where they were at `state`.

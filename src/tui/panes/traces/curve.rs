@@ -10,6 +10,10 @@ const THINNEST_BAND: usize = 2;
 /// A mean nearer to an edge than this, in dots, is not drawn.
 const CLEAR_OF_EDGE: usize = 2;
 
+/// A value this part of a dot above the edge between two dots counts as below it: a value on the edge, such as a constant
+/// in the middle of its strip, would else go up and down with its rounding.
+const ROUNDING: f64 = 1e-4;
+
 /// Cells after which long and short dashes repeat.
 const LONG_AND_SHORT: usize = 6;
 
@@ -34,7 +38,7 @@ pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: 
         return;
     }
     let row = |value: f64| {
-        let row = scale.from_top(value) * height as f64;
+        let row = scale.from_top(value) * height as f64 + ROUNDING;
         row.clamp(0.0, height as f64 - 1.0) as usize
     };
     let keeps = |x: usize| match stroke {
@@ -87,5 +91,45 @@ fn toward(row: usize, before: usize) -> (usize, usize) {
         (before + 1, row)
     } else {
         (row, before.saturating_sub(1).max(row))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::view::markers::Marker;
+    use crate::lab::view::theme::{Background, Theme};
+    use crate::observe::recording::Extent;
+    use crate::tui::theme::Role;
+    use ratatui::buffer::Buffer;
+    use ratatui::layout::Rect;
+
+    #[test]
+    fn a_constant_in_the_middle_of_its_strip_is_one_line_whatever_its_rounding() {
+        let area = Rect::new(0, 0, 20, 2);
+        let scale = Scale {
+            low: 29.99,
+            high: 30.01,
+        };
+        let column = |x: usize| {
+            let value = 30.0 + 1e-13 * (x % 3) as f64 - 1e-13;
+            Some(Column {
+                extent: Extent::of(value),
+                mean: value,
+                band: None,
+            })
+        };
+        let columns: Vec<_> = (0..40).map(column).collect();
+        let mut dots = Dots::new(area, Marker::Braille);
+        let ink = Ink::Strong(Role::Text);
+        draw(&mut dots, &columns, &scale, Stroke::Full, ink);
+        let mut buf = Buffer::empty(area);
+        let theme = Theme {
+            colour: false,
+            background: Background::Dark,
+        };
+        dots.render(&theme, &mut buf);
+        let row = |y| -> String { (0..20).map(|x| buf[(x, y)].symbol()).collect() };
+        assert_eq!([row(0), row(1)], [" ".repeat(20), "⠉".repeat(20)]);
     }
 }

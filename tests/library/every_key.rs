@@ -1,0 +1,317 @@
+//! Every key of the table, in every pane and on screens of four sizes: the frames stay whole, nothing stands outside of
+//! them, and what is said below them is not cut off within a word.
+
+use crate::support::stage::Stage;
+use gyrolab::lab::Mode;
+use gyrolab::lab::view::Pane;
+use gyrolab::tui::keymap::{BINDINGS, Binding, Key};
+use gyrolab::tui::panes::{self, hint};
+use ratatui::layout::Rect;
+use std::time::Duration;
+
+/// A message has gone after as long as this.
+const SAID: Duration = Duration::from_secs(30);
+/// Keys that go through several choices, and how often they are pressed to be back at the first.
+const ROUNDS: [Key; 2] = [Key::Char('m'), Key::Char('F')];
+const ROUND: usize = 4;
+
+/// The screen as columns of rows.
+struct Picture {
+    rows: Vec<Vec<char>>,
+}
+
+/// A frame, all four of its sides on the screen.
+struct Frame {
+    left: usize,
+    right: usize,
+    top: usize,
+    bottom: usize,
+}
+
+impl Picture {
+    fn of(stage: &Stage) -> Self {
+        let width = stage.size.width as usize;
+        let text = stage.picture();
+        let row = |line: &str| {
+            let mut row: Vec<char> = line.chars().collect();
+            assert!(
+                row.len() <= width,
+                "a row is wider than the screen:\n{text}"
+            );
+            row.resize(width, ' ');
+            row
+        };
+        let rows: Vec<_> = text.lines().map(row).collect();
+        assert!(rows.len() <= stage.size.height as usize, "{text}");
+        Self { rows }
+    }
+
+    fn at(&self, x: usize, y: usize) -> char {
+        self.rows
+            .get(y)
+            .and_then(|row| row.get(x))
+            .copied()
+            .unwrap_or(' ')
+    }
+
+    /// The frames, or where one is broken.
+    fn frames(&self) -> Result<Vec<Frame>, String> {
+        let mut frames = Vec::new();
+        for (y, row) in self.rows.iter().enumerate() {
+            for (x, _) in row.iter().enumerate().filter(|(_, sign)| **sign == '┌') {
+                let right = (x + 1..row.len()).find(|right| matches!(row[*right], '┐' | '┌'));
+                let right = right.filter(|right| row[*right] == '┐');
+                let right = right.ok_or(format!("the frame at {x}, {y} has no right corner"))?;
+                let mut rows = y + 1..self.rows.len();
+                let bottom = rows.find(|bottom| self.at(x, *bottom) != '│');
+                let bottom = bottom.unwrap_or(self.rows.len());
+                let corners = (self.at(x, bottom), self.at(right, bottom));
+                if corners != ('└', '┘') {
+                    return Err(format!(
+                        "the frame at {x}, {y} ends in {corners:?} at row {bottom}"
+                    ));
+                }
+                if let Some(gap) = (y + 1..bottom).find(|row| !"│▲▼".contains(self.at(right, *row)))
+                {
+                    return Err(format!(
+                        "the right side of the frame at {x}, {y} is broken in row {gap}"
+                    ));
+                }
+                frames.push(Frame {
+                    left: x,
+                    right,
+                    top: y,
+                    bottom,
+                });
+            }
+        }
+        Ok(frames)
+    }
+
+    /// All words, with one blank between two of them, without frames.
+    fn words(&self) -> String {
+        let words = self.rows.iter().map(|row| row.iter().collect::<String>());
+        words
+            .collect::<Vec<_>>()
+            .join(" ")
+            .replace('│', " ")
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ")
+    }
+}
+
+/// What is wrong with the picture of `stage`.
+fn trouble(stage: &Stage) -> Option<String> {
+    let picture = Picture::of(stage);
+    let is_ascii = stage.lab.view().marker == gyrolab::lab::view::markers::Marker::Ascii;
+    let is_plain = stage.lab.on_top().mode() == Mode::Lab && !hint::has_message(&stage.lab);
+    if is_plain
+        && picture
+            .rows
+            .first()
+            .is_none_or(|row| row.iter().all(|sign| *sign == ' '))
+    {
+        return Some("there is no title".to_owned());
+    }
+    if !is_ascii && is_plain {
+        let frames = match picture.frames() {
+            Ok(frames) => frames,
+            Err(broken) => return Some(broken),
+        };
+        let end = frames.iter().map(|frame| frame.bottom).max().unwrap_or(0);
+        for y in 1..=end {
+            let outside = (0..picture.rows[y].len()).find(|x| {
+                let is_in = |frame: &Frame| {
+                    (frame.left..=frame.right).contains(x)
+                        && (frame.top..=frame.bottom).contains(&y)
+                };
+                picture.at(*x, y) != ' ' && !frames.iter().any(is_in)
+            });
+            if let Some(x) = outside {
+                return Some(format!(
+                    "{:?} at {x}, {y} is outside of the frames",
+                    picture.at(x, y)
+                ));
+            }
+        }
+    }
+    footer_trouble(stage, &picture).or_else(|| said_trouble(stage, &picture))
+}
+
+/// Where the last line has something else than keys of the table, each with its word.
+fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
+    if stage.lab.view().bare {
+        return None; // no line of keys
+    }
+    let last: String = picture
+        .rows
+        .get(stage.size.height as usize - 1)?
+        .iter()
+        .collect();
+    let known = |item: &str| {
+        let rows = BINDINGS
+            .iter()
+            .chain(panes::PANES.iter().flat_map(|pane| pane.keys));
+        let of_table = |row: &Binding| {
+            let words = [
+                row.footer,
+                if row.footer == "pause" {
+                    "go on"
+                } else {
+                    row.footer
+                },
+            ];
+            words
+                .iter()
+                .any(|word| item == format!("{} {word}", row.keys[0]))
+        };
+        item.starts_with("Esc ") || rows.into_iter().any(of_table)
+    };
+    let mut items = last
+        .split("  ")
+        .map(str::trim)
+        .filter(|item| !item.is_empty());
+    items
+        .find(|item| !known(item))
+        .map(|item| format!("{item:?} in the line of keys"))
+}
+
+/// Where the message is neither shown whole nor cut off between dots.
+fn said_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
+    let notice = stage.lab.notice()?;
+    let squeezed = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let (notice, words) = (squeezed(&notice), picture.words());
+    let is_cut = || {
+        let begins = notice.char_indices().map(|(end, _)| &notice[..end]);
+        let mut begins = begins.filter(|begin| begin.len() > 10);
+        begins.any(|begin| words.contains(&format!("{}...", begin.trim_end())))
+    };
+    (!words.contains(&notice) && !is_cut()).then(|| format!("{notice:?} is cut off"))
+}
+
+#[track_caller]
+fn check(stage: &Stage, done: &str) {
+    if let Some(trouble) = trouble(stage) {
+        let size = stage.size;
+        panic!(
+            "{done} at {}x{}: {trouble}\n{}",
+            size.width,
+            size.height,
+            stage.picture()
+        );
+    }
+}
+
+/// A lab at that size with `pane` in focus.
+fn stage(pane: Pane, (width, height): (u16, u16)) -> Stage {
+    let mut stage = Stage::open("wobble-push", &[], Rect::new(0, 0, width, height));
+    stage.wait(0.5).commands("pause = true");
+    if pane == Pane::LESSON {
+        stage.lesson("is-the-wobble-real", 1);
+    }
+    focus(&mut stage, pane);
+    stage
+}
+
+/// Closes what lies on top, and gives `pane` the focus again.
+fn focus(stage: &mut Stage, pane: Pane) {
+    for _ in 0..4 {
+        stage.key(Key::Esc);
+    }
+    stage.now += SAID;
+    stage.wait(0.0);
+    for _ in 0..panes::PANES.len() {
+        if stage.focus() == pane.id() {
+            return;
+        }
+        stage.key(Key::Tab);
+    }
+    if pane == Pane::LESSON {
+        stage.lesson("is-the-wobble-real", 1);
+        return;
+    }
+    stage.commands(&format!("show = ['{}']", pane.id()));
+    stage.wait(0.0);
+}
+
+/// All keys that mean something in `mode`, with those of `pane` where it has the focus.
+fn keys(mode: Mode, pane: Pane) -> Vec<Key> {
+    let own = match mode {
+        Mode::Lab => panes::keys(pane),
+        _ => &[],
+    };
+    let rows = own
+        .iter()
+        .chain(BINDINGS)
+        .filter(|row| row.modes.contains(&mode));
+    let mut keys: Vec<Key> = Vec::new();
+    for key in rows.flat_map(|row| row.keys) {
+        if !keys.contains(key) {
+            keys.push(*key);
+        }
+    }
+    keys.push(Key::Char('7'));
+    keys
+}
+
+#[test]
+fn a_teachers_screen_stays_whole_whatever_is_pressed() {
+    press_everything((40, 12));
+}
+
+#[test]
+fn a_small_screen_stays_whole_whatever_is_pressed() {
+    press_everything((80, 24));
+}
+
+#[test]
+fn a_wide_screen_stays_whole_whatever_is_pressed() {
+    press_everything((120, 40));
+}
+
+#[test]
+fn a_large_screen_stays_whole_whatever_is_pressed() {
+    press_everything((200, 50));
+}
+
+/// Presses every key twice or more in every pane.
+fn press_everything(size: (u16, u16)) {
+    for pane in panes::IDS {
+        let mut stage = stage(pane, size);
+        check(&stage, pane.id());
+        for key in keys(Mode::Lab, pane) {
+            let times = if ROUNDS.contains(&key) { ROUND } else { 2 };
+            for time in 1..=times {
+                let done = format!("{key} for the {time}. time in {}", pane.id());
+                stage.key(key);
+                stage.wait(0.0);
+                check(&stage, &done);
+                let mode = stage.lab.on_top().mode();
+                if mode != Mode::Lab {
+                    if time == 1 {
+                        press_all(&mut stage, mode, &done);
+                    }
+                    focus(&mut stage, pane);
+                    continue;
+                }
+                stage.now += SAID;
+                stage.wait(0.0);
+                check(&stage, &format!("{done}, a while later"));
+            }
+            focus(&mut stage, pane);
+        }
+    }
+}
+
+/// Presses the keys of what has been opened on top of the panes.
+fn press_all(stage: &mut Stage, mode: Mode, done: &str) {
+    for key in keys(mode, Pane::TRACES) {
+        if stage.lab.on_top().mode() != mode {
+            return;
+        }
+        stage.key(key);
+        stage.wait(0.0);
+        check(stage, &format!("{done}, then {key}"));
+    }
+}
