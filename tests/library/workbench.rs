@@ -663,6 +663,21 @@ fn the_help_says_everything_at_every_size() {
     }
 }
 
+#[test]
+fn a_sign_on_the_path_in_space_shows_which_way_the_top_goes() {
+    // From above, the top goes round against the clock once in 7.04 s, from where y is least.
+    let mut stage = Stage::open("steady-slow", &[], SMALL);
+    stage.commands("pause = true\nfill = '3d'\ncamera = { yaw_deg = 0, pitch_deg = 90 }");
+    for (time_s, sign) in [(2.35, '▲'), (4.11, '◄'), (5.87, '▼'), (7.63, '►')] {
+        stage.commands(&format!("go_to = '{time_s} s'")).wait(6.0);
+        let picture = stage.picture();
+        let (scene, _) = picture.split_once("L angular momentum").unwrap();
+        let signs: String = scene.chars().filter(|c| "►◄▲▼".contains(*c)).collect();
+        assert_eq!(signs, sign.to_string(), "{time_s} s\n{picture}");
+        assert_eq!(scene.matches('■').count(), 1, "the hub\n{picture}");
+    }
+}
+
 /// The Linux console's fonts have the 256 characters of the old PC, and some of Latin 1.
 #[test]
 fn half_blocks_need_no_rare_glyphs() {
