@@ -125,14 +125,39 @@ pub(super) fn motion(file: &MotionFile) -> Motion {
 }
 
 pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Vec<Problem>> {
-    files
-        .iter()
-        .enumerate()
-        .map(|(index, file)| push(file, body, &format!("push.{index}")))
-        .collect()
+    let mut problems = Vec::new();
+    let pushes = files.iter().enumerate().filter_map(|(index, file)| {
+        let push = push(file, body, &format!("push.{index}"));
+        push.map_err(|refused| problems.extend(refused)).ok()
+    });
+    let pushes = pushes.collect();
+    match problems.is_empty() {
+        true => Ok(pushes),
+        false => Err(problems),
+    }
 }
 
 pub(super) fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Vec<Problem>> {
+    let (point, window) = (
+        body.find(&format!("{key}.point"), &file.point),
+        window(file, key),
+    );
+    match (point, window) {
+        (Ok(point), Ok(window)) => Ok(Push {
+            point,
+            force: Vector3::from(file.force_N),
+            window,
+            accumulates: file.accumulates.unwrap_or(false),
+        }),
+        (point, window) => {
+            let problems = [point.err(), window.err()];
+            Err(problems.into_iter().flatten().flatten().collect())
+        }
+    }
+}
+
+/// When the push at `key` acts.
+fn window(file: &PushFile, key: &str) -> Result<Window, Vec<Problem>> {
     let wrong = |rule: &str| Err(vec![Problem::at(key, rule)]);
     let window = match (file.first_step, file.steps, file.from_s, file.for_s) {
         (first, Some(count), None, None) => Window::Steps {
@@ -158,11 +183,5 @@ pub(super) fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Vec<
     if accumulates && matches!(window, Window::Time { .. }) {
         return wrong("accumulates step by step: give first_step and steps instead of seconds");
     }
-    let point = body.find(&format!("{key}.point"), &file.point)?;
-    Ok(Push {
-        point,
-        force: Vector3::from(file.force_N),
-        window,
-        accumulates,
-    })
+    Ok(window)
 }
