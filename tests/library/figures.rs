@@ -590,6 +590,22 @@ fn a_comparison_shows_its_slope() {
     assert!(wrong.contains("error_m"), "{wrong}");
 }
 
+#[test]
+fn a_line_of_theory_with_gaps_says_where_they_are_explained() {
+    let gappy = SWEEP.replace("30,,,0.87,", "30,,,,");
+    let told = of_table::warnings(&table(&gappy), &[]);
+    assert_eq!(
+        told,
+        [
+            "the line of predicted_precession_rad_per_s has gaps: in 1 of 4 rows theory states no value, for a reason that gyrolab man numbers gives"
+        ]
+    );
+    let measured = ["measured_precession_rad_per_s"];
+    assert!(of_table::warnings(&table(&gappy), &measured).is_empty());
+    assert!(of_table::warnings(&table(SWEEP), &[]).is_empty());
+    assert!(of_table::warnings(&table(COMPARISON), &[]).is_empty());
+}
+
 const SWEEP: &str = "\
 # scenario = \"cusps\"
 # measure = [\"measured_precession_rad_per_s\"]

@@ -366,8 +366,14 @@ fn a_key_at_its_bound_is_said_to_be() {
         fit: &fit,
         model: &model,
         scheme: "exact",
+        instead_of: Some("rk4"),
     };
     let told = report.to_string();
+    // The CSV, the JSON and the text are quoted each by itself: each says by which scheme.
+    let json = serde_json::to_value(report).unwrap();
+    let remark = "The fitted runs have the scheme exact; the scenario's own is rk4 (--scheme rk4 fits the runs of that).";
+    assert_eq!(json["remarks"][0], remark);
+    assert!(told.contains(remark), "{told}");
     assert!(
         told.contains("stands at its bound 0.0038: the fit would be better beyond it"),
         "{told}"
@@ -454,8 +460,10 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
         fit: &fit,
         model: &model,
         scheme: "exact",
+        instead_of: None,
     };
     let asked = Asked {
+        scheme: report.scheme.to_owned(),
         command: "gyrolab fit".to_owned(),
         measured: "heidelberg-precession".to_owned(),
         scenario: "heidelberg".to_owned(),
@@ -491,16 +499,23 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
     let [values, residuals] = &chart.panels[..] else {
         panic!("{} panels", chart.panels.len())
     };
-    assert_eq!(values.series.len(), 8, "four settings, each with its model");
+    assert_eq!(header.fit.scheme, "exact");
+    assert_eq!(values.series[1].name, "scheme: exact");
+    let values_and_models = values.series.iter().filter(|it| !it.points.is_empty());
+    assert_eq!(
+        values_and_models.count(),
+        8,
+        "four settings, each with its model"
+    );
     // Every value has the name of its key.
     let stated = fit.keys[0].stated();
     let model = format!("model: moments *z* of ball = {stated} kg m^{{2}}");
     assert_eq!(values.series[0].name, model);
     let place = "*z* of weight = 0.1555 m, *z* of second weight = 0 m";
-    assert_eq!(values.series[1].name, place);
+    assert_eq!(values.series[2].name, place);
     // Where the page is too narrow for that, the values stand alone.
     let narrow = gyrolab::figure::of_table::chart(&table, &[], 120.0).unwrap();
-    assert_eq!(narrow.panels[0].series[1].name, "0.1555, 0");
+    assert_eq!(narrow.panels[0].series[2].name, "0.1555, 0");
     let points = |panel: &gyrolab::figure::chart::Panel| -> usize {
         let marked = panel
             .series
@@ -588,6 +603,25 @@ fn a_very_poor_fit_says_that_it_may_be_a_local_minimum() {
     assert!(
         rare.contains("does not fit") && !rare.contains(words),
         "{rare}"
+    );
+}
+
+#[test]
+fn where_the_data_depend_on_no_key_no_other_start_is_proposed() {
+    let document = Document::parse("top.toml", TOP).unwrap();
+    let text = "t_s,spin_rpm,spin_uncertainty_rpm\n1,10,1\n2,10,1\n3,10,1\n";
+    let sentence = |keys: &[&str]| {
+        let free = keys.iter().map(|key| Free::parse(key, &document).unwrap());
+        let free = free.collect();
+        let model = Model::new(&document, free, read("lab.csv", text).unwrap()).unwrap();
+        let fit = fitted(&model);
+        (fit.solution.silent.len(), fit.sentence(&model))
+    };
+    let (silent, alone) = sentence(&["start.turn_deg"]);
+    assert_eq!(silent, 1);
+    assert!(
+        alone.contains("No value of the free keys changes that") && !alone.contains("elsewhere"),
+        "{alone}"
     );
 }
 
