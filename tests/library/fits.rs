@@ -375,9 +375,15 @@ fn a_key_at_its_bound_is_said_to_be() {
     assert_eq!(json["remarks"][0], remark);
     assert!(told.contains(remark), "{told}");
     assert!(
-        told.contains("stands at its bound 0.0038: the fit would be better beyond it"),
+        told.contains(
+            "body.part.0.moments_kg_m2.2 stands at its bound 0.0038: the fit would be better beyond it, and it has no uncertainty. Begun at another value by --set, the search may find a better fit within."
+        ),
         "{told}"
     );
+    // One that is inside of its bounds is not said to be at one.
+    let inside = format!("{MOMENT}=0.003..0.005");
+    let (_, fit) = heidelberg("heidelberg-precession", &[&inside], &|_| true);
+    assert!(fit.keys[0].sigma.is_some() && fit.remarks().is_empty());
     // With one at its bound the other can be told.
     let (_, fit) = heidelberg("heidelberg-precession", &free, &|_| true);
     assert!(
@@ -524,12 +530,9 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
         marked.map(|series| series.points.len()).sum()
     };
     assert_eq!((points(values), points(residuals)), (16, 16));
-    assert!(
-        values.series[1]
-            .errors
-            .iter()
-            .all(|error| (2.0..2.5).contains(error))
-    );
+    let errors = &values.series[2].errors;
+    let is_stated = |error: &f64| (2.0..2.5).contains(error);
+    assert!(!errors.is_empty() && errors.iter().all(is_stated));
     assert!(residuals.y.unit.contains('σ'));
     assert_eq!(
         gyrolab::study::verify::verify(&path, |_, _| std::ops::ControlFlow::Continue(()))

@@ -77,7 +77,7 @@ fn the_csv_is_drawn_and_runs_again() {
     refused(
         &ground.run(&["verify", "fit.csv"]),
         1,
-        "fit.csv: is the CSV of a fit, which is not computed again",
+        "fit.csv: is the CSV of a fit, which is not computed again: its data stand in another file. The line command at its top makes the fit again: give it -o again.csv, and compare the two files",
     );
     let csv = fs::read_to_string(ground.file("fit.csv")).unwrap();
     let command = csv
