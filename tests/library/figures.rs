@@ -531,7 +531,7 @@ fn what_was_recorded_of_a_run_is_not_played_again() {
             assert_eq!(figures.unwrap().unwrap()[0].scene, alone.scene, "{name}");
         }
         // Of two runs nobody knows which of them it was.
-        let two = [run("cusps", &["motion.steps=50"]), runs[0].clone()];
+        let two = [run("method-2", &["motion.steps=250"]), runs[0].clone()];
         let request = request("z_m");
         let go_on = |_, _| ControlFlow::Continue(());
         let together = of_runs::figures(&two, std::slice::from_ref(&request), &known, go_on);
