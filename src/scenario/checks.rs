@@ -36,9 +36,12 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
     let (trace, (start, rotor, friction), pushes) = match (trace, started, pushed) {
         (Ok(trace), Ok(started), Ok(pushes)) => (trace, started, pushes),
         (trace, started, pushed) => {
-            let problems = [trace.err(), started.err(), pushed.err()];
-            let problems: Vec<_> = problems.into_iter().flatten().flatten().collect();
-            return Err(problems.into());
+            let mut found = Found::default();
+            for problems in [trace.err(), started.err()].into_iter().flatten() {
+                found.add_all(problems);
+            }
+            found.add_all(pushed.err().unwrap_or_default());
+            return Err(found);
         }
     };
     let edits = edits(&file, &body, &pushes, &friction)?;
@@ -78,11 +81,13 @@ pub fn names(table: &toml::Table, found: &mut Found) {
     let pushed = pushes.map(|(index, push)| (format!("push.{index}.point"), push.get("point")));
     let traced = std::iter::once(("trace".to_owned(), table.get("trace")));
     for (key, name) in traced.chain(pushed) {
-        let refused = name
-            .and_then(Value::as_str)
-            .and_then(|name| body.find(&key, name).err());
-        for problem in refused.into_iter().flatten() {
-            found.add(|| problem);
+        let name = name.and_then(Value::as_str);
+        let Some(name) = name.filter(|name| body.point(name).is_none()) else {
+            continue;
+        };
+        match found.is_full() {
+            true => found.more += 1,
+            false => found.add_all(body.find(&key, name).err().unwrap_or_default()),
         }
     }
 }

@@ -124,16 +124,21 @@ pub(super) fn motion(file: &MotionFile) -> Motion {
     }
 }
 
-pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Vec<Problem>> {
-    let mut problems = Vec::new();
+pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Found> {
+    let mut found = Found::default();
     let pushes = files.iter().enumerate().filter_map(|(index, file)| {
+        // The nearest name is sought for those that are told alone: there may be 100 000 points.
+        if found.is_full() && body.point(&file.point).is_none() {
+            found.more += 1;
+            return None;
+        }
         let push = push(file, body, &format!("push.{index}"));
-        push.map_err(|refused| problems.extend(refused)).ok()
+        push.map_err(|refused| found.add_all(refused)).ok()
     });
     let pushes = pushes.collect();
-    match problems.is_empty() {
+    match found.list.is_empty() {
         true => Ok(pushes),
-        false => Err(problems),
+        false => Err(found),
     }
 }
 

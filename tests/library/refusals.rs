@@ -692,3 +692,19 @@ fn every_mistake_is_told_at_once() {
     let told = mistakes(&[(24, "point = \"topp\""), (6, "points = 0")]);
     assert!(!told.contains("topp"), "{told}");
 }
+
+/// Of many wrong names the first hundred are told, and the nearest is sought for no other.
+#[test]
+fn thousands_of_wrong_names_are_refused_at_once() {
+    let points: String = (0..2_500)
+        .map(|index| format!("[[body.point]]\nname = \"p{index}\"\nat_m = [0, 0, 1]\n"))
+        .collect();
+    let push = "[[push]]\npoint = \"nobody\"\nforce_N = [0, 0, 1]\nsteps = 1\n";
+    let text = format!("{WHOLE}{points}{}", push.repeat(20_000));
+    for (wrong, others) in [("", 0), ("[friction]\nspin_dry_Nm = -1\n", 1)] {
+        let document = Document::parse("file.toml", &format!("{text}{wrong}")).unwrap();
+        let problems = document.scenario().unwrap_err();
+        assert_eq!(problems.list.len(), 100);
+        assert_eq!(problems.list.len() + problems.more, 20_000 + others);
+    }
+}
