@@ -45,9 +45,9 @@ pub fn text(name: &str) -> Result<Cow<'static, str>, Problems> {
 fn scenario_instead(origin: &str, text: &str) -> Option<Problems> {
     const OF_SCENARIOS: [&str; 3] = ["body", "start", "motion"];
     let document = Document::parse(origin, text).ok()?;
-    let is_table = |name: &&str| document.table().get(*name).is_some_and(Value::is_table);
+    let is_table = |name: &str| document.table().get(name).is_some_and(Value::is_table);
     let rule = "is a scenario, and no measured data: it stands where SCENARIO does (gyrolab SCENARIO --measured FILE.csv, gyrolab fit FILE.csv --in SCENARIO); measured data are a CSV, which gyrolab man fit describes";
-    let is_scenario = OF_SCENARIOS.iter().any(|name| is_table(&name));
+    let is_scenario = OF_SCENARIOS.into_iter().any(is_table);
     is_scenario.then(|| Problems::one(origin, Problem::at("", rule)))
 }
 
