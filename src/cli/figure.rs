@@ -234,7 +234,7 @@ fn drawn(
             let chart = chart.map_err(|refusal| anyhow::anyhow!("{}: {refusal}", args.runs[0]))?;
             return Ok(Some(Figure {
                 scene: chart.scene(),
-                warnings: Vec::new(),
+                warnings: of_table::warnings(table, &columns),
                 broke: None,
             }));
         }

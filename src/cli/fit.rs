@@ -92,7 +92,7 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     one_on_stdout("fit", args.output.as_deref(), args.json);
     let measured = measured::open(&args.measured)?;
     let measured = chosen(measured, args.rows.as_ref())?;
-    let document = scenario(args)?;
+    let (document, own) = scenario(args)?;
     let keys = args
         .free
         .iter()
@@ -140,6 +140,7 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
         fit: &found,
         model: &model,
         scheme: scheme_of(&document),
+        instead_of: own.filter(|own| *own != scheme_of(&document)),
     };
     if let Some(output) = output {
         let path = args.output.as_deref().unwrap_or(Path::new("the output"));
@@ -151,18 +152,20 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     tell_of(&report, args)
 }
 
-/// The scenario with all that the command line changes in it.
-fn scenario(args: &FitArgs) -> Result<Document, Problems> {
+/// The scenario with all that the command line changes in it, and its own scheme, where no other was asked for.
+fn scenario(args: &FitArgs) -> Result<(Document, Option<&'static str>), Problems> {
     let mut document = Document::open(&args.scenario)?;
+    let mut own = None;
     let sets_scheme = |set: &String| set.trim_start().starts_with("motion.scheme");
     if args.changes.scheme.is_none() && !args.changes.set.iter().any(sets_scheme) {
-        document.scenario()?; // what is wrong with it is told as it stands in its file
+        // What is wrong with it is told as it stands in its file.
+        own = Some(document.scenario()?.motion.scheme.name);
         let written = document.set_value("motion.scheme", Value::String(SCHEME.to_owned()));
         written.map_err(|problem| Problems::one(args.scenario.clone(), problem))?;
     }
     change(&mut document, &args.changes)?;
     document.scenario()?;
-    Ok(document)
+    Ok((document, own))
 }
 
 fn scheme_of(document: &Document) -> &'static str {
@@ -236,6 +239,7 @@ fn write(mut output: Destination, report: &Report<'_>, args: &FitArgs) -> anyhow
         command: command(args),
         measured: args.measured.clone(),
         scenario: args.scenario.clone(),
+        scheme: report.scheme.to_owned(),
         free: args.free.clone(),
         rows: args.rows.as_ref().map(|rows| rows.text.clone()),
         chi_squared: quality.chi_squared,

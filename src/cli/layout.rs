@@ -1,7 +1,7 @@
 //! The options that say which rows and columns a CSV has.
 
 use super::refuse;
-use super::values::one_or_more;
+use super::values::{IN_SECONDS, one_or_more, without_unit};
 use crate::export::Layout;
 use crate::export::layout::LayoutFile;
 use clap::Args;
@@ -48,7 +48,8 @@ const ROWS: &str = "Rows and columns of the CSV";
 pub(super) fn time(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) if seconds >= 0.0 && f64::is_finite(seconds) => Ok(seconds),
-        _ => Err("must be a time in seconds, 0 or more".to_owned()),
+        _ => Err(without_unit(text, IN_SECONDS)
+            .unwrap_or_else(|| "must be a time in seconds, 0 or more".to_owned())),
     }
 }
 

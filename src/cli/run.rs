@@ -60,8 +60,8 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         .map(|destination| CsvWriter::with_layout(destination, &scenario, layout))
         .transpose()
         .with_context(|| cannot_write(output_path))?;
-    let mut played =
-        played(&scenario, csv, &interruption).with_context(|| cannot_write(output_path))?;
+    let played = played(&scenario, csv, |_| {}, &interruption);
+    let mut played = played.with_context(|| cannot_write(output_path))?;
     if played.ended == Ended::Stopped {
         return Ok(ExitCode::from(INTERRUPTED)); // what was written so far goes with its temporary name
     }
@@ -128,18 +128,39 @@ impl<W> Played<W> {
     }
 }
 
-/// Plays the run of `scenario` to its end and writes its rows to `csv`.
+/// Plays the run of `scenario` to its end and writes its rows to `csv`; `also` is shown the start and every step.
 ///
 /// # Errors
 /// When `csv` cannot be written.
 pub(super) fn played<W: Write>(
     scenario: &Arc<Scenario>,
     mut csv: Option<CsvWriter<W>>,
+    mut also: impl FnMut(&Step),
     interruption: &Interruption,
 ) -> io::Result<Played<W>> {
     let mut simulation = Simulation::new(Arc::clone(scenario));
-    let mut monitor = Monitor::new(simulation.now());
-    let (ended, wall) = play(&mut simulation, &mut monitor, csv.as_mut(), interruption)?;
+    let monitor = RefCell::new(Monitor::new(simulation.now()));
+    also(simulation.now());
+    // Each step is followed at once and held against the exact motion after its block: that is no stepping.
+    let each = |step: &Step| {
+        monitor.borrow_mut().follow_ahead(step);
+        also(step);
+    };
+    let mut meter = Meter::new();
+    // Under the user's eyes: progress on stderr, a signal ends it.
+    let ended = stream::play(
+        &mut simulation,
+        scenario.steps,
+        csv.as_mut(),
+        each,
+        |progress| {
+            monitor.borrow_mut().catch_up();
+            meter.show(progress.step, progress.steps);
+            interruption.go_on()
+        },
+    );
+    meter.clear();
+    let (ended, wall) = ended?;
     let rows = csv.as_ref().map(CsvWriter::count);
     let output = csv.map(CsvWriter::finish).transpose()?;
     Ok(Played {
@@ -148,29 +169,8 @@ pub(super) fn played<W: Write>(
         rows,
         output,
         simulation,
-        monitor,
+        monitor: monitor.into_inner(),
     })
-}
-
-/// Plays the run under the user's eyes: progress on stderr, a signal ends it.
-fn play<W: Write>(
-    simulation: &mut Simulation,
-    monitor: &mut Monitor,
-    output: Option<&mut CsvWriter<W>>,
-    interruption: &Interruption,
-) -> io::Result<(Ended, Duration)> {
-    let steps = simulation.scenario().steps;
-    let mut meter = Meter::new();
-    // Each step is followed at once and held against the exact motion after its block: that is no stepping.
-    let monitor = RefCell::new(monitor);
-    let each = |step: &Step| monitor.borrow_mut().follow_ahead(step);
-    let ended = stream::play(simulation, steps, output, each, |progress| {
-        monitor.borrow_mut().catch_up();
-        meter.show(progress.step, progress.steps);
-        interruption.go_on()
-    });
-    meter.clear();
-    ended
 }
 
 /// What would mend the run, sought only where it is not to be believed.

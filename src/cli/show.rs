@@ -4,7 +4,7 @@ use super::args::{Changes, Markers};
 use super::new_lab::{DEFAULT, lab};
 use super::progress::{self, Meter};
 use super::values::{size, steps};
-use super::{INTERRUPTED, print};
+use super::{INTERRUPTED, print, tell};
 use crate::lab::Lab;
 use crate::lab::command;
 use crate::lab::view::theme::{Background, Theme};
@@ -51,6 +51,7 @@ pub(super) struct ShowArgs {
 /// Prints the lab's picture at the end of a run, or after commands.
 pub(super) fn show(args: &ShowArgs) -> anyhow::Result<ExitCode> {
     print_picture(Picture {
+        why: None,
         confined: None,
         name: args.scenario.as_deref().unwrap_or(DEFAULT),
         changes: &args.changes,
@@ -64,6 +65,8 @@ pub(super) fn show(args: &ShowArgs) -> anyhow::Result<ExitCode> {
 
 /// What a picture is to show.
 pub(super) struct Picture<'a> {
+    /// Why there is a picture and not the lab, where that is to be said.
+    pub(super) why: Option<String>,
     /// The folder that its commands do not leave, if there is one.
     pub(super) confined: Option<Confined>,
     pub(super) name: &'a str,
@@ -82,12 +85,14 @@ pub(super) fn print_picture(wanted: Picture<'_>) -> anyhow::Result<ExitCode> {
         colour: false,
         background: Background::Dark,
     };
-    let commands = wanted.commands.map(command::open).transpose()?;
     let mut lab = lab(wanted.name, wanted.changes, wanted.markers, plain, false)?;
     if let Some(folder) = wanted.confined {
         lab.files_mut().confine(folder);
     }
     lab.begin_with_measured(wanted.measured)?;
+    // What is not there is refused before a picture is promised; commands on stdin are waited for.
+    wanted.why.iter().for_each(tell);
+    let commands = wanted.commands.map(command::open).transpose()?;
     let end = match commands {
         Some(_) => 0,
         None => lab.player().run().scenario().steps,

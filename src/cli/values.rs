@@ -8,14 +8,17 @@ pub(super) fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
 }
 
 pub(super) fn steps(text: &str) -> Result<u64, String> {
-    text.parse()
-        .map_err(|_| "must be a whole number of steps, 0 or more, in digits".to_owned())
+    text.parse().map_err(|_| {
+        without_unit(text, IN_STEPS)
+            .unwrap_or_else(|| "must be a whole number of steps, 0 or more, in digits".to_owned())
+    })
 }
 
 pub(super) fn length(text: &str) -> Result<u64, String> {
     match text.parse() {
         Ok(steps) if (1..=i64::MAX as u64).contains(&steps) => Ok(steps),
-        Ok(0) | Err(_) => Err("must be a whole number of steps, 1 or more, in digits".to_owned()),
+        Ok(0) | Err(_) => Err(without_unit(text, IN_STEPS)
+            .unwrap_or_else(|| "must be a whole number of steps, 1 or more, in digits".to_owned())),
         Ok(_) => Err("is more steps than can be counted".to_owned()),
     }
 }
@@ -37,7 +40,8 @@ pub(super) fn setting(text: &str) -> Result<String, String> {
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
-        _ => Err("must be a number greater than zero".to_owned()),
+        _ => Err(without_unit(text, IN_SECONDS)
+            .unwrap_or_else(|| "must be a number greater than zero".to_owned())),
     }
 }
 
@@ -53,4 +57,22 @@ pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
     text.split_once('x')
         .and_then(|(width, height)| Some((number(width)?, number(height)?)))
         .ok_or_else(|| format!("must be columns x lines, such as 80x24, each from 1 to {LARGEST}"))
+}
+
+/// How a time is given, and how a step, which is no time.
+pub(super) const IN_SECONDS: &str = "in seconds";
+const IN_STEPS: &str = "in time steps";
+
+/// What is said of a number with a unit behind it, as `20s`; the number is to be given `meant`.
+pub(super) fn without_unit(text: &str, meant: &str) -> Option<String> {
+    let number = text.trim_end_matches(char::is_alphabetic).trim_end();
+    let unit = text.strip_prefix(number)?.trim_start();
+    let value: f64 = number.parse().ok()?;
+    let is_unit = !unit.is_empty() && value.is_finite() && value >= 0.0;
+    is_unit.then(|| match unit {
+        "s" | "sec" | "second" | "seconds" if meant == IN_SECONDS => {
+            format!("must be a number without a unit: write {number}, {meant}")
+        }
+        _ => format!("must be a number without a unit ({unit}), {meant}"),
+    })
 }

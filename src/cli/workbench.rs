@@ -59,11 +59,12 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             // What is not there is said before what is done with it.
             fs::metadata(file).with_context(|| format!("{}: cannot be read", Shown(file)))?;
         }
-        tell(format_args!(
+        let why = format!(
             "gyrolab: there is no terminal to open the lab on, so its picture {} is printed",
             moment(args)
-        ));
+        );
         return print_picture(Picture {
+            why: Some(why),
             confined,
             name,
             changes: &args.changes,

@@ -8,8 +8,9 @@ use super::{INTERRUPTED, complain, tell};
 use crate::export::stream::Ended;
 use crate::export::{CsvWriter, Folder};
 use crate::measured;
+use crate::run::Step;
 use crate::scenario::{Document, Scenario};
-use crate::study::writeup::figures::figures;
+use crate::study::writeup::figures::{figures, recorder};
 use crate::study::writeup::{Beside, CSV, Writeup};
 use crate::text::printable::Shown;
 use crate::work::changed::changed;
@@ -53,7 +54,10 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let cannot_write = || format!("cannot write {}", Shown(&args.output));
     let csv = File::create(folder.path().join(CSV)).with_context(cannot_write)?;
     let csv = CsvWriter::new(csv, &scenario).with_context(cannot_write)?;
-    let mut played = played(&scenario, Some(csv), &interruption).with_context(cannot_write)?;
+    let mut recorder = recorder(&scenario, beside.as_ref());
+    let also = |step: &Step| recorder.follow(step);
+    let played = played(&scenario, Some(csv), also, &interruption);
+    let mut played = played.with_context(cannot_write)?;
     if played.ended == Ended::Stopped {
         return Ok(ExitCode::from(INTERRUPTED)); // the folder goes with its temporary name
     }
@@ -70,10 +74,17 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
             return Ok(ExitCode::from(INTERRUPTED));
         }
     }
-    let drawings = figures(&scenario, &readouts, beside.as_ref(), |step, of| {
-        meter.show(step, of);
-        interruption.go_on()
-    });
+    let recorded = recorder.end(broken);
+    let drawings = figures(
+        &scenario,
+        &readouts,
+        recorded,
+        beside.as_ref(),
+        |step, of| {
+            meter.show(step, of);
+            interruption.go_on()
+        },
+    );
     meter.clear();
     let Some(drawings) = drawings.map_err(anyhow::Error::msg)? else {
         return Ok(ExitCode::from(INTERRUPTED));

@@ -1,4 +1,4 @@
-//! The numbers of a figure, from a run that is stepped through once more.
+//! The numbers of a figure, from a run that is stepped through: once more, or while something else is read off it.
 
 use super::kind::Plotted;
 use super::over_time::OverTime;
@@ -32,7 +32,7 @@ pub struct Course {
     /// A curve for each column.
     pub curves: Vec<OverTime>,
     /// The traced point, world frame, m.
-    pub path: Vec<[f64; 3]>,
+    pub path: Arc<Vec<[f64; 3]>>,
     /// The last time that it reached, s.
     pub end_s: f64,
     /// Where its numbers stopped being finite, if they did.
@@ -58,56 +58,114 @@ impl Wanted {
         let end_s = Clock::end_s(scenario);
         self.to_s.map_or(end_s, |to_s| to_s.min(end_s))
     }
-
-    fn course<'a>(&'a self, scenario: &'a Scenario) -> Recorder<'a> {
-        let edits = scenario.edits.iter().map(|edit| edit.motion.time_step_s);
-        let least_s = edits.fold(scenario.motion.time_step_s, f64::min);
-        Recorder {
-            wanted: self,
-            scenario,
-            end_s: self.end_s(scenario),
-            places: Places::new(scenario.arm_m()),
-            course: Course {
-                curves: vec![OverTime::new(least_s); self.columns.len()],
-                path: Vec::new(),
-                end_s: 0.0,
-                broke: None,
-            },
-        }
-    }
 }
 
 /// Writes down what is asked for, step by step.
-struct Recorder<'a> {
-    wanted: &'a Wanted,
-    scenario: &'a Scenario,
-    end_s: f64,
+#[derive(Clone, Debug)]
+pub struct Recorder {
+    wanted: Wanted,
+    scenario: Arc<Scenario>,
+    stretch_end_s: f64,
     places: Places,
-    course: Course,
+    curves: Vec<OverTime>,
+    path: Vec<[f64; 3]>,
+    end_s: f64,
 }
 
-impl Recorder<'_> {
+impl Recorder {
+    /// A recorder of what is `wanted` of the run of `scenario`, before its start.
+    pub fn new(scenario: &Arc<Scenario>, wanted: Wanted) -> Self {
+        let edits = scenario.edits.iter().map(|edit| edit.motion.time_step_s);
+        let least_s = edits.fold(scenario.motion.time_step_s, f64::min);
+        Self {
+            stretch_end_s: wanted.end_s(scenario),
+            places: Places::new(scenario.arm_m()),
+            curves: vec![OverTime::new(least_s); wanted.columns.len()],
+            path: Vec::new(),
+            end_s: 0.0,
+            scenario: Arc::clone(scenario),
+            wanted,
+        }
+    }
+
+    /// Takes in `step`; to be shown the start and every step of the stretch.
+    pub fn follow(&mut self, step: &Step) {
+        self.take(step.time_s(), step.position(), || step.sample());
+    }
+
     /// Takes the numbers of one moment; `sample` is asked for them where they are needed.
     fn take(&mut self, time_s: f64, position: &Vector3<f64>, sample: impl FnOnce() -> Sample) {
-        let rounding = 1e-9 * self.end_s.abs();
-        if time_s < self.wanted.from_s - rounding || time_s > self.end_s + rounding {
+        let rounding = rounding_s(self.stretch_end_s);
+        if time_s < self.wanted.from_s - rounding || time_s > self.stretch_end_s + rounding {
             return;
         }
-        self.course.end_s = time_s;
-        if self.wanted.path && self.places.are_new(self.course.path.len(), position) {
-            self.course.path.push([position.x, position.y, position.z]);
+        self.end_s = time_s;
+        if self.wanted.path && self.places.are_new(self.path.len(), position) {
+            self.path.push([position.x, position.y, position.z]);
         }
         if self.wanted.columns.is_empty() {
             return;
         }
         let sample = sample();
-        for (column, curve) in self.wanted.columns.iter().zip(&mut self.course.curves) {
-            curve.push(time_s, column.value(self.scenario, &sample));
+        for (column, curve) in self.wanted.columns.iter().zip(&mut self.curves) {
+            curve.push(time_s, column.value(&self.scenario, &sample));
+        }
+    }
+
+    /// What was written down; `broke` says why the run ended before the stretch, where it did.
+    pub fn end(self, broke: Option<NotFinite>) -> Recorded {
+        Recorded {
+            course: Course {
+                curves: self.curves,
+                path: Arc::new(self.path),
+                end_s: self.end_s,
+                broke,
+            },
+            wanted: self.wanted,
         }
     }
 }
 
+/// What was written down of a run, and what that is.
+#[derive(Clone, Debug)]
+pub struct Recorded {
+    wanted: Wanted,
+    course: Course,
+}
+
+impl Recorded {
+    /// What is `wanted` of the run, which is of `scenario`, where all of it was written down.
+    pub(super) fn part(&self, scenario: &Scenario, wanted: &Wanted) -> Option<Course> {
+        let end_s = wanted.end_s(scenario);
+        let is_all = self.wanted.from_s == wanted.from_s
+            && self.course.end_s <= end_s + rounding_s(end_s)
+            && end_s <= self.wanted.end_s(scenario)
+            && (self.wanted.path || !wanted.path);
+        let curve = |column: &Plotted| {
+            let columns = &self.wanted.columns;
+            let place = columns.iter().position(|it| it.name() == column.name())?;
+            Some(self.course.curves[place].clone())
+        };
+        let curves = wanted.columns.iter().map(curve).collect::<Option<_>>()?;
+        is_all.then(|| Course {
+            curves,
+            path: match wanted.path {
+                true => Arc::clone(&self.course.path),
+                false => Arc::default(),
+            },
+            end_s: self.course.end_s,
+            broke: self.course.broke,
+        })
+    }
+}
+
+/// Times that are so near to the ends of a stretch up to `end_s` belong to it, s.
+fn rounding_s(end_s: f64) -> f64 {
+    1e-9 * end_s.abs()
+}
+
 /// Where a path has been.
+#[derive(Clone, Debug)]
 struct Places {
     size_m: f64,
     seen: Vec<u64>,
@@ -147,19 +205,19 @@ pub fn play(
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Option<Course> {
     let mut simulation = Simulation::new(Arc::clone(scenario));
-    let mut recorder = wanted.course(scenario);
-    let last = Simulation::step_at(scenario, recorder.end_s).min(scenario.steps);
-    let mut each = |step: &Step| recorder.take(step.time_s(), step.position(), || step.sample());
-    each(simulation.now());
+    let mut recorder = Recorder::new(scenario, wanted.clone());
+    let last = Simulation::step_at(scenario, wanted.end_s(scenario)).min(scenario.steps);
+    recorder.follow(simulation.now());
+    let each = |step: &Step| recorder.follow(step);
     let ended = stream::play::<io::Sink>(&mut simulation, last, None, each, |progress| {
         watch(progress.step, progress.steps)
     });
-    match ended {
+    let broke = match ended {
         Ok((Ended::Stopped, _)) => return None,
-        Ok((Ended::NotFinite(error), _)) => recorder.course.broke = Some(error),
-        Ok((Ended::Done, _)) | Err(_) => {} // nothing is written that could fail
-    }
-    Some(recorder.course)
+        Ok((Ended::NotFinite(error), _)) => Some(error),
+        Ok((Ended::Done, _)) | Err(_) => None, // nothing is written that could fail
+    };
+    Some(recorder.end(broke).course)
 }
 
 /// Moments of the exact motion within the shortest of its periods that is known, and at least over the whole stretch; and at
@@ -175,7 +233,7 @@ pub fn exact(
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Option<Course> {
     let mut truth = Truth::new(Arc::clone(scenario));
-    let mut recorder = wanted.course(scenario);
+    let mut recorder = Recorder::new(scenario, wanted.clone());
     // The azimuth is counted on from the start, and nothing else needs what came before.
     let is_counted = wanted
         .columns
@@ -186,7 +244,7 @@ pub fn exact(
     } else {
         wanted.from_s.max(0.0)
     };
-    let end_s = recorder.end_s;
+    let end_s = wanted.end_s(scenario);
     truth.state_at(begin_s);
     let period_s = truth
         .motion()
@@ -209,7 +267,7 @@ pub fn exact(
             return None;
         }
     }
-    Some(recorder.course)
+    Some(recorder.end(None).course)
 }
 
 fn sample(scenario: &Scenario, state: &State, azimuth: &Azimuth, gravity: f64) -> Sample {

@@ -7,7 +7,7 @@ use super::of_runs::charts::both_ranges;
 use super::page::ink::LABEL_PT;
 use super::page::letters;
 use super::quantity;
-use super::request::{Figure, Request, Run};
+use super::request::{Figure, Known, Request, Run};
 use crate::measured::{self, Curve, Measured, Point, at_times, places, residuals as held_against};
 use crate::run::Clock;
 use crate::scenario::Scenario;
@@ -30,6 +30,7 @@ pub(super) fn over_time(
     columns: &[Plotted],
     runs: &[Run],
     request: &Request,
+    known: &Known,
 ) -> Result<Option<String>, String> {
     let Some(measured) = &request.measured else {
         return Ok(None);
@@ -37,12 +38,13 @@ pub(super) fn over_time(
     let series = series(measured)?;
     let mut drawn_on = Vec::new();
     for (index, column) in columns.iter().enumerate().take(chart.panels.len()) {
-        let is_this = |curve: &&Curve| curve.quantity.name == column.name();
-        let Some(curve) = series.curves.iter().find(is_this) else {
+        let is_this = |curve: &Curve| curve.quantity.name == column.name();
+        let Some(place) = series.curves.iter().position(is_this) else {
             continue;
         };
+        let curve = &series.curves[place];
         let points = match curve.quantity.is_direction {
-            true => turned(series, curve, runs)?,
+            true => turned(series, place, runs, known)?,
             false => curve.points.clone(),
         };
         let shown = drawn(series, &points, request);
@@ -150,6 +152,7 @@ pub(super) fn residuals(
     title: String,
     runs: &[(Arc<Scenario>, String)],
     request: &Request,
+    known: &Known,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Figure>, String> {
     let Some(measured) = &request.measured else {
@@ -183,8 +186,11 @@ pub(super) fn residuals(
         .count();
     for (index, (scenario, name)) in runs.iter().enumerate() {
         let go_on = || watch.borrow_mut()(0, scenario.steps).is_continue();
-        let model = at_times(series, scenario, &go_on).map_err(|error| error.to_string())?;
-        let Some(model) = model else {
+        let said = match &known.said {
+            Some(said) => Some(said.clone()),
+            None => at_times(series, scenario, &go_on).map_err(|error| error.to_string())?,
+        };
+        let Some(model) = said else {
             return Ok(None);
         };
         let style = match runs.len() {
@@ -267,17 +273,30 @@ fn drawn(series: &measured::Series, points: &[Point], request: &Request) -> Vec<
     all.filter(|(at, _)| is_wanted(at[0], request)).collect()
 }
 
-/// The directions of `curve`, each with the number of full turns at which it is nearest to the first of `runs`.
-fn turned(series: &measured::Series, curve: &Curve, runs: &[Run]) -> Result<Vec<Point>, String> {
+/// The directions of the curve at `place`, each with the number of full turns at which it is nearest to the first of `runs`.
+fn turned(
+    series: &measured::Series,
+    place: usize,
+    runs: &[Run],
+    known: &Known,
+) -> Result<Vec<Point>, String> {
+    let curve = &series.curves[place];
     let Some(run) = runs.first() else {
         return Ok(curve.points.clone());
     };
-    let alone = measured::Series {
-        curves: vec![curve.clone()],
-        ..series.clone()
+    let said = known.said.as_ref().and_then(|said| said.get(place));
+    let model = match said {
+        Some(said) => Some(said.clone()),
+        None => {
+            let alone = measured::Series {
+                curves: vec![curve.clone()],
+                ..series.clone()
+            };
+            let model = at_times(&alone, &run.scenario, &|| true);
+            let model = model.map_err(|error| error.to_string())?;
+            model.and_then(|model| model.into_iter().next())
+        }
     };
-    let model = at_times(&alone, &run.scenario, &|| true).map_err(|error| error.to_string())?;
-    let model = model.and_then(|model| model.into_iter().next());
     let held = held_against(
         Some(curve.quantity),
         &curve.points,

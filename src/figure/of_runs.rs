@@ -11,7 +11,7 @@ use super::measured;
 use super::names::names;
 use super::page::letters;
 use super::request::Drawn;
-pub use super::request::{Figure, Request, Run};
+pub use super::request::{Figure, Known, Request, Run};
 use super::space;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -32,40 +32,48 @@ pub fn figure(
     request: &Request,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Figure>, String> {
-    let figures = figures(runs, std::slice::from_ref(request), watch)?;
+    let requests = std::slice::from_ref(request);
+    let figures = figures(runs, requests, &Known::default(), watch)?;
     Ok(figures.and_then(|mut figures| figures.pop()))
 }
 
-/// As [`figure`], one for each of `requests`: for those of one stretch of time the runs are played once.
+/// As [`figure`], one for each of `requests`: for those of one stretch of time the runs are played once, and not at all where
+/// there is a single one of which enough is `known`.
 ///
 /// # Errors
 /// As [`figure`].
 pub fn figures(
     runs: &[Run],
     requests: &[Request],
+    known: &Known,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Vec<Figure>>, String> {
+    let nothing = Known::default();
+    let known = match runs {
+        [_] => known,
+        _ => &nothing,
+    };
     let mut figures: Vec<Option<Figure>> = vec![None; requests.len()];
     for (first, request) in requests.iter().enumerate() {
         if figures[first].is_some() {
             continue;
         }
         if let Kind::Residuals = &request.kind {
-            let Some(figure) = residuals(runs, request, &mut watch)? else {
+            let Some(figure) = residuals(runs, request, known, &mut watch)? else {
                 return Ok(None);
             };
             figures[first] = Some(figure);
             continue;
         }
-        let alike = |other: &(usize, &Request)| request.is_alike(other.1);
+        let alike = |other: &(usize, &Request)| request.is_alike(other.1, runs);
         let group: Vec<_> = requests.iter().enumerate().filter(alike).collect();
         let kinds: Vec<&Kind> = group.iter().map(|(_, request)| &request.kind).collect();
-        let Some(played) = play(runs, request, &kinds, &mut watch)? else {
+        let Some(played) = play(runs, request, &kinds, known, &mut watch)? else {
             return Ok(None);
         };
         let mut curve = 0;
         for (index, request) in group {
-            figures[index] = Some(draw(runs, request, &played, curve)?);
+            figures[index] = Some(draw(runs, request, known, &played, curve)?);
             curve += request.kind.columns().len();
         }
     }
@@ -77,6 +85,7 @@ fn play(
     runs: &[Run],
     request: &Request,
     kinds: &[&Kind],
+    known: &Known,
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Played>, String> {
     check_range(runs, request)?;
@@ -85,7 +94,10 @@ fn play(
     let mut drawn = Vec::new();
     let named = names(runs, request.is_beside(), longest_name(request.width_pt));
     for (index, (run, name)) in runs.iter().zip(named).enumerate() {
-        let Some(course) = course::play(&run.scenario, &wanted, &mut watch) else {
+        let recorded = known.recorded.as_ref();
+        let recorded = recorded.and_then(|all| all.part(&run.scenario, &wanted));
+        let course = recorded.or_else(|| course::play(&run.scenario, &wanted, &mut watch));
+        let Some(course) = course else {
             return Ok(None);
         };
         if let Some(error) = course.broke {
@@ -127,13 +139,21 @@ fn play(
 ///
 /// # Errors
 /// When what was measured cannot be drawn so.
-fn draw(runs: &[Run], request: &Request, played: &Played, curve: usize) -> Result<Figure, String> {
+fn draw(
+    runs: &[Run],
+    request: &Request,
+    known: &Known,
+    played: &Played,
+    curve: usize,
+) -> Result<Figure, String> {
     let (title, drawn) = (title(runs), &played.drawn);
     let mut warnings = Vec::new();
     let scene = match &request.kind {
         Kind::OverTime(columns) => {
             let mut chart = charts::over_time(title, columns, drawn, curve, request);
-            warnings.extend(measured::over_time(&mut chart, columns, runs, request)?);
+            warnings.extend(measured::over_time(
+                &mut chart, columns, runs, request, known,
+            )?);
             warnings.extend(measured::beyond_runs(runs, request));
             warnings.extend(dense::warning(&chart, drawn, curve, request));
             chart.scene()
@@ -162,6 +182,7 @@ fn draw(runs: &[Run], request: &Request, played: &Played, curve: usize) -> Resul
 fn residuals(
     runs: &[Run],
     request: &Request,
+    known: &Known,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Figure>, String> {
     check_range(runs, request)?;
@@ -170,7 +191,7 @@ fn residuals(
     let named: Vec<_> = named
         .map(|(run, name)| (Arc::clone(&run.scenario), name))
         .collect();
-    measured::residuals(title(runs), &named, request, watch)
+    measured::residuals(title(runs), &named, request, known, watch)
 }
 
 fn wanted(request: &Request, kinds: &[&Kind]) -> Wanted {

@@ -45,6 +45,14 @@ pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, St
     })
 }
 
+/// What the reader of that chart should know of it, each a sentence without its end.
+pub fn warnings(table: &Table, columns: &[&str]) -> Vec<String> {
+    match &table.subject {
+        Subject::Sweep { .. } => sweep::gaps(table, columns),
+        Subject::Comparison | Subject::Fit { .. } => Vec::new(),
+    }
+}
+
 fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, String> {
     table
         .numbers(name)

@@ -1,7 +1,7 @@
 //! What a figure of runs is to show, and what it is drawn from.
 
 use super::chart::Style;
-use super::course::Course;
+use super::course::{Course, Recorded, Wanted};
 use super::kind::Kind;
 use super::page::scene::Scene;
 use crate::measured::Measured;
@@ -45,6 +45,15 @@ pub struct Figure {
     pub broke: Option<String>,
 }
 
+/// What is known of a single run before its figures are drawn: so much of it need not be computed once more.
+#[derive(Clone, Debug, Default)]
+pub struct Known {
+    /// Its numbers.
+    pub recorded: Option<Recorded>,
+    /// What it says of the measured data of the figures: of each column a value for every point.
+    pub said: Option<Vec<Vec<f64>>>,
+}
+
 /// A run with its numbers, or the exact motion beside it.
 pub(super) struct Drawn {
     pub name: String,
@@ -54,12 +63,19 @@ pub(super) struct Drawn {
 
 impl Request {
     /// Whether both are drawn from the same numbers of the runs under the same names.
-    pub(super) fn is_alike(&self, other: &Self) -> bool {
+    pub(super) fn is_alike(&self, other: &Self, runs: &[Run]) -> bool {
         let alike = |it: &Self| {
+            let stretch = Wanted {
+                columns: Vec::new(),
+                path: false,
+                from_s: it.from_s,
+                to_s: it.to_s,
+            };
+            let ends_s = runs.iter().map(|run| stretch.end_s(&run.scenario));
             let is_of_runs = !matches!(it.kind, Kind::Residuals);
             (
                 it.from_s,
-                it.to_s,
+                ends_s.collect::<Vec<_>>(),
                 it.width_pt,
                 it.exact,
                 it.is_beside(),

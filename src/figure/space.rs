@@ -100,7 +100,7 @@ fn camera(runs: &[Run]) -> Camera {
 
 fn ranges(drawn: &[Drawn]) -> [(f64, f64); 3] {
     let range = |index: usize| {
-        let values = drawn.iter().flat_map(|drawn| &drawn.course.path);
+        let values = drawn.iter().flat_map(|drawn| drawn.course.path.iter());
         Axis::default().range_of(values.map(|point| point[index]))
     };
     let [x, y, z] = [0, 1, 2].map(range);

@@ -8,9 +8,10 @@ use super::shipped;
 use super::{Data, Measured};
 use crate::scenario::problem::Found;
 use crate::scenario::problem::nearest;
-use crate::scenario::{Problem, Problems};
+use crate::scenario::{Document, Problem, Problems};
 use std::borrow::Cow;
 use std::path::Path;
+use toml::Value;
 
 /// Opens what `name` names: data that come with the program, or else a file. A file's name holds a `/` or ends in `.csv`.
 ///
@@ -40,18 +41,32 @@ pub fn text(name: &str) -> Result<Cow<'static, str>, Problems> {
     Ok(text.into())
 }
 
+/// What is said where `text`, which is refused as measured data, is a scenario.
+fn scenario_instead(origin: &str, text: &str) -> Option<Problems> {
+    const OF_SCENARIOS: [&str; 3] = ["body", "start", "motion"];
+    let document = Document::parse(origin, text).ok()?;
+    let is_table = |name: &str| document.table().get(name).is_some_and(Value::is_table);
+    let rule = "is a scenario, and no measured data: it stands where SCENARIO does (gyrolab SCENARIO --measured FILE.csv, gyrolab fit FILE.csv --in SCENARIO); measured data are a CSV, which gyrolab man fit describes";
+    let is_scenario = OF_SCENARIOS.into_iter().any(is_table);
+    is_scenario.then(|| Problems::one(origin, Problem::at("", rule)))
+}
+
 /// Reads the measured data that `text` holds, which is the file `origin`.
 ///
 /// # Errors
 /// Everything that is wrong with it: with the names of the columns first, and where these are right with the rows.
 pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
-    let cells = Cells::of(origin, text)?;
+    let cells = Cells::of(origin, text);
+    let cells = cells.map_err(|problems| scenario_instead(origin, text).unwrap_or(problems))?;
     let refused = |found: Found| Problems {
         origin: origin.to_owned(),
         list: found.list,
         more: found.more,
     };
-    let columns = named(&cells).map_err(|problems| refused(problems.into()))?;
+    let columns = named(&cells).map_err(|problems| {
+        let refused = refused(problems.into());
+        scenario_instead(origin, text).unwrap_or(refused)
+    })?;
     let mut numbers = Numbers::of(&cells);
     let data = match columns.iter().any(|column| column.name == TIME) {
         true => Data::Series(numbers.series(&columns)),

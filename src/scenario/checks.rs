@@ -1,8 +1,8 @@
 //! From the file's shape to a [`Scenario`] whose numbers make sense together.
 
 use super::edits::edits;
-use super::file::ScenarioFile;
-use super::keys::TOP;
+use super::file::{BodyFile, ScenarioFile};
+use super::keys::{TOP, is_under};
 use super::model::{Body, Scenario};
 use super::parts::{body, motion, pushes};
 use super::problem::{Found, Problem, listed};
@@ -10,24 +10,40 @@ use super::rubbing::{friction, objection};
 use super::start::start;
 use crate::physics::{State, observables};
 use std::sync::Arc;
+use toml::Value;
 
 /// Makes a scenario of `file`.
 ///
 /// # Errors
 /// Every rule that its numbers break together.
 pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
+    // Without a body nothing can be said of the rest; of that, each part is looked at by itself.
     let body = body(&file.body)?;
     let trace = match &file.trace {
-        Some(name) => body.find("trace", name)?,
-        None => body.point(TOP).ok_or_else(|| no_top(&body))?,
+        Some(name) => body.find("trace", name),
+        None => body.point(TOP).ok_or_else(|| no_top(&body)),
     };
     let motion = motion(&file.motion);
-    let (start, rotor) = start(&file.start, &body, &file.body.part, motion.gravity)?;
-    let friction = friction(file.friction.as_ref(), &body, rotor)?;
-    if let Some(problem) = objection("motion.scheme", motion.scheme, &friction) {
-        return Err(vec![problem].into());
-    }
-    let pushes = pushes(&file.push, &body)?;
+    let started = start(&file.start, &body, &file.body.part, motion.gravity);
+    let started = started.and_then(|(start, rotor)| {
+        let friction = friction(file.friction.as_ref(), &body, rotor)?;
+        match objection("motion.scheme", motion.scheme, &friction) {
+            None => Ok((start, rotor, friction)),
+            Some(problem) => Err(vec![problem]),
+        }
+    });
+    let pushed = pushes(&file.push, &body);
+    let (trace, (start, rotor, friction), pushes) = match (trace, started, pushed) {
+        (Ok(trace), Ok(started), Ok(pushes)) => (trace, started, pushes),
+        (trace, started, pushed) => {
+            let mut found = Found::default();
+            for problems in [trace.err(), started.err()].into_iter().flatten() {
+                found.add_all(problems);
+            }
+            found.add_all(pushed.err().unwrap_or_default());
+            return Err(found);
+        }
+    };
     let edits = edits(&file, &body, &pushes, &friction)?;
     if !is_readable(&body, trace, &start, motion.gravity) {
         let rule = "energy or traced point leave the range of floating-point numbers: use momentum, gravity and distances nearer to 1";
@@ -46,6 +62,34 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
         edits,
         file,
     })
+}
+
+/// Adds the names in `table` that are none of its body's points to what is `found` wrong with its keys, so that both are told
+/// together. Where something is wrong with the body, nothing is said of them.
+pub fn names(table: &toml::Table, found: &mut Found) {
+    let is_of_body = |key: &str| key == "body" || is_under(key, "body");
+    let file = table.get("body").filter(|_| {
+        let wrong = found.list.iter();
+        found.more == 0 && wrong.into_iter().all(|problem| !is_of_body(&problem.key))
+    });
+    let file = file.and_then(|body| body.clone().try_into::<BodyFile>().ok());
+    let Some(Ok(body)) = file.map(|file| body(&file)) else {
+        return;
+    };
+    let pushes = table.get("push").and_then(Value::as_array);
+    let pushes = pushes.into_iter().flatten().enumerate();
+    let pushed = pushes.map(|(index, push)| (format!("push.{index}.point"), push.get("point")));
+    let traced = std::iter::once(("trace".to_owned(), table.get("trace")));
+    for (key, name) in traced.chain(pushed) {
+        let name = name.and_then(Value::as_str);
+        let Some(name) = name.filter(|name| body.point(name).is_none()) else {
+            continue;
+        };
+        match found.is_full() {
+            true => found.more += 1,
+            false => found.add_all(body.find(&key, name).err().unwrap_or_default()),
+        }
+    }
 }
 
 /// Whether the first row of the run's CSV is made of finite numbers.

@@ -241,8 +241,9 @@ impl Document {
             let rule = "is a sweep of many runs, not a scenario: gyrolab sweep runs it";
             return Err(Problems::one(self.origin.as_str(), Problem::at("", rule)));
         }
-        let problems = keys::check(&self.table);
+        let mut problems = keys::check(&self.table);
         if !problems.list.is_empty() {
+            checks::names(&self.table, &mut problems);
             return Err(self.placed(problems));
         }
         checks::scenario(self.file()?).map_err(|problems| self.placed(problems))

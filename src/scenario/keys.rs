@@ -12,7 +12,8 @@ use super::solids;
 use crate::physics::scheme;
 pub use check::check;
 pub(super) use check::check_part;
-use check::{elsewhere, is_under};
+use check::elsewhere;
+pub(super) use check::is_under;
 use toml::Value;
 
 /// One key a scenario or run file may hold.

@@ -124,15 +124,45 @@ pub(super) fn motion(file: &MotionFile) -> Motion {
     }
 }
 
-pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Vec<Problem>> {
-    files
-        .iter()
-        .enumerate()
-        .map(|(index, file)| push(file, body, &format!("push.{index}")))
-        .collect()
+pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Found> {
+    let mut found = Found::default();
+    let pushes = files.iter().enumerate().filter_map(|(index, file)| {
+        // The nearest name is sought for those that are told alone: there may be 100 000 points.
+        if found.is_full() && body.point(&file.point).is_none() {
+            found.more += 1;
+            return None;
+        }
+        let push = push(file, body, &format!("push.{index}"));
+        push.map_err(|refused| found.add_all(refused)).ok()
+    });
+    let pushes = pushes.collect();
+    match found.list.is_empty() {
+        true => Ok(pushes),
+        false => Err(found),
+    }
 }
 
 pub(super) fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Vec<Problem>> {
+    let (point, window) = (
+        body.find(&format!("{key}.point"), &file.point),
+        window(file, key),
+    );
+    match (point, window) {
+        (Ok(point), Ok(window)) => Ok(Push {
+            point,
+            force: Vector3::from(file.force_N),
+            window,
+            accumulates: file.accumulates.unwrap_or(false),
+        }),
+        (point, window) => {
+            let problems = [point.err(), window.err()];
+            Err(problems.into_iter().flatten().flatten().collect())
+        }
+    }
+}
+
+/// When the push at `key` acts.
+fn window(file: &PushFile, key: &str) -> Result<Window, Vec<Problem>> {
     let wrong = |rule: &str| Err(vec![Problem::at(key, rule)]);
     let window = match (file.first_step, file.steps, file.from_s, file.for_s) {
         (first, Some(count), None, None) => Window::Steps {
@@ -158,11 +188,5 @@ pub(super) fn push(file: &PushFile, body: &Body, key: &str) -> Result<Push, Vec<
     if accumulates && matches!(window, Window::Time { .. }) {
         return wrong("accumulates step by step: give first_step and steps instead of seconds");
     }
-    let point = body.find(&format!("{key}.point"), &file.point)?;
-    Ok(Push {
-        point,
-        force: Vector3::from(file.force_N),
-        window,
-        accumulates,
-    })
+    Ok(window)
 }

@@ -77,6 +77,20 @@ impl Found {
     }
 }
 
+impl Found {
+    /// Whether further problems are only counted.
+    pub fn is_full(&self) -> bool {
+        self.list.len() >= MOST_TOLD
+    }
+
+    /// Adds all that `other` has.
+    pub fn add_all(&mut self, other: impl Into<Self>) {
+        let Self { list, more } = other.into();
+        list.into_iter().for_each(|problem| self.add(|| problem));
+        self.more += more;
+    }
+}
+
 impl From<Vec<Problem>> for Found {
     fn from(mut list: Vec<Problem>) -> Self {
         let more = list.len().saturating_sub(MOST_TOLD);
@@ -222,10 +236,13 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
             )
         })
         .min_by_key(|(distance, _)| *distance);
-    // A name that lacks its unit ("radius" for "radius_m", "L_z" for "Lz_Js") is near however long the unit.
+    // A name that lacks its unit ("radius" for "radius_m", "L_z" for "Lz_Js") is near however long the unit; nearer is one
+    // that differs in no letter and no digit ("method2" for "method-2", and not for "method-2-slow").
     let bare = letters(wrong);
-    let is_bare = |name: &&str| !bare.is_empty() && letters(name).starts_with(&bare);
-    let begins = known.clone().find(is_bare);
+    let is_bare = |name: &&str| !bare.is_empty() && begins_with(letters_of(name), &bare);
+    let is_same = |name: &&str| !bare.is_empty() && letters_of(name).eq(bare.chars());
+    let begins = known.clone().find(is_same);
+    let begins = begins.or_else(|| known.clone().find(is_bare));
     match (begins, near) {
         (Some(name), _) => return format!("did you mean {}?", brief(name, LONGEST)),
         (None, Some((distance, name))) if distance <= furthest(name) => {
@@ -244,8 +261,17 @@ pub fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str> + Clone) ->
 
 /// The letters and digits of `name`, in lower case.
 fn letters(name: &str) -> String {
+    letters_of(name).collect()
+}
+
+/// The same one by one.
+fn letters_of(name: &str) -> impl Iterator<Item = char> + '_ {
     let all = name.chars().filter(|c| c.is_alphanumeric());
-    all.flat_map(char::to_lowercase).collect()
+    all.flat_map(char::to_lowercase)
+}
+
+fn begins_with(mut letters: impl Iterator<Item = char>, begin: &str) -> bool {
+    begin.chars().all(|letter| letters.next() == Some(letter))
 }
 
 #[cfg(test)]
@@ -284,6 +310,16 @@ mod tests {
             nearest("colour", known.into_iter()),
             "there is radius_m, height_m, points"
         );
+    }
+
+    #[test]
+    fn a_name_that_differs_in_no_letter_is_nearer_than_one_that_only_begins_so() {
+        let known = ["method-1", "method-2-slow", "method-2"];
+        for wrong in ["method2", "Method_2", "method 2"] {
+            assert_eq!(nearest(wrong, known.into_iter()), "did you mean method-2?");
+        }
+        let offered = nearest("method2slow", known.into_iter());
+        assert_eq!(offered, "did you mean method-2-slow?");
     }
 
     #[test]

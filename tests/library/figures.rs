@@ -2,8 +2,9 @@
 
 use crate::support::scenarios::preset;
 use gyrolab::figure::chart::{Axis, Chart, Panel, Series, Style};
+use gyrolab::figure::course::{Recorded, Recorder, Wanted};
 use gyrolab::figure::kind::Kind;
-use gyrolab::figure::of_runs::{self, Figure, Request, Run};
+use gyrolab::figure::of_runs::{self, Figure, Known, Request, Run};
 use gyrolab::figure::table::Table;
 use gyrolab::figure::{Format, Item, Paint, Point, Scene, of_table, write};
 use gyrolab::run::Simulation;
@@ -431,7 +432,8 @@ fn figures_that_are_drawn_together_are_those_drawn_alone() {
         ends += u32::from(step == last);
         ControlFlow::Continue(())
     };
-    let together = of_runs::figures(&runs, &requests, watch).unwrap().unwrap();
+    let together = of_runs::figures(&runs, &requests, &Known::default(), watch);
+    let together = together.unwrap().unwrap();
     // Each run once for the whole of it, and once for its beginning.
     assert!(ends <= 4, "{ends}");
     assert_eq!(together.len(), requests.len());
@@ -456,6 +458,86 @@ fn a_run_that_breaks_is_drawn_up_to_there() {
     };
     let refusal = refusal(&[run("method-2", &[push])], &late);
     assert!(refusal.contains("step 25"), "{refusal}");
+}
+
+/// What a recorder of traces, tilt and path has written down of `run`.
+fn recorded(run: &Run) -> Recorded {
+    let kinds = [Kind::traces(), Kind::named("tilt_deg").unwrap()];
+    let wanted = Wanted {
+        columns: kinds.iter().flat_map(Kind::columns).copied().collect(),
+        path: true,
+        from_s: 0.0,
+        to_s: None,
+    };
+    let mut simulation = Simulation::new(Arc::clone(&run.scenario));
+    let mut recorder = Recorder::new(&run.scenario, wanted);
+    recorder.follow(simulation.now());
+    for _ in 0..run.scenario.steps {
+        match simulation.step() {
+            Ok(step) => recorder.follow(step),
+            Err(broke) => return recorder.end(Some(broke)),
+        }
+    }
+    recorder.end(None)
+}
+
+#[test]
+fn what_was_recorded_of_a_run_is_not_played_again() {
+    let breaks = "push.0={point=\"top\", force_N=[1e300,0,0], first_step=25, steps=1}";
+    for (name, set, end_s) in [
+        ("wobble-push", "motion.steps=250", 25.0),
+        ("method-2", breaks, 2.4),
+    ] {
+        let runs = [run(name, &[set])];
+        let known = Known {
+            recorded: Some(recorded(&runs[0])),
+            said: None,
+        };
+        // In another order than they were recorded, to the end and to the end by its time.
+        for (kind, to_s) in [
+            ("tilt_deg,z_m", None),
+            ("above", None),
+            ("3d", Some(end_s)),
+            ("x_m", Some(end_s)),
+        ] {
+            let request = Request {
+                to_s,
+                ..request(kind)
+            };
+            let requests = std::slice::from_ref(&request);
+            let mut asked = 0;
+            let figures = of_runs::figures(&runs, requests, &known, |_, _| {
+                asked += 1;
+                ControlFlow::Continue(())
+            });
+            let alone = drawn(&runs, &request);
+            assert_eq!(figures.unwrap().unwrap()[0].scene, alone.scene, "{kind}");
+            assert_eq!(asked, 0, "{name}: {kind} was played");
+        }
+        // What was not recorded is played.
+        let begins_later = Request {
+            from_s: 1.0,
+            ..request("z_m")
+        };
+        let ends_earlier = Request {
+            to_s: Some(2.0),
+            ..request("z_m")
+        };
+        for request in [request("energy_J"), begins_later, ends_earlier] {
+            let requests = std::slice::from_ref(&request);
+            let go_on = |_, _| ControlFlow::Continue(());
+            let figures = of_runs::figures(&runs, requests, &known, go_on);
+            let alone = drawn(&runs, &request);
+            assert_eq!(figures.unwrap().unwrap()[0].scene, alone.scene, "{name}");
+        }
+        // Of two runs nobody knows which of them it was.
+        let two = [run("method-2", &["motion.steps=250"]), runs[0].clone()];
+        let request = request("z_m");
+        let go_on = |_, _| ControlFlow::Continue(());
+        let together = of_runs::figures(&two, std::slice::from_ref(&request), &known, go_on);
+        let alone = drawn(&two, &request);
+        assert_eq!(together.unwrap().unwrap()[0].scene, alone.scene, "{name}");
+    }
 }
 
 #[test]
@@ -506,6 +588,22 @@ fn a_comparison_shows_its_slope() {
     says(&other.scene(), &["energy drift"]);
     let wrong = of_table::chart(&table(COMPARISON), &["eror_m"], COLUMN_PT).unwrap_err();
     assert!(wrong.contains("error_m"), "{wrong}");
+}
+
+#[test]
+fn a_line_of_theory_with_gaps_says_where_they_are_explained() {
+    let gappy = SWEEP.replace("30,,,0.87,", "30,,,,");
+    let told = of_table::warnings(&table(&gappy), &[]);
+    assert_eq!(
+        told,
+        [
+            "the line of predicted_precession_rad_per_s has gaps: in 1 of 4 rows theory states no value, for a reason that gyrolab man numbers gives"
+        ]
+    );
+    let measured = ["measured_precession_rad_per_s"];
+    assert!(of_table::warnings(&table(&gappy), &measured).is_empty());
+    assert!(of_table::warnings(&table(SWEEP), &[]).is_empty());
+    assert!(of_table::warnings(&table(COMPARISON), &[]).is_empty());
 }
 
 const SWEEP: &str = "\

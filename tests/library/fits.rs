@@ -366,12 +366,25 @@ fn a_key_at_its_bound_is_said_to_be() {
         fit: &fit,
         model: &model,
         scheme: "exact",
+        instead_of: Some("rk4"),
     };
     let told = report.to_string();
+    // The CSV, the JSON and the text are quoted each by itself: each says by which scheme.
+    let json = serde_json::to_value(report).unwrap();
+    let remark = "The fitted runs have the scheme exact; the scenario's own is rk4 (--scheme rk4 fits the runs of that).";
+    assert_eq!(json["remarks"][0], remark);
+    assert!(told.contains(remark), "{told}");
     assert!(
-        told.contains("stands at its bound 0.0038: the fit would be better beyond it"),
+        told.contains(
+            "body.part.0.moments_kg_m2.2 stands at its bound 0.0038: the fit would be better beyond it, and it has no uncertainty. Begun at another value by --set, the search may find a better fit within."
+        ),
         "{told}"
     );
+    // One that is inside of its bounds is not said to be at one.
+    let inside = format!("{MOMENT}=0.003..0.005");
+    let (_, fit) = heidelberg("heidelberg-precession", &[&inside], &|_| true);
+    let is_of_bound = |remark: &String| remark.contains("bound");
+    assert!(fit.keys[0].sigma.is_some() && !fit.remarks().iter().any(is_of_bound));
     // With one at its bound the other can be told.
     let (_, fit) = heidelberg("heidelberg-precession", &free, &|_| true);
     assert!(
@@ -454,8 +467,10 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
         fit: &fit,
         model: &model,
         scheme: "exact",
+        instead_of: None,
     };
     let asked = Asked {
+        scheme: report.scheme.to_owned(),
         command: "gyrolab fit".to_owned(),
         measured: "heidelberg-precession".to_owned(),
         scenario: "heidelberg".to_owned(),
@@ -491,16 +506,23 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
     let [values, residuals] = &chart.panels[..] else {
         panic!("{} panels", chart.panels.len())
     };
-    assert_eq!(values.series.len(), 8, "four settings, each with its model");
+    assert_eq!(header.fit.scheme, "exact");
+    assert_eq!(values.series[1].name, "scheme: exact");
+    let values_and_models = values.series.iter().filter(|it| !it.points.is_empty());
+    assert_eq!(
+        values_and_models.count(),
+        8,
+        "four settings, each with its model"
+    );
     // Every value has the name of its key.
     let stated = fit.keys[0].stated();
     let model = format!("model: moments *z* of ball = {stated} kg m^{{2}}");
     assert_eq!(values.series[0].name, model);
     let place = "*z* of weight = 0.1555 m, *z* of second weight = 0 m";
-    assert_eq!(values.series[1].name, place);
+    assert_eq!(values.series[2].name, place);
     // Where the page is too narrow for that, the values stand alone.
     let narrow = gyrolab::figure::of_table::chart(&table, &[], 120.0).unwrap();
-    assert_eq!(narrow.panels[0].series[1].name, "0.1555, 0");
+    assert_eq!(narrow.panels[0].series[2].name, "0.1555, 0");
     let points = |panel: &gyrolab::figure::chart::Panel| -> usize {
         let marked = panel
             .series
@@ -509,12 +531,9 @@ fn the_csv_of_a_fit_opens_as_the_run_that_was_fitted() {
         marked.map(|series| series.points.len()).sum()
     };
     assert_eq!((points(values), points(residuals)), (16, 16));
-    assert!(
-        values.series[1]
-            .errors
-            .iter()
-            .all(|error| (2.0..2.5).contains(error))
-    );
+    let errors = &values.series[2].errors;
+    let is_stated = |error: &f64| (2.0..2.5).contains(error);
+    assert!(!errors.is_empty() && errors.iter().all(is_stated));
     assert!(residuals.y.unit.contains('σ'));
     assert_eq!(
         gyrolab::study::verify::verify(&path, |_, _| std::ops::ControlFlow::Continue(()))
@@ -588,6 +607,25 @@ fn a_very_poor_fit_says_that_it_may_be_a_local_minimum() {
     assert!(
         rare.contains("does not fit") && !rare.contains(words),
         "{rare}"
+    );
+}
+
+#[test]
+fn where_the_data_depend_on_no_key_no_other_start_is_proposed() {
+    let document = Document::parse("top.toml", TOP).unwrap();
+    let text = "t_s,spin_rpm,spin_uncertainty_rpm\n1,10,1\n2,10,1\n3,10,1\n";
+    let sentence = |keys: &[&str]| {
+        let free = keys.iter().map(|key| Free::parse(key, &document).unwrap());
+        let free = free.collect();
+        let model = Model::new(&document, free, read("lab.csv", text).unwrap()).unwrap();
+        let fit = fitted(&model);
+        (fit.solution.silent.len(), fit.sentence(&model))
+    };
+    let (silent, alone) = sentence(&["start.turn_deg"]);
+    assert_eq!(silent, 1);
+    assert!(
+        alone.contains("No value of the free keys changes that") && !alone.contains("elsewhere"),
+        "{alone}"
     );
 }
 

@@ -4,7 +4,7 @@ use crate::support::desk::Desk;
 use crate::support::scenarios::{preset, view};
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::figure::kind::Kind;
-use gyrolab::figure::of_runs::{self, Figure, Request, Run};
+use gyrolab::figure::of_runs::{self, Figure, Known, Request, Run};
 use gyrolab::figure::{Item, Paint};
 use gyrolab::lab::Lab;
 use gyrolab::lab::measured::Sum;
@@ -224,6 +224,10 @@ fn a_scenario_names_the_data_beside_its_run() {
 }
 
 fn figure(kind: Option<&str>, text: &str) -> Figure {
+    figure_with(kind, text, &Known::default())
+}
+
+fn figure_with(kind: Option<&str>, text: &str, known: &Known) -> Figure {
     let measured: Measured = measured::read("bench.csv", text).unwrap();
     let kind = match kind {
         Some(kind) => Kind::named(kind).unwrap(),
@@ -241,8 +245,33 @@ fn figure(kind: Option<&str>, text: &str) -> Figure {
         scenario: Arc::new(preset("method-2", &["motion.steps=200"])),
         named: "method-2".to_owned(),
     };
-    let figure = of_runs::figure(&[run], &request, |_, _| ControlFlow::Continue(()));
-    figure.unwrap().unwrap()
+    let go_on = |_, _| ControlFlow::Continue(());
+    let figures = of_runs::figures(&[run], &[request], known, go_on);
+    figures.unwrap().unwrap().remove(0)
+}
+
+#[test]
+fn what_the_run_is_known_to_say_is_not_computed_again() {
+    let text = "t_s,x_m,azimuth_deg\n1,0.2,350\n2,0.3,20\n";
+    let measured = measured::read("bench.csv", text).unwrap();
+    let run = Arc::new(preset("method-2", &["motion.steps=200"]));
+    let said = measured::at_times(measured.series().unwrap(), &run, &|| true);
+    let said = said.unwrap().unwrap();
+    let knowing = |said: &[Vec<f64>]| Known {
+        recorded: None,
+        said: Some(said.to_vec()),
+    };
+    // By a full turn more, the directions are drawn elsewhere: the numbers are those that were given.
+    let mut turned = said.clone();
+    turned[1].iter_mut().for_each(|degrees| *degrees += 360.0);
+    let mut moved = said.clone();
+    moved[0][0] += 0.1;
+    for (kind, other) in [(None, &turned), (Some("residuals"), &moved)] {
+        let alone = figure(kind, text);
+        let with = |said: &[Vec<f64>]| figure_with(kind, text, &knowing(said)).scene;
+        assert_eq!(with(&said), alone.scene, "{kind:?}");
+        assert_ne!(with(other), alone.scene, "{kind:?}");
+    }
 }
 
 /// The middles of the empty circles, without that of the legend.

@@ -655,3 +655,56 @@ fn settings_that_are_good() {
         assert_eq!(set(arguments), Ok(()), "{arguments:?}");
     }
 }
+
+/// Wrong values, unknown keys and names that the body does not have are told together.
+#[test]
+fn every_mistake_is_told_at_once() {
+    let mistakes = |lines: &[(usize, &str)]| {
+        let text = lines.iter().fold(WHOLE.to_owned(), |text, (number, new)| {
+            with_line(&text, *number, new)
+        });
+        refusal(&text)
+    };
+    let value = (21, "time_step_s = -1");
+    let told = mistakes(&[value, (24, "point = \"topp\""), (4, "trace = \"tpo\"")]);
+    for words in [
+        "file.toml:21: motion.time_step_s (-1) must be greater than zero",
+        "file.toml:24: push.0.point (\"topp\") is no point of this body: did you mean top?",
+        "file.toml:4: trace (\"tpo\") is no point of this body",
+    ] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    assert_eq!(told.lines().count(), 3, "{told}");
+    // Two names; a name and a push that says no time; a name and a start told twice.
+    for (other, words) in [
+        ((4, "trace = \"tpo\""), "trace"),
+        ((27, ""), "push.0: does not say for how long"),
+        ((15, "spin_rpm = 3"), "start.spin_rpm"),
+    ] {
+        let told = mistakes(&[(24, "point = \"topp\""), other]);
+        assert!(
+            told.contains("push.0.point") && told.contains(words),
+            "{told}"
+        );
+        assert_eq!(told.lines().count(), 2, "{told}");
+    }
+    // Where the body is wrong, nobody knows its points.
+    let told = mistakes(&[(24, "point = \"topp\""), (6, "points = 0")]);
+    assert!(!told.contains("topp"), "{told}");
+}
+
+/// Of many wrong names the first hundred are told, and the nearest is sought for no other.
+#[test]
+fn thousands_of_wrong_names_are_refused_at_once() {
+    let points: String = (0..2_500)
+        .map(|index| format!("[[body.point]]\nname = \"p{index}\"\nat_m = [0, 0, 1]\n"))
+        .collect();
+    let push = "[[push]]\npoint = \"nobody\"\nforce_N = [0, 0, 1]\nsteps = 1\n";
+    let text = format!("{WHOLE}{points}{}", push.repeat(20_000));
+    for (wrong, others) in [("", 0), ("[friction]\nspin_dry_Nm = -1\n", 1)] {
+        let document = Document::parse("file.toml", &format!("{text}{wrong}")).unwrap();
+        let problems = document.scenario().unwrap_err();
+        assert_eq!(problems.list.len(), 100);
+        assert_eq!(problems.list.len() + problems.more, 20_000 + others);
+    }
+}

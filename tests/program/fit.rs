@@ -58,6 +58,40 @@ fn json_has_what_the_text_has() {
 }
 
 #[test]
+fn a_fit_by_another_scheme_than_the_scenario_has_says_so_wherever_it_is_quoted() {
+    let ground = Ground::new();
+    ground.write(
+        "tilt.csv",
+        "t_s,tilt_deg\n0,45.1\n0.5,45\n1,44.9\n1.5,45.1\n",
+    );
+    let fit = [
+        "fit",
+        "tilt.csv",
+        "--in",
+        "method-2",
+        "--free=start.tilt_deg",
+    ];
+    let with = |more: &[&str]| ground.run(&[&fit[..], more].concat());
+    let remark = "The fitted runs have the scheme exact; the scenario's own is report (--scheme report fits the runs of that).";
+    assert!(text(&with(&[]).stdout).contains(remark));
+    let json: serde_json::Value = serde_json::from_slice(&with(&["--json"]).stdout).unwrap();
+    assert_eq!(
+        (&json["scheme"], &json["remarks"][0]),
+        (&"exact".into(), &remark.into())
+    );
+    let csv = text(&with(&["-o", "-"]).stdout);
+    assert!(csv.contains("\n# # scheme = \"exact\"\n"), "{csv}");
+    // Where the scheme was asked for, it is no surprise.
+    for asked in [["--scheme", "report"], ["--set", "motion.scheme=exact"]] {
+        let told = text(&with(&asked).stdout);
+        assert!(
+            told.contains("scheme ") && !told.contains("scenario's own"),
+            "{told}"
+        );
+    }
+}
+
+#[test]
 fn the_csv_is_drawn_and_runs_again() {
     let ground = Ground::new();
     let with = |more: &[&str]| ground.run(&[&NUTATION[..], more].concat());
@@ -77,7 +111,7 @@ fn the_csv_is_drawn_and_runs_again() {
     refused(
         &ground.run(&["verify", "fit.csv"]),
         1,
-        "fit.csv: is the CSV of a fit, which is not computed again",
+        "fit.csv: is the CSV of a fit, which is not computed again: its data stand in another file. The line command at its top makes the fit again: give it -o again.csv, and compare the two files",
     );
     let csv = fs::read_to_string(ground.file("fit.csv")).unwrap();
     let command = csv

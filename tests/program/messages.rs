@@ -303,3 +303,125 @@ fn the_american_colour_is_answered_with_the_key() {
     lab.wait_for("color: unknown key: did you mean colour?");
     lab.quit();
 }
+
+#[test]
+fn a_number_with_a_unit_is_told_without_it() {
+    let ground = Ground::new();
+    let out = ["-o", "out.csv"];
+    for (args, words) in [
+        (
+            &["figure", "method-2", "--to", "20s", "-o", "f.svg"][..],
+            "write 20, in seconds",
+        ),
+        (
+            &["figure", "method-2", "--from", "2.5 s", "-o", "f.svg"],
+            "write 2.5, in seconds",
+        ),
+        (
+            &[&["run", "method-2", "--from", "2s"], &out[..]].concat(),
+            "write 2, in seconds",
+        ),
+        (
+            &[&["run", "method-2", "--to", "1e1sec"], &out[..]].concat(),
+            "write 1e1, in seconds",
+        ),
+        (
+            &["run", "method-2", "--duration", "20s"],
+            "write 20, in seconds",
+        ),
+        (
+            &["run", "method-2", "--duration", "3min"],
+            "without a unit (min), in seconds",
+        ),
+        (
+            &["run", "method-2", "--time-step", "50ms"],
+            "without a unit (ms), in seconds",
+        ),
+        (
+            &["compare", "method-2", "--time-steps", "0.1,0.05s"],
+            "write 0.05, in seconds",
+        ),
+        (
+            &["show", "method-2", "--at", "20s"],
+            "without a unit (s), in time steps",
+        ),
+        (
+            &["run", "method-2", "--steps", "20s"],
+            "without a unit (s), in time steps",
+        ),
+        // What is no number is told as before.
+        (
+            &["run", "method-2", "--duration", "long"],
+            "must be a number greater than zero",
+        ),
+        (
+            &["run", "method-2", "--duration=-2s"],
+            "must be a number greater than zero",
+        ),
+        (
+            &["run", "method-2", "--duration", "inf"],
+            "must be a number greater than zero",
+        ),
+    ] {
+        let output = ground.run(args);
+        let told = stderr(&output);
+        assert_eq!(code(&output), 2, "{args:?}: {told}");
+        assert!(told.contains(words), "{args:?}: {told}");
+    }
+    assert_eq!(ground.files(), [""; 0]);
+}
+
+#[test]
+fn what_is_not_there_is_refused_before_a_picture_is_promised() {
+    let ground = Ground::new();
+    for (args, words) in [
+        (&["method2"][..], "did you mean method-2?"),
+        (&["nothing.toml"], "nothing.toml"),
+        (&["method-2", "--set", "motion.steps=0"], "motion.steps"),
+        (&["method-2", "--measured", "no.csv"], "no.csv"),
+        (&["method-2", "--do", "no.toml"], "no.toml"),
+    ] {
+        let output = ground.run(args);
+        let told = stderr(&output);
+        assert_eq!(code(&output), 1, "{args:?}: {told}");
+        assert!(told.contains(words) && !told.contains("picture"), "{told}");
+    }
+}
+
+#[test]
+fn a_scenario_given_as_measured_data_is_told_once() {
+    let ground = Ground::new();
+    let preset = ground.run(&["presets", "wobble-push"]);
+    ground.write("own.toml", &String::from_utf8(preset.stdout).unwrap());
+    for args in [
+        &[
+            "fit",
+            "own.toml",
+            "--in",
+            "method-2",
+            "--free",
+            "start.tilt_deg",
+        ][..],
+        &["show", "method-2", "--measured", "own.toml"],
+        &[
+            "figure",
+            "method-2",
+            "--measured",
+            "own.toml",
+            "-o",
+            "f.svg",
+        ],
+    ] {
+        let output = ground.run(args);
+        let told = stderr(&output);
+        assert_eq!((code(&output), told.lines().count()), (1, 1), "{told}");
+        assert!(
+            told.contains("own.toml: is a scenario, and no measured data"),
+            "{told}"
+        );
+    }
+    // A table of numbers that is no scenario is told its rows as before.
+    ground.write("bad.csv", "t_s,tilt_deg\n0,1\n1,2,3\n");
+    let output = ground.run(&["show", "method-2", "--measured", "bad.csv"]);
+    assert!(stderr(&output).contains("bad.csv:3: this row"));
+}

@@ -74,11 +74,16 @@ impl<'a> Fitted<'a> {
             let value = significant(found.value, DIGITS);
             self.within_room(said, &format!("{model}{} = {value}", found.key))
         });
-        let lines: Vec<_> = lines.collect();
-        match lines.is_empty() {
-            true => vec!["model".to_owned()],
-            false => lines,
+        let mut lines: Vec<_> = lines.collect();
+        if lines.is_empty() {
+            lines.push("model".to_owned());
         }
+        let scheme = self.scenario.get("motion").and_then(|it| it.get("scheme"));
+        if let Some(scheme) = scheme.and_then(toml::Value::as_str) {
+            let said = format!("scheme: {}", letters::escape(scheme));
+            lines.push(self.within_room(said, scheme));
+        }
+        lines
     }
 }
 

@@ -164,6 +164,25 @@ fn quantities(table: &Table, varied: &[String], columns: &[&str]) -> Vec<Quantit
     quantities
 }
 
+/// What is said of lines of theory that have gaps.
+pub(super) fn gaps(table: &Table, columns: &[&str]) -> Vec<String> {
+    let is_drawn = |name: &str| columns.is_empty() || columns.contains(&name);
+    let names = table.names.iter();
+    let theory = names.filter(|name| name.starts_with(PREDICTED) && is_drawn(name));
+    let gaps = theory.filter_map(|name| {
+        let values = table.numbers(name)?;
+        let missing = values.iter().filter(|value| value.is_nan()).count();
+        let is_line = (1..values.len()).contains(&missing);
+        is_line.then(|| {
+            format!(
+                "the line of {name} has gaps: in {missing} of {} rows theory states no value, for a reason that gyrolab man numbers gives",
+                values.len()
+            )
+        })
+    });
+    gaps.collect()
+}
+
 /// The column of the standard errors of `name`: measured_precession_uncertainty_rad_per_s of measured_precession_rad_per_s.
 fn uncertainty_of(table: &Table, name: &str) -> Option<String> {
     let of_name = |other: &&String| {

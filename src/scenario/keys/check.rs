@@ -120,7 +120,7 @@ fn is_known(pattern: &str) -> bool {
         .any(|key| key.path == pattern || is_under(key.path, pattern))
 }
 
-pub(super) fn is_under(path: &str, table: &str) -> bool {
+pub(in crate::scenario) fn is_under(path: &str, table: &str) -> bool {
     path.strip_prefix(table)
         .is_some_and(|rest| rest.starts_with('.'))
 }

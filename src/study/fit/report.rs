@@ -19,6 +19,8 @@ pub struct Report<'a> {
     pub model: &'a Model,
     /// The scheme of the runs.
     pub scheme: &'static str,
+    /// The scheme of the scenario, where the runs have another.
+    pub instead_of: Option<&'static str>,
 }
 
 /// Digits of a value whose uncertainty cannot be stated.
@@ -45,6 +47,17 @@ impl Fitted {
 }
 
 impl Report<'_> {
+    /// What is to be known beside the values, a sentence each.
+    fn remarks(&self) -> Vec<String> {
+        let other = self.instead_of.map(|own| {
+            format!(
+                "The fitted runs have the scheme {}; the scenario's own is {own} (--scheme {own} fits the runs of that).",
+                self.scheme
+            )
+        });
+        other.into_iter().chain(self.fit.remarks()).collect()
+    }
+
     /// The table of the keys.
     fn keys(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rows = self.fit.keys.iter().map(|key| {
@@ -173,7 +186,7 @@ impl Report<'_> {
             "chi_squared": quality.chi_squared, "degrees_of_freedom": freedom,
             "chi_squared_per_degree_of_freedom": quality.chi_squared.filter(|_| freedom > 0).map(|sum| sum / freedom as f64),
             "probability": quality.probability, "scatter": quality.scatter,
-            "fits": quality.fits(), "verdict": fit.sentence(self.model), "remarks": fit.remarks(),
+            "fits": quality.fits(), "verdict": fit.sentence(self.model), "remarks": self.remarks(),
             "cannot_be_told_apart": alike.collect::<Vec<_>>(), "no_influence": silent.collect::<Vec<_>>(),
             "residuals": residuals.collect::<Vec<_>>(), "steps": fit.steps,
         })
@@ -206,7 +219,7 @@ impl fmt::Display for Report<'_> {
                 "chi^2/degree of freedom: {each}, probability of so much or more: {probability}"
             )?;
         }
-        for remark in self.fit.remarks() {
+        for remark in self.remarks() {
             writeln!(f, "{}", printable_lines(&remark))?;
         }
         f.write_str(&self.fit.sentence(self.model))

@@ -32,6 +32,8 @@ pub struct Asked {
     /// The scenario, as it was named.
     #[serde(rename = "in")]
     pub scenario: String,
+    /// The scheme of the runs that were held against the data.
+    pub scheme: String,
     /// The free keys, as they were given.
     pub free: Vec<String>,
     /// The rows that were fitted, where these are not all.

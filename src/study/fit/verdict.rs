@@ -9,6 +9,9 @@ use crate::text::number::{short, significant};
 const VERY_POOR: f64 = 10.0;
 /// What is said then.
 const ELSEWHERE: &str = " The search goes down from where it begins, and there may be a better fit elsewhere: begin at other values of the free keys by --set KEY=VALUE.";
+/// What is said instead where the data depend on no free key.
+const NOWHERE: &str =
+    " No value of the free keys changes that: free a key on which what was measured depends.";
 /// Rows that are off by more than this many uncertainties are named.
 const FAR: f64 = 3.0;
 /// The most rows that are named.
@@ -41,7 +44,11 @@ impl Fit {
             }
             Some(probability) if probability < RARE => {
                 let is_very_poor = chi_squared > VERY_POOR * freedom as f64;
-                let elsewhere = if is_very_poor { ELSEWHERE } else { "" };
+                let elsewhere = match is_very_poor {
+                    false => "",
+                    true if self.solution.silent.len() == self.keys.len() => NOWHERE,
+                    true => ELSEWHERE,
+                };
                 format!(
                     "The model does not fit: {sum}, which chance gives {}; {}.{elsewhere}",
                     once_in(probability),

@@ -3,8 +3,9 @@
 use super::Beside;
 use crate::analysis::Readouts;
 use crate::analysis::cost::is_affordable;
+use crate::figure::course::{Recorded, Recorder, Wanted};
 use crate::figure::kind::Kind;
-use crate::figure::of_runs::{self, Figure, Request, Run};
+use crate::figure::of_runs::{self, Figure, Known, Request, Run};
 use crate::figure::{COLUMN_PT, Scene};
 use crate::run::Clock;
 use crate::scenario::Scenario;
@@ -34,14 +35,29 @@ const SMOOTH: f64 = 40.0;
 /// So many swings are in that one.
 const FEW_SWINGS: f64 = 8.0;
 
-/// The figures of the run of `scenario`, whose `readouts` were read at its end, with the exact motion where it is to be had
-/// in reasonable time. `watch` is told the step reached and the last one, and says whether to go on; `None` where it said no.
+/// What is to be shown the start and every step of the run of `scenario`, so that its figures need not play it once more.
+pub fn recorder(scenario: &Arc<Scenario>, beside: Option<&Beside>) -> Recorder {
+    let measured = beside.and_then(|beside| beside.measured.series().ok());
+    let kinds = [Some(Kind::traces()), measured.map(Kind::measured)];
+    let columns = kinds.iter().flatten().flat_map(Kind::columns);
+    let wanted = Wanted {
+        columns: columns.copied().collect(),
+        path: true,
+        from_s: 0.0,
+        to_s: None,
+    };
+    Recorder::new(scenario, wanted)
+}
+
+/// The figures of the run of `scenario`, whose `readouts` were read at its end, and of which the [`recorder`] has `recorded`
+/// what they need; with the exact motion where it is to be had in reasonable time. `watch` is told the step reached and the last one, and says whether to go on; `None` where it said no.
 ///
 /// # Errors
 /// When no step of the run can be drawn.
 pub fn figures(
     scenario: &Arc<Scenario>,
     readouts: &Readouts,
+    recorded: Recorded,
     beside: Option<&Beside>,
     watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Result<Option<Vec<Drawing>>, String> {
@@ -118,7 +134,11 @@ pub fn figures(
         width_pt: COLUMN_PT,
     });
     let requests: Vec<_> = requests.collect();
-    let drawn = of_runs::figures(&runs, &requests, watch)?;
+    let known = Known {
+        recorded: Some(recorded),
+        said: beside.map(|beside| beside.said.clone()),
+    };
+    let drawn = of_runs::figures(&runs, &requests, &known, watch)?;
     let drawings = |drawn: Vec<Figure>| {
         let each = wanted.into_iter().zip(drawn);
         each.map(|((name, _, _, caption), figure)| Drawing {

@@ -17,7 +17,9 @@ pub struct Beside {
     pub measured: Arc<Measured>,
     /// The text of the file, of which the folder has a copy.
     pub text: String,
-    /// What the run says of them, as far as it goes.
+    /// What the run says of those that it reached: of each column a value for every point.
+    pub said: Vec<Vec<f64>>,
+    /// The data held against that.
     pub compared: Compared,
     /// The end of the run, s.
     pub end_s: f64,
@@ -32,6 +34,7 @@ impl Beside {
                 ..measured
             }),
             text,
+            said: Vec::new(),
             compared: Compared::default(),
             end_s: 0.0,
         }
@@ -66,6 +69,7 @@ impl Beside {
         let traced = scenario.body.mechanics.points()[scenario.trace].at;
         let series = self.measured.series().map_err(|e| e.to_string())?;
         self.compared = Compared::new(series, &values, end_s, &traced);
+        self.said = values;
         Ok(true)
     }
 
