@@ -36,7 +36,7 @@ use std::f64::consts::TAU;
 
 /// Length of the arrow of L, in lengths of the axle. Only its direction has a meaning. Where it lies along the axle, its end
 /// shows beyond the axle's top and the arrow of the angular velocity; a longer one would leave less room for the wheel.
-const MOMENTUM: f64 = 1.5;
+const MOMENTUM: f64 = 1.36;
 /// The least length that the axle counts as in these lengths, as a share of the body's size.
 const LEAST_ARM: f64 = 0.7;
 /// Length of the arrow of the change of L, as a share of the body's size.

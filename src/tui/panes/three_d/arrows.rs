@@ -11,7 +11,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 /// Length of the arrow of the angular velocity, in lengths of the axle.
-const OMEGA: f64 = 1.22;
+const OMEGA: f64 = 1.17;
 /// Lengths of the other arrows, as shares of the body's size. Only their directions have a meaning.
 const WEIGHT: f64 = 0.35;
 const TORQUE: f64 = 0.5;
