@@ -40,24 +40,25 @@ impl Level {
     #[inline]
     pub fn push(&mut self, block: &Block) -> Option<Block> {
         let pair = self.waiting().map(|first| first.and(block));
-        let most = if self.dropped == 0 { WHOLE } else { RECENT };
-        if self.blocks.len() == most {
-            self.drop_old(most);
+        match (self.is_whole(), self.blocks.len()) {
+            (true, WHOLE) => self.keep_recent(),
+            (false, RECENT) => {
+                self.blocks.pop_front();
+                self.dropped += 1;
+            }
+            _ => {}
         }
         self.blocks.push_back(*block);
         pair
     }
 
-    /// Makes room for one more block among the newest.
-    fn drop_old(&mut self, stored: usize) {
-        let excess = stored + 1 - RECENT;
-        if excess == 1 {
-            self.blocks.pop_front();
-        } else {
-            self.blocks.drain(..excess);
-            // A smaller memory is gone through in the processor's nearer caches.
-            self.blocks.shrink_to(RECENT);
-        }
+    /// Drops the oldest blocks of the [`WHOLE`], so many that the block to come makes them [`RECENT`].
+    #[cold]
+    fn keep_recent(&mut self) {
+        let excess = WHOLE + 1 - RECENT;
+        self.blocks.drain(..excess);
+        // A smaller memory is gone through in the processor's nearer caches.
+        self.blocks.shrink_to(RECENT);
         self.dropped += excess as u64;
     }
 
