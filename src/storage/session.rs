@@ -289,8 +289,8 @@ impl Session {
         self.shared.state().check = Some(check);
     }
 
-    /// Saves at once, and gives up after 0.4 s so that a signal handler's thread and a panic may call it. Returns whether saving was attempted in that time; [`trouble`](Self::trouble) tells whether
-    /// it failed.
+    /// Saves at once, and gives up after 0.4 s so that a signal handler's thread and a panic may call it. Returns whether
+    /// saving was attempted in that time; [`trouble`](Self::trouble) tells whether it failed.
     pub fn flush(&self) -> bool {
         self.shared.flush(PATIENCE)
     }

@@ -50,7 +50,8 @@ pub fn recorder(scenario: &Arc<Scenario>, beside: Option<&Beside>) -> Recorder {
 }
 
 /// The figures of the run of `scenario`, whose `readouts` were read at its end, and of which the [`recorder`] has `recorded`
-/// what they need; with the exact motion where it is to be had in reasonable time. `watch` is told the step reached and the last one, and says whether to go on; `None` where it said no.
+/// what they need; with the exact motion where it is to be had in reasonable time. `watch` is told the step reached and the
+/// last one, and says whether to go on; `None` where it said no.
 ///
 /// # Errors
 /// When no step of the run can be drawn.

@@ -19,6 +19,12 @@ const PUSH: f64 = 0.4;
 /// The most pushes that are drawn at one time.
 const MOST_PUSHES: usize = 20;
 
+/// How an arrow is drawn: from where to where, and in which ink.
+type Draw = fn(&mut Scene, &Vector3<f64>, &Vector3<f64>, Ink);
+
+/// Where an arrow's letter stands beside its tip instead of beyond it: the direction away from which it stands.
+type Away = Option<Vector3<f64>>;
+
 impl Subject<'_> {
     /// L and Ω from the pivot, the weight at the centre of mass, its torque at the pivot, and at the tip of L where it goes.
     pub(super) fn vectors(&self, scene: &mut Scene) -> Vec<Label> {
@@ -28,51 +34,51 @@ impl Subject<'_> {
         let (reach, arm) = (self.reach, self.arm);
         let direction = |vector: &Vector3<f64>| vector.try_normalize(f64::MIN_POSITIVE);
         let mut labels = Vec::new();
-        let mut arrow = |name, role, from: Vector3<f64>, to: Vector3<f64>| {
-            if !self.draws(name) {
-                return;
-            }
-            let tip = from + to;
-            // The torque and the change of L are short and cross the rim. The others lie along the axle, which they
-            // would cover.
-            match name {
-                "τ" | "dL" => scene.arrow_in_front(&from, &tip, Ink::Strong(role)),
-                // The axle is whole where it is seen upright.
-                "g" => scene.arrow_behind(&from, &tip, Ink::Strong(role)),
-                // Shorter than L, in which it would vanish where both lie along the axle.
-                "Ω" => scene.arrow_over(&from, &tip, Ink::Strong(role)),
-                _ => scene.arrow(&from, &tip, Ink::Strong(role)),
-            }
-            let place = match (name, self.torque) {
-                // L goes on beyond the tip, and dL stands on the other side.
-                ("Ω", Some(torque)) => scene.beside(&tip, &torque),
-                _ => scene.beyond(&from, &tip),
+        let mut arrow =
+            |name, role, draw: Draw, from: Vector3<f64>, to: Vector3<f64>, away: Away| {
+                if !self.draws(name) {
+                    return;
+                }
+                let tip = from + to;
+                draw(scene, &from, &tip, Ink::Strong(role));
+                let place = match away {
+                    Some(direction) => scene.beside(&tip, &direction),
+                    None => scene.beyond(&from, &tip),
+                };
+                labels.push((name, role, place));
             };
-            labels.push((name, role, place));
-        };
         let pivot = Vector3::zeros();
         let weight = Vector3::z() * -simulation.loads().gravity;
         if let Some(down) = direction(&weight) {
             let centre = state.orientation * body.first_moment() / body.mass();
-            arrow("g", Role::Push, centre, down * (WEIGHT * reach));
+            let to = down * (WEIGHT * reach);
+            // The axle is whole where it is seen upright.
+            arrow("g", Role::Push, Scene::arrow_behind, centre, to, None);
         }
         let omega = direction(&observables::angular_velocity(body, state));
         if let Some(along) = self.direction("Ω", omega) {
-            arrow("Ω", Role::Y, pivot, along * (OMEGA * arm));
+            let to = along * (OMEGA * arm);
+            // Shorter than L, in which it would vanish where both lie along the axle. L goes on beyond its tip, where no
+            // letter can be read, and dL stands on the side to which the torque points.
+            arrow("Ω", Role::Y, Scene::arrow_over, pivot, to, self.torque);
         }
         let momentum = self.direction("L", direction(&state.momentum));
         let momentum = momentum.map(|along| along * (MOMENTUM * arm));
         if let Some(torque) = self.direction("τ", self.torque) {
-            arrow("τ", Role::X, pivot, torque * (TORQUE * reach));
+            // Both are short and cross the rim, which would hide them.
+            let to = torque * (TORQUE * reach);
+            arrow("τ", Role::X, Scene::arrow_in_front, pivot, to, None);
             if let Some(momentum) = momentum {
-                arrow("dL", Role::X, momentum, torque * (CHANGE * reach));
+                let to = torque * (CHANGE * reach);
+                arrow("dL", Role::X, Scene::arrow_in_front, momentum, to, None);
             }
         }
         if let Some(new) = self.new_momentum() {
-            arrow("new L", Role::Z, pivot, new * (MOMENTUM * arm));
+            let to = new * (MOMENTUM * arm);
+            arrow("new L", Role::Z, Scene::arrow, pivot, to, None);
         }
         if let Some(momentum) = momentum {
-            arrow("L", Role::Z, pivot, momentum);
+            arrow("L", Role::Z, Scene::arrow, pivot, momentum, None);
         }
         labels
     }
