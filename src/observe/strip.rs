@@ -104,9 +104,9 @@ impl Strip {
     }
 
     /// Where the blocks of `recording` are on the columns: for all its curves at once.
-    pub fn blocks<'a>(&self, recording: &'a Recording) -> Blocks<'a> {
+    pub fn blocks(&self, recording: &Recording) -> Blocks {
         let column = |time_s: f64| self.place(time_s.max(self.begin_s));
-        let place = |block: &'a Block| {
+        let place = |block: Block| {
             let last = match block.end_s <= self.end_s() {
                 true => self.place(block.end_s).min(self.columns.saturating_sub(1)),
                 false => self.place(block.end_s),
@@ -122,18 +122,18 @@ impl Strip {
 }
 
 /// The blocks of a recording on the columns of a strip.
-pub struct Blocks<'a> {
+pub struct Blocks {
     columns: usize,
     /// Each with its first and its last column.
-    placed: Vec<(&'a Block, usize, usize)>,
+    placed: Vec<(Block, usize, usize)>,
 }
 
-impl Blocks<'_> {
+impl Blocks {
     /// `curve` in each column; `None` where the recording has nothing. No line crosses a time of `cuts` (s).
     pub fn columns(&self, curve: Curve, cuts: &[f64]) -> Vec<Option<Column>> {
         let mut pen = Pen::new(self.columns, curve, cuts);
-        for &(block, first, last) in &self.placed {
-            pen.draw(block, first, last);
+        for (block, first, last) in &self.placed {
+            pen.draw(block, *first, *last);
         }
         pen.finish()
     }

@@ -115,6 +115,28 @@ impl Moment {
     }
 }
 
+/// A moment as it is stored.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Recorded {
+    /// Time, s.
+    pub time_s: f64,
+    /// The stored value of each curve.
+    values: [f64; 4],
+    /// 1 for each curve that has turned here: gone up after it had gone down, or down after it had gone up; 0 for the others.
+    turned: [u32; 4],
+}
+
+impl Recorded {
+    #[inline]
+    pub fn new(moment: &Moment, turned: [u32; 4]) -> Self {
+        Self {
+            time_s: moment.time_s,
+            values: moment.values(),
+            turned,
+        }
+    }
+}
+
 /// The smallest and largest value of a stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
@@ -199,19 +221,57 @@ impl Block {
         self.turns[curve as usize]
     }
 
-    /// The block of one moment, at which the curves have turned or not.
+    /// The block of one moment.
     #[inline]
-    pub(super) fn of(moment: &Moment, turned: [bool; 4]) -> Self {
-        let values = moment.values();
+    pub(super) fn of(moment: &Recorded) -> Self {
+        let [x, y, z, _] = moment.values;
         Self {
             begin_s: moment.time_s,
             end_s: moment.time_s,
             moments: 1,
-            extents: values.map(Extent::of),
-            sums: values,
-            turns: turned.map(u32::from),
-            end: moment.position,
+            extents: moment.values.map(Extent::of),
+            sums: moment.values,
+            turns: moment.turned,
+            end: Vector3::new(x, y, z),
         }
+    }
+
+    /// The block of consecutive `moments`, whose values are finite; `None` of none.
+    #[inline]
+    pub(super) fn of_all<'a>(mut moments: impl Iterator<Item = &'a Recorded>) -> Option<Self> {
+        let first = moments.next()?;
+        let (mut least, mut greatest) = (first.values, first.values);
+        let (mut sums, mut turns) = (first.values, first.turned);
+        let (mut count, mut last) = (1, first);
+        for moment in moments {
+            for curve in 0..4 {
+                let value = moment.values[curve];
+                least[curve] = if value < least[curve] {
+                    value
+                } else {
+                    least[curve]
+                };
+                greatest[curve] = if value > greatest[curve] {
+                    value
+                } else {
+                    greatest[curve]
+                };
+                sums[curve] += value;
+                turns[curve] += moment.turned[curve];
+            }
+            (count, last) = (count + 1, moment);
+        }
+        Some(Self {
+            begin_s: first.time_s,
+            moments: count,
+            extents: std::array::from_fn(|curve| Extent {
+                min: least[curve],
+                max: greatest[curve],
+            }),
+            sums,
+            turns,
+            ..Self::of(last)
+        })
     }
 
     /// Both as one; `later` begins where this one ends.
@@ -226,19 +286,6 @@ impl Block {
             turns: std::array::from_fn(|curve| self.turns[curve] + later.turns[curve]),
             end: later.end,
         }
-    }
-
-    /// Goes on through `later`, which begins where this one ends.
-    #[inline]
-    pub(super) fn take_in(&mut self, later: &Self) {
-        self.end_s = later.end_s;
-        self.moments += later.moments;
-        for curve in 0..4 {
-            self.extents[curve] = self.extents[curve].with(later.extents[curve]);
-            self.sums[curve] += later.sums[curve];
-            self.turns[curve] += later.turns[curve];
-        }
-        self.end = later.end;
     }
 }
 

@@ -1,20 +1,22 @@
-//! The blocks that cover a stretch of the run.
+//! The pieces that cover a stretch of the run.
 
 use super::block::Block;
-use super::level::Level;
+use super::level::Pieces;
+use super::levels::Levels;
 use std::ops::Range;
 
-/// A stretch is given as at most twice this many blocks of one size.
+/// A stretch is given as at most twice this many pieces of one size.
 pub(super) const FINEST: u64 = 2048;
 
-/// Which blocks cover a stretch: those of the smallest size that reaches back to its beginning and has not too many,
-/// followed by smaller ones for the newest moments, which are in no block of that size yet.
+/// Which pieces cover a stretch: those of the smallest size that reaches back to its beginning and has not too many,
+/// followed by smaller ones for the newest moments, which are in no piece of that size yet.
 pub(super) struct Stretch<'a> {
-    /// The blocks of every size, those of one moment first.
-    levels: &'a [Level],
-    /// The smallest size that is suitable, as an index in `levels`.
+    levels: &'a Levels,
+    /// The smallest size that is suitable.
     size: usize,
-    /// The numbers of the blocks of that size.
+    /// The pieces of that size.
+    pieces: &'a dyn Pieces,
+    /// The numbers of those that cover the stretch.
     numbers: Range<u64>,
     since_s: f64,
     until_s: f64,
@@ -22,30 +24,36 @@ pub(super) struct Stretch<'a> {
 
 impl<'a> Stretch<'a> {
     /// The stretch from `since_s` to `until_s` (s).
-    pub fn new(levels: &'a [Level], since_s: f64, until_s: f64) -> Self {
-        let numbers = |level: &Level| level.between(since_s, until_s);
+    pub fn new(levels: &'a Levels, since_s: f64, until_s: f64) -> Self {
+        let numbers = |pieces: &dyn Pieces| pieces.between(since_s, until_s);
         let has_few = |numbers: Range<u64>| numbers.end - numbers.start <= 2 * FINEST;
-        let suits = |level: &Level| level.reaches(since_s) && has_few(numbers(level));
-        let size = levels.iter().position(suits).unwrap_or(0);
+        let suits = |pieces: &dyn Pieces| pieces.reaches(since_s) && has_few(numbers(pieces));
+        let sizes = levels
+            .sizes()
+            .filter_map(|size| Some((size, levels.of(size)?)));
+        let mut suitable = sizes.filter(|(_, pieces)| suits(*pieces));
+        let (size, pieces) = suitable.next().unwrap_or((0, levels.moments()));
         Self {
             levels,
             size,
-            numbers: levels.get(size).map_or(0..0, numbers),
+            pieces,
+            numbers: numbers(pieces),
             since_s,
             until_s,
         }
     }
 
-    /// Its blocks in order of time.
-    pub fn blocks(&self) -> impl Iterator<Item = &'a Block> + use<'a> {
-        let of_size = self.levels.get(self.size);
-        let covering = of_size.map(|level| level.blocks(&self.numbers));
-        covering.into_iter().flatten().chain(self.newest())
+    /// Its pieces in order of time.
+    pub fn blocks(&self) -> impl Iterator<Item = Block> + use<'a> {
+        let pieces = self.pieces;
+        let covering = self.numbers.clone();
+        let covering = covering.filter_map(move |number| pieces.get(number));
+        covering.chain(self.newest())
     }
 
-    /// The same for a picture in columns; `column` says in which one a time (s) is. The blocks of a column that are at its
+    /// The same for a picture in columns; `column` says in which one a time (s) is. The pieces of a column that are at its
     /// edges are the same, and those inside are given as larger ones.
-    pub fn in_columns(self, column: impl Fn(f64) -> usize) -> impl Iterator<Item = &'a Block> {
+    pub fn in_columns(self, column: impl Fn(f64) -> usize) -> impl Iterator<Item = Block> {
         let newest = self.newest();
         let mut next = self.numbers.start;
         let joined = std::iter::from_fn(move || {
@@ -56,34 +64,32 @@ impl<'a> Stretch<'a> {
         joined.chain(newest)
     }
 
-    /// The newest moments that are in no block of its size yet.
-    fn newest(&self) -> impl Iterator<Item = &'a Block> + use<'a> {
+    /// The newest moments that are in no piece of its size yet.
+    fn newest(&self) -> impl Iterator<Item = Block> + use<'a> {
         let (since_s, until_s) = (self.since_s, self.until_s);
-        let smaller = self.levels[..self.size.min(self.levels.len())].iter().rev();
-        let newest = smaller.filter_map(Level::waiting);
+        let newest = self.levels.newest(self.size);
         newest.filter(move |block| block.begin_s <= until_s && block.end_s >= since_s)
     }
 
-    /// The largest block that begins where the block `number` of its size does, is inside the stretch and has its
-    /// neighbours there in its own column; and how many blocks of its size that one is.
-    fn largest(&self, number: u64, column: &impl Fn(f64) -> usize) -> Option<(&'a Block, u64)> {
+    /// The largest piece that begins where the piece `number` of its size does, is inside the stretch and has its
+    /// neighbours there in its own column; and how many pieces of its size that one is.
+    fn largest(&self, number: u64, column: &impl Fn(f64) -> usize) -> Option<(Block, u64)> {
         let numbers = &self.numbers;
-        let level = self.levels.get(self.size)?;
         if number >= numbers.end {
             return None;
         }
-        let mut largest = (level.get(number)?, 1);
+        let mut largest = (self.pieces.get(number)?, 1);
         if number == numbers.start {
             return Some(largest);
         }
-        let before = column(level.get(number - 1)?.end_s);
-        for larger in &self.levels[self.size + 1..] {
-            let count = 2 * largest.1;
+        let before = column(self.pieces.get(number - 1)?.end_s);
+        for size in self.size + 1..self.levels.sizes().end {
+            let count = Levels::moments_in(size) / Levels::moments_in(self.size);
             if !number.is_multiple_of(count) || number + count >= numbers.end {
                 break;
             }
-            let after = level.get(number + count)?;
-            match larger.get(number / count) {
+            let after = self.pieces.get(number + count)?;
+            match self.levels.of(size)?.get(number / count) {
                 Some(block) if column(after.begin_s) == before => largest = (block, count),
                 _ => break,
             }

@@ -6,7 +6,7 @@ use crate::observe::strip::{Blocks, Column, Strip};
 /// The recordings that have been drawn on a strip.
 pub(super) struct Shared<'a> {
     pub strip: &'a Strip,
-    seen: Vec<(&'a Recording, Blocks<'a>)>,
+    seen: Vec<(&'a Recording, Blocks)>,
 }
 
 impl<'a> Shared<'a> {
