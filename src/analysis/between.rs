@@ -129,23 +129,23 @@ impl Between {
     /// Takes in `step`.
     #[inline]
     pub fn follow(&mut self, step: &Step) {
+        // Assigned at once: by way of a copy it would be stored in parts and read whole, for which processors wait.
         let before = self.now;
-        let now = Row::of(step, self.per_across);
-        self.now = now;
-        let (a, b) = (&before.swing.axle, &now.swing.axle);
+        self.now = Row::of(step, self.per_across);
+        let (a, b) = (&before.swing.axle, &self.now.swing.axle);
         let missed = self.missed;
         if self.may_turn_far || a.x * b.x + a.y * b.y < 0.0 {
-            self.missed += self.equations.missed_turns(&before, &now);
+            self.missed += self.equations.missed_turns(&before, &self.now);
         }
         self.heights = [self.heights[0].min(b.z), self.heights[1].max(b.z)];
         self.confirm();
-        let climb = now.swing.climb();
+        let climb = self.now.swing.climb();
         if climb != 0.0 && (climb > 0.0) != self.is_rising {
             let is_top = self.is_rising;
             self.is_rising = !is_top;
             self.candidate = Some(Crossing {
                 before,
-                after: Some(now),
+                after: Some(self.now),
                 missed,
                 is_top,
             });

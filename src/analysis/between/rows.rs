@@ -17,6 +17,7 @@ pub(super) struct Row {
 
 impl Row {
     /// The row after `step`; `per_across` is one over the moment across the axle, 1/(kg m²).
+    #[inline]
     pub fn of(step: &Step, per_across: f64) -> Self {
         let state = step.after();
         Self {
