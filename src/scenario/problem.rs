@@ -75,9 +75,7 @@ impl Found {
             false => self.more += 1,
         }
     }
-}
 
-impl Found {
     /// Whether further problems are only counted.
     pub fn is_full(&self) -> bool {
         self.list.len() >= MOST_TOLD
