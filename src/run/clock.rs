@@ -50,7 +50,8 @@ impl Clock {
 
     /// Time at `step`, s; the step must not lie before the last edit of dt.
     pub fn time_s(&self, step: u64) -> f64 {
-        self.anchor_s + (step - self.anchor_step) as f64 * self.time_step_s
+        // As i64: for u64 there is no instruction.
+        self.anchor_s + (step - self.anchor_step) as i64 as f64 * self.time_step_s
     }
 
     /// The time step in force, s.

@@ -1,6 +1,7 @@
 //! Steps a scenario forward in time.
 
 mod between;
+mod replaced;
 
 use super::pushes::{self, Counting, Stretch};
 use super::step::{Derived, EnergyAccount};
@@ -9,6 +10,7 @@ use crate::physics::observables::{self, Azimuth};
 use crate::physics::workings::Part;
 use crate::physics::{Loads, PointForce, Scheme, State, Workings};
 use crate::scenario::{Edit, Motion, Push, Scenario};
+use replaced::Replaced;
 use std::sync::Arc;
 
 /// A run that stands at one of its steps; [`step`](Self::step) takes it to the next. A clone is independent of it and
@@ -27,9 +29,7 @@ pub struct Simulation {
     /// The step of the next edit; [`u64::MAX`] if there is none.
     next_edit: u64,
     ended: Option<NotFinite>,
-    /// The forces that were replaced last, and the step at which they were replaced.
-    replaced: Loads,
-    replaced_at: Option<u64>,
+    replaced: Replaced,
     /// While |L|² is below this, every number read off a finite state is finite too.
     safe_below: f64,
     /// Whether the workings of every step are kept.
@@ -78,8 +78,7 @@ impl Simulation {
             edits_made: 0,
             next_edit: step_of_edit(&scenario, 0),
             ended: None,
-            replaced: Loads::default(),
-            replaced_at: None,
+            replaced: Replaced::default(),
             safe_below: safe_below(&scenario, motion.gravity),
             keeps_workings: false,
             rubs: !scenario.friction.is_none(),
@@ -115,12 +114,10 @@ impl Simulation {
         if let Some(end) = self.ended {
             return Err(end);
         }
-        let now = &self.now;
-        let undo = (now.motion, now.energy, now.segment, now.changes);
-        if self.next_edit == now.number {
+        let (before, friction) = (self.now.after, self.now.energy.friction);
+        if self.next_edit == self.now.number {
             self.make_due_edits();
         }
-        let before = self.now.after;
         self.now.derived = Derived::default();
         let mut workings = self.keeps_workings.then(Workings::default);
         let work = self.advance(workings.as_mut());
@@ -129,18 +126,7 @@ impl Simulation {
         // Only near the largest numbers can one of them overflow: there each is checked.
         let is_safe = now.after.momentum.norm_squared() < self.safe_below;
         if !now.after.is_finite() || !(is_safe || now.can_be_read()) {
-            // The step failed: its edits and forces are undone, so that the run is read as it stood before them.
-            if self.replaced_at == Some(now.number) {
-                now.loads.clone_from(&self.replaced);
-            }
-            (now.motion, now.energy, now.segment, now.changes) = undo;
-            now.after = before;
-            now.derived = Derived::default();
-            let end = NotFinite {
-                step: now.number + 1,
-            };
-            self.ended = Some(end);
-            return Err(end);
+            return Err(self.fail(before, friction));
         }
         now.before = before;
         now.energy.work += work;
@@ -148,6 +134,22 @@ impl Simulation {
         now.workings = workings.map(Arc::new);
         now.azimuth.follow(&now.after.axle());
         Ok(())
+    }
+
+    /// Ends the run at the step at which it stands, because the next one failed: what was changed for that is put back, so
+    /// that the run is read as it stood before. `before` was the state then, `friction` the work of friction up to it, J.
+    #[cold]
+    fn fail(&mut self, before: State, friction: f64) -> NotFinite {
+        let now = &mut self.now;
+        self.replaced.put_back(now);
+        now.energy.friction = friction;
+        now.after = before;
+        now.derived = Derived::default();
+        let end = NotFinite {
+            step: now.number + 1,
+        };
+        self.ended = Some(end);
+        end
     }
 
     /// The step it stands at.
@@ -264,12 +266,9 @@ impl Simulation {
         }
     }
 
-    /// Counts a change of the loads, and keeps those of the step before, in case the coming step fails.
+    /// Counts a change of the loads, and keeps what there was before it, in case the coming step fails.
     fn change_loads(&mut self) {
-        if self.replaced_at != Some(self.now.number) {
-            self.replaced.clone_from(&self.now.loads);
-            self.replaced_at = Some(self.now.number);
-        }
+        self.replaced.keep(&self.now);
         self.now.changes += 1;
     }
 
