@@ -76,23 +76,28 @@ fn of_comparison(name: &str) -> Axis {
     }
 }
 
-/// The slope of a line of errors on logarithmic axes: the middle one of those between two points, where the error still falls
-/// evenly, and between how many points it was found. What no longer falls is rounding.
+/// The slope of a line of errors on logarithmic axes, and between how many pairs of points it was found: where the error falls
+/// evenly, from one slope to the next by a quarter of it at most, over three points or more. Of coarse steps it does not yet,
+/// and what no longer falls is rounding.
 fn slope(points: &[[f64; 2]]) -> Option<(usize, f64)> {
     const LEAST: f64 = 0.3;
+    const EVEN: f64 = 0.25;
     let is_sound = |point: &&[f64; 2]| point[0] > 0.0 && point[1] > 0.0 && point[1].is_finite();
     let points: Vec<_> = points.iter().filter(is_sound).collect();
     let slope = |pair: &[&[f64; 2]]| {
         libm::log(pair[1][1] / pair[0][1]) / libm::log(pair[1][0] / pair[0][0])
     };
-    let slopes = points.windows(2).map(slope);
-    let mut slopes: Vec<f64> = slopes
-        .filter(|slope| slope.is_finite() && *slope > LEAST)
-        .collect();
-    slopes.sort_by(f64::total_cmp);
-    // Two pairs are the least that tell a slope.
-    let middle = *slopes.get(slopes.len() / 2)?;
-    (slopes.len() >= 2).then_some((slopes.len(), (middle * 10.0).round() / 10.0))
+    let slopes: Vec<f64> = points.windows(2).map(slope).collect();
+    let goes_on = |a: &f64, b: &f64| (a - b).abs() <= EVEN * a.max(*b);
+    let even = slopes
+        .chunk_by(goes_on)
+        .filter(|even| even.len() >= 2 && even.iter().all(|slope| *slope > LEAST));
+    // Of two that are as long, the one of the shorter steps, which come first.
+    let longest = even.rev().max_by_key(|even| even.len())?;
+    let mut sorted = longest.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted[sorted.len() / 2];
+    Some((sorted.len(), (middle * 10.0).round() / 10.0))
 }
 
 /// `points` in the order of their first numbers.
@@ -100,4 +105,34 @@ fn sorted(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
     let mut points: Vec<_> = points.filter(|point| point[0].is_finite()).collect();
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
     points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Errors that fall by these powers from each time step to its half, from the shortest on.
+    fn errors(slopes: &[f64]) -> Vec<[f64; 2]> {
+        let mut points = vec![[1e-3, 1e-6]];
+        for slope in slopes {
+            let [step, error] = points[points.len() - 1];
+            points.push([2.0 * step, error * libm::exp2(*slope)]);
+        }
+        points
+    }
+
+    #[test]
+    fn a_slope_is_told_where_the_error_falls_evenly_over_three_points() {
+        assert_eq!(slope(&errors(&[2.0, 2.01, 1.99, 2.4])), Some((4, 2.0)));
+        assert_eq!(slope(&errors(&[0.02, -0.1, 4.0, 3.9])), Some((2, 4.0)));
+        assert_eq!(slope(&errors(&[10.9, 11.1])), Some((2, 11.1)));
+    }
+
+    #[test]
+    fn no_slope_is_told_where_it_falls_by_leaps() {
+        // strang on method-2: between its coarsest steps the error falls by a factor of 280, and rises then.
+        assert_eq!(slope(&errors(&[0.78, -2.19, 8.16])), None);
+        assert_eq!(slope(&errors(&[1.0, 2.0, 4.0])), None);
+        assert_eq!(slope(&errors(&[2.0])), None);
+    }
 }
