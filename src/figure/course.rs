@@ -33,8 +33,10 @@ pub struct Course {
     pub curves: Vec<OverTime>,
     /// The traced point, world frame, m.
     pub path: Arc<Vec<[f64; 3]>>,
-    /// The last time that it reached, s.
+    /// The last time of the stretch that it reached, s.
     pub end_s: f64,
+    /// Whether no moment lay in the stretch.
+    pub is_empty: bool,
     /// Where its numbers stopped being finite, if they did.
     pub broke: Option<NotFinite>,
 }
@@ -44,13 +46,6 @@ pub struct Course {
 const ALL_KEPT: usize = 1 << 21;
 /// Such a place is this part of the traced point's arm wide, in each direction.
 const PLACES: f64 = 2048.0;
-
-impl Course {
-    /// Whether no moment lay in the stretch.
-    pub fn is_empty(&self) -> bool {
-        self.path.is_empty() && self.curves.iter().all(OverTime::is_empty)
-    }
-}
 
 impl Wanted {
     /// The end of the stretch of a run of `scenario`, s.
@@ -70,6 +65,7 @@ pub struct Recorder {
     curves: Vec<OverTime>,
     path: Vec<[f64; 3]>,
     end_s: f64,
+    is_empty: bool,
 }
 
 impl Recorder {
@@ -83,24 +79,37 @@ impl Recorder {
             curves: vec![OverTime::new(least_s); wanted.columns.len()],
             path: Vec::new(),
             end_s: 0.0,
+            is_empty: true,
             scenario: Arc::clone(scenario),
             wanted,
         }
     }
 
-    /// Takes in `step`; to be shown the start and every step of the stretch.
+    /// Takes in `step`; to be shown the start and every step up to the first one at the end of the stretch or behind it. The
+    /// curves have that one too, and the last one before the stretch, so that they come from one edge and go on to the other.
     pub fn follow(&mut self, step: &Step) {
-        self.take(step.time_s(), step.position(), || step.sample());
+        let beyond_s = step.motion().time_step_s;
+        self.take(step.time_s(), beyond_s, step.position(), || step.sample());
     }
 
-    /// Takes the numbers of one moment; `sample` is asked for them where they are needed.
-    fn take(&mut self, time_s: f64, position: &Vector3<f64>, sample: impl FnOnce() -> Sample) {
+    /// Takes the numbers of one moment, those of the curves if it is less than `beyond_s` (s) outside of the stretch; `sample`
+    /// is asked for them where they are needed.
+    fn take(
+        &mut self,
+        time_s: f64,
+        beyond_s: f64,
+        position: &Vector3<f64>,
+        sample: impl FnOnce() -> Sample,
+    ) {
         let rounding = rounding_s(self.stretch_end_s);
-        if time_s < self.wanted.from_s - rounding || time_s > self.stretch_end_s + rounding {
+        let outside_s = (self.wanted.from_s - time_s).max(time_s - self.stretch_end_s);
+        if outside_s > rounding && outside_s >= beyond_s - rounding {
             return;
         }
-        self.end_s = time_s;
-        if self.wanted.path && self.places.are_new(self.path.len(), position) {
+        self.end_s = time_s.min(self.stretch_end_s);
+        let is_inside = outside_s <= rounding;
+        self.is_empty &= !is_inside;
+        if self.wanted.path && is_inside && self.places.are_new(self.path.len(), position) {
             self.path.push([position.x, position.y, position.z]);
         }
         if self.wanted.columns.is_empty() {
@@ -119,6 +128,7 @@ impl Recorder {
                 curves: self.curves,
                 path: Arc::new(self.path),
                 end_s: self.end_s,
+                is_empty: self.is_empty,
                 broke,
             },
             wanted: self.wanted,
@@ -153,7 +163,8 @@ impl Recorded {
                 true => Arc::clone(&self.course.path),
                 false => Arc::default(),
             },
-            end_s: self.course.end_s,
+            end_s: self.course.end_s.min(end_s),
+            is_empty: self.course.is_empty,
             broke: self.course.broke,
         })
     }
@@ -262,7 +273,7 @@ pub fn exact(
         }
         azimuth.follow(&state.axle());
         let sample = sample(scenario, &state, &azimuth, truth.loads().gravity);
-        recorder.take(time_s, &sample.position, || sample);
+        recorder.take(time_s, 0.0, &sample.position, || sample);
         if number.is_multiple_of(1024) && watch(number, count).is_break() {
             return None;
         }
@@ -284,5 +295,47 @@ fn sample(scenario: &Scenario, state: &State, azimuth: &Azimuth, gravity: f64) -
         azimuth_deg: azimuth.degrees(),
         energy: observables::kinetic_energy(body, state) + weight,
         segment: 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Document;
+
+    /// Of wobble-push (steps of 0.1 s) in a stretch: the times of the curve, the number of places of the path, and the end
+    /// that was reached.
+    fn played(from_s: f64, to_s: f64) -> (Vec<f64>, usize, f64) {
+        let scenario = Document::open("wobble-push").unwrap().scenario().unwrap();
+        let wanted = Wanted {
+            columns: vec![Plotted::find("z_m").unwrap()],
+            path: true,
+            from_s,
+            to_s: Some(to_s),
+        };
+        let course = play(&Arc::new(scenario), &wanted, |_, _| {
+            ControlFlow::Continue(())
+        });
+        let course = course.unwrap();
+        let points = course.curves[0].points();
+        let times = points
+            .iter()
+            .map(|point| (point[0] * 1e6).round() / 1e6)
+            .collect();
+        assert_eq!(course.is_empty, course.path.is_empty());
+        (times, course.path.len(), course.end_s)
+    }
+
+    #[test]
+    fn a_curve_reaches_both_ends_of_its_stretch() {
+        assert_eq!(
+            played(20.05, 20.25),
+            (vec![20.0, 20.1, 20.2, 20.3], 2, 20.25)
+        );
+        // No step lies between them.
+        assert_eq!(played(20.02, 20.08), (vec![20.0, 20.1], 0, 20.08));
+        // They are at steps: nothing more is needed.
+        assert_eq!(played(20.0, 20.2), (vec![20.0, 20.1, 20.2], 3, 20.2));
+        assert_eq!(played(0.0, 0.15), (vec![0.0, 0.1, 0.2], 2, 0.15));
     }
 }

@@ -126,7 +126,7 @@ fn play(
             });
         }
     }
-    if drawn.iter().all(|drawn| drawn.course.is_empty()) {
+    if drawn.iter().all(|drawn| drawn.course.is_empty) {
         return Err(match broke {
             Some(error) => error,
             None => "there is no step of the run in that stretch of time".to_owned(),
