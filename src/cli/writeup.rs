@@ -12,7 +12,7 @@ use crate::run::Step;
 use crate::scenario::{Document, Scenario};
 use crate::study::writeup::figures::{figures, recorder};
 use crate::study::writeup::{Beside, CSV, Writeup};
-use crate::text::printable::Shown;
+use crate::text::printable::{Shown, printable};
 use crate::work::changed::changed;
 use anyhow::Context;
 use clap::Args;
@@ -96,11 +96,17 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     if interruption.may_act_at_once() {
         return Ok(ExitCode::from(INTERRUPTED));
     }
-    folder.keep()?;
+    let others = folder.keep()?;
     tell(format_args!(
         "gyrolab: the write-up is in {}; begin with README.md",
         Shown(&args.output)
     ));
+    if !others.is_empty() {
+        tell(format_args!(
+            "gyrolab: not of this write-up, left as found: {}",
+            printable(&others.join(", "))
+        ));
+    }
     let Some(error) = broken else {
         return Ok(ExitCode::SUCCESS);
     };

@@ -1,6 +1,7 @@
 //! A folder of output that appears only once all its files are complete.
 
 use super::destination::{DestinationError, folder_of};
+use std::ffi::OsString;
 use std::fs;
 use std::io;
 use std::os::unix::fs::PermissionsExt;
@@ -37,7 +38,7 @@ impl Folder {
             .prefix(".gyrolab-")
             .permissions(fs::Permissions::from_mode(0o777)) // before the umask
             .tempdir_in(in_folder)
-            .map_err(refused)?;
+            .map_err(|error| refused(of_the_system(error)))?;
         Ok(Self {
             temporary,
             path,
@@ -50,25 +51,36 @@ impl Folder {
         self.temporary.path()
     }
 
-    /// Gives it its final name: the files written to it are complete.
+    /// Gives it its final name: the files written to it are complete. Returns the names of the files that were there before
+    /// and are none of those, in their order.
     ///
     /// # Errors
     /// When files have come to be there meanwhile that may not be replaced, or when the system reports an error.
-    pub fn keep(self) -> Result<(), DestinationError> {
+    pub fn keep(self) -> Result<Vec<String>, DestinationError> {
         let refused = |error| refused(&self.path, error);
         may_be_written(&self.path, self.replace)?;
         if fs::rename(self.temporary.path(), &self.path).is_ok() {
             let _ = self.temporary.keep(); // its old name is gone already
-            return Ok(());
+            return Ok(Vec::new());
         }
         // There are files: each new one takes the place of that of its name.
         fs::create_dir_all(&self.path).map_err(refused)?;
-        for file in fs::read_dir(self.temporary.path()).map_err(refused)? {
-            let file = file.map_err(refused)?;
-            let place = self.path.join(file.file_name());
-            fs::rename(file.path(), place).map_err(refused)?;
+        let names = |folder: &Path| -> io::Result<Vec<OsString>> {
+            let files = fs::read_dir(folder)?;
+            files.map(|file| Ok(file?.file_name())).collect()
+        };
+        let new = names(self.temporary.path()).map_err(refused)?;
+        for name in &new {
+            let (from, to) = (self.temporary.path().join(name), self.path.join(name));
+            fs::rename(from, to).map_err(refused)?;
         }
-        Ok(())
+        let mut others = names(&self.path).map_err(refused)?;
+        others.retain(|name| !new.contains(name));
+        others.sort();
+        let others = others.into_iter();
+        Ok(others
+            .map(|name| name.to_string_lossy().into_owned())
+            .collect())
     }
 }
 
@@ -87,6 +99,14 @@ fn may_be_written(path: &Path, replace: bool) -> Result<(), DestinationError> {
         Some(_) if !replace => Err(DestinationError::FolderInUse(path.to_owned())),
         _ => Ok(()),
     }
+}
+
+/// The system's own error, without the temporary name that `error` speaks of.
+fn of_the_system(error: io::Error) -> io::Error {
+    let inner = error.get_ref().and_then(|inner| inner.source());
+    let inner = inner.and_then(|inner| inner.downcast_ref::<io::Error>());
+    let code = inner.and_then(io::Error::raw_os_error);
+    code.map_or(error, io::Error::from_raw_os_error)
 }
 
 fn refused(path: &Path, error: io::Error) -> DestinationError {

@@ -159,6 +159,36 @@ fn the_numbers_of_the_page_are_those_of_the_summary() {
     assert!(latex.contains(&format!("${}$", row[2])), "{latex}");
 }
 
+/// The row of `name` in the table of what was run.
+fn what_was_run(lab: &Ground, scenario: &str, name: &str) -> String {
+    done(lab.run(&["writeup", scenario, "--steps", "5", "-o", scenario]));
+    let page = lab.read(&format!("{scenario}/README.md"));
+    let begin = format!("| {name} | ");
+    let row = page.lines().find_map(|line| line.strip_prefix(&begin));
+    row.unwrap_or_else(|| panic!("no {name}: {page}"))
+        .to_owned()
+}
+
+#[test]
+fn body_rotor_and_friction_stand_as_the_scenario_has_them() {
+    let lab = Ground::new();
+    let says = |scenario: &str, name: &str, words: &[&str]| {
+        let row = what_was_run(&lab, scenario, name);
+        for words in words {
+            assert!(row.contains(words), "{words}: {row}");
+        }
+        fs::remove_dir_all(lab.file(scenario)).unwrap();
+    };
+    says(
+        "method-1",
+        "body",
+        &["10 masses of", "on a rim of radius 0.8 m", "5 kg together"],
+    );
+    says("lab-gyroscope", "body", &["wheel (cylinder, "]);
+    says("lab-gyroscope", "rotor", &["it spins, the rest does not"]);
+    says("first-dip", "friction", &[" N m"]);
+}
+
 #[test]
 fn a_folder_in_use_is_left_alone_unless_forced() {
     let lab = Ground::new();
@@ -169,10 +199,15 @@ fn a_folder_in_use_is_left_alone_unless_forced() {
     lab.write("w/notes.txt", "mine too");
     failed(&lab.run(&args), &["w holds files", "--force"]);
     assert_eq!(lab.read("w/README.md"), "mine");
+    lab.write("w/swings.svg", "of another run");
     let forced = [&args[..], &["--force"]].concat();
-    done(lab.run(&forced));
+    let told = done(lab.run(&forced)).stderr;
+    let told = String::from_utf8_lossy(&told);
     assert!(lab.read("w/README.md").starts_with("# Method 1"));
     assert_eq!(lab.read("w/notes.txt"), "mine too");
+    // What the new page does not speak of is named.
+    let left = "not of this write-up, left as found: notes.txt, swings.svg";
+    assert!(told.contains(left), "{told}");
     assert_eq!(lab.files(), ["w"], "no temporary folder is left");
 }
 

@@ -9,6 +9,7 @@ mod latex;
 pub mod measured;
 mod page;
 mod quantities;
+mod setup;
 
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Source};

@@ -2,17 +2,12 @@
 
 use super::languages::Lines;
 use super::quantities::Quantity;
-use super::{Beside, CSV, Drawing, RUN_FILE, Writeup};
-use crate::export::summary::steps_in_words;
-use crate::physics::{SchemeInfo, SymmetricTop};
-use crate::scenario::{Push, Window};
-use crate::text::number::{NONE, fixed, shortest, significant};
+use super::{Beside, CSV, Drawing, RUN_FILE, Writeup, setup};
+use crate::text::number::NONE;
 use std::fmt::{self, Write};
 
 /// A longer run file is not printed on the page.
 const MOST_LINES: usize = 120;
-/// More pushes or edits than these are counted, not listed.
-const MOST_LISTED: usize = 12;
 
 /// The whole page as Markdown.
 ///
@@ -29,7 +24,7 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
         writeln!(page, "{}\n", escaped(text))?;
     }
     writeln!(page, "## What was run\n")?;
-    write_setup(&mut page, writeup)?;
+    setup::write(&mut page, writeup)?;
     writeln!(page, "\n## Are the numbers to be believed?\n")?;
     if let Some(broken) = &writeup.broken {
         writeln!(page, "{}.\n", escaped(&sentence(&broken.to_string())))?;
@@ -55,98 +50,6 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     write_citation(&mut page)?;
     write_run_file(&mut page, &writeup.scenario.to_toml())?;
     Ok(page)
-}
-
-fn write_setup(page: &mut String, writeup: &Writeup) -> fmt::Result {
-    let scenario = &writeup.scenario;
-    let body = &scenario.body.mechanics;
-    let mut row = |name: &str, text: &str| writeln!(page, "| {name} | {} |", escaped(text));
-    row("", "")?;
-    row("---", "---")?;
-    let masses = body.points().iter().filter(|point| point.mass > 0.0);
-    let centre = body.first_moment().norm() / body.mass();
-    row(
-        "body",
-        &format!(
-            "{} point masses, {} kg together; centre of mass {} m from the pivot",
-            masses.count(),
-            significant(body.mass(), 6),
-            significant(centre, 6)
-        ),
-    )?;
-    match SymmetricTop::of(body) {
-        Some(top) => row(
-            "moments of inertia about the pivot",
-            &format!(
-                "I1 = {} kg m^2 across the axle, I3 = {} kg m^2 about it, kappa = I3/I1 = {}",
-                significant(top.across, 6),
-                significant(top.along, 6),
-                significant(top.kappa(), 6)
-            ),
-        )?,
-        None => row(
-            "moments of inertia",
-            "lopsided: not symmetric about the axle",
-        )?,
-    }
-    let top = body.points()[scenario.trace].at.norm();
-    let name = scenario.file.trace.as_deref().unwrap_or("top");
-    row(
-        "traced point",
-        &format!("{name}, {} m from the pivot", significant(top, 6)),
-    )?;
-    let tilt_deg = scenario.start.axle().z.clamp(-1.0, 1.0);
-    let tilt_deg = libm::acos(tilt_deg).to_degrees();
-    let [x, y, z] = [0, 1, 2].map(|axis| significant(scenario.start.momentum[axis], 9));
-    row(
-        "start",
-        &format!(
-            "axle tilted by {} degrees, L = ({x}, {y}, {z}) J s in the world frame",
-            fixed(tilt_deg, 4)
-        ),
-    )?;
-    let gravity = shortest(scenario.motion.gravity);
-    row("gravity", &format!("{gravity} m/s^2"))?;
-    let SchemeInfo { name, about, .. } = scenario.motion.scheme;
-    row("scheme", &format!("{name}: {about}"))?;
-    let steps = steps_in_words(scenario, writeup.readouts.sample.step);
-    row("time steps", &steps)?;
-    for push in scenario.pushes.iter().take(MOST_LISTED) {
-        row("push", &push_in_words(push, &writeup.name_of(push.point)))?;
-    }
-    if scenario.pushes.len() > MOST_LISTED {
-        row("push", &format!("{} in all", scenario.pushes.len()))?;
-    }
-    for edit in scenario.file.edit.iter().take(MOST_LISTED) {
-        let set = edit
-            .set
-            .iter()
-            .map(|(key, value)| format!("{key} = {value}"));
-        let set: Vec<_> = set.collect();
-        row(&format!("edit at step {}", edit.step), &set.join(", "))?;
-    }
-    match scenario.file.edit.len() {
-        count if count > MOST_LISTED => row("edits", &format!("{count} in all")),
-        _ => Ok(()),
-    }
-}
-
-fn push_in_words(push: &Push, point: &str) -> String {
-    let [x, y, z] = [0, 1, 2].map(|axis| shortest(push.force[axis]));
-    let when = match push.window {
-        Window::Steps { first, count: 1 } => format!("on time step {first}"),
-        Window::Steps { first, count } => {
-            format!("on {count} time steps from step {first} on")
-        }
-        Window::Time { from_s, for_s } => {
-            format!("from {} s on for {} s", shortest(from_s), shortest(for_s))
-        }
-    };
-    let grows = match push.accumulates {
-        true => ", added anew on each of them and kept to the end",
-        false => "",
-    };
-    format!("({x}, {y}, {z}) N on the point {point} {when}{grows}")
 }
 
 fn write_quantities(page: &mut String, quantities: &[Quantity]) -> fmt::Result {
@@ -282,12 +185,12 @@ fn sentence(text: &str) -> String {
 }
 
 /// `text` so that Markdown shows it as it stands, in a table too.
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
             '\n' => out.push(' '),
-            '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '#' | '|' | '~' | '&' => {
+            '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '#' | '|' | '~' | '&' | '$' => {
                 out.extend(['\\', c]);
             }
             c => out.push(c),
