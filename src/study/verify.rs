@@ -15,7 +15,7 @@ use crate::scenario::{Document, Problem, Problems, Scenario};
 use crate::text::printable::printable;
 pub use lines::{Difference, What};
 use lines::{Held, Lines};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::ops::ControlFlow;
@@ -113,6 +113,9 @@ pub fn verify(
     })
 }
 
+/// A run with more steps left than this is not played on for its verdict alone, once a difference has been found.
+const MOST_FOR_VERDICT: u64 = 2_000_000;
+
 /// The last columns of the CSV of a fit.
 const FIT_COLUMNS: &[u8] = b",residual,residual_sigmas";
 
@@ -153,6 +156,7 @@ fn verify_run<R: Read>(
     watch: impl Fn(u64, u64) -> ControlFlow<()>,
 ) -> io::Result<Option<Verified>> {
     let held = Held::new(lines, layout.delimiter());
+    let (differs, given_up) = (held.differs(), Cell::new(None));
     let mut csv = CsvWriter::with_layout(held, scenario, layout)?;
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let monitor = RefCell::new(Monitor::new(simulation.now()));
@@ -164,20 +168,29 @@ fn verify_run<R: Read>(
         each,
         |progress| {
             monitor.borrow_mut().catch_up();
-            watch(progress.step, progress.steps)
+            watch(progress.step, progress.steps)?;
+            let left = progress.steps.saturating_sub(progress.step);
+            if differs.get() && left > MOST_FOR_VERDICT {
+                given_up.set(Some(left));
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
         },
     )?;
-    if ended == Ended::Stopped {
+    if ended == Ended::Stopped && given_up.get().is_none() {
         return Ok(None);
     }
     let (rows, difference) = csv.finish()?.end()?;
-    let health = monitor.into_inner().health(simulation.now());
+    let verdict = match given_up.get() {
+        None => monitor.into_inner().health(simulation.now()).sentence(None),
+        Some(left) => format!("not judged: {left} of its steps were left to compute"),
+    };
     Ok(Some(Verified {
         kind: Kind::Run,
         rows,
         difference,
         written_by: None,
-        verdict: health.sentence(None),
+        verdict,
         not_finite: match ended {
             Ended::NotFinite(error) => Some(error),
             Ended::Done | Ended::Stopped => None,

@@ -90,9 +90,39 @@ fn what_differs_is_told_with_exit_code_1() {
 }
 
 #[test]
+fn what_stands_behind_the_last_row_is_told_even_if_it_is_empty() {
+    let ground = Ground::new();
+    done(ground.run(&["run", "method-2", "--steps", "4", "-o", "a.csv"]));
+    let good = ground.read("a.csv");
+    for more in ["\n", "\n\n\n", " \n", "x"] {
+        ground.write("a.csv", &format!("{good}{more}"));
+        let output = ground.run(&["verify", "a.csv"]);
+        assert_eq!(code(&output), 1, "{more:?}");
+        let told = stdout(&output);
+        assert!(told.contains("have come to their end"), "{told}");
+    }
+}
+
+#[test]
+fn a_long_run_that_differs_is_not_played_on() {
+    let ground = Ground::new();
+    done(ground.run(&["run", "method-2", "--steps", "3", "-o", "a.csv"]));
+    let good = ground.read("a.csv");
+    let long = good.replace("# steps = 3\n", "# steps = 2000000000\n");
+    ground.write("a.csv", &long);
+    let output = ground.run(&["verify", "a.csv"]);
+    assert_eq!(code(&output), 1);
+    let told = stdout(&output);
+    for words in ["it is cut off", "not judged: 19999"] {
+        assert!(told.contains(words), "{told}");
+    }
+}
+
+#[test]
 fn ctrl_c_ends_a_verification() {
     let ground = Ground::new();
-    done(ground.shell("$G run method-2 --steps 2 -o - > short.csv"));
+    // The rows between the start and the last step are left out: nothing differs until that is computed.
+    done(ground.shell("$G run method-2 --steps 2 --every 2000000000 -o - > short.csv"));
     let long = ground
         .read("short.csv")
         .replace("# steps = 2\n", "# steps = 2000000000\n");

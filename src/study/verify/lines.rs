@@ -1,8 +1,10 @@
 //! The lines of a file, held one by one against those that are computed.
 
 use crate::text::printable::brief;
+use std::cell::Cell;
 use std::fmt;
 use std::io::{self, BufRead, BufReader, Read, Write};
+use std::rc::Rc;
 
 /// The most bytes of a line that are read beyond the length that it should have.
 const MOST_BEYOND: u64 = 4096;
@@ -137,6 +139,7 @@ pub(super) struct Held<R> {
     /// The first line that ends in CR LF.
     rewritten: Option<u64>,
     difference: Option<Difference>,
+    differs: Rc<Cell<bool>>,
 }
 
 impl<R: Read> Held<R> {
@@ -149,7 +152,13 @@ impl<R: Read> Held<R> {
             rows: 0,
             rewritten: None,
             difference: None,
+            differs: Rc::default(),
         }
+    }
+
+    /// Tells, while the lines are held, whether a difference has been found.
+    pub(super) fn differs(&self) -> Rc<Cell<bool>> {
+        Rc::clone(&self.differs)
     }
 
     /// How many rows are the same, and what differs first.
@@ -158,13 +167,12 @@ impl<R: Read> Held<R> {
     /// When the file cannot be read.
     pub(super) fn end(mut self) -> io::Result<(u64, Option<Difference>)> {
         if self.difference.is_none() {
-            let stands = shown(self.lines.next(MOST_BEYOND)?);
-            if !stands.is_empty() {
-                self.difference = Some(Difference {
-                    line: self.lines.number,
-                    what: What::Extra { stands },
-                });
-            }
+            let next = self.lines.next(MOST_BEYOND)?;
+            let stands = (!next.is_empty()).then(|| shown(next));
+            self.difference = stands.map(|stands| Difference {
+                line: self.lines.number,
+                what: What::Extra { stands },
+            });
         }
         let line_ends = self.rewritten.map(|line| Difference {
             line,
@@ -207,6 +215,7 @@ impl<R: Read> Held<R> {
         }
         let line = self.lines.number;
         self.difference = what.map(|what| Difference { line, what });
+        self.differs.set(self.difference.is_some());
         Ok(())
     }
 }
