@@ -16,6 +16,13 @@
 //! - Storing the inertia in the pairs in which the next step loads it: 2.5 ns less. Six numbers in any order, or a matrix,
 //!   were stored by the compiler in pieces that a load straddled.
 //! - Turning the orientation like a pair of points, after the sums: nothing by itself, but without it the registers spill.
+//! - Around the step: copying what edits change only where there are edits, and adding up the numbers of the new state one by
+//!   one to see that they are finite: 2 ns less. Loaded two at a time they had not been stored so, and were waited for.
+//! - The axis before sine and cosine: 0.5 ns less. The division by |Ω| is done while they are computed.
+//! - Instructions with three operands (built for AVX): 3 ns less. That would need a second version of the code, or unsafe.
+//!
+//! At the time step of method-2, with all that: 73 ns a step against 121 of clang -O3 -march=native -ffp-contract=off (0.60),
+//! 134 of clang -O3 (0.54) and 228 of gcc -O3 (0.32), in one run each.
 
 #![allow(missing_docs, clippy::unwrap_used)]
 

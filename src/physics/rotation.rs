@@ -31,9 +31,11 @@ impl AxisAngle {
             return None;
         }
         let angle = length * time;
+        // Before sine and cosine, for which the matrix waits longest: the division is done beside them.
+        let axis = vector * (1.0 / length);
         let (sine, cosine) = trig::sin_cos(angle);
         Some(Self {
-            axis: vector * (1.0 / length),
+            axis,
             angle,
             sine,
             cosine,
