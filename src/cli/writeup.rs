@@ -13,7 +13,7 @@ use crate::scenario::{Document, Scenario};
 use crate::study::writeup::figures::{figures, recorder};
 use crate::study::writeup::{Beside, CSV, Writeup};
 use crate::text::printable::{Shown, printable};
-use crate::work::changed::changed;
+use crate::work::changed::Original;
 use anyhow::Context;
 use clap::Args;
 use std::fs::{self, File};
@@ -44,10 +44,8 @@ pub(super) struct WriteupArgs {
 }
 
 pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
-    let scenario = Arc::new(with_true_line(
-        scenario_of(&args.scenario, &args.length)?,
-        args,
-    ));
+    let scenario = scenario_of(&args.scenario, &args.length)?;
+    let scenario = marked(scenario, &args.scenario.scenario);
     let mut beside = args.measured.as_deref().map(beside).transpose()?;
     let (_, interruption) = progress::open(None, false)?;
     let folder = Folder::begin(&args.output, args.force)?;
@@ -114,18 +112,12 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::FAILURE)
 }
 
-/// `scenario`, whose line about what there is to see may be false where the command line has changed its motion: as in the
-/// lab, the changes stand in its place then.
-fn with_true_line(mut scenario: Scenario, args: &WriteupArgs) -> Scenario {
-    let opened = Document::open(&args.scenario.scenario);
-    let opened = opened.and_then(|document| document.scenario()).ok();
-    let changed = opened.and_then(|opened| changed(&opened, &scenario));
-    let line = scenario.file.view.as_mut();
-    let line = line.and_then(|view| view.look_at.as_mut());
-    if let (Some(line), Some(changed)) = (line, changed) {
-        *line = changed;
-    }
-    scenario
+/// `scenario`; where the command line has changed its motion, its words say so, as in the lab.
+fn marked(scenario: Scenario, name: &str) -> Arc<Scenario> {
+    let scenario = Arc::new(scenario);
+    let opened = Document::open(name).and_then(|document| document.scenario());
+    let opened = opened.map_or_else(|_| Arc::clone(&scenario), Arc::new);
+    Original::of(name, &opened).marked(&scenario)
 }
 
 /// The measured data `name`, to be held against the run.

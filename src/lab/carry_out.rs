@@ -62,7 +62,7 @@ impl Lab {
                 to_step,
                 force,
             } => {
-                let scenario = self.run_up_to(*to_step, "export")?;
+                let scenario = self.work.marked(&self.run_up_to(*to_step, "export")?);
                 let path = self.files.path_of(path);
                 self.files.export(&scenario, &path, layout.clone(), *force)
             }
@@ -93,7 +93,7 @@ impl Lab {
                         self.files.save("the scenario", &content, &path, *force)
                     }
                     false => {
-                        let run = self.run_up_to(*to_step, "save")?;
+                        let run = self.work.marked(&self.run_up_to(*to_step, "save")?);
                         self.files.save("the run", &run.to_toml(), &path, *force)
                     }
                 }

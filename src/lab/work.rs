@@ -6,7 +6,7 @@ use super::rerun::Reference;
 use crate::run::Clock;
 use crate::scenario::{Problems, Scenario};
 use crate::storage::session::Text;
-use crate::work::changed;
+use crate::work::changed::Original;
 use crate::work::history::{History, Reversal, RunRecord};
 use crate::work::journal::{Act, Journal};
 use crate::work::next_push::NextPush;
@@ -17,8 +17,8 @@ use toml::Table;
 /// scenario that the run has afterwards.
 pub struct Work {
     history: History,
-    /// The scenario as the user opened it.
-    file: Arc<Scenario>,
+    /// The scenario that the words of the opened file were written for.
+    original: Original,
     /// How the present run differs from that scenario, in words; `None` where it does not.
     changed_from_file: Option<String>,
     /// The history as the session keeps it; `None` where the history has changed since it was written.
@@ -65,8 +65,8 @@ impl Work {
     /// A history from a session; the present run was opened from `file`.
     pub(super) fn resumed(history: History, file: Arc<Scenario>) -> Self {
         Self {
+            original: Original::of(&history.present().name, &file),
             history,
-            file,
             changed_from_file: None,
             kept: None,
             kept_reference: None,
@@ -95,12 +95,17 @@ impl Work {
 
     /// Makes `file` the scenario as the user opened it.
     pub(super) fn set_file(&mut self, file: Arc<Scenario>) {
-        self.file = file;
+        self.original = Original::of(self.name(), &file);
+    }
+
+    /// `scenario`, the present run's, as it is to be written to a file: what its words say of another motion is marked.
+    pub(super) fn marked(&self, scenario: &Arc<Scenario>) -> Arc<Scenario> {
+        self.original.marked(scenario)
     }
 
     /// Describes how `scenario`, the present run's, differs from the scenario as it was opened.
     pub(super) fn compare_with_file(&mut self, scenario: &Scenario) {
-        self.changed_from_file = changed::changed(&self.file, scenario);
+        self.changed_from_file = self.original.difference(scenario);
     }
 
     /// The history as the session keeps it, with the pinned run.
@@ -129,7 +134,7 @@ impl Work {
     /// Leaves the present run and begins that of `scenario`, opened as `name`.
     pub(super) fn open(&mut self, name: &str, scenario: &Arc<Scenario>) {
         self.change().begin(name, scenario);
-        self.file = Arc::clone(scenario);
+        self.original = Original::of(name, scenario);
     }
 
     /// Leaves the present run and begins that of `scenario`, which follows the advice about it.
@@ -254,7 +259,7 @@ impl Work {
             Reversal::OtherRun => {
                 let is_of_same_name = self.name() == name;
                 if !is_of_same_name {
-                    self.file = Arc::clone(&scenario);
+                    self.original = Original::of(self.name(), &scenario);
                 }
                 Turned::OtherRun {
                     is_of_same_name,

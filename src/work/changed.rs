@@ -1,26 +1,116 @@
-//! The scenario's `look_at` line, and the line that replaces it once the user has changed the scenario: the file's
-//! line may then be false, so the lab lists the changes instead.
+//! The words of a scenario's file (`about`, `source`, `look_at`, `next`, `[[expected]]`) hold for the motion they were written for. What
+//! is said where a run moves otherwise: how it differs from that motion.
 
+use crate::scenario::file::ScenarioFile;
+use crate::scenario::presets::{PRESETS, Preset};
 use crate::scenario::rescale::at_time_step;
-use crate::scenario::{Motion, Scenario};
+use crate::scenario::{Document, Motion, Scenario};
 use crate::text::number::shortest;
+use crate::text::printable::printable;
+use serde::Serialize;
+use std::path::Path;
+use std::sync::Arc;
+use toml::{Table, Value};
+
+/// Stands between the name of the original and its `about` or `source`, in the file of a run that was changed since.
+const AS_IT_WAS: &str = " as it was: ";
+
+/// More changed values of one table than these are not listed.
+const MOST_VALUES: usize = 2;
+
+/// A longer name of a file is not repeated, letters.
+const LONGEST_NAME: usize = 30;
 
 /// The `look_at` line of the file of `scenario`: what the viewer should watch for.
 pub fn look_at(scenario: &Scenario) -> Option<&str> {
     scenario.file.view.as_ref()?.look_at.as_deref()
 }
 
-/// Lists the differences that make `now` move differently from `before`. `None` where there are none, or where the
-/// `look_at` line itself is a new one.
-pub fn changed(before: &Scenario, now: &Scenario) -> Option<String> {
-    let changes = changes(before, now);
-    if changes.is_empty() || look_at(before) != look_at(now) {
-        return None;
+/// The scenario that the words of a file were written for.
+#[derive(Clone, Debug)]
+pub struct Original {
+    scenario: Arc<Scenario>,
+    /// What it is called: "the preset cusps", "heron.toml".
+    name: String,
+}
+
+impl Original {
+    /// The original of `opened`, which was opened as `name`: the preset whose words it has, as an exported run has them,
+    /// or else itself.
+    pub fn of(name: &str, opened: &Arc<Scenario>) -> Self {
+        if let Some((preset, scenario)) = preset_with_words_of(opened) {
+            return Self {
+                scenario: Arc::new(scenario),
+                name: format!("the preset {}", preset.name),
+            };
+        }
+        let file = Path::new(name).file_name().unwrap_or_default();
+        let file = printable(&file.to_string_lossy()).into_owned();
+        let is_short = (1..=LONGEST_NAME).contains(&file.chars().count());
+        Self {
+            scenario: Arc::clone(opened),
+            name: match is_short {
+                true => file,
+                false => "what was opened".to_owned(),
+            },
+        }
     }
-    Some(format!(
-        "differs from what was opened: {}",
-        changes.join(", ")
-    ))
+
+    /// Lists the differences that make `now` move differently. `None` where there are none, or where the `look_at` line
+    /// itself is a new one.
+    pub fn difference(&self, now: &Scenario) -> Option<String> {
+        let changes = changes(&self.scenario, now);
+        if changes.is_empty() || look_at(&self.scenario) != look_at(now) {
+            return None;
+        }
+        Some(format!(
+            "differs from {}: {}",
+            self.name,
+            changes.join(", ")
+        ))
+    }
+
+    /// `now` as it is to be written to a file: where it moves differently, the words say of which motion they were
+    /// written, `look_at` says what was changed, and the numbers expected of the original are left out.
+    pub fn marked(&self, now: &Arc<Scenario>) -> Arc<Scenario> {
+        let Some(difference) = self.difference(now) else {
+            return Arc::clone(now);
+        };
+        let mut marked = Scenario::clone(now);
+        let file = &mut marked.file;
+        for words in [&mut file.about, &mut file.source].into_iter().flatten() {
+            if !words.contains(AS_IT_WAS) {
+                words.insert_str(0, &format!("Of {}{AS_IT_WAS}", self.name));
+            }
+        }
+        if let Some(view) = &mut file.view {
+            view.look_at = view.look_at.take().map(|_| difference);
+            view.next = None;
+        }
+        file.expected.clear();
+        Arc::new(marked)
+    }
+}
+
+/// The preset with the same `look_at` or `about` as `scenario`, as it is shipped.
+fn preset_with_words_of(scenario: &Scenario) -> Option<(&'static Preset, Scenario)> {
+    let words = |file: &ScenarioFile| {
+        let look_at = file.view.as_ref().and_then(|view| view.look_at.clone());
+        (file.about.clone(), look_at)
+    };
+    let (about, look_at) = words(&scenario.file);
+    let may_have = |preset: &&Preset| {
+        let mut some = about.iter().chain(&look_at);
+        some.any(|words| words.lines().all(|line| preset.text.contains(line)))
+    };
+    PRESETS.iter().filter(may_have).find_map(|preset| {
+        let shipped = Document::parse(preset.name, preset.text).and_then(|it| it.scenario());
+        let shipped = shipped.ok()?;
+        let (its_about, its_look_at) = words(&shipped.file);
+        let is_same = |one: &Option<String>, other| one.is_some() && one == other;
+        (is_same(&about, &its_about) || is_same(&look_at, &its_look_at))
+            .then_some((preset, shipped))
+    })
 }
 
 fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
@@ -46,25 +136,66 @@ fn changes(before: &Scenario, now: &Scenario) -> Vec<String> {
             shortest(old.gravity)
         ));
     }
-    let others = [
-        (now.file.body != before.file.body, "another body"),
-        (now.file.start != before.file.start, "another start"),
-        (
-            now.file.friction != before.file.friction,
-            "another friction",
-        ),
-        (are_pushes_changed(before, now), push_change(before, now)),
-    ];
-    changes.extend(
-        others
-            .iter()
-            .filter(|(is_changed, _)| *is_changed)
-            .map(|(_, what)| (*what).to_owned()),
-    );
+    if now.file.body != before.file.body {
+        changes.push("another body".to_owned());
+    }
+    changes.extend(values("start", &before.file.start, &now.file.start));
+    changes.extend(values(
+        "friction",
+        &before.file.friction,
+        &now.file.friction,
+    ));
+    if are_pushes_changed(before, now) {
+        changes.push(push_change(before, now).to_owned());
+    }
     if changes.is_empty() && now.file.edit != before.file.edit {
         changes.push("edits on the way".to_owned());
     }
     changes
+}
+
+/// How the table `name` has changed: the new values, or, where they are many, that it is another. `None` if it has not.
+fn values<T: Serialize + PartialEq>(name: &str, before: &T, now: &T) -> Option<String> {
+    if before == now {
+        return None;
+    }
+    // What is not there, as friction may be, is an empty table.
+    let [before, now] = [before, now].map(|table| Table::try_from(table).unwrap_or_default());
+    let new = now
+        .iter()
+        .filter(|(key, value)| before.get(*key) != Some(*value));
+    let new: Vec<_> = new
+        .map(|(key, value)| {
+            let old = before.get(key).and_then(number);
+            let old = old.filter(|_| number(value).is_some());
+            let old = old.map(|old| format!(", not {old}")).unwrap_or_default();
+            format!("{name}.{key} {}{old}", written(value))
+        })
+        .collect();
+    Some(match new.len() {
+        1..=MOST_VALUES => new.join(", "),
+        _ => format!("another {name}"),
+    })
+}
+
+/// `value` as a reader writes it: as short as it can be.
+fn written(value: &Value) -> String {
+    match value {
+        Value::Array(list) => {
+            let list: Vec<_> = list.iter().map(written).collect();
+            format!("[{}]", list.join(", "))
+        }
+        Value::String(word) => word.clone(),
+        value => number(value).unwrap_or_else(|| value.to_string()),
+    }
+}
+
+fn number(value: &Value) -> Option<String> {
+    match value {
+        Value::Integer(number) => Some(number.to_string()),
+        Value::Float(number) => Some(shortest(*number)),
+        _ => None,
+    }
 }
 
 /// Gravity, scheme and time step after the last edit.

@@ -1,5 +1,6 @@
 //! What the lab says, read by one who has never seen it.
 
+use crate::support::scenarios::preset;
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::tui::keymap::Key;
 use ratatui::layout::Rect;
@@ -28,10 +29,63 @@ fn esc_turns_from_the_values_back_to_the_run() {
 fn what_was_changed_is_told_of_a_preset_as_of_a_file() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.press("p.");
-    stage.shows("differs from what was opened: one more push");
+    stage.shows("differs from the preset method-2: one more push");
     let mut stage = Stage::open("cusps", &[], SMALL);
     stage.commands("set = { 'friction.swing_viscous_Nms' = 0.1 }");
-    stage.shows("differs from what was opened: another friction");
+    stage.shows("differs from the preset cusps: friction.swing_viscous_Nms 0.1");
+}
+
+/// The words of a preset hold for its own motion, and not for that of a run which was made from it.
+#[test]
+fn words_about_another_motion_are_marked_in_what_is_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut stage = Stage::open("fast-top", &[], SMALL);
+    stage.lab.files_mut().work_in(folder.path());
+    stage.commands("save = { path = 'own.toml', to_step = 9 }");
+    stage.commands(
+        "set = { 'start.momentum_Js.2' = 1000 }\nsave = { path = 'changed.toml', to_step = 9 }",
+    );
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    let own = read("own.toml");
+    assert!(own.contains("look_at = \"Precession of 5.6") && own.contains("[[expected]]"));
+    let changed = read("changed.toml");
+    let difference = "differs from the preset fast-top: start.momentum_Js [0, 0, 1000]";
+    for words in [
+        &format!("look_at = \"{difference}\""),
+        "Of the preset fast-top as it was: L is so large",
+        "Of the preset fast-top as it was: textbook set",
+    ] {
+        assert!(changed.contains(words), "{words}: {changed}");
+    }
+    assert!(!changed.contains("[[expected]]") && !changed.contains("5.6 degrees"));
+    let path = folder.path().join("changed.toml");
+    let mut stage = Stage::open(path.to_str().unwrap(), &[], SMALL);
+    stage.shows(difference);
+    // Changed and saved again, it is marked once.
+    stage.lab.files_mut().work_in(folder.path());
+    stage.commands(
+        "set = { 'motion.gravity_m_per_s2' = 5 }\nsave = { path = 'again.toml', to_step = 9 }",
+    );
+    let again = read("again.toml");
+    assert!(again.contains("look_at = \"differs from changed.toml: gravity 5 m/s2, not 9.8\""));
+    assert!(
+        again.contains("\nOf the preset fast-top as it was: L is")
+            || again.contains("\"Of the preset fast-top as it was: L is")
+    );
+}
+
+/// `run --set` writes the words as they stand in the file.
+#[test]
+fn words_of_a_preset_are_known_in_a_file_of_another_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.toml");
+    let changed = preset("fast-top", &["start.momentum_Js=[0,0,1000]"]);
+    std::fs::write(&path, changed.to_toml()).unwrap();
+    Stage::open(path.to_str().unwrap(), &[], SMALL)
+        .shows("differs from the preset fast-top: start.momentum_Js [0, 0, 1000]")
+        .shows_no("5.6 degrees");
+    std::fs::write(&path, preset("fast-top", &["motion.steps=9"]).to_toml()).unwrap();
+    Stage::open(path.to_str().unwrap(), &[], SMALL).shows("5.6 degrees");
 }
 
 /// A FIFO that nobody writes to does for a file that takes for ever to read.

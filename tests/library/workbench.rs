@@ -262,7 +262,7 @@ fn a_note_that_may_not_hold_any_more_is_not_shown() {
     let set = ["motion.time_step_s=0.01", "start.tilt_deg=30"];
     let mut stage = Stage::open("method-2", &set, SMALL);
     stage
-        .shows("differs from what was opened: dt 0.01 s, not 0.1, another start")
+        .shows("differs from the preset method-2: dt 0.01 s, not 0.1, start.tilt_deg 30, not")
         .shows_no("almost a circle");
     stage.commands("open = 'method-2'").shows("almost a circle");
     Stage::open("method-2", &["motion.steps=50", "view.speed=2"], SMALL).shows("almost a circle");

@@ -59,7 +59,8 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
         "700 of 0.1 s",
         "Do not believe this run",
         // The line of the preset speaks of another run.
-        "\n\nDiffers from what was opened: other pushes\n\n",
+        "\n\nDiffers from the preset wobble-push: other pushes\n\n",
+        "\n\nOf the preset wobble-push as it was: ",
     ] {
         assert!(page.contains(words), "{words}: {page}");
     }
