@@ -80,6 +80,13 @@ pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
     remarks.push(energy(health));
     remarks.extend(health.slowing.map(|slowing| taken(&slowing)));
     remarks.extend(others.into_iter().map(|(_, remark)| remark));
+    if health.picture == Picture::Strobed {
+        // Of the picture alone: it changes no number, so it is said last.
+        remarks.push(Remark::new(
+            "the wheel's picture is strobed, the motion is not".to_owned(),
+            false,
+        ));
+    }
     remarks
 }
 
@@ -171,8 +178,7 @@ fn turns(health: &Health) -> Remark {
     }
     let turns = steady(health.turns_per_step);
     let (long, warns) = match (health.picture, health.nutation) {
-        (Picture::Right, _) => (String::new(), false),
-        (picture @ Picture::Strobed, _) => (format!(": {picture}"), false),
+        (Picture::Right | Picture::Strobed, _) => (String::new(), false),
         (picture, None) => (format!(": {picture}"), true),
         (_, Some(_)) => (": strobed, the swing is the time step's".to_owned(), true),
     };

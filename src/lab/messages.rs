@@ -12,6 +12,9 @@ use std::time::Duration;
 /// What is said at the end of the scenario's run, before what to try next.
 const END_OF_RUN: &str = "end of the run: space goes on, r begins again";
 
+/// What is said of what would mend a run that has broken down, until the search for it has ended.
+const IS_SOUGHT: &str = "a time step or scheme that mends it is looked for";
+
 /// What a line about what to try says of the exact motion, and what it says where that is drawn.
 const ASKS_FOR_EXACT: &str = "t draws the exact motion";
 const HAS_EXACT: &str = "the exact motion is drawn in dashes";
@@ -34,18 +37,31 @@ impl Lab {
 
     /// What helps where the numbers have stopped being finite: a key that mends the run, and what takes back an edit.
     fn what_makes_finite(&self) -> String {
-        let is_doubted = self.player.reading().readouts.health.is_believed() == Some(false);
-        let mend = match self.player.offer_in_short() {
-            Some(offer) => offer,
-            None if is_doubted && self.player.is_advised && self.player.advice().is_none() => {
-                "a time step or scheme that mends it is looked for".to_owned()
-            }
-            None => "a shorter time step or another scheme may mend it (e)".to_owned(),
+        let mend = match self.player.is_seeking_advice() {
+            true => IS_SOUGHT.to_owned(),
+            false => self.what_mends(),
         };
         let step = self.player.playback.step_number();
         match self.work.journal().count_by(step) {
             0 => format!(": {mend}"),
             _ => format!(": {mend}, u takes the last edit back"),
+        }
+    }
+
+    /// What mends the run, as far as that is known.
+    fn what_mends(&self) -> String {
+        let offer = self.player.offer_in_short();
+        offer.unwrap_or_else(|| "a shorter time step or another scheme may mend it (e)".to_owned())
+    }
+
+    /// Where a message says that advice is looked for, and the search has ended: says what was found instead.
+    pub(super) fn tell_what_was_found(&mut self) {
+        if self.player.is_seeking_advice() {
+            return;
+        }
+        let said = self.on_top.notice().text().unwrap_or_default();
+        if said.contains(IS_SOUGHT) {
+            self.tell(said.replace(IS_SOUGHT, &self.what_mends()));
         }
     }
 

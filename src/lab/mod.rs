@@ -194,6 +194,7 @@ impl Lab {
         if let Some(halt) = halt {
             self.halted(halt);
         }
+        self.tell_what_was_found();
         self.changed |= self.on_top.take_what_was_read();
         self.open_what_was_read();
         self.follow_export();

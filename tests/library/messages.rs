@@ -74,12 +74,33 @@ fn one_word_stands_for_what_a_long_time_step_shows() {
     for (scenario, set) in [
         ("method-2", &[][..]),
         ("method-2", &["motion.scheme=strang"]),
-        ("fast-top", &["motion.time_step_s=0.01"]),
+        (
+            "fast-top",
+            &["motion.time_step_s=0.03", "motion.scheme=exact"],
+        ),
     ] {
         let health = health(scenario, set);
         let remarks = remarks(&health, None);
         assert!(remarks[0].long.contains("strobed"), "{:?}", remarks[0]);
         assert!(remarks[0].short.ends_with(": strobed"), "{:?}", remarks[0]);
+    }
+}
+
+/// From a tenth of a turn a step on the wheel's ten points are taken for one another: that is no fault of the run.
+#[test]
+fn a_wheel_that_is_strobed_is_no_fault_of_the_run() {
+    let good = health("method-2", &["motion.time_step_s=0.01"]);
+    assert_eq!(good.is_believed(), Some(true));
+    let remarks = remarks(&good, None);
+    assert_eq!(remarks[0].short, "0.497 turns a step");
+    assert!(remarks.iter().all(|remark| !remark.warns), "{remarks:?}");
+    let last = remarks.last().map(|remark| remark.long.as_str());
+    assert_eq!(
+        last,
+        Some("the wheel's picture is strobed, the motion is not")
+    );
+    for size in [SMALL, LARGE] {
+        Stage::open("method-2", &["motion.time_step_s=0.01"], size).shows_no(": strobed");
     }
 }
 
@@ -111,6 +132,22 @@ fn numbers_that_are_no_longer_finite_are_told_with_what_helps() {
     let may = "a shorter time step or another scheme may mend it (e)";
     assert_eq!(end("", false), format!("{begin}{may}"));
     assert_eq!(end(edit, false), format!("{begin}{may}{back}"));
+}
+
+/// The search begins where the run has broken down, and its answer takes the place of the message that it is under way.
+#[test]
+fn what_mends_a_run_that_broke_down_is_told_as_soon_as_it_is_found() {
+    let mut stage = Stage::open("wobble-push", &["motion.scheme=rk4"], LARGE);
+    stage.lab.take_advice();
+    stage.commands("pause = true");
+    stage.commands("go_to = 2000").wait(0.1);
+    stage.shows("no longer finite at step 3: a time step or scheme that mends it is looked for");
+    while stage.lab.player().is_seeking_advice() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    stage
+        .wait(0.1)
+        .shows("no longer finite at step 3: a: dt 0.005 s mends it");
 }
 
 #[test]

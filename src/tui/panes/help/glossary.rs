@@ -80,7 +80,7 @@ pub(super) const GLOSSARY: &[Word] = &[
     ),
     (
         "strobed",
-        "the time step is too long to see a motion: as under a strobe light another appears, and a swing that is not the gyroscope's",
+        "as under a strobe light, a fast swing seems slow; the wheel's picture alone seems to turn wrongly, and no number suffers",
     ),
     (
         "predicted",
