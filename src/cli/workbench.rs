@@ -178,14 +178,15 @@ fn tell_of_exports(lab: &Lab) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
     for written in lab.files().written() {
         let path = Shown(&written.path);
-        writeln!(
-            stdout,
-            "{path}{}; to fetch it, on your own computer:\n  {}",
-            written
-                .rows
-                .map_or(String::new(), |rows| format!(": {rows} rows")),
-            exporting::scp_line(&written.path)
-        )?;
+        let rows = written.rows.map(|rows| format!(": {rows} rows"));
+        let rows = rows.unwrap_or_default();
+        match exporting::scp_line(&written.path) {
+            Some(line) => writeln!(
+                stdout,
+                "{path}{rows}; to fetch it, on your own computer:\n  {line}"
+            ),
+            None => writeln!(stdout, "{path}{rows}"),
+        }?;
     }
     Ok(())
 }

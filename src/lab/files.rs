@@ -239,12 +239,13 @@ fn told(written: &Written) -> String {
         Some(end) => format!(", as far as the numbers are finite (step {})", end.step - 1),
         None => String::new(),
     };
+    let fetched = exporting::scp_line(&written.path).map(|line| format!(" · {line}"));
     format!(
-        "wrote {}{}{end}: {}{warnings} · {}",
+        "wrote {}{}{end}: {}{warnings}{}",
         rows.unwrap_or_default(),
         DecimalBytes(written.bytes),
         Shown(&written.path),
-        exporting::scp_line(&written.path)
+        fetched.unwrap_or_default()
     )
 }
 

@@ -79,6 +79,11 @@ impl Beside {
         self.series.curves.iter().map(|curve| curve.quantity)
     }
 
+    /// The time of the last value, s.
+    pub fn last_s(&self) -> Option<f64> {
+        self.series.times_s.last().copied()
+    }
+
     /// The data against the run, as far as that had come when it was last read.
     pub fn compared(&self) -> &Compared {
         &self.compared

@@ -246,7 +246,9 @@ impl Lab {
     fn close(&mut self, cleared: &Cleared) -> Option<Request> {
         let is_found = self.on_top.mode() == Mode::Find;
         let is_filtered = self.on_top.mode() == Mode::Lab && self.view.focus == Pane::PARAMETERS;
-        if (is_found || is_filtered) && self.values.forget_name() {
+        // From a value that was searched for, one Esc leads back to the page of a lesson, as it does from any other.
+        let is_left = is_filtered && self.view.sheet.is_some();
+        if (is_found || is_filtered) && self.values.forget_name() && !is_left {
             self.on_top.close();
             return None;
         }

@@ -20,7 +20,7 @@ pub fn fixed(number: f64, decimals: usize) -> String {
 }
 
 /// `text` without the sign of a zero: a negative number that is rounded to 0 is written as 0 is.
-fn without_minus_zero(text: String) -> String {
+pub fn without_minus_zero(text: String) -> String {
     match text.strip_prefix('-') {
         Some(rest) if rest.chars().all(|c| matches!(c, '0' | '.')) => rest.to_owned(),
         _ => text,
@@ -39,7 +39,7 @@ pub fn signed(number: f64, decimals: usize) -> String {
 /// `number` with an exponent and `digits` digits after the point: `2.4e-9`.
 pub fn exponent(number: f64, digits: usize) -> String {
     match number.is_finite() {
-        true => format!("{number:.digits$e}"),
+        true => format!("{:.digits$e}", number + 0.0), // adding 0 makes 0 of -0
         false => NONE.to_owned(),
     }
 }
@@ -67,7 +67,7 @@ pub fn shortest(number: f64) -> String {
 
 /// `number` to `digits` significant digits, without zeros at its end: 42.1, 3.333333e-10.
 pub fn significant(number: f64, digits: usize) -> String {
-    shortest(rounded(number, digits))
+    shortest(rounded(number, digits) + 0.0) // adding 0 makes 0 of -0
 }
 
 /// The number nearest to `number` that has `digits` significant digits.
@@ -214,6 +214,8 @@ mod tests {
             assert_eq!(signed(number, 6), "+0.000000");
             assert_eq!(decimal(number), "0");
         }
+        assert_eq!(exponent(-0.0, 1), "0.0e0");
+        assert_eq!(significant(-0.0, 3), "0");
         assert_eq!(fixed(-6e-7, 6), "-0.000001");
         assert_eq!(signed(-6e-7, 6), "-0.000001");
         assert_eq!(fixed(-0.4, 0), "0");

@@ -270,14 +270,14 @@ fn every_figure_in_the_texts_is_that_of_the_run() {
         "",
         -percent(push("measured_lowest_z_m")),
         0,
-        " % down",
+        " % lower",
     );
     figure(
         "wobble-push",
         "",
         percent(push("measured_highest_z_m")),
         0,
-        " % up",
+        " % higher",
     );
     let truth = readouts_of(preset_named("wobble-push", &["motion.scheme=exact"]));
     let truth = |name: &str| truth.number(name).unwrap();

@@ -171,6 +171,17 @@ fn esc_leaves_the_values_where_they_fill_the_screen() {
 }
 
 #[test]
+fn esc_leads_from_a_value_that_was_found_to_the_page() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage
+        .lesson("does-a-faster-spin-precess-faster", 6)
+        .arrive();
+    stage.press("/Lz body\n300\n").arrive();
+    stage.shows("to the page").press("\u{1b}");
+    stage.shows("Your turn").shows_no("to the page");
+}
+
+#[test]
 fn esc_leads_out_of_the_lessons() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.lesson("halve-the-step", 1).wait(6.0);

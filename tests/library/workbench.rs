@@ -40,14 +40,14 @@ fn every_preset_at_first_sight() {
 fn a_strip_that_stands_still_at_high_speed_says_so() {
     for size in [SMALL, Rect::new(0, 0, 120, 40), LARGE] {
         let mut stage = Stage::open("wobble-push", &["view.speed=1"], size);
-        stage.wait(4.0).shows_no("still");
+        stage.wait(4.0).shows_no("held");
         let mut stage = Stage::open(
             "wobble-push",
             &["view.speed=1000", "motion.steps=1000000"],
             size,
         );
-        stage.wait(4.0).shows("still");
-        stage.commands("pause = true").shows_no("still");
+        stage.wait(4.0).shows("held");
+        stage.commands("pause = true").shows_no("held");
     }
 }
 

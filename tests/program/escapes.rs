@@ -122,7 +122,12 @@ fn the_lab_and_its_farewell_show_names_escaped() {
     let ground = Ground::named(NASTY);
     let file = format!("{NASTY}.toml");
     std::fs::write(ground.file(&file), format!("title = 'A top'\n{BODY}")).unwrap();
-    let variables = [("TERM", "xterm"), ("LANG", "C.UTF-8"), ("USER", NASTY)];
+    let variables = [
+        ("TERM", "xterm"),
+        ("LANG", "C.UTF-8"),
+        ("USER", NASTY),
+        ("SSH_CONNECTION", "192.0.2.1 50000 192.0.2.2 22"),
+    ];
     let mut terminal = ground.open_with(&[&file, "--paused", "--at", "5"], &variables);
     terminal.wait_for("A top");
     terminal.ask("o", r"x\u{1b}]0;P\u{7}");

@@ -92,7 +92,7 @@ fn saved(lab: &mut Terminal, name: &str) -> String {
 fn exported(lab: &mut Terminal, name: &str) -> Vec<u8> {
     lab.ask("x", "export steps 0 to");
     answer(lab, name);
-    lab.wait_for("· scp ");
+    lab.wait_for("wrote ");
     fs::read(lab.ground().file(name)).unwrap()
 }
 
@@ -239,7 +239,7 @@ fn forward_again_the_numbers_are_those_of_the_first_time() {
     assert_eq!(exported(&mut lab, "again.csv"), first.1);
     lab.press(",.");
     lab.wait_until("forward again", |lab| {
-        lab.step() == Some(400) && !lab.screen().contains("scp")
+        lab.step() == Some(400) && !lab.screen().contains("wrote")
     });
     assert_eq!(shown(&lab), first.0);
     lab.quit();
@@ -302,7 +302,7 @@ fn an_export_is_the_run_that_was_saved() {
     answer(&mut lab, "mine.csv");
     lab.wait_for("exists: Enter again replaces it");
     assert_eq!(ground.read("mine.csv"), "mine");
-    lab.ask("\r", "· scp ");
+    lab.ask("\r", "wrote ");
     assert!(fs::read(ground.file("mine.csv")).unwrap() == csv);
     lab.quit();
     lab.wait_for("mine.csv: 286 rows");
@@ -357,7 +357,7 @@ fn an_export_that_cannot_be_says_why_and_loses_nothing() {
     answer(&mut lab, "/dev/full");
     lab.wait_for("not a regular file");
     answer(&mut lab, "run.csv");
-    lab.wait_for("· scp ");
+    lab.wait_for("wrote ");
     lab.wait_for_step(50);
     lab.quit();
 }

@@ -64,7 +64,7 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
     ] {
         assert!(page.contains(words), "{words}: {page}");
     }
-    let own = "23 % down and 14 % up";
+    let own = "23 % lower to 14 % higher";
     assert!(!page.contains(own), "{page}");
     done(lab.run(&["writeup", "wobble-push", "--steps", "20", "-o", "own"]));
     assert!(lab.read("own/README.md").contains(own));

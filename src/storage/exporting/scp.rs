@@ -4,20 +4,21 @@ use crate::text::printable::printable;
 use std::ffi::OsStr;
 use std::path::Path;
 
-/// The `scp` command that the user types on their own machine to fetch the file `path` from this one. Where the name of the
-/// file, the user or the machine cannot be typed in a shell, a message that says so.
-pub fn scp_line(path: &Path) -> String {
+/// The `scp` command that the user types on their own machine to fetch the file `path` from this one; `None` where the
+/// lab does not run over SSH. Where the name of the file, the user or the machine cannot be typed in a shell, a message
+/// that says so.
+pub fn scp_line(path: &Path) -> Option<String> {
+    // ssh sets it to "CLIENT CLIENT_PORT SERVER SERVER_PORT".
+    let connection = std::env::var("SSH_CONNECTION").ok()?;
     let user = ["USER", "LOGNAME"]
         .into_iter()
         .find_map(std::env::var_os)
         .unwrap_or_default();
-    // ssh sets it to "CLIENT CLIENT_PORT SERVER SERVER_PORT".
-    let connection = std::env::var("SSH_CONNECTION").unwrap_or_default();
     let port = connection.split(' ').nth(3).unwrap_or_default();
     let made = scp_line_from(port, &user, &gethostname::gethostname(), path.as_os_str());
-    made.unwrap_or_else(|what| {
+    Some(made.unwrap_or_else(|what| {
         format!("no scp line: {what} holds characters that cannot be typed in a shell")
-    })
+    }))
 }
 
 /// The command, or which part of it cannot be typed. An empty `user` is left out.

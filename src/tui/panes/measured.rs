@@ -4,7 +4,7 @@ use super::{shortened, write};
 use crate::lab::Lab;
 use crate::lab::measured::{Beside, Sum};
 use crate::measured::Quantity;
-use crate::text::number::short;
+use crate::text::number::{short, shortest};
 use crate::text::printable::printable;
 use crate::text::wrap::columns;
 use crate::tui::theme::Role;
@@ -30,7 +30,8 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         true => " residuals: ",
         false => " measured: ",
     };
-    let counts = counted(beside, sum);
+    let end_s = lab.player().playback().end_s();
+    let counts = counted(beside, sum, end_s);
     let parts = [parts(sum, false), parts(sum, true)];
     let name = file_name(beside.name());
     let length = |counts: &str, parts: &[String]| {
@@ -83,10 +84,24 @@ fn points(count: usize) -> String {
 }
 
 /// What was measured, how many values there are, and how many of them the run has reached: at length and in short.
-fn counted(beside: &Beside, sum: &Sum) -> [String; 2] {
+/// Where data go on after `end_s`, the end of the run, it says so, and the key that plays the run up to there.
+fn counted(beside: &Beside, sum: &Sum, end_s: f64) -> [String; 2] {
     let names: Vec<_> = beside.quantities().map(Quantity::words).collect();
     let (names, all) = (names.join(", "), points(sum.points));
+    let last_s = beside.last_s().filter(|&last_s| last_s > end_s);
     match sum.compared {
+        reached
+            if let Some(last_s) = last_s
+                && reached < sum.points =>
+        {
+            let last_s = shortest(last_s);
+            [
+                format!(
+                    "({names}: {reached} of {all}, they go on after the run: g and {last_s} s play it to there)"
+                ),
+                format!("({reached} of {all}: g, {last_s} s)"),
+            ]
+        }
         0 => [format!("({names}: {all})"), format!("({all})")],
         reached if reached == sum.points => [format!("({names}: {all})"), format!("({all})")],
         reached => [

@@ -42,8 +42,9 @@ const STRIP: u16 = 2;
 const ALL: f64 = 0.999;
 /// What marks the strip that shows less time than the others.
 const ZOOM: &str = "zoom";
-/// What it says while that strip stands still, because its time would pass before anyone had seen it.
-const STILL: &str = "still";
+/// What it says while that strip is drawn anew once a second only, because its time would pass before anyone had seen it:
+/// the longest that fits.
+const HELD: [&str; 3] = ["zoom, held for a second each", "zoom, held", "held"];
 /// What follows the name of what was measured where it is shown less what the run says.
 const LESS_RUN: &str = " less run";
 /// Columns of a strip's name beside it.
@@ -208,7 +209,7 @@ impl Traces<'_> {
         let is_detail = self.is_detail(&group.strip);
         let quiet = self.view.theme.style(Role::Quiet);
         let further = match (is_detail, self.detail.is_snapshot) {
-            (true, true) => [unit, ZOOM, STILL],
+            (true, true) => [unit, ZOOM, HELD[2]],
             (true, false) => [unit, ZOOM, ""],
             (false, _) if self.is_residual(content, is_detail) => [unit, "less", "run"],
             (false, _) => [unit, "", ""],
@@ -263,7 +264,7 @@ impl Traces<'_> {
                 let zoom = match (is_detail, self.detail.is_snapshot) {
                     (false, _) => [""; 3],
                     (true, false) => [ZOOM; 3],
-                    (true, true) => ["zoom, stands still", "zoom, still", STILL],
+                    (true, true) => HELD,
                 };
                 let fits = |zoom: &&str| range.chars().count() + zoom.len() < room;
                 let zoom = zoom.into_iter().find(fits).unwrap_or_default();

@@ -6,7 +6,7 @@ use crate::analysis::theory::{Axis, Path};
 use crate::observe::reading::Reading;
 use crate::physics::{Body, Friction};
 use crate::scenario::{Motion, Scenario, Window};
-use crate::text::number::{NONE, exponent, fixed as decimals_of, shortest};
+use crate::text::number::{NONE, exponent, fixed as decimals_of, shortest, without_minus_zero};
 use crate::tui::theme::Role;
 use std::borrow::Cow;
 
@@ -302,7 +302,8 @@ fn measured(
 /// `number` beside `label` with `digits` decimals, or fewer; a dash where there is none.
 fn fixed(label: &str, number: Option<f64>, digits: usize) -> String {
     number.map_or("-".to_owned(), |number| {
-        fitted(label, digits, |digits| format!("{number:.digits$}"), number)
+        let decimals = |digits| without_minus_zero(format!("{number:.digits$}"));
+        fitted(label, digits, decimals, number)
     })
 }
 
@@ -344,6 +345,7 @@ mod tests {
         assert_eq!(fixed("precession", Some(-171.185), 3), "-171.2");
         assert_eq!(fixed("nutation", Some(0.80972), 5), "0.80972");
         assert_eq!(fixed("nutation", None, 5), "-");
+        assert_eq!(fixed("z from", Some(-1e-9), 4), "0.0000");
         assert_eq!(signed("E drift", 9493.8434, 4), "+9493.843");
         assert_eq!(fixed("precession", Some(-1.2345e12), 3), "-1e12");
         assert_eq!(fixed("precession", Some(1.2345e12), 3), "1.2e12");
