@@ -31,7 +31,7 @@ pub(super) fn lab(
     let view = View::new(&scenario, marker(markers), theme, &panes::IDS);
     let mut lab = Lab::new(name, scenario, view, running);
     if let Some(file) = file {
-        lab.set_file(Arc::new(file));
+        lab.set_file(&Arc::new(file));
     }
     Ok(lab)
 }

@@ -130,7 +130,7 @@ impl Lab {
 
     /// Makes `file` the scenario as the user opened it. Where the run differs from it, the lab says so instead of showing
     /// the file's line about what there is to see.
-    pub fn set_file(&mut self, file: Arc<Scenario>) {
+    pub fn set_file(&mut self, file: &Arc<Scenario>) {
         self.work.set_file(file);
         self.work.compare_with_file(self.player.run().scenario());
     }

@@ -59,13 +59,13 @@ pub(super) enum Turned {
 impl Work {
     /// The history of a run of `scenario`, opened as `name`, to which nothing was done yet.
     pub(super) fn new(name: &str, scenario: &Arc<Scenario>) -> Self {
-        Self::resumed(History::new(name, scenario), Arc::clone(scenario))
+        Self::resumed(History::new(name, scenario), scenario)
     }
 
     /// A history from a session; the present run was opened from `file`.
-    pub(super) fn resumed(history: History, file: Arc<Scenario>) -> Self {
+    pub(super) fn resumed(history: History, file: &Arc<Scenario>) -> Self {
         Self {
-            original: Original::of(&history.present().name, &file),
+            original: Original::of(&history.present().name, file),
             history,
             changed_from_file: None,
             kept: None,
@@ -94,8 +94,8 @@ impl Work {
     }
 
     /// Makes `file` the scenario as the user opened it.
-    pub(super) fn set_file(&mut self, file: Arc<Scenario>) {
-        self.original = Original::of(self.name(), &file);
+    pub(super) fn set_file(&mut self, file: &Arc<Scenario>) {
+        self.original = Original::of(self.name(), file);
     }
 
     /// `scenario`, the present run's, as it is to be written to a file: what its words say of another motion is marked.

@@ -400,3 +400,16 @@ fn the_legend_counts_the_points_that_the_figure_has() {
     let more = "t_s,x_m\n1,0.5\n2,0.4\n3,0.4\n";
     assert_ne!(paths("x_m", data), paths("x_m", more), "3 points");
 }
+
+#[test]
+fn data_after_the_end_of_the_run_are_told_with_what_plays_it_to_there() {
+    let mut stage = Stage::open("heidelberg", &[], SMALL);
+    stage.commands("measured = 'heidelberg-spin-decay'");
+    stage.commands("go_to = 'end'").wait(1.0);
+    stage.shows("(1 of 7 points: g, 720 s)");
+    let longer = ["motion.time_step_s=1", "motion.steps=750"];
+    let mut stage = Stage::open("heidelberg", &longer, SMALL);
+    stage.commands("measured = 'heidelberg-spin-decay'");
+    stage.commands("go_to = 'end'").wait(1.0);
+    stage.shows_no("g, 720 s");
+}

@@ -93,6 +93,7 @@ fn exported(lab: &mut Terminal, name: &str) -> Vec<u8> {
     lab.ask("x", "export steps 0 to");
     answer(lab, name);
     lab.wait_for("wrote ");
+    assert!(!lab.screen().contains("scp "), "not over SSH");
     fs::read(lab.ground().file(name)).unwrap()
 }
 

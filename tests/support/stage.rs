@@ -42,7 +42,7 @@ impl Stage {
         let numbers = Arc::new(preset(scenario, set));
         let view = view(&numbers, Marker::Braille, true);
         let mut lab = Lab::new(scenario, numbers, view, true);
-        lab.set_file(Arc::new(preset(scenario, &[])));
+        lab.set_file(&Arc::new(preset(scenario, &[])));
         let folder = tempfile::tempdir().unwrap();
         lab.files_mut().work_in(folder.path());
         screen::fit(&mut lab, size);

@@ -55,7 +55,7 @@ impl Lab {
         }
         let file = lab.file_as_opened();
         let pinned = work.pinned.take().map(KeptPinned::reference);
-        lab.work = Work::resumed(work.history, file);
+        lab.work = Work::resumed(work.history, &file);
         lab.values.set_next_push(place.next_push);
         lab.values.suit(lab.player.run().scenario());
         lab.player.playback.set_end(lab.work.present().end_s);

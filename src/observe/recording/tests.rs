@@ -54,7 +54,7 @@ proptest! {
             prop_assert!(parts.is_empty() || is_inside(block));
         }
         prop_assert_eq!(rest.count(), 0);
-        let moments = |blocks: &[Block]| blocks.iter().map(|block| block.moments()).sum::<u64>();
+        let moments = |blocks: &[Block]| blocks.iter().map(Block::moments).sum::<u64>();
         prop_assert_eq!(moments(&single), moments(&joined));
         // The first and the last of every column are the same, so that lines from column to column are.
         for pair in joined.windows(2).filter(|pair| column(pair[0].end_s) != column(pair[1].begin_s)) {
