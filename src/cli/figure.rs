@@ -111,7 +111,7 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     if interruption.may_act_at_once() {
         return Ok(ExitCode::from(INTERRUPTED));
     }
-    for warning in &figure.warnings {
+    for warning in figure.told() {
         tell(format_args!("gyrolab: {warning}"));
     }
     let mm = |pt: f64| (pt / PT_PER_MM).round();
@@ -235,6 +235,7 @@ fn drawn(
             return Ok(Some(Figure {
                 scene: chart.scene(),
                 warnings: of_table::warnings(table, &columns),
+                dense: None,
                 broke: None,
             }));
         }

@@ -7,6 +7,40 @@ use super::page::scene::Point;
 use super::request::{Drawn, Request};
 use crate::text::ladder;
 use crate::text::number::{shortest, significant};
+use std::fmt;
+
+/// What covers the paper so densely that nothing of it is told apart, and a stretch of time in which it does not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dense {
+    /// What does, in words: "about 1200 swings".
+    pub what: String,
+    /// The width of the page, mm.
+    pub width_mm: f64,
+    /// The begin of the stretch, s.
+    pub from_s: f64,
+    /// Its end, s.
+    pub to_s: f64,
+}
+
+impl Dense {
+    /// The stretch as options of the command line.
+    pub fn options(&self) -> String {
+        let (from_s, to_s) = (shortest(self.from_s), significant(self.to_s, 9));
+        format!("--from {from_s} --to {to_s}")
+    }
+}
+
+impl fmt::Display for Dense {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "on {} mm {} cover the paper: the figure is solid black; {} shows a part of it",
+            self.width_mm,
+            self.what,
+            self.options()
+        )
+    }
+}
 
 /// Parts of a panel's width that are looked at, pt.
 const PART_PT: f64 = 1.0;
@@ -17,13 +51,13 @@ const MOST: f64 = 0.5;
 /// Swings that a proposed stretch shows.
 const SWINGS: f64 = 20.0;
 
-/// What is said of a chart of which a curve is solid black; `drawn` are the runs of its curves, of which `first` is its first.
+/// Whether a curve of a chart is solid black; `drawn` are the runs of its curves, of which `first` is its first.
 pub(super) fn warning(
     chart: &Chart,
     drawn: &[Drawn],
     first: usize,
     request: &Request,
-) -> Option<String> {
+) -> Option<Dense> {
     let layout = Layout::new(chart, 0.0);
     let panels = chart.panels.iter().zip(&layout.panels).enumerate();
     let mut all = panels.flat_map(|(place, (panel, placed))| {
@@ -60,7 +94,7 @@ pub(super) fn warning(
         begin_s,
         window_s,
         request,
-        &format!("about {} swings", turns / 2),
+        format!("about {} swings", turns / 2),
     ))
 }
 
@@ -72,7 +106,7 @@ const LINE_PT: f64 = 0.9;
 const LOOSE: f64 = 0.3;
 
 /// As [`warning`], of a path whose points stand at `places` on the page, in the order of time up to `end_s`.
-pub(super) fn path_warning(places: &[Point], end_s: f64, request: &Request) -> Option<String> {
+pub(super) fn path_warning(places: &[Point], end_s: f64, request: &Request) -> Option<Dense> {
     if places.len() < 2000 {
         return None;
     }
@@ -105,7 +139,12 @@ pub(super) fn path_warning(places: &[Point], end_s: f64, request: &Request) -> O
     let area = inked as f64 * PLACE_PT * PLACE_PT;
     let share = (LOOSE * area / (length_pt * LINE_PT)).min(0.5);
     let window_s = share * (end_s - request.from_s);
-    Some(proposal(request.from_s, window_s, request, "its turns"))
+    Some(proposal(
+        request.from_s,
+        window_s,
+        request,
+        "its turns".to_owned(),
+    ))
 }
 
 /// How many of the places with ink have ink all around, as far as `INSIDE`.
@@ -133,12 +172,11 @@ fn deep_inside(ink: &[bool], columns: usize) -> usize {
     count
 }
 
-fn proposal(begin_s: f64, window_s: f64, request: &Request, what: &str) -> String {
-    let window_s = ladder::at_or_below(window_s);
-    let to_s = significant(begin_s + window_s, 9);
-    let width_mm = (request.width_pt / super::PT_PER_MM).round();
-    format!(
-        "on {width_mm} mm {what} cover the paper: the figure is solid black; --from {} --to {to_s} shows a part of it",
-        shortest(begin_s)
-    )
+fn proposal(from_s: f64, window_s: f64, request: &Request, what: String) -> Dense {
+    Dense {
+        what,
+        width_mm: (request.width_pt / super::PT_PER_MM).round(),
+        from_s,
+        to_s: from_s + ladder::at_or_below(window_s),
+    }
 }

@@ -84,6 +84,19 @@ impl Kind {
         }
     }
 
+    /// Its name on the command line.
+    pub fn name(&self) -> String {
+        match self {
+            Self::OverTime(columns) => {
+                let names: Vec<_> = columns.iter().map(|column| column.name()).collect();
+                names.join(",")
+            }
+            Self::Above => ABOVE.to_owned(),
+            Self::ThreeD => THREE_D.to_owned(),
+            Self::Residuals => RESIDUALS.to_owned(),
+        }
+    }
+
     /// What was measured in `series`, over time.
     pub fn measured(series: &Series) -> Self {
         let names = series.curves.iter().map(|curve| curve.quantity.name);

@@ -1,13 +1,14 @@
 //! What was measured, drawn with runs: points with error bars over time and from above, and their residuals.
 
 use super::chart::legend::longest_name;
-use super::chart::{Axis, Chart, Panel, Series, Style};
+use super::chart::{Axis, Chart, Errors, Panel, Series, Style};
 use super::kind::Plotted;
 use super::of_runs::charts::both_ranges;
 use super::page::ink::LABEL_PT;
 use super::page::letters;
 use super::quantity;
 use super::request::{Figure, Known, Request, Run};
+use super::size;
 use crate::measured::{self, Curve, Measured, Point, at_times, places, residuals as held_against};
 use crate::run::Clock;
 use crate::scenario::Scenario;
@@ -114,7 +115,7 @@ pub(super) fn above(
     };
     if let [panel] = &mut chart.panels[..] {
         panel.series.push(added);
-        let (x, y) = both_ranges(&panel.series, &panel.circles);
+        let (x, y) = both_ranges(&panel.series, &panel.circles, size::of(runs, "x_m"));
         (chart.x.range, panel.y.range) = (Some(x), Some(y));
     }
     Ok(None)
@@ -171,7 +172,7 @@ pub(super) fn residuals(
     let range = (request.from_s - margin_s, end_s + margin_s);
     let zero = || Series {
         points: vec![[range.0, 0.0], [range.1, 0.0]],
-        style: Style::theory(0),
+        style: Style::theory(0, 0),
         ..Series::default()
     };
     let panel = |curve: &Curve| Panel {
@@ -227,10 +228,12 @@ pub(super) fn residuals(
         },
         panels,
         is_true_to_scale: false,
+        errors: Errors::OfData,
     };
     Ok(Some(Figure {
         scene: chart.scene(),
         warnings: Vec::new(),
+        dense: None,
         broke: None,
     }))
 }

@@ -20,6 +20,7 @@ pub mod over_time;
 pub mod page;
 pub mod quantity;
 mod request;
+mod size;
 mod space;
 pub mod table;
 

@@ -13,12 +13,15 @@ use super::page::letters;
 use super::request::Drawn;
 pub use super::request::{Figure, Known, Request, Run};
 use super::space;
+use crate::scenario::Scenario;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// The runs of a figure with their numbers.
 struct Played {
     drawn: Vec<Drawn>,
+    /// What is said of all figures of them.
+    warnings: Vec<String>,
     broke: Option<String>,
 }
 
@@ -110,7 +113,10 @@ fn play(
             course,
         });
     }
+    let mut warnings = Vec::new();
     if request.exact {
+        let is_exact = |run: &Run| is_exact(&run.scenario);
+        warnings.extend(runs.iter().any(is_exact).then(|| IS_EXACT.to_owned()));
         for (run, name) in truths(runs, longest_name(request.width_pt)) {
             let Some(course) = course::exact(&run.scenario, &wanted, &mut watch) else {
                 return Ok(None);
@@ -132,7 +138,11 @@ fn play(
             None => "there is no step of the run in that stretch of time".to_owned(),
         });
     }
-    Ok(Some(Played { drawn, broke }))
+    Ok(Some(Played {
+        drawn,
+        warnings,
+        broke,
+    }))
 }
 
 /// The figure that `request` asks for; `curve` is the number of the first of its curves among those that were played.
@@ -147,26 +157,27 @@ fn draw(
     curve: usize,
 ) -> Result<Figure, String> {
     let (title, drawn) = (title(runs), &played.drawn);
-    let mut warnings = Vec::new();
+    let mut warnings = played.warnings.clone();
+    let dense;
     let scene = match &request.kind {
         Kind::OverTime(columns) => {
-            let mut chart = charts::over_time(title, columns, drawn, curve, request);
+            let mut chart = charts::over_time(title, runs, columns, drawn, curve, request);
             warnings.extend(measured::over_time(
                 &mut chart, columns, runs, request, known,
             )?);
             warnings.extend(measured::beyond_runs(runs, request));
-            warnings.extend(dense::warning(&chart, drawn, curve, request));
+            dense = dense::warning(&chart, drawn, curve, request);
             chart.scene()
         }
         Kind::Above => {
             let mut chart = charts::above(title, runs, drawn, request);
             warnings.extend(measured::above(&mut chart, runs, request)?);
-            warnings.extend(charts::path_warning(&chart, drawn, request));
+            dense = charts::path_warning(&chart, drawn, request);
             chart.scene()
         }
         Kind::ThreeD | Kind::Residuals => {
-            let (scene, warning) = space::scene(&title, runs, drawn, request);
-            warnings.extend(warning);
+            let scene;
+            (scene, dense) = space::scene(&title, runs, drawn, request);
             warnings.extend(measured::in_space(request));
             scene
         }
@@ -174,6 +185,7 @@ fn draw(
     Ok(Figure {
         scene,
         warnings,
+        dense,
         broke: played.broke.clone(),
     })
 }
@@ -234,27 +246,44 @@ fn title(runs: &[Run]) -> String {
     titles.join("; ")
 }
 
-/// The runs whose exact motions differ, each with the name of that motion.
+/// Whether every step of `scenario` is the exact motion's.
+pub(crate) fn is_exact(scenario: &Scenario) -> bool {
+    let edited = scenario.edits.iter().map(|edit| &edit.motion);
+    let mut motions = edited.chain([&scenario.motion]);
+    motions.all(|motion| motion.scheme.order.is_none())
+}
+
+/// What is said of a run that is no less exact than what is drawn beside it.
+const IS_EXACT: &str =
+    "the scheme exact gives the exact motion itself: no second curve of it is drawn";
+
+/// The runs whose exact motions differ and are drawn by none of `runs`, each with the name of that motion.
 fn truths(runs: &[Run], room_pt: f64) -> Vec<(&Run, String)> {
+    let motion = |run: &Run| {
+        let mut file = run.scenario.file.clone();
+        (
+            file.motion.scheme,
+            file.motion.time_step_s,
+            file.motion.steps,
+        ) = (None, 0.0, 0);
+        (file.title, file.about, file.source) = (String::new(), None, None);
+        (file.view, file.gyrolab) = (None, None);
+        file.expected.clear();
+        file
+    };
     let mut distinct: Vec<&Run> = Vec::new();
     for run in runs {
-        let motion = |run: &Run| {
-            let mut file = run.scenario.file.clone();
-            (
-                file.motion.scheme,
-                file.motion.time_step_s,
-                file.motion.steps,
-            ) = (None, 0.0, 0);
-            (file.title, file.about, file.source) = (String::new(), None, None);
-            (file.view, file.gyrolab) = (None, None);
-            file.expected.clear();
-            file
-        };
         if distinct.iter().all(|other| motion(other) != motion(run)) {
             distinct.push(run);
         }
     }
-    let name = |run: &Run| match distinct.len() {
+    let is_drawn = |run: &&Run| {
+        let mut exact = runs.iter().filter(|other| is_exact(&other.scenario));
+        exact.any(|other| motion(other) == motion(run))
+    };
+    let count = distinct.len();
+    distinct.retain(|run| !is_drawn(run));
+    let name = |run: &Run| match count {
         1 => "exact".to_owned(),
         _ => {
             let title = format!("{}, exact", run.scenario.file.title);

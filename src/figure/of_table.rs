@@ -5,7 +5,9 @@ mod comparison;
 mod fit;
 mod sweep;
 
-use super::chart::Chart;
+use super::chart::{Chart, Errors};
+use super::page::ink::{self, LABEL_PT};
+use super::page::letters;
 use super::table::{Subject, Table};
 use crate::scenario::problem;
 
@@ -42,13 +44,17 @@ pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, St
         x,
         panels,
         is_true_to_scale: false,
+        errors: match &table.subject {
+            Subject::Sweep { .. } => Errors::OfReading,
+            Subject::Comparison | Subject::Fit { .. } => Errors::OfData,
+        },
     })
 }
 
 /// What the reader of that chart should know of it, each a sentence without its end.
 pub fn warnings(table: &Table, columns: &[&str]) -> Vec<String> {
     match &table.subject {
-        Subject::Sweep { .. } => sweep::gaps(table, columns),
+        Subject::Sweep { varied } => sweep::gaps(table, columns, varied),
         Subject::Comparison | Subject::Fit { .. } => Vec::new(),
     }
 }
@@ -57,6 +63,14 @@ fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, String> {
     table
         .numbers(name)
         .ok_or_else(|| format!("{name}: its values are no numbers, and cannot be drawn"))
+}
+
+/// `markup`, or where it is longer than `room_pt` `plain`, which is cut where that is too long as well.
+fn within_room(markup: String, plain: &str, room_pt: f64) -> String {
+    match ink::width(&markup, LABEL_PT) <= room_pt {
+        true => markup,
+        false => letters::shortened(plain, LABEL_PT, room_pt),
+    }
 }
 
 /// The rows of each text, in the order in which the texts come first.

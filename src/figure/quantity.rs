@@ -27,6 +27,15 @@ pub fn axis(name: &str) -> Axis {
 /// The axis of a dotted key: the value at the start, where it is that of a readout.
 fn of_key(key: &str) -> Axis {
     let last = key.rsplit('.').next().unwrap_or(key);
+    if let Some(part) = key.strip_prefix("start.momentum_Js.") {
+        let readout = match part {
+            "0" => "Lx_Js",
+            "1" => "Ly_Js",
+            _ => "Lz_Js",
+        };
+        let own = axis(readout);
+        return Axis::new(at_start(&own.name), own.unit);
+    }
     let readout = readouts::find(last).filter(|readout| !readout.symbol.is_empty());
     if let Some(readout) = readout {
         let symbol = match key.starts_with("start.") {
@@ -138,10 +147,7 @@ mod tests {
         );
         assert_eq!(written("start.tilt_deg"), pair("*θ*_{0}", "°"));
         assert_eq!(written("motion.time_step_s"), pair("Δ*t*", "s"));
-        assert_eq!(
-            written("start.momentum_Js.2"),
-            pair("start momentum *z*", "J s")
-        );
+        assert_eq!(written("start.momentum_Js.2"), pair("*L*_{*z*,0}", "J s"));
         assert_eq!(
             written("motion.gravity_m_per_s2"),
             pair("gravity", "m s^{−2}")

@@ -10,12 +10,14 @@ use super::chart::curve;
 use super::chart::layout::EDGE;
 use super::chart::legend::Legend;
 use super::chart::ticks::{Tick, Ticks};
-use super::dense;
+use super::dense::{self, Dense};
 use super::page::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
 use super::page::scene::{Color, Pen, Point, Scene};
 use super::quantity;
 use super::request::{Drawn, Request, Run};
+use super::size;
 use crate::observe::camera::{Camera, View};
+use crate::text::number::significant;
 use nalgebra::Vector3;
 
 /// Height of the box, of the length of its sides.
@@ -30,6 +32,9 @@ const TICK_GAP: f64 = 2.2;
 /// Between labels and title, pt.
 const TITLE_GAP: f64 = 3.0;
 
+/// z is said to be stretched from this factor on.
+const SEEN: f64 = 1.1;
+
 /// Ways around the box.
 const SIDES: [f64; 2] = [-0.5, 0.5];
 
@@ -42,23 +47,23 @@ struct Space {
     side_pt: f64,
 }
 
-/// The figure of paths in space, and what is said of it where one of them is solid black.
+/// The figure of paths in space, and whether one of them is solid black.
 pub(super) fn scene(
     title: &str,
     runs: &[Run],
     drawn: &[Drawn],
     request: &Request,
-) -> (Scene, Option<String>) {
+) -> (Scene, Option<Dense>) {
     let width_pt = request.width_pt;
     let mut space = Space {
         view: camera(runs).view(),
-        ranges: ranges(drawn),
+        ranges: ranges(drawn, size::of(runs, "z_m")),
         side_pt: 0.5 * width_pt,
     };
     let series = drawn
         .iter()
         .map(|drawn| (drawn.name.as_str(), &drawn.style));
-    let legend = Legend::new(series, None);
+    let legend = Legend::new(series, space.stretched().as_deref());
     // The labels do not grow with the box: the room that is left over tells how much larger it may be. All paths are in it.
     for _ in 0..4 {
         let (left, _, right, _) = extent(&space.draw(&[]));
@@ -79,12 +84,12 @@ pub(super) fn scene(
     items.width_pt = width_pt;
     items.height_pt = above + bottom - top + EDGE;
     legend.draw_above(width_pt, EDGE, &mut items);
-    let warning = drawn.iter().find_map(|drawn| {
+    let dense = drawn.iter().find_map(|drawn| {
         let path = drawn.course.path.iter();
         let places: Vec<_> = path.map(|at| space.place(&space.boxed(at))).collect();
         dense::path_warning(&places, drawn.course.end_s, request)
     });
-    (items, warning)
+    (items, dense)
 }
 
 /// The direction that the first run's file asks for, or the usual one; never so low or so high that a side of the box vanishes.
@@ -98,10 +103,14 @@ fn camera(runs: &[Run]) -> Camera {
     }
 }
 
-fn ranges(drawn: &[Drawn]) -> [(f64, f64); 3] {
+fn ranges(drawn: &[Drawn], size: f64) -> [(f64, f64); 3] {
     let range = |index: usize| {
         let values = drawn.iter().flat_map(|drawn| drawn.course.path.iter());
-        Axis::default().range_of(values.map(|point| point[index]))
+        let axis = Axis {
+            size,
+            ..Axis::default()
+        };
+        axis.range_of(values.map(|point| point[index]))
     };
     let [x, y, z] = [0, 1, 2].map(range);
     let half = 0.5 * (x.1 - x.0).max(y.1 - y.0);
@@ -124,6 +133,17 @@ fn extent(scene: &Scene) -> (f64, f64, f64, f64) {
 }
 
 impl Space {
+    /// How much longer z is drawn than x and y, where that is to be seen, as markup.
+    fn stretched(&self) -> Option<String> {
+        let [x, _, z] = self.ranges.map(|(low, high)| high - low);
+        let factor = TALL * x / z;
+        if factor >= SEEN {
+            return Some(format!("*z* stretched {}-fold", significant(factor, 2)));
+        }
+        let is_shorter = factor.recip() >= SEEN;
+        is_shorter.then(|| format!("*z* shortened to {} of its length", significant(factor, 2)))
+    }
+
     /// A place in the box: from −1/2 to 1/2 along each side, but for its height.
     fn boxed(&self, point: &[f64; 3]) -> Vector3<f64> {
         let share = |index: usize| {

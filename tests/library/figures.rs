@@ -1,7 +1,7 @@
 //! Figures of runs and of tables: what stands on the page, and where.
 
 use crate::support::scenarios::preset;
-use gyrolab::figure::chart::{Axis, Chart, Panel, Series, Style};
+use gyrolab::figure::chart::{Axis, Chart, Errors, Panel, Series, Style};
 use gyrolab::figure::course::{Recorded, Recorder, Wanted};
 use gyrolab::figure::kind::Kind;
 use gyrolab::figure::of_runs::{self, Figure, Known, Request, Run};
@@ -51,7 +51,7 @@ fn refusal(runs: &[Run], request: &Request) -> String {
     of_runs::figure(runs, request, |_, _| ControlFlow::Continue(())).unwrap_err()
 }
 
-fn words(scene: &Scene) -> Vec<&str> {
+pub(crate) fn words(scene: &Scene) -> Vec<&str> {
     scene
         .items
         .iter()
@@ -60,7 +60,7 @@ fn words(scene: &Scene) -> Vec<&str> {
 }
 
 #[track_caller]
-fn says(scene: &Scene, wanted: &[&str]) {
+pub(crate) fn says(scene: &Scene, wanted: &[&str]) {
     let words = words(scene);
     for wanted in wanted {
         assert!(words.contains(wanted), "{wanted} is not among {words:?}");
@@ -93,7 +93,7 @@ fn extent(item: &Item) -> [f64; 4] {
 }
 
 /// Nothing leaves the page, and no two words stand upon each other.
-fn is_tidy(scene: &Scene) -> Result<(), String> {
+pub(crate) fn is_tidy(scene: &Scene) -> Result<(), String> {
     let mut texts: Vec<(&str, [f64; 4])> = Vec::new();
     for item in &scene.items {
         let here = extent(item);
@@ -285,6 +285,43 @@ fn the_exact_motion_is_dashed_and_named() {
 }
 
 #[test]
+fn a_run_of_the_exact_motion_is_not_drawn_twice() {
+    let exact = run("cusps", &["motion.scheme=\"exact\""]);
+    let asked = Request {
+        exact: true,
+        ..request("tilt_deg")
+    };
+    let figure = drawn(std::slice::from_ref(&exact), &asked);
+    assert_eq!(dashed(&figure.scene), 0);
+    says(&figure.scene, &["exact"]);
+    let told: Vec<_> = figure.told().collect();
+    assert!(
+        told.len() == 1 && told[0].contains("exact motion itself"),
+        "{told:?}"
+    );
+    // Beside another scheme it is the exact motion of both, and has its own curve.
+    let figure = drawn(&[run("cusps", &[]), exact], &asked);
+    assert_eq!(lines(&figure.scene, panels(&figure.scene)[0]).len(), 2);
+}
+
+#[test]
+fn z_says_in_space_how_far_it_is_stretched() {
+    let stretched = |preset: &str| {
+        let figure = drawn(&[run(preset, &[])], &request("3d"));
+        is_tidy(&figure.scene).unwrap();
+        let words: Vec<_> = words(&figure.scene)
+            .into_iter()
+            .map(str::to_owned)
+            .collect();
+        words
+            .into_iter()
+            .find(|words| words.starts_with("z stretched"))
+    };
+    assert_eq!(stretched("cusps").as_deref(), Some("z stretched 13-fold"));
+    assert!(stretched("fast-top").is_some());
+}
+
+#[test]
 fn runs_beside_each_other_are_named_by_what_differs() {
     let figure = |runs: &[Run]| drawn(runs, &request("z_m")).scene;
     let scheme = |name: &str| {
@@ -381,6 +418,28 @@ fn a_constant_curve_has_an_axis_with_room() {
     assert!(words(&figure.scene).len() > 6);
 }
 
+/// The axle of this wheel lies level: of z there is nothing but the rounding of a zero.
+#[test]
+fn rounding_is_drawn_as_a_flat_line() {
+    let runs = [run("heidelberg", &["motion.steps=2000"])];
+    for kind in ["z_m", "traces", "3d"] {
+        let figure = drawn(&runs, &request(kind));
+        assert_eq!(figure.told().next(), None, "{kind}");
+        says(&figure.scene, &["z (m)"]);
+        let [.., last] = panels(&figure.scene)[..] else {
+            assert_eq!(kind, "3d");
+            continue;
+        };
+        for line in lines(&figure.scene, last) {
+            let [_, top, _, bottom] = extent(line);
+            assert!(bottom - top < 1e-6, "{kind}: {top} {bottom}");
+        }
+    }
+    let upright = [run("heidelberg", &["start.tilt_deg=0", "motion.steps=200"])];
+    let figure = drawn(&upright, &request("above"));
+    says(&figure.scene, &["x (m)", "y (m)"]);
+}
+
 #[test]
 fn a_black_figure_proposes_a_stretch_that_is_not() {
     for (name, kind) in [
@@ -391,7 +450,7 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
     ] {
         let runs = [run(name, &[])];
         let figure = drawn(&runs, &request(kind));
-        let [warning] = &figure.warnings[..] else {
+        let [warning] = &figure.told().collect::<Vec<_>>()[..] else {
             panic!("{name} {kind}: {:?}", figure.warnings)
         };
         assert!(warning.contains("solid black"), "{warning}");
@@ -401,7 +460,7 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
             to_s: Some(to_s),
             ..request(kind)
         };
-        assert_eq!(drawn(&runs, &part).warnings, [""; 0], "{name} {kind}");
+        assert_eq!(drawn(&runs, &part).told().next(), None, "{name} {kind}");
     }
     for (name, kind) in [
         ("wobble-push", "traces"),
@@ -410,7 +469,7 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
         ("cusps", "3d"),
     ] {
         let figure = drawn(&[run(name, &[])], &request(kind));
-        assert_eq!(figure.warnings, [""; 0], "{name} {kind}");
+        assert_eq!(figure.told().next(), None, "{name} {kind}");
     }
 }
 
@@ -547,14 +606,14 @@ fn a_watcher_can_stop_it() {
     assert!(figure.is_ok_and(|figure| figure.is_none()));
 }
 
-fn table(text: &str) -> Table {
+pub(crate) fn table(text: &str) -> Table {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("table.csv");
     fs::write(&file, text).unwrap();
     Table::read(&file).unwrap().unwrap()
 }
 
-const COMPARISON: &str = "\
+pub(crate) const COMPARISON: &str = "\
 # title = \"Cusps\"
 scheme,time_step_s,steps,error_m,error_at_end_m,order,energy_drift
 rk4,0.1,10,1e-1,1e-1,n/a,1e-3
@@ -588,57 +647,6 @@ fn a_comparison_shows_its_slope() {
     says(&other.scene(), &["energy drift"]);
     let wrong = of_table::chart(&table(COMPARISON), &["eror_m"], COLUMN_PT).unwrap_err();
     assert!(wrong.contains("error_m"), "{wrong}");
-}
-
-#[test]
-fn a_line_of_theory_with_gaps_says_where_they_are_explained() {
-    let gappy = SWEEP.replace("30,,,0.87,", "30,,,,");
-    let told = of_table::warnings(&table(&gappy), &[]);
-    assert_eq!(
-        told,
-        [
-            "the line of predicted_precession_rad_per_s has gaps: in 1 of 4 rows theory states no value, for a reason that gyrolab man numbers gives"
-        ]
-    );
-    let measured = ["measured_precession_rad_per_s"];
-    assert!(of_table::warnings(&table(&gappy), &measured).is_empty());
-    assert!(of_table::warnings(&table(SWEEP), &[]).is_empty());
-    assert!(of_table::warnings(&table(COMPARISON), &[]).is_empty());
-}
-
-const SWEEP: &str = "\
-# scenario = \"cusps\"
-# measure = [\"measured_precession_rad_per_s\"]
-# [[vary]]
-# key = \"start.tilt_deg\"
-# values = [10, 20, 30, 40]
-start.tilt_deg,measured_precession_rad_per_s,measured_precession_uncertainty_rad_per_s,predicted_precession_rad_per_s,path
-10,0.90,0.01,0.91,cusps
-20,0.88,0.02,0.89,cusps
-30,,,0.87,
-40,0.84,0.000001,0.84,cusps
-";
-
-#[test]
-fn a_sweep_shows_measured_points_with_bars_on_the_predicted_line() {
-    let chart = of_table::chart(&table(SWEEP), &[], COLUMN_PT).unwrap();
-    let [panel] = &chart.panels[..] else {
-        panic!("{chart:?}")
-    };
-    assert_eq!(panel.series.len(), 2);
-    assert!(panel.series[0].style.mark.is_none() && panel.series[1].style.width_pt == 0.0);
-    assert_eq!(panel.series[1].errors[..2], [0.01, 0.02]);
-    let scene = chart.scene();
-    is_tidy(&scene).unwrap();
-    says(
-        &scene,
-        &[
-            "predicted",
-            "measured",
-            "errors smaller than marks",
-            "θ₀ (°)",
-        ],
-    );
 }
 
 #[test]
@@ -699,6 +707,7 @@ proptest! {
             x: Axis { is_log: logs.0, ..Axis::new("*t*", "s") },
             panels: vec![Panel { y: Axis { is_log: logs.1, ..Axis::new("*x*", "m") }, series: series.collect(), slope, ..Panel::default() }],
             is_true_to_scale: false,
+            errors: Errors::OfReading,
         };
         let scene = chart.scene();
         if let Err(why) = is_tidy(&scene) {

@@ -47,6 +47,7 @@ mod small_screens;
 mod start;
 mod step_pane;
 mod sweep;
+mod sweep_figures;
 mod textbook;
 mod theory;
 mod truth;

@@ -22,6 +22,7 @@ fn sentence(health: &Health, advice: Option<&Advice>) -> String {
     if health.arm_m == 0.0 {
         return "Nothing can be said: the traced point is the pivot, which stands still in every run.".to_owned();
     }
+    let is_exact = health.scheme.order.is_none() && most == 0.0;
     let far = format!(
         "{} m ({} % of its arm)",
         short(most),
@@ -40,6 +41,9 @@ fn sentence(health: &Health, advice: Option<&Advice>) -> String {
             ),
         };
         return match lost_nutation(health) {
+            None if is_exact => {
+                format!("The numbers hold: the run is the exact motion itself{picture}.")
+            }
             None => format!(
                 "The numbers hold: the traced point has kept within {far} of the exact motion{picture}."
             ),

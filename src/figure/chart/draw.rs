@@ -6,6 +6,7 @@ use super::slope;
 use super::ticks::Ticks;
 use super::{Chart, Panel, Series};
 use crate::figure::page::ink::{self, BLACK, LABEL_PT, MARK_PT, at, circle, grey, pen};
+use crate::figure::page::letters;
 use crate::figure::page::scene::Scene;
 
 /// Width of axes, ticks and error bars, pt.
@@ -15,20 +16,18 @@ const TICK: f64 = 3.0;
 const MINOR_TICK: f64 = 1.7;
 /// Half the width of the ends of an error bar, pt.
 const BAR_END: f64 = 1.7;
-/// What is said where error bars would be hidden by their marks; and where other marks have no errors.
-const SMALL_ERRORS: &str = "errors smaller than marks";
-const KNOWN_SMALL: &str = "known errors smaller than marks";
 
 impl Chart {
     /// The chart on its page.
     pub fn scene(&self) -> Scene {
         let bare = Layout::new(self, 0.0);
-        let remark = match (self.hides_errors(&bare), self.lacks_errors()) {
-            (false, _) => None,
-            (true, false) => Some(SMALL_ERRORS),
-            (true, true) => Some(KNOWN_SMALL),
-        };
-        let legend = Legend::of(self, remark);
+        let known = if self.lacks_errors() { "known " } else { "" };
+        let remark = self.hides_errors(&bare).then(|| {
+            let errors = self.errors.words();
+            let remark = format!("{known}{errors} smaller than marks");
+            letters::shortened(&remark, LABEL_PT, self.width_pt - 2.0 * EDGE)
+        });
+        let legend = Legend::of(self, remark.as_deref());
         let corner = legend.free_corner(self, &bare);
         let layout = match corner {
             Some(_) => bare,
@@ -65,10 +64,13 @@ impl Chart {
         scene.write(title, *size, at(middle, layout.title_at()), 0.5);
     }
 
-    /// Whether there are marks of which no error is known.
+    /// Whether there are marks of something measured of which no error is known.
     fn lacks_errors(&self) -> bool {
         let mut series = self.panels.iter().flat_map(|panel| &panel.series);
-        series.any(|series| series.style.mark.is_some() && series.errors.is_empty())
+        series.any(|series| {
+            let mark = series.style.mark.filter(|mark| mark.is_of_measured());
+            mark.is_some() && series.errors.is_empty()
+        })
     }
 
     /// Whether some error bar is too small to be drawn.

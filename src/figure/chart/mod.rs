@@ -28,6 +28,28 @@ pub struct Chart {
     pub panels: Vec<Panel>,
     /// Whether a unit is as long on both axes; then there is one panel.
     pub is_true_to_scale: bool,
+    /// What the errors of its points are.
+    pub errors: Errors,
+}
+
+/// What errors are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Errors {
+    /// Those that come with measured data.
+    #[default]
+    OfData,
+    /// Those of reading a number off a run: they do not hold what the scheme does to the run.
+    OfReading,
+}
+
+impl Errors {
+    /// What the legend calls them.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::OfData => "errors",
+            Self::OfReading => "uncertainties of reading the run (not the scheme's errors)",
+        }
+    }
 }
 
 /// An axis.
@@ -41,6 +63,8 @@ pub struct Axis {
     pub is_log: bool,
     /// From where to where it goes; `None`: as the data need it.
     pub range: Option<(f64, f64)>,
+    /// How large the quantity is by its nature, in its unit: differences far below that are rounding. 0: not known.
+    pub size: f64,
 }
 
 /// Curves and points over one stretch of the axis below.
@@ -185,18 +209,33 @@ impl Style {
         }
     }
 
-    /// A thin line of theory.
-    pub fn theory(index: usize) -> Self {
+    /// A thin line of theory beside the series `index` of several; `place` tells it from other theory of the same quantity.
+    pub fn theory(index: usize, place: usize) -> Self {
         Self {
             color: if index == 0 {
                 grey(70)
             } else {
                 Self::points(index).color
             },
-            width_pt: 0.7,
-            dash_pt: DASHES[index % DASHES.len()],
-            mark: None,
-            is_behind: false,
+            dash_pt: DASHES[place % DASHES.len()],
+            ..Self::default()
+        }
+    }
+
+    /// The same as marks, which fine strokes join.
+    pub fn theory_marked(index: usize, place: usize) -> Self {
+        Self {
+            width_pt: 0.35,
+            mark: Some(Mark::Cross),
+            ..Self::theory(index, 2 + place)
+        }
+    }
+
+    /// Small points of what was neither measured nor is theory, for the series `index` of several.
+    pub fn specks(index: usize) -> Self {
+        Self {
+            mark: Some(Mark::Speck),
+            ..Self::points(index)
         }
     }
 
@@ -241,10 +280,10 @@ impl Axis {
     pub fn range_of(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
         /// The farthest that an axis reaches: its ends are still told apart by a finite number.
         const FARTHEST: f64 = 1e306;
-        /// The room beyond the data, of their span, and where that is 0, of their size.
+        /// The room beyond the data, of their span, and where that is rounding, of their size.
         const MARGIN: f64 = 0.045;
         const AROUND: f64 = 0.1;
-        /// Values that differ by less than this part of themselves differ by rounding.
+        /// Values that differ by less than this part of themselves, or of the quantity's own size, differ by rounding.
         const ROUNDING: f64 = 1e-10;
         if let Some(range) = self.range {
             return range;
@@ -275,8 +314,12 @@ impl Axis {
         }
         let largest = low.abs().max(high.abs());
         let span = high - low;
-        if span > ROUNDING * largest {
+        if span > ROUNDING * largest.max(self.size) {
             return (low - MARGIN * span, high + MARGIN * span);
+        }
+        if largest <= ROUNDING * self.size {
+            // Zero, as well as the numbers tell it.
+            return (-AROUND * self.size, AROUND * self.size);
         }
         let half = if largest > 1e-290 {
             AROUND * largest

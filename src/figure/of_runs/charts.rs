@@ -1,16 +1,18 @@
 //! The charts of runs: their curves over time, their paths from above.
 
 use crate::figure::chart::layout::Layout;
-use crate::figure::chart::{Axis, Chart, Panel, Series};
+use crate::figure::chart::{Axis, Chart, Errors, Panel, Series};
+use crate::figure::dense::Dense;
 use crate::figure::kind::Plotted;
 use crate::figure::request::{Drawn, Request, Run};
-use crate::figure::{dense, quantity};
+use crate::figure::{dense, quantity, size};
 use crate::run::Truth;
 use std::sync::Arc;
 
 /// Columns of the runs over time, a panel each; `curve` is the number of the first of them among those that were played.
 pub(super) fn over_time(
     title: String,
+    runs: &[Run],
     columns: &[Plotted],
     drawn: &[Drawn],
     curve: usize,
@@ -20,7 +22,10 @@ pub(super) fn over_time(
     let end_s = ends.fold(0.0, f64::max);
     let range = (end_s > request.from_s).then_some((request.from_s, end_s));
     let panel = |(place, column): (usize, &Plotted)| Panel {
-        y: quantity::axis(column.name()),
+        y: Axis {
+            size: size::of(runs, column.name()),
+            ..quantity::axis(column.name())
+        },
         series: drawn
             .iter()
             .map(|drawn| Series {
@@ -50,6 +55,7 @@ pub(super) fn over_time(
         },
         panels,
         is_true_to_scale: false,
+        errors: Errors::OfData,
     }
 }
 
@@ -66,7 +72,7 @@ pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Requ
         (true, [run]) => circles(run),
         _ => Vec::new(),
     };
-    let (x, y) = both_ranges(&series, &circles);
+    let (x, y) = both_ranges(&series, &circles, size::of(runs, "x_m"));
     Chart {
         title,
         width_pt: request.width_pt,
@@ -84,11 +90,12 @@ pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Requ
             circles,
         }],
         is_true_to_scale: true,
+        errors: Errors::OfData,
     }
 }
 
-/// What is said of a path from above that is solid black.
-pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) -> Option<String> {
+/// Whether a path from above is solid black.
+pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) -> Option<Dense> {
     let layout = Layout::new(chart, 0.0);
     let placed = layout.panels.first()?;
     let series = &chart.panels.first()?.series;
@@ -121,16 +128,22 @@ fn circles(run: &Run) -> Vec<f64> {
     vec![inner, outer]
 }
 
-/// The stretches of both axes: one is never less than half of the other, so that a path along a line has a picture too.
+/// The stretches of both axes of paths of that `size`, m: one is never less than half of the other, so that a path along a
+/// line has a picture too.
 pub(in crate::figure) fn both_ranges(
     series: &[Series],
     circles: &[f64],
+    size: f64,
 ) -> ((f64, f64), (f64, f64)) {
     const LEAST: f64 = 0.5;
     let ends = || circles.iter().flat_map(|radius| [-radius, *radius]);
     let range = |index: usize| {
         let values = series.iter().flat_map(|series| &series.points);
-        Axis::default().range_of(values.map(|point| point[index]).chain(ends()))
+        let axis = Axis {
+            size,
+            ..Axis::default()
+        };
+        axis.range_of(values.map(|point| point[index]).chain(ends()))
     };
     let (x, y) = (range(0), range(1));
     let least = LEAST * (x.1 - x.0).max(y.1 - y.0);

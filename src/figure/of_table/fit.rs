@@ -1,10 +1,9 @@
 //! What was measured, on the model that was fitted to it; below, what is left of it.
 
-use super::{Rows, grouped, numbers};
+use super::{Rows, grouped, numbers, within_room};
 use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::ticks::{power_of_ten, with_minus};
 use crate::figure::chart::{Axis, Panel, Series, Style};
-use crate::figure::page::ink::{self, LABEL_PT};
 use crate::figure::page::letters;
 use crate::figure::quantity;
 use crate::figure::table::{Found, Table};
@@ -57,12 +56,8 @@ impl<'a> Fitted<'a> {
         said.trim_end().to_owned()
     }
 
-    /// `markup`, or where the page is too narrow for it `plain`, which is cut where that is too long as well.
     fn within_room(&self, markup: String, plain: &str) -> String {
-        match ink::width(&markup, LABEL_PT) <= self.room_pt {
-            true => markup,
-            false => letters::shortened(plain, LABEL_PT, self.room_pt),
-        }
+        within_room(markup, plain, self.room_pt)
     }
 
     /// What the legend says of the model: the value of each free key.
@@ -258,7 +253,7 @@ impl Drawing<'_> {
                 errors: Vec::new(),
                 style: Style {
                     dash_pt: &[],
-                    ..Style::theory(index)
+                    ..Style::theory(index, 0)
                 },
             });
             // The values of further keys, each on a line of the legend without a curve.
@@ -308,7 +303,7 @@ impl Drawing<'_> {
         if let Some((low, high)) = ends {
             panel.series.push(Series {
                 points: vec![[low, 0.0], [high, 0.0]],
-                style: Style::theory(0),
+                style: Style::theory(0, 0),
                 ..Series::default()
             });
         }

@@ -1,16 +1,21 @@
-//! Readouts over what was varied: points that were measured, on the line that was predicted.
+//! Readouts over what was varied: points that were measured, and the theory of them.
 
-use super::{Rows, grouped, numbers};
+mod columns;
+mod curves;
+mod theory;
+
+use super::{numbers, within_room};
 use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::{Axis, Panel, Series, Style};
-use crate::figure::page::ink::LABEL_PT;
-use crate::figure::page::letters;
 use crate::figure::quantity;
 use crate::figure::table::Table;
+use columns::{Part, Quantity, Role};
+use curves::Curve;
 
-const MEASURED: &str = "measured_";
-const PREDICTED: &str = "predicted_";
-const UNCERTAINTY: &str = "_uncertainty";
+/// Panels on a page of which none was asked for by name.
+const MOST_PANELS: usize = 7;
+/// Series of one quantity that are still told apart.
+const MOST_SERIES: usize = 12;
 
 /// The axis of what was varied, and a panel for each quantity.
 pub(super) fn drawn(
@@ -19,7 +24,7 @@ pub(super) fn drawn(
     columns: &[&str],
     width_pt: f64,
 ) -> Result<(Axis, Vec<Panel>), String> {
-    // The key that runs fastest and is a number goes to the right; the others make series.
+    // The key that runs fastest and is a number goes to the right; the others make curves.
     let along = varied.iter().rev().find_map(|key| {
         let values = table.numbers(key)?;
         Some((key, values))
@@ -30,11 +35,11 @@ pub(super) fn drawn(
             varied.join(", ")
         ));
     };
-    let groups = series_of(table, varied, key);
-    if groups.len() > MOST_SERIES {
+    let curves = curves::curves(table, varied, key);
+    if curves.len() > MOST_SERIES {
         return Err(format!(
             "{} curves would stand beside each other, and {MOST_SERIES} can be told apart: vary {} at fewer values",
-            groups.len(),
+            curves.len(),
             varied
                 .iter()
                 .filter(|other| *other != key)
@@ -43,46 +48,23 @@ pub(super) fn drawn(
                 .join(", ")
         ));
     }
-    let quantities = quantities(table, varied, columns);
+    let quantities = columns::quantities(table, varied, columns);
     if columns.is_empty() && quantities.len() > MOST_PANELS {
-        let names = quantities
-            .iter()
-            .map(|quantity| quantity.parts[0].name.as_str());
-        return Err(format!(
-            "{} quantities do not fit on a page: choose some with --kind A,B; there are {}",
-            quantities.len(),
-            names.collect::<Vec<_>>().join(", ")
-        ));
+        return Err(too_many(&quantities));
     }
-    let mut panels = Vec::new();
-    for quantity in &quantities {
-        let mut panel = Panel {
-            y: quantity.axis(),
-            ..Panel::default()
-        };
-        for (index, (name, rows)) in groups.iter().enumerate() {
-            for part in &quantity.parts {
-                let series = part.series(table, &along, rows, index)?;
-                let what = if quantity.parts.len() > 1 {
-                    part.word()
-                } else {
-                    ""
-                };
-                let words = [what, name.as_str()];
-                let words: Vec<_> = words.into_iter().filter(|word| !word.is_empty()).collect();
-                panel.series.push(Series {
-                    name: letters::shortened(&words.join(", "), LABEL_PT, longest_name(width_pt)),
-                    ..series
-                });
-            }
-        }
-        let values = panel.series.iter().flat_map(|series| &series.points);
-        panel.y.is_log = spans_decades(values.map(|point| point[1]), 1e3);
-        panels.push(panel);
-    }
-    if panels.is_empty() {
+    let drawing = Drawing {
+        table,
+        along: &along,
+        curves: &curves,
+        width_pt,
+        has: Roles::of(&quantities),
+    };
+    let panels = quantities.iter().map(|quantity| drawing.panel(quantity));
+    let mut panels = panels.collect::<Result<Vec<_>, _>>()?;
+    let Some(first) = panels.first_mut() else {
         return Err("no column of this sweep is a number that can be drawn".to_owned());
-    }
+    };
+    first.series.extend(drawing.failed(&quantities)?);
     let x = Axis {
         is_log: spans_decades(along.iter().copied(), 30.0) && is_geometric(&along),
         ..quantity::axis(key)
@@ -90,175 +72,197 @@ pub(super) fn drawn(
     Ok((x, panels))
 }
 
-/// Panels on a page of which none was asked for by name.
-const MOST_PANELS: usize = 7;
-/// Series of one quantity that are still told apart.
-const MOST_SERIES: usize = 12;
-
-/// The rows of each curve, by what else was varied.
-fn series_of(table: &Table, varied: &[String], along: &str) -> Vec<(String, Rows)> {
-    let others: Vec<_> = varied.iter().filter(|key| *key != along).collect();
-    let row_name = |row: usize| {
-        let part = |key: &&String| {
-            let text = table.texts(key).map_or("", |texts| texts[row]).to_owned();
-            match key.as_str() {
-                "motion.scheme" => text,
-                key => format!("{} = {text}", key.rsplit('.').next().unwrap_or(key)),
-            }
-        };
-        others.iter().map(part).collect::<Vec<_>>().join(", ")
-    };
-    let names: Vec<String> = match others.is_empty() {
-        true => vec![String::new(); table.count()],
-        false => (0..table.count()).map(row_name).collect(),
-    };
-    grouped(&names)
+fn too_many(quantities: &[Quantity]) -> String {
+    let parts = quantities.iter().flat_map(|quantity| &quantity.parts);
+    let names: Vec<_> = parts.map(|part| part.name.as_str()).collect();
+    format!(
+        "{} quantities do not fit on a page: add the names of some, such as --kind {}; there are {}",
+        quantities.len(),
+        columns::example(quantities),
+        names.join(", ")
+    )
 }
 
-/// A quantity of a sweep: what was measured of it, and what was predicted.
-struct Quantity {
-    parts: Vec<Part>,
-}
-
-/// One of its columns.
-struct Part {
-    name: String,
-    /// The column of its standard errors.
-    uncertainty: Option<String>,
-}
-
-/// What a name is without saying whose number it is.
-fn bare(name: &str) -> &str {
-    let measured = name.strip_prefix(MEASURED);
-    measured
-        .or_else(|| name.strip_prefix(PREDICTED))
-        .unwrap_or(name)
-}
-
-/// The quantities of a sweep in the order of its columns: all of them, or those that are asked for.
-fn quantities(table: &Table, varied: &[String], columns: &[&str]) -> Vec<Quantity> {
-    let is_asked = |name: &str| columns.is_empty() || columns.contains(&name);
-    let is_number = |name: &str| {
-        let numbers = table.numbers(name);
-        numbers.is_some_and(|numbers| numbers.iter().any(|number| number.is_finite()))
-    };
-    let names = table.names.iter().filter(|name| {
-        !varied.contains(name) && is_asked(name) && is_number(name) && !name.contains(UNCERTAINTY)
-    });
-    let mut quantities: Vec<Quantity> = Vec::new();
-    for name in names {
-        let part = Part {
-            name: name.clone(),
-            uncertainty: uncertainty_of(table, name),
-        };
-        let is_same = |other: &&mut Quantity| bare(&other.parts[0].name) == bare(name);
-        match quantities.iter_mut().find(is_same) {
-            Some(quantity) => quantity.parts.push(part),
-            None => quantities.push(Quantity { parts: vec![part] }),
-        }
-    }
-    // Theory is drawn first: the points stand on it.
-    for quantity in &mut quantities {
-        quantity.parts.sort_by_key(|part| !part.is_theory());
-    }
-    quantities
-}
-
-/// What is said of lines of theory that have gaps.
-pub(super) fn gaps(table: &Table, columns: &[&str]) -> Vec<String> {
-    let is_drawn = |name: &str| columns.is_empty() || columns.contains(&name);
-    let names = table.names.iter();
-    let theory = names.filter(|name| name.starts_with(PREDICTED) && is_drawn(name));
-    let gaps = theory.filter_map(|name| {
+/// What is said of lines of theory that have gaps, and of runs that failed.
+pub(super) fn gaps(table: &Table, columns: &[&str], varied: &[String]) -> Vec<String> {
+    let readouts = table.names.iter().filter(|name| !varied.contains(name));
+    let readouts: Vec<_> = readouts.filter_map(|name| table.texts(name)).collect();
+    let has_run = |row: &usize| readouts.iter().any(|texts| !texts[*row].is_empty());
+    let rows: Vec<usize> = (0..table.count()).filter(has_run).collect();
+    let gaps = columns::theory(table, columns).filter_map(|name| {
         let values = table.numbers(name)?;
-        let missing = values.iter().filter(|value| value.is_nan()).count();
-        let is_line = (1..values.len()).contains(&missing);
+        let missing = rows.iter().filter(|row| values[**row].is_nan()).count();
+        let is_line = (1..rows.len()).contains(&missing);
         is_line.then(|| {
             format!(
                 "the line of {name} has gaps: in {missing} of {} rows theory states no value, for a reason that gyrolab man numbers gives",
-                values.len()
+                rows.len()
             )
         })
     });
-    gaps.collect()
+    let failed = table.count() - rows.len();
+    let failed = (failed > 0).then(|| {
+        format!(
+            "the runs of {failed} of {} rows failed: they have no points",
+            table.count()
+        )
+    });
+    gaps.chain(failed).collect()
 }
 
-/// The column of the standard errors of `name`: measured_precession_uncertainty_rad_per_s of measured_precession_rad_per_s.
-fn uncertainty_of(table: &Table, name: &str) -> Option<String> {
-    let of_name = |other: &&String| {
-        let Some((begin, unit)) = other.split_once(UNCERTAINTY) else {
-            return false;
+/// Whose numbers a chart has.
+struct Roles {
+    theory: bool,
+    measured: bool,
+    value: bool,
+}
+
+impl Roles {
+    fn of(quantities: &[Quantity]) -> Self {
+        let has = |role| {
+            let mut parts = quantities.iter().flat_map(|quantity| &quantity.parts);
+            parts.any(|part| part.role == role)
         };
-        name.starts_with(begin) && name.ends_with(unit)
-    };
-    table.names.iter().find(of_name).cloned()
+        Self {
+            theory: has(Role::Theory),
+            measured: has(Role::Measured),
+            value: has(Role::Value),
+        }
+    }
 }
 
-impl Quantity {
-    /// Its axis: that of the quantity where both are drawn, else that of the column.
-    fn axis(&self) -> Axis {
-        let own = quantity::axis(&self.parts[0].name);
-        // Words say whose number it is; the legend says so already where both stand beside each other.
-        match self.parts.len() {
-            1 => own,
-            _ => {
-                let word = letters::escape(PREDICTED.trim_end_matches('_')) + " ";
-                let name = own.name.strip_prefix(&word).map(str::to_owned);
-                Axis {
-                    name: name.unwrap_or(own.name),
-                    ..own
-                }
+/// What is drawn, and over what.
+struct Drawing<'a> {
+    table: &'a Table,
+    along: &'a [f64],
+    curves: &'a [Curve],
+    width_pt: f64,
+    has: Roles,
+}
+
+impl Drawing<'_> {
+    fn panel(&self, quantity: &Quantity) -> Result<Panel, String> {
+        let mut panel = Panel {
+            y: quantity.axis(),
+            ..Panel::default()
+        };
+        let is_alone = quantity.parts.len() == 1;
+        for (place, part) in quantity.parts.iter().enumerate() {
+            let series = match part.role {
+                Role::Theory => self.theory(part, place, is_alone)?,
+                Role::Measured | Role::Value => self.points(part)?,
+            };
+            panel.series.extend(series);
+        }
+        let values = panel.series.iter().flat_map(|series| &series.points);
+        panel.y.is_log = spans_decades(values.map(|point| point[1]), 1e3);
+        Ok(panel)
+    }
+
+    /// What a curve with these `settings` is called in the legend.
+    fn name(&self, word: &str, settings: &[curves::Setting]) -> String {
+        curves::name(word, settings, longest_name(self.width_pt))
+    }
+
+    /// The rows of a curve from left to right.
+    fn rows(&self, curve: &Curve) -> Vec<usize> {
+        let rows = curve.rows.iter().copied();
+        let mut rows: Vec<usize> = rows.filter(|&row| self.along[row].is_finite()).collect();
+        rows.sort_by(|&a, &b| self.along[a].total_cmp(&self.along[b]));
+        rows
+    }
+
+    /// The points of `part`, a series for each curve that has some.
+    fn points(&self, part: &Part) -> Result<Vec<Series>, String> {
+        let values = numbers(self.table, &part.name)?;
+        let errors = part.uncertainty.as_ref();
+        let errors = errors.map(|name| numbers(self.table, name)).transpose()?;
+        let word = match self.has.theory {
+            true => part.word(false),
+            false => String::new(),
+        };
+        let is_told = part.role == Role::Measured || !self.has.measured;
+        let curves = self.curves.iter().map(|curve| {
+            let rows = self.rows(curve);
+            let errors = errors.iter().flat_map(|errors| {
+                let errors = rows.iter().map(|&row| errors[row].abs());
+                errors.collect::<Vec<_>>()
+            });
+            Series {
+                name: match is_told {
+                    true => self.name(&word, &curve.settings),
+                    false => String::new(),
+                },
+                errors: errors.collect(),
+                points: rows
+                    .iter()
+                    .map(|&row| [self.along[row], values[row]])
+                    .collect(),
+                style: match part.role {
+                    Role::Measured => Style::points(curve.index),
+                    _ if self.has.measured => Style::specks(curve.index),
+                    _ => Style::marked_line(curve.index),
+                },
+                ..Series::default()
             }
-        }
-    }
-}
-
-impl Part {
-    fn is_theory(&self) -> bool {
-        self.name.starts_with(PREDICTED)
+        });
+        let has_some = |series: &Series| series.points.iter().any(|point| point[1].is_finite());
+        Ok(curves.filter(has_some).collect())
     }
 
-    fn word(&self) -> &'static str {
-        match self.is_theory() {
-            true => "predicted",
-            false if self.name.starts_with(MEASURED) => "measured",
-            false => "",
-        }
-    }
-
-    fn series(
-        &self,
-        table: &Table,
-        along: &[f64],
-        rows: &[usize],
-        index: usize,
-    ) -> Result<Series, String> {
-        let values = numbers(table, &self.name)?;
-        let errors = match &self.uncertainty {
-            Some(name) => numbers(table, name)?,
-            None => Vec::new(),
-        };
-        let mut rows: Vec<usize> = rows
-            .iter()
-            .copied()
-            .filter(|&row| along[row].is_finite())
-            .collect();
-        rows.sort_by(|&a, &b| along[a].total_cmp(&along[b]));
-        let style = match (self.is_theory(), self.word()) {
-            (true, _) => Style::theory(index),
-            (false, "") => Style::marked_line(index),
-            (false, _) => Style::points(index),
-        };
-        Ok(Series {
-            name: String::new(),
-            points: rows.iter().map(|&row| [along[row], values[row]]).collect(),
-            errors: match errors.is_empty() {
-                true => Vec::new(),
-                false => rows.iter().map(|&row| errors[row].abs()).collect(),
+    /// The lines of the theory `part`, the one at `place` of its panel: one for all curves for which it says the same.
+    fn theory(&self, part: &Part, place: usize, is_alone: bool) -> Result<Vec<Series>, String> {
+        let values = numbers(self.table, &part.name)?;
+        let each = self.curves.iter().map(|curve| {
+            let rows = self.rows(curve).into_iter();
+            (
+                curve,
+                rows.map(|row| [self.along[row], values[row]]).collect(),
+            )
+        });
+        let is_beside = self.has.measured || self.has.value;
+        let lines = theory::lines(each).into_iter().map(|line| Series {
+            // The curves are told apart by the points: of theory it is said once how it is drawn.
+            name: match is_beside {
+                true => self.name(&part.word(is_alone), &[]),
+                false => self.name("", &line.settings),
             },
-            errors_across: Vec::new(),
-            style,
-        })
+            style: line.style(place, self.width_pt),
+            points: line.points,
+            ..Series::default()
+        });
+        Ok(lines.collect())
+    }
+
+    /// What the legend says of each curve that has no point: the names of those curves whose runs all failed.
+    fn failed(&self, quantities: &[Quantity]) -> Result<Vec<Series>, String> {
+        let parts = quantities.iter().flat_map(|quantity| &quantity.parts);
+        let parts = parts.filter(|part| part.role != Role::Theory);
+        let columns = parts.map(|part| numbers(self.table, &part.name));
+        let columns = columns.collect::<Result<Vec<_>, _>>()?;
+        let has_point = |curve: &Curve| {
+            let mut values = curve
+                .rows
+                .iter()
+                .flat_map(|&row| columns.iter().map(move |column| column[row]));
+            columns.is_empty() || values.any(f64::is_finite)
+        };
+        let room_pt = longest_name(self.width_pt);
+        let failed = self.curves.iter().filter(|curve| !has_point(curve));
+        let failed = failed.map(|curve| {
+            const FAILED: &str = "no run could be measured";
+            let name = curves::name("", &curve.settings, room_pt);
+            let plain = curves::name(FAILED, &curve.settings, room_pt);
+            Series {
+                name: within_room(format!("{name}: {FAILED}"), &plain, room_pt),
+                style: Style {
+                    width_pt: 0.0,
+                    ..Style::default()
+                },
+                ..Series::default()
+            }
+        });
+        Ok(failed.collect())
     }
 }
 

@@ -130,6 +130,17 @@ pub enum Mark {
     Ring,
     /// An empty triangle on its tip.
     Tip,
+    /// An upright cross turned by an eighth.
+    Cross,
+    /// A small dot.
+    Speck,
+}
+
+impl Mark {
+    /// Whether it marks what can have an error: neither theory nor a number that is known exactly.
+    pub fn is_of_measured(self) -> bool {
+        !matches!(self, Self::Cross | Self::Speck)
+    }
 }
 
 /// The length of `markup` at this size, pt.
@@ -209,6 +220,14 @@ impl Scene {
             Path::polygon(points.iter().map(|&(x, y)| at(middle.x + x, middle.y + y)))
         };
         let (path, is_filled) = match mark {
+            Mark::Cross => {
+                for sign in [-1.0, 1.0] {
+                    let ends = [-r, r].map(|x| at(middle.x + 1.1 * x, middle.y + 1.1 * sign * x));
+                    self.line(ends, 0.5, color);
+                }
+                return;
+            }
+            Mark::Speck => (circle(middle, 0.5 * r), true),
             Mark::Dot => (circle(middle, r), true),
             Mark::Ring => (circle(middle, r), false),
             Mark::Square => {

@@ -92,7 +92,12 @@ impl Drawing {
             path: self.path,
             rows: None,
             bytes: bytes.len() as u64,
-            warnings: figure.broke.into_iter().chain(figure.warnings).collect(),
+            warnings: figure
+                .broke
+                .clone()
+                .into_iter()
+                .chain(figure.told())
+                .collect(),
             not_finite: None,
         })
     }

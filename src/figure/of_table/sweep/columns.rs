@@ -1,0 +1,178 @@
+//! The columns of a sweep: whose number each is, and which of them are the same quantity.
+
+use crate::analysis::readouts::{self, Source};
+use crate::figure::chart::Axis;
+use crate::figure::page::letters;
+use crate::figure::quantity;
+use crate::figure::table::Table;
+use crate::text::unit::Unit;
+
+const MEASURED: &str = "measured_";
+const PREDICTED: &str = "predicted_";
+const UNCERTAINTY: &str = "_uncertainty";
+
+/// Whose number a column holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Role {
+    /// What theory says, of the exact motion or of the scheme.
+    Theory,
+    /// What was measured on the run.
+    Measured,
+    /// A value of the run that is no measurement: its tilt at the end, the turns of its wheel in a step.
+    Value,
+}
+
+impl Role {
+    fn of(name: &str) -> Self {
+        let source = readouts::find(name).map(|readout| readout.source);
+        match source {
+            _ if name.starts_with(MEASURED) => Self::Measured,
+            Some(Source::Theory | Source::Scheme) => Self::Theory,
+            _ if name.starts_with(PREDICTED) => Self::Theory,
+            _ => Self::Value,
+        }
+    }
+}
+
+/// A quantity of a sweep: what was measured of it, and what theory says. Theory comes first: the points stand on it.
+pub(super) struct Quantity {
+    /// Its columns.
+    pub parts: Vec<Part>,
+}
+
+/// A column.
+pub(super) struct Part {
+    pub name: String,
+    pub role: Role,
+    /// The column of its standard errors.
+    pub uncertainty: Option<String>,
+}
+
+/// What a name is without saying whose number it is.
+fn bare(name: &str) -> &str {
+    let measured = name.strip_prefix(MEASURED);
+    measured
+        .or_else(|| name.strip_prefix(PREDICTED))
+        .unwrap_or(name)
+}
+
+/// The quantities of a sweep in the order of its columns: all of them, or those that are asked for.
+pub(super) fn quantities(table: &Table, varied: &[String], columns: &[&str]) -> Vec<Quantity> {
+    let is_asked = |name: &str| columns.is_empty() || columns.contains(&name);
+    let is_number = |name: &str| {
+        let numbers = table.numbers(name);
+        numbers.is_some_and(|numbers| numbers.iter().any(|number| number.is_finite()))
+    };
+    let names = table.names.iter().filter(|name| {
+        !varied.contains(name) && is_asked(name) && is_number(name) && !name.contains(UNCERTAINTY)
+    });
+    let names: Vec<&String> = names.collect();
+    let mut quantities: Vec<(&str, Quantity)> = Vec::new();
+    for name in &names {
+        let part = Part {
+            name: (*name).clone(),
+            role: Role::of(name),
+            uncertainty: uncertainty_of(table, name),
+        };
+        let what = what(name, &names);
+        match quantities.iter_mut().find(|(other, _)| *other == what) {
+            Some((_, quantity)) => quantity.parts.push(part),
+            None => quantities.push((what, Quantity { parts: vec![part] })),
+        }
+    }
+    let mut quantities: Vec<_> = quantities.into_iter().map(|(_, it)| it).collect();
+    for quantity in &mut quantities {
+        quantity.parts.sort_by_key(|part| part.role != Role::Theory);
+    }
+    quantities
+}
+
+/// What quantity the column `name` holds a number of. Theory of a special case, such as `fast_top_precession_rad_per_s`, is
+/// of the quantity that was measured beside it, `measured_precession_rad_per_s`.
+fn what<'a>(name: &'a str, names: &[&'a String]) -> &'a str {
+    let own = bare(name);
+    if Role::of(name) != Role::Theory {
+        return own;
+    }
+    let measured = names
+        .iter()
+        .filter_map(|other| other.strip_prefix(MEASURED));
+    let is_case_of = |other: &&str| {
+        let case = own.strip_suffix(other);
+        case.is_some_and(|case| case.is_empty() || case.ends_with('_'))
+    };
+    { measured }.find(is_case_of).unwrap_or(own)
+}
+
+/// The column of the standard errors of `name`: measured_precession_uncertainty_rad_per_s of measured_precession_rad_per_s.
+fn uncertainty_of(table: &Table, name: &str) -> Option<String> {
+    let of_name = |other: &&String| {
+        let Some((begin, unit)) = other.split_once(UNCERTAINTY) else {
+            return false;
+        };
+        name.starts_with(begin) && name.ends_with(unit)
+    };
+    table.names.iter().find(of_name).cloned()
+}
+
+impl Quantity {
+    /// Its axis: that of the quantity where measured numbers and theory are drawn, else that of the column.
+    pub fn axis(&self) -> Axis {
+        let is_theory = |part: &&Part| part.role == Role::Theory;
+        let named = self.parts.iter().find(|part| !is_theory(part));
+        let named = named.or_else(|| self.parts.iter().find(|part| bare(&part.name) != part.name));
+        let Some(part) = named.or(self.parts.first()) else {
+            return Axis::default();
+        };
+        let own = quantity::axis(&part.name);
+        // Words say whose number it is; the legend says so already where both stand beside each other.
+        if self.parts.len() == 1 {
+            return own;
+        }
+        let words = [MEASURED, PREDICTED].map(|word| letters::escape(word.trim_end_matches('_')));
+        let without = |word: &String| own.name.strip_prefix(&format!("{word} "));
+        let name = words.iter().find_map(without).map(str::to_owned);
+        Axis {
+            name: name.unwrap_or(own.name),
+            ..own
+        }
+    }
+}
+
+impl Part {
+    /// What the legend calls it, as markup; `is_alone`: the axis says which theory it is.
+    pub fn word(&self, is_alone: bool) -> String {
+        let source = readouts::find(&self.name).map(|readout| readout.source);
+        match self.role {
+            Role::Value => String::new(),
+            Role::Measured => "measured".to_owned(),
+            Role::Theory if !is_alone && !self.name.starts_with(PREDICTED) => {
+                quantity::axis(&self.name).name
+            }
+            Role::Theory if source == Some(Source::Scheme) => "theory of the scheme".to_owned(),
+            Role::Theory => "theory".to_owned(),
+        }
+    }
+}
+
+/// The names of theory among the columns that are drawn.
+pub(super) fn theory<'a>(
+    table: &'a Table,
+    columns: &'a [&str],
+) -> impl Iterator<Item = &'a str> + 'a {
+    let names = table.names.iter().map(String::as_str);
+    names.filter(|name| {
+        let is_drawn = columns.is_empty() || columns.contains(name);
+        is_drawn && Role::of(name) == Role::Theory && !name.contains(UNCERTAINTY)
+    })
+}
+
+/// Two of the columns as an example of a choice, those that were measured before others.
+pub(super) fn example(quantities: &[Quantity]) -> String {
+    let parts = || quantities.iter().flat_map(|quantity| &quantity.parts);
+    let is_measured = |part: &&Part| part.role == Role::Measured;
+    let measured = parts().filter(is_measured);
+    let others = parts().filter(|part| !is_measured(part) && Unit::of(&part.name).is_some());
+    let names = measured.chain(others).map(|part| part.name.as_str());
+    names.take(2).collect::<Vec<_>>().join(",")
+}

@@ -1,0 +1,78 @@
+//! What theory says of the curves of a sweep: once for all for which it says the same.
+
+use super::curves::{Curve, Setting};
+use crate::figure::COLUMN_PT;
+use crate::figure::chart::Style;
+
+/// Numbers that differ by no more than this part of themselves are the same.
+const SAME: f64 = 1e-6;
+/// On a page as wide as a column, a line of so many rows looks smooth. One of fewer shows where they are.
+const SMOOTH: f64 = 40.0;
+
+/// A line of theory.
+pub(super) struct Line {
+    /// The first of the curves that it is for.
+    index: usize,
+    /// Its points from left to right.
+    pub points: Vec<[f64; 2]>,
+    /// What is set alike for all of them.
+    pub settings: Vec<Setting>,
+}
+
+/// The lines of what theory says of each of these curves, whose points run from left to right. A curve of which it says
+/// nothing has none.
+pub(super) fn lines<'a>(curves: impl Iterator<Item = (&'a Curve, Vec<[f64; 2]>)>) -> Vec<Line> {
+    let mut lines: Vec<Line> = Vec::new();
+    for (curve, points) in curves {
+        if !points.iter().any(|point| point[1].is_finite()) {
+            continue;
+        }
+        match lines.iter_mut().find(|line| line.says(&points)) {
+            Some(line) => line.take_in(curve, points),
+            None => lines.push(Line {
+                index: curve.index,
+                points,
+                settings: curve.settings.clone(),
+            }),
+        }
+    }
+    lines
+}
+
+impl Line {
+    fn place(&self, x: f64) -> Result<usize, usize> {
+        self.points.binary_search_by(|point| point[0].total_cmp(&x))
+    }
+
+    /// Whether it has the values of `points`, wherever both have one, and they do somewhere.
+    fn says(&self, points: &[[f64; 2]]) -> bool {
+        let pairs = points.iter().filter_map(|&[x, value]| {
+            let own = self.points[self.place(x).ok()?][1];
+            (own.is_finite() && value.is_finite()).then_some((own, value))
+        });
+        let is_same = |(a, b): (f64, f64)| (a - b).abs() <= SAME * a.abs().max(b.abs());
+        let mut pairs = pairs.peekable();
+        pairs.peek().is_some() && pairs.all(is_same)
+    }
+
+    /// Takes in a curve of which theory says the same, and the `points` that were missing.
+    fn take_in(&mut self, curve: &Curve, points: Vec<[f64; 2]>) {
+        self.settings.retain(|it| curve.settings.contains(it));
+        for point in points.into_iter().filter(|point| point[1].is_finite()) {
+            match self.place(point[0]) {
+                Ok(place) if self.points[place][1].is_nan() => self.points[place] = point,
+                Ok(_) => {}
+                Err(place) => self.points.insert(place, point),
+            }
+        }
+    }
+
+    /// How it is drawn on a page of that width, the theory at `place` of its panel: as a line where the rows are close, else
+    /// as marks at the rows, since theory goes another way between them than the fine strokes that join them.
+    pub fn style(&self, place: usize, width_pt: f64) -> Style {
+        match self.points.len() as f64 > SMOOTH * width_pt / COLUMN_PT {
+            true => Style::theory(self.index, place),
+            false => Style::theory_marked(self.index, place),
+        }
+    }
+}

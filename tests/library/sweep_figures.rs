@@ -1,0 +1,173 @@
+//! Figures of sweeps: what was measured, theory, and what is neither are told apart, and so are the curves.
+
+use crate::figures::{COMPARISON, is_tidy, says, table, words};
+use gyrolab::figure::COLUMN_PT;
+use gyrolab::figure::chart::{Chart, Series};
+use gyrolab::figure::of_table;
+use gyrolab::figure::page::ink::Mark;
+
+#[test]
+fn a_line_of_theory_with_gaps_says_where_they_are_explained() {
+    let gappy = SWEEP.replace("0.000001,0.84,", "0.000001,,");
+    let told = of_table::warnings(&table(&gappy), &[]);
+    assert_eq!(
+        told,
+        [
+            "the line of predicted_precession_rad_per_s has gaps: in 1 of 4 rows theory states no value, for a reason that gyrolab man numbers gives"
+        ]
+    );
+    let measured = ["measured_precession_rad_per_s"];
+    assert!(of_table::warnings(&table(&gappy), &measured).is_empty());
+    assert!(of_table::warnings(&table(SWEEP), &[]).is_empty());
+    assert!(of_table::warnings(&table(COMPARISON), &[]).is_empty());
+}
+
+const SWEEP: &str = "\
+# scenario = \"cusps\"
+# measure = [\"measured_precession_rad_per_s\"]
+# [[vary]]
+# key = \"start.tilt_deg\"
+# values = [10, 20, 30, 40]
+start.tilt_deg,measured_precession_rad_per_s,measured_precession_uncertainty_rad_per_s,predicted_precession_rad_per_s,path
+10,0.90,0.01,0.91,cusps
+20,0.88,0.02,0.89,cusps
+30,,,0.87,
+40,0.84,0.000001,0.84,cusps
+";
+
+#[test]
+fn a_sweep_shows_measured_points_with_bars_on_the_predicted_line() {
+    let chart = of_table::chart(&table(SWEEP), &[], COLUMN_PT).unwrap();
+    let [panel] = &chart.panels[..] else {
+        panic!("{chart:?}")
+    };
+    assert_eq!(panel.series.len(), 2);
+    assert_eq!(panel.series[0].style.mark, Some(Mark::Cross));
+    assert_eq!(panel.series[1].style.width_pt, 0.0);
+    assert_eq!(panel.series[1].errors[..2], [0.01, 0.02]);
+    let scene = chart.scene();
+    is_tidy(&scene).unwrap();
+    says(
+        &scene,
+        &[
+            "theory",
+            "measured",
+            "uncertainties of reading the run (not the scheme's errors) smaller than marks",
+            "θ₀ (°)",
+        ],
+    );
+}
+
+fn chart(text: &str) -> Chart {
+    let chart = of_table::chart(&table(text), &[], COLUMN_PT).unwrap();
+    is_tidy(&chart.scene()).unwrap();
+    chart
+}
+
+fn names(series: &[Series]) -> Vec<&str> {
+    series.iter().map(|series| series.name.as_str()).collect()
+}
+
+/// A sweep of two keys, the first of which has curves: its names, and the columns of theory and measurement.
+fn two_keys(key: &str, rows: &str) -> String {
+    format!(
+        "# [[vary]]\n# key = \"{key}\"\n# values = [1]\n# [[vary]]\n# key = \"start.tilt_deg\"\n# values = [1]\n\
+         {key},start.tilt_deg,measured_precession_rad_per_s,fast_top_precession_rad_per_s,turns_per_step\n{rows}"
+    )
+}
+
+#[test]
+fn theory_is_drawn_once_with_what_was_measured() {
+    let rows =
+        "report,10,0.9,0.8,0.1\nreport,20,0.8,0.7,0.1\nrk4,10,0.91,0.8,0.1\nrk4,20,0.81,0.7,0.1\n";
+    let chart = chart(&two_keys("motion.scheme", rows));
+    let [precession, turns] = &chart.panels[..] else {
+        panic!("{chart:?}")
+    };
+    assert_eq!(precession.y.name, "*Ω*_{p}");
+    assert_eq!(
+        names(&precession.series),
+        ["*M* *g* *h*/*L*_{3}", "measured, report", "measured, rk4"]
+    );
+    assert_eq!(precession.series[0].style.mark, Some(Mark::Cross));
+    assert_eq!(precession.series[1].style.mark, Some(Mark::Dot));
+    // What is neither has no mark of what was measured, and no name: the legend says it of the colours.
+    assert_eq!(names(&turns.series), ["", ""]);
+    assert_eq!(turns.series[0].style.mark, Some(Mark::Speck));
+}
+
+#[test]
+fn theory_that_differs_between_the_curves_has_a_line_for_each_and_one_name() {
+    let rows =
+        "60.0,10,0.9,0.8,0.1\n60.0,20,0.8,0.7,0.1\n-80.5,10,0.91,0.6,0.1\n-80.5,20,0.81,0.5,0.1\n";
+    let chart = chart(&two_keys("start.momentum_Js.2", rows));
+    assert_eq!(
+        names(&chart.panels[0].series),
+        [
+            "*M* *g* *h*/*L*_{3}",
+            "*M* *g* *h*/*L*_{3}",
+            "measured, *L*_{*z*,0} = 60 J s",
+            "measured, *L*_{*z*,0} = −80.5 J s"
+        ]
+    );
+    let shown = words(&chart.scene()).join("; ");
+    assert_eq!(shown.matches("M g h").count(), 1, "{shown}");
+}
+
+#[test]
+fn a_curve_is_named_by_symbol_value_and_unit_of_its_key() {
+    for (key, name) in [
+        ("start.azimuth_deg", "measured, *φ*_{0} = −100°"),
+        ("push.0.force_N.2", "measured, push 0 force *z* = −100 N"),
+        ("motion.time_step_s", "measured, Δ*t* = −100 s"),
+    ] {
+        let chart = chart(&two_keys(
+            key,
+            "-100.0,10,0.9,0.8,0.1\n-100.0,20,0.8,0.7,0.1\n",
+        ));
+        assert_eq!(chart.panels[0].series[1].name, name);
+    }
+}
+
+#[test]
+fn a_curve_whose_runs_all_failed_says_so() {
+    let rows = "report,10,0.9,0.8,0.1\nreport,20,0.8,0.7,0.1\nrk4,10,,,\nrk4,20,,,\n";
+    let text = two_keys("motion.scheme", rows);
+    let scene = chart(&text).scene();
+    says(
+        &scene,
+        &["measured, report", "rk4: no run could be measured"],
+    );
+    assert!(!words(&scene).contains(&"measured, rk4"));
+    let told = of_table::warnings(&table(&text), &[]);
+    assert_eq!(
+        told,
+        ["the runs of 2 of 4 rows failed: they have no points"]
+    );
+}
+
+#[test]
+fn many_rows_of_theory_are_a_line() {
+    let row = |row: usize| format!("report,{row},0.9,0.8,0.1\n");
+    let rows: String = (0..60).map(row).collect();
+    let chart = chart(&two_keys("motion.scheme", &rows));
+    assert_eq!(chart.panels[0].series[0].style.mark, None);
+    assert!(chart.panels[0].series[0].style.dash_pt.is_empty());
+}
+
+#[test]
+fn too_many_quantities_say_which_option_chooses_some() {
+    let names = ["x_m", "y_m", "z_m", "Lx_Js", "Ly_Js", "Lz_Js", "tilt_deg"];
+    let text = format!(
+        "# [[vary]]\n# key = \"motion.steps\"\nmotion.steps,{},measured_lowest_z_m\n1,1,1,1,1,1,1,1,1\n",
+        names.join(",")
+    );
+    let table = table(&text);
+    let refusal = of_table::chart(&table, &[], COLUMN_PT).unwrap_err();
+    let (_, example) = refusal.split_once("--kind ").unwrap();
+    let example = example.split([';', ' ']).next().unwrap();
+    let columns: Vec<_> = example.split(',').collect();
+    assert_eq!(columns, ["measured_lowest_z_m", "x_m"]);
+    assert!(of_table::chart(&table, &columns, COLUMN_PT).is_ok());
+    assert!(refusal.starts_with("8 quantities"), "{refusal}");
+}
