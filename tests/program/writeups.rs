@@ -1,6 +1,6 @@
 //! `gyrolab writeup`: what is in the folder, that the same run gives the same bytes, and that no file is lost.
 
-use crate::support::ground::{Ground, code, done, failed, names};
+use crate::support::ground::{Ground, code, done, failed, names, stderr};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
@@ -58,6 +58,9 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
         "(0, 0, -50) N on the point top on 200 time steps from step 1 on",
         "700 of 0.1 s",
         "Do not believe this run",
+        "\n\nSource: report, section 4, the extra force on the axle top\n\n",
+        "| tilt swing since 20.1 s (`measured_tilt_swing_deg`) |",
+        "as the steps show it; since the forces last changed, at t = 20.1 s\n",
         // The line of the preset speaks of another run.
         "\n\nDiffers from the preset wobble-push: other pushes\n\n",
         "\n\nOf the preset wobble-push as it was: ",
@@ -261,4 +264,59 @@ fn a_run_that_breaks_down_is_written_up_to_there() {
         page.contains("The numbers are no longer finite at step 25"),
         "{page}"
     );
+}
+
+#[test]
+fn a_figure_that_is_covered_says_so_and_names_a_stretch_that_is_not() {
+    let lab = Ground::new();
+    done(lab.run(&["writeup", "fast-top", "--steps", "30000", "-o", "w"]));
+    let page = lab.read("w/README.md");
+    let begin = "On 86 mm about 90 swings cover the paper: none is told from the next";
+    let remark = page.lines().find(|line| line.starts_with(begin)).unwrap();
+    assert!(remark.contains("`swings.pdf` shows the first"), "{remark}");
+    // The command is one that works.
+    let command = remark.split('`').find(|part| part.starts_with("gyrolab "));
+    let words: Vec<_> = command.unwrap().split(' ').skip(1).collect();
+    let args: Vec<_> = words
+        .iter()
+        .map(|&word| match word {
+            "run.toml" => "w/run.toml",
+            word => word,
+        })
+        .collect();
+    let output = done(lab.run(&args));
+    let said = stderr(&output);
+    assert!(!said.contains("solid black"), "{said}");
+    assert!(lab.file("part.pdf").exists());
+}
+
+#[test]
+fn a_run_of_the_exact_motion_is_said_to_be_it() {
+    let lab = Ground::new();
+    done(lab.run(&["writeup", "heidelberg", "--steps", "300", "-o", "w"]));
+    let page = lab.read("w/README.md");
+    for words in [
+        "The numbers hold: the run is the exact motion itself.",
+        "x, y and z of the traced point over time; the run is the exact motion itself",
+    ] {
+        assert!(page.contains(words), "{words}: {page}");
+    }
+    assert!(
+        !page.contains("dashed") && !page.contains("cover the paper"),
+        "{page}"
+    );
+}
+
+#[test]
+fn labels_of_the_latex_table_are_short() {
+    let lab = Ground::new();
+    done(lab.run(&["writeup", "cusps", "--steps", "300", "-o", "w"]));
+    let table = lab.read("w/readouts.tex");
+    let labels = table
+        .lines()
+        .filter_map(|line| line.strip_prefix("\\raggedright "));
+    let labels: Vec<_> = labels.filter_map(|line| line.split('~').next()).collect();
+    assert!(labels.contains(&"precession"), "{labels:?}");
+    assert!(labels.iter().all(|label| label.len() < 20), "{labels:?}");
+    assert!(table.contains("% precession: mean precession about +z; null under friction"));
 }

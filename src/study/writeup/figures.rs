@@ -1,9 +1,10 @@
 //! The figures of a write-up.
 
-use super::Beside;
+use super::{Beside, RUN_FILE};
 use crate::analysis::Readouts;
 use crate::analysis::cost::is_affordable;
 use crate::figure::course::{Recorded, Recorder, Wanted};
+use crate::figure::dense::Dense;
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Figure, Known, Request, Run};
 use crate::figure::{COLUMN_PT, Scene};
@@ -21,6 +22,8 @@ pub struct Drawing {
     pub name: &'static str,
     /// What is to be seen.
     pub caption: String,
+    /// What its reader must know of it besides, as a sentence.
+    pub remark: Option<String>,
     /// The page.
     pub scene: Scene,
 }
@@ -28,6 +31,8 @@ pub struct Drawing {
 /// The figures of what was measured, and of measured less run.
 const MEASURED: &str = "measured";
 const RESIDUALS: &str = "residuals";
+/// That of the first swings of a run of many.
+const SWINGS: &str = "swings";
 /// A run of more swings than this has a figure of its first few of its own.
 const MANY_SWINGS: f64 = 15.0;
 /// Fewer steps a swing make a curve with corners.
@@ -66,11 +71,12 @@ pub fn figures(
         scenario: Arc::clone(scenario),
         named: scenario.file.title.clone(),
     }];
-    let exact = is_affordable(scenario);
-    let dashed = if exact {
-        ", the exact motion dashed"
-    } else {
-        ""
+    let is_exact = of_runs::is_exact(scenario);
+    let exact = is_affordable(scenario) && !is_exact;
+    let dashed = match (exact, is_exact) {
+        (true, _) => ", the exact motion dashed",
+        (_, true) => "; the run is the exact motion itself",
+        _ => "",
     };
     let joined = readouts
         .swing_s()
@@ -100,7 +106,7 @@ pub fn figures(
     ];
     if let Some(to_s) = few_swings_s(scenario, readouts) {
         let caption = format!("Tilt in the first {} s{also}", shortest(to_s));
-        wanted.insert(1, ("swings", Kind::named("tilt_deg")?, Some(to_s), caption));
+        wanted.insert(1, (SWINGS, Kind::named("tilt_deg")?, Some(to_s), caption));
     }
     let measured = beside.map(|beside| (beside.reached(), beside.end_s));
     if let Some((measured, end_s)) = &measured
@@ -127,7 +133,8 @@ pub fn figures(
         kind: kind.clone(),
         from_s: 0.0,
         to_s: *to_s,
-        exact,
+        // A run of the exact motion is drawn once, with the circles that bound it.
+        exact: exact || is_exact,
         measured: measured
             .as_ref()
             .filter(|_| is_beside(name))
@@ -140,16 +147,41 @@ pub fn figures(
         said: beside.map(|beside| beside.said.clone()),
     };
     let drawn = of_runs::figures(&runs, &requests, &known, watch)?;
+    let has_swings = wanted.iter().any(|(name, ..)| *name == SWINGS);
     let drawings = |drawn: Vec<Figure>| {
         let each = wanted.into_iter().zip(drawn);
-        each.map(|((name, _, _, caption), figure)| Drawing {
+        each.map(|((name, kind, _, caption), figure)| Drawing {
             name,
             caption,
+            remark: figure
+                .dense
+                .map(|dense| crowded(&dense, &kind, exact, has_swings)),
             scene: figure.scene,
         })
         .collect()
     };
     Ok(drawn.map(drawings))
+}
+
+/// What is said of a figure of that kind in which something covers the paper.
+fn crowded(dense: &Dense, kind: &Kind, exact: bool, has_swings: bool) -> String {
+    let hidden = match exact {
+        true => ", and the exact motion hides the run below it",
+        false => "",
+    };
+    let swings = match has_swings && matches!(kind, Kind::OverTime(_)) {
+        true => format!("`{SWINGS}.pdf` shows the first of them; "),
+        false => String::new(),
+    };
+    format!(
+        "On {} mm {} cover the paper: none is told from the next{hidden}. {swings}`gyrolab figure {RUN_FILE} --kind {}{} {} -o part.pdf` \
+         draws a part of the run.",
+        dense.width_mm,
+        dense.what,
+        kind.name(),
+        if exact { " --exact" } else { "" },
+        dense.options(),
+    )
 }
 
 /// Where the run has many swings, the time that a few of them take, s.

@@ -6,8 +6,12 @@ use crate::text::number::Uncertain;
 /// The table of `quantities`: what, measured, theory, unit. `caption` says whose numbers they are.
 pub fn table(quantities: &[Quantity], caption: &str) -> String {
     let rows: String = quantities.iter().map(row).collect();
+    let meanings = quantities
+        .iter()
+        .map(|quantity| format!("% {}: {}.\n", quantity.name(), quantity.meaning()));
+    let meanings: String = meanings.collect();
     format!(
-        r"% Digits in parentheses are one standard error, in units of the last digits.
+        r"{meanings}% Digits in parentheses are one standard error, in units of the last digits.
 \begin{{table}}
 \centering
 \caption{{{}}}
@@ -35,7 +39,7 @@ fn row(quantity: &Quantity) -> String {
     };
     format!(
         "\\raggedright {}{unit} & {measured} & {} \\\\\n",
-        escaped(quantity.readout.meaning),
+        escaped(&quantity.label()),
         number(&quantity.predicted_text()),
     )
 }

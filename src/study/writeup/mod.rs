@@ -68,7 +68,7 @@ impl Writeup {
         Self {
             broken,
             beside,
-            quantities: quantities::quantities(&readouts),
+            quantities: quantities::quantities(&scenario, &readouts),
             scenario,
             readouts,
             drawings,

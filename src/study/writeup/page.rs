@@ -20,8 +20,11 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     let file = &writeup.scenario.file;
     let look_at = file.view.as_ref().and_then(|view| view.look_at.as_ref());
     let look_at = look_at.map(|line| sentence(line));
-    for text in file.about.iter().chain(&look_at).chain(&file.source) {
+    for text in file.about.iter().chain(&look_at) {
         writeln!(page, "{}\n", escaped(text))?;
+    }
+    if let Some(source) = &file.source {
+        writeln!(page, "Source: {}\n", escaped(source))?;
     }
     writeln!(page, "## What was run\n")?;
     setup::write(&mut page, writeup)?;
@@ -65,12 +68,21 @@ fn write_quantities(page: &mut String, quantities: &[Quantity]) -> fmt::Result {
         writeln!(
             page,
             "| {} (`{}`) | {} | {} | {} | {} |",
-            escaped(quantity.readout.meaning),
+            quantity.label(),
             quantity.readout.name,
             quantity.measured_text(),
             quantity.predicted_text(),
             quantity.apart_text(),
             quantity.readout.unit
+        )?;
+    }
+    writeln!(page)?;
+    for quantity in quantities {
+        writeln!(
+            page,
+            "- {}: {}",
+            quantity.name(),
+            escaped(&quantity.meaning())
         )?;
     }
     writeln!(
@@ -97,6 +109,9 @@ fn write_drawings(page: &mut String, drawings: &[Drawing]) -> fmt::Result {
             "![{0}]({1}.svg)\n\n{0}: `{1}.pdf` and `{1}.svg`.\n",
             drawing.caption, drawing.name
         )?;
+        if let Some(remark) = &drawing.remark {
+            writeln!(page, "{remark}\n")?;
+        }
     }
     Ok(())
 }

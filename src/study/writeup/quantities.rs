@@ -2,7 +2,10 @@
 
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Readout, Source};
+use crate::run::Clock;
+use crate::scenario::Scenario;
 use crate::text::number::{NONE, Uncertain, fixed, short, significant, uncertain};
+use crate::text::unit::Unit;
 
 /// A measured number, with what theory says of it.
 #[derive(Clone, Debug)]
@@ -15,7 +18,12 @@ pub struct Quantity {
     pub uncertainty: Option<f64>,
     /// What theory says, in the same unit.
     pub predicted: Option<f64>,
+    /// Since when it counts, s, where that is not the start.
+    pub since_s: Option<f64>,
 }
+
+/// How the names of measured numbers begin.
+const MEASURED: &str = "measured_";
 
 /// So many standard errors off theory, a number is not off by the reading of it.
 const FAR: f64 = 100.0;
@@ -23,11 +31,13 @@ const FAR: f64 = 100.0;
 /// Digits after the point of a number that has no uncertainty.
 const DECIMALS: usize = 6;
 
-/// Every measured number of the table of readouts that `readouts` has a value of, or theory.
-pub fn quantities(readouts: &Readouts) -> Vec<Quantity> {
+/// Every measured number of the table of readouts that `readouts`, of the run of `scenario`, has a value of, or theory.
+pub fn quantities(scenario: &Scenario, readouts: &Readouts) -> Vec<Quantity> {
+    let since = readouts.since;
+    let since_s = (since > 0).then(|| Clock::at(scenario, since).time_s(since));
     let measured = READOUTS
         .iter()
-        .filter(|readout| readout.name.starts_with("measured_") && !readout.is_uncertainty());
+        .filter(|readout| readout.name.starts_with(MEASURED) && !readout.is_uncertainty());
     let quantities = measured.map(|readout| {
         let number = |readout: Option<&Readout>| readout.and_then(|it| it.of(readouts).number());
         // Of the swing that the report's scheme makes there is a formula, which is no theory of the exact motion.
@@ -38,6 +48,7 @@ pub fn quantities(readouts: &Readouts) -> Vec<Quantity> {
             measured: number(Some(readout)),
             uncertainty: number(uncertainty),
             predicted: number(predicted),
+            since_s: since_s.filter(|_| readout.source == Source::Measured),
         }
     });
     quantities
@@ -46,6 +57,34 @@ pub fn quantities(readouts: &Readouts) -> Vec<Quantity> {
 }
 
 impl Quantity {
+    /// Its short name: "tilt swing".
+    pub fn name(&self) -> String {
+        let name = self.readout.name;
+        let bare = name.strip_prefix(MEASURED).unwrap_or(name);
+        let end = Unit::of(bare).map_or("", |unit| unit.end);
+        bare[..bare.len() - end.len()].replace('_', " ")
+    }
+
+    /// Its name with the time since when it counts: "tilt swing since 25 s".
+    pub fn label(&self) -> String {
+        match self.since_s {
+            Some(since_s) => format!("{} since {} s", self.name(), significant(since_s, 9)),
+            None => self.name(),
+        }
+    }
+
+    /// What it is.
+    pub fn meaning(&self) -> String {
+        let meaning = self.readout.meaning;
+        match self.since_s {
+            Some(since_s) => format!(
+                "{meaning}; since the forces last changed, at t = {} s",
+                significant(since_s, 9)
+            ),
+            None => meaning.to_owned(),
+        }
+    }
+
     /// The measured number with its uncertainty, where it has one.
     pub fn stated(&self) -> Option<Uncertain> {
         uncertain(self.measured?, self.uncertainty?)
