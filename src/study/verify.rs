@@ -4,6 +4,7 @@
 mod comparison;
 mod lines;
 mod of_sweep;
+mod row;
 
 use crate::analysis::Monitor;
 use crate::export::layout::LayoutError;
@@ -15,6 +16,7 @@ use crate::scenario::{Document, Problem, Problems, Scenario};
 use crate::text::printable::printable;
 pub use lines::{Difference, What};
 use lines::{Held, Lines};
+pub use row::Field;
 use std::cell::{Cell, RefCell};
 use std::fs::File;
 use std::io::{self, BufReader, Read};

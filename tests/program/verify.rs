@@ -119,6 +119,23 @@ fn a_long_run_that_differs_is_not_played_on() {
 }
 
 #[test]
+fn a_header_that_was_changed_by_hand_is_told_as_such() {
+    let ground = Ground::new();
+    done(ground.run(&["run", "cusps", "--steps", "5", "-o", "a.csv"]));
+    let good = ground.read("a.csv");
+    let changed = good.replace("spin_rpm = ", "spin_rpm = 1");
+    assert_ne!(good, changed);
+    ground.write("a.csv", &changed);
+    let output = ground.run(&["verify", "a.csv"]);
+    let told = stdout(&output);
+    assert!(
+        told.contains("its rows are not those of the scenario in its header"),
+        "{told}"
+    );
+    assert!(told.contains("the row of step 0: Ly_Js is "), "{told}");
+}
+
+#[test]
 fn ctrl_c_ends_a_verification() {
     let ground = Ground::new();
     // The rows between the start and the last step are left out: nothing differs until that is computed.

@@ -1,7 +1,7 @@
 //! The errors of a comparison, computed again. Its last two columns are times by the wall, which no second run repeats.
 
 use super::lines::Lines;
-use super::{Difference, Kind, Verified, What};
+use super::{Difference, Field, Kind, Verified, What};
 use crate::analysis::compare::{self, ComparisonRow};
 use crate::analysis::cost::is_affordable;
 use crate::physics::SchemeInfo;
@@ -167,13 +167,13 @@ fn differing(names: &[String], there: &[String], wanted: &[String]) -> Option<Wh
     let pairs = names.iter().zip(there.iter().zip(wanted));
     let mut pairs = pairs.filter(|(name, _)| !WALL.contains(&name.as_str()));
     let (column, (stands, computed)) = pairs.find(|(_, (stands, computed))| stands != computed)?;
-    Some(What::Field {
+    Some(What::Field(Field {
         row: wanted[..2].join(" "),
         row_name: "scheme and time step".to_owned(),
         column: column.clone(),
         stands: brief(stands, 60),
         computed: computed.clone(),
-    })
+    }))
 }
 
 /// `rows` as they are written, the names first.

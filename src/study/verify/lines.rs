@@ -1,5 +1,6 @@
 //! The lines of a file, held one by one against those that are computed.
 
+use super::row::{self, Field};
 use crate::text::printable::brief;
 use std::cell::Cell;
 use std::fmt;
@@ -28,18 +29,9 @@ pub struct Difference {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum What {
     /// A field.
-    Field {
-        /// The step, or whatever stands in the first column of the computed row.
-        row: String,
-        /// The first column's name.
-        row_name: String,
-        /// The column's name.
-        column: String,
-        /// What stands in the file.
-        stands: String,
-        /// What was computed.
-        computed: String,
-    },
+    Field(Field),
+    /// A field of the first row, and others with it: the rows are those of another scenario than the one in the header.
+    FirstRow(Field),
     /// A line of the header, or one with another number of fields.
     Line {
         /// What stands in the file.
@@ -67,15 +59,10 @@ impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let line = self.line;
         match &self.what {
-            What::Field {
-                row,
-                row_name,
-                column,
-                stands,
-                computed,
-            } => write!(
+            What::Field(field) => write!(f, "line {line}, {field}"),
+            What::FirstRow(field) => write!(
                 f,
-                "line {line}, the row of {row_name} {row}: {column} is {stands}, computed {computed}"
+                "its rows are not those of the scenario in its header: already in the first, line {line}, {field}"
             ),
             What::Line { stands, computed } => {
                 write!(f, "line {line} is \"{stands}\", computed \"{computed}\"")
@@ -205,7 +192,19 @@ impl<R: Read> Held<R> {
             Some(What::Unended)
         } else {
             let names = self.names.as_deref();
-            Some(told(names, self.delimiter, stands, computed))
+            let is_first = self.rows == 0;
+            let differs = names.and_then(|names| {
+                let [there, wanted] = [stands, computed].map(|line| fields(line, self.delimiter));
+                row::differing(names, &there, &wanted)
+            });
+            Some(match differs {
+                None => What::Line {
+                    stands: shown(stands),
+                    computed: shown(computed),
+                },
+                Some((field, count)) if is_first && count > 1 => What::FirstRow(field),
+                Some((field, _)) => What::Field(field),
+            })
         };
         if what.is_none() && !is_header {
             match &self.names {
@@ -242,30 +241,6 @@ impl<R: Read> Write for Held<R> {
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
     }
-}
-
-/// What differs between two lines; `names` are those of the columns, unless the lines are above them.
-fn told(names: Option<&[String]>, delimiter: char, stands: &[u8], computed: &[u8]) -> What {
-    let line = || What::Line {
-        stands: shown(stands),
-        computed: shown(computed),
-    };
-    let Some(names) = names else {
-        return line();
-    };
-    let [there, wanted] = [stands, computed].map(|line| fields(line, delimiter));
-    if there.len() != wanted.len() {
-        return line();
-    }
-    let mut pairs = names.iter().zip(there.iter().zip(&wanted));
-    let first = pairs.find(|(_, (stands, computed))| stands != computed);
-    first.map_or_else(line, |(name, (stands, computed))| What::Field {
-        row: wanted.first().cloned().unwrap_or_default(),
-        row_name: names.first().cloned().unwrap_or_default(),
-        column: name.clone(),
-        stands: shown(stands.as_bytes()),
-        computed: computed.clone(),
-    })
 }
 
 /// How a line ends.
