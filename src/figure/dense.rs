@@ -60,7 +60,7 @@ pub(super) fn warning(
 ) -> Option<Dense> {
     let layout = Layout::new(chart, 0.0);
     let panels = chart.panels.iter().zip(&layout.panels).enumerate();
-    let mut all = panels.flat_map(|(place, (panel, placed))| {
+    let all = panels.flat_map(|(place, (panel, placed))| {
         drawn.iter().zip(&panel.series).map(move |(drawn, series)| {
             let curve = &drawn.course.curves[first + place];
             let (low, high) = placed.y.range;
@@ -87,7 +87,8 @@ pub(super) fn warning(
             (black as f64 > MOST * columns as f64).then_some(all)
         })
     });
-    let turns = all.find_map(|turns| turns)?;
+    // What shows the most swings shows those of the other curves too.
+    let turns = all.flatten().max()?;
     let (begin_s, end_s) = layout.panels.first()?.x.range;
     let window_s = 2.0 * SWINGS * (end_s - begin_s) / turns as f64;
     Some(proposal(

@@ -36,7 +36,14 @@ pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, St
             let fit = fit::Fitted::new(settings, run_file, found, width_pt);
             fit::drawn(table, &fit, columns)?
         }
-        Subject::Sweep { varied } => sweep::drawn(table, varied, columns, width_pt)?,
+        Subject::Sweep { varied, scenario } => {
+            let swept = sweep::Swept {
+                table,
+                varied,
+                scenario,
+            };
+            sweep::drawn(&swept, columns, width_pt)?
+        }
     };
     Ok(Chart {
         title: table.title.clone(),
@@ -54,7 +61,7 @@ pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, St
 /// What the reader of that chart should know of it, each a sentence without its end.
 pub fn warnings(table: &Table, columns: &[&str]) -> Vec<String> {
     match &table.subject {
-        Subject::Sweep { varied } => sweep::gaps(table, columns, varied),
+        Subject::Sweep { varied, .. } => sweep::gaps(table, columns, varied),
         Subject::Comparison | Subject::Fit { .. } => Vec::new(),
     }
 }

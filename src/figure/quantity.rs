@@ -27,15 +27,6 @@ pub fn axis(name: &str) -> Axis {
 /// The axis of a dotted key: the value at the start, where it is that of a readout.
 fn of_key(key: &str) -> Axis {
     let last = key.rsplit('.').next().unwrap_or(key);
-    if let Some(part) = key.strip_prefix("start.momentum_Js.") {
-        let readout = match part {
-            "0" => "Lx_Js",
-            "1" => "Ly_Js",
-            _ => "Lz_Js",
-        };
-        let own = axis(readout);
-        return Axis::new(at_start(&own.name), own.unit);
-    }
     let readout = readouts::find(last).filter(|readout| !readout.symbol.is_empty());
     if let Some(readout) = readout {
         let symbol = match key.starts_with("start.") {
@@ -48,8 +39,12 @@ fn of_key(key: &str) -> Axis {
     Axis::new(name, unit_markup(unit))
 }
 
-/// The axis of a key of this `scenario`: a point or a part of the body is called by its name, "mass of weight".
+/// The axis of a key of this `scenario`: a point or a part of the body is called by its name, "mass of weight", and L has the
+/// axes of its frame.
 pub fn axis_in(scenario: &toml::Table, key: &str) -> Axis {
+    if let Some(axis) = of_momentum(scenario, key) {
+        return axis;
+    }
     let mut steps = key.splitn(4, '.');
     let steps = [(); 4].map(|()| steps.next().unwrap_or_default());
     let [body, list @ ("point" | "part"), number, rest] = steps else {
@@ -63,6 +58,20 @@ pub fn axis_in(scenario: &toml::Table, key: &str) -> Axis {
     let own = axis(rest.strip_prefix("at_m.").unwrap_or(rest));
     let unit = axis(rest).unit;
     Axis::new(format!("{} of {}", own.name, letters::escape(name)), unit)
+}
+
+/// The axis of a part of L at the start: along x, y, z of the world, or along 1, 2, 3 of the body. `None` where `key` is
+/// another one, or `scenario` has no start.
+fn of_momentum(scenario: &toml::Table, key: &str) -> Option<Axis> {
+    let number = key.strip_prefix("start.momentum_Js.")?;
+    let part = PARTS.iter().position(|(other, _)| *other == number)?;
+    let frame = scenario.get("start")?.get("momentum_frame");
+    let index = match frame.and_then(toml::Value::as_str) {
+        Some("body") => (part + 1).to_string(),
+        _ => PARTS[part].1.to_owned(),
+    };
+    let unit = unit_markup(Unit::of("momentum_Js").map_or("", |unit| unit.name));
+    Some(Axis::new(at_start(&format!("*L*_{{{index}}}")), unit))
 }
 
 /// The symbol of a quantity's value at the start: with the index 0, behind the one that it may have.
@@ -169,6 +178,12 @@ mod tests {
             written("body.part.1.moments_kg_m2.2"),
             "moments *z* of ball (kg m^{2})"
         );
+        assert_eq!(written("start.momentum_Js.2"), "start momentum *z* (J s)");
+        for (frame, symbol) in [("world", "*L*_{*z*,0} (J s)"), ("body", "*L*_{3,0} (J s)")] {
+            let start = format!("[start]\nmomentum_frame = \"{frame}\"\n");
+            let axis = axis_in(&start.parse().unwrap(), "start.momentum_Js.2");
+            assert_eq!(format!("{} ({})", axis.name, axis.unit), symbol);
+        }
         // Without a name it is called by its number.
         assert_eq!(written("body.part.0.mass_kg"), "part 0 mass (kg)");
         assert_eq!(written("start.tilt_deg"), "*θ*_{0} (°)");

@@ -84,11 +84,12 @@ pub(super) fn scene(
     items.width_pt = width_pt;
     items.height_pt = above + bottom - top + EDGE;
     legend.draw_above(width_pt, EDGE, &mut items);
-    let dense = drawn.iter().find_map(|drawn| {
+    let dense = drawn.iter().filter_map(|drawn| {
         let path = drawn.course.path.iter();
         let places: Vec<_> = path.map(|at| space.place(&space.boxed(at))).collect();
         dense::path_warning(&places, drawn.course.end_s, request)
     });
+    let dense = dense.min_by(|a, b| a.to_s.total_cmp(&b.to_s));
     (items, dense)
 }
 

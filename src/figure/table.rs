@@ -20,6 +20,8 @@ pub enum Subject {
     Sweep {
         /// The keys that were varied, the last of which runs fastest.
         varied: Vec<String>,
+        /// The scenario, in which the keys have their names.
+        scenario: toml::Table,
     },
     /// What was measured, and what a fitted model says of it.
     Fit {
@@ -200,7 +202,8 @@ fn subject(header: &str, names: &[String]) -> Option<(Subject, String)> {
         own if own.is_empty() => of_scenario.map(title).unwrap_or_default(),
         own => own,
     };
-    Some((Subject::Sweep { varied }, title))
+    let scenario = of_scenario.cloned().unwrap_or_default();
+    Some((Subject::Sweep { varied, scenario }, title))
 }
 
 /// What was found by the fit in whose CSV this is the `header`; nothing where that does not tell.

@@ -72,6 +72,7 @@ fn names(series: &[Series]) -> Vec<&str> {
 fn two_keys(key: &str, rows: &str) -> String {
     format!(
         "# [[vary]]\n# key = \"{key}\"\n# values = [1]\n# [[vary]]\n# key = \"start.tilt_deg\"\n# values = [1]\n\
+         # [scenario.start]\n# momentum_frame = \"body\"\n\
          {key},start.tilt_deg,measured_precession_rad_per_s,fast_top_precession_rad_per_s,turns_per_step\n{rows}"
     )
 }
@@ -106,8 +107,8 @@ fn theory_that_differs_between_the_curves_has_a_line_for_each_and_one_name() {
         [
             "*M* *g* *h*/*L*_{3}",
             "*M* *g* *h*/*L*_{3}",
-            "measured, *L*_{*z*,0} = 60 J s",
-            "measured, *L*_{*z*,0} = −80.5 J s"
+            "measured, *L*_{3,0} = 60 J s",
+            "measured, *L*_{3,0} = −80.5 J s"
         ]
     );
     let shown = words(&chart.scene()).join("; ");

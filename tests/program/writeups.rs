@@ -269,9 +269,9 @@ fn a_run_that_breaks_down_is_written_up_to_there() {
 #[test]
 fn a_figure_that_is_covered_says_so_and_names_a_stretch_that_is_not() {
     let lab = Ground::new();
-    done(lab.run(&["writeup", "fast-top", "--steps", "30000", "-o", "w"]));
+    done(lab.run(&["writeup", "method-1", "-o", "w"]));
     let page = lab.read("w/README.md");
-    let begin = "On 86 mm about 90 swings cover the paper: none is told from the next";
+    let begin = "On 86 mm about 203 swings cover the paper: none is told from the next";
     let remark = page.lines().find(|line| line.starts_with(begin)).unwrap();
     assert!(remark.contains("`swings.pdf` shows the first"), "{remark}");
     // The command is one that works.

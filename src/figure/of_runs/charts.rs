@@ -99,10 +99,11 @@ pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) ->
     let layout = Layout::new(chart, 0.0);
     let placed = layout.panels.first()?;
     let series = &chart.panels.first()?.series;
-    drawn.iter().zip(series).find_map(|(drawn, series)| {
+    let dense = drawn.iter().zip(series).filter_map(|(drawn, series)| {
         let places: Vec<_> = series.points.iter().map(|at| placed.place(at)).collect();
         dense::path_warning(&places, drawn.course.end_s, request)
-    })
+    });
+    dense.min_by(|a, b| a.to_s.total_cmp(&b.to_s))
 }
 
 /// The radii of the circles between which the exact motion of the traced point stays, from above, m; none where pushes or

@@ -17,13 +17,24 @@ const MOST_PANELS: usize = 7;
 /// Series of one quantity that are still told apart.
 const MOST_SERIES: usize = 12;
 
+/// A sweep: its rows, the keys that were varied, and the scenario in which these have their names.
+pub(super) struct Swept<'a> {
+    pub table: &'a Table,
+    pub varied: &'a [String],
+    pub scenario: &'a toml::Table,
+}
+
 /// The axis of what was varied, and a panel for each quantity.
 pub(super) fn drawn(
-    table: &Table,
-    varied: &[String],
+    swept: &Swept<'_>,
     columns: &[&str],
     width_pt: f64,
 ) -> Result<(Axis, Vec<Panel>), String> {
+    let &Swept {
+        table,
+        varied,
+        scenario,
+    } = swept;
     // The key that runs fastest and is a number goes to the right; the others make curves.
     let along = varied.iter().rev().find_map(|key| {
         let values = table.numbers(key)?;
@@ -35,7 +46,7 @@ pub(super) fn drawn(
             varied.join(", ")
         ));
     };
-    let curves = curves::curves(table, varied, key);
+    let curves = curves::curves(swept, key);
     if curves.len() > MOST_SERIES {
         return Err(format!(
             "{} curves would stand beside each other, and {MOST_SERIES} can be told apart: vary {} at fewer values",
@@ -67,7 +78,7 @@ pub(super) fn drawn(
     first.series.extend(drawing.failed(&quantities)?);
     let x = Axis {
         is_log: spans_decades(along.iter().copied(), 30.0) && is_geometric(&along),
-        ..quantity::axis(key)
+        ..quantity::axis_in(scenario, key)
     };
     Ok((x, panels))
 }

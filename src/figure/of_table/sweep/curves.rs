@@ -1,10 +1,11 @@
 //! The curves of a sweep: its rows by what else was varied, and what each is called.
 
+use super::Swept;
+use crate::figure::chart::Axis;
 use crate::figure::chart::ticks::with_minus;
 use crate::figure::of_table::{Rows, grouped, within_room};
 use crate::figure::page::letters;
 use crate::figure::quantity;
-use crate::figure::table::Table;
 use crate::text::number::shortest;
 
 /// The key whose values are names.
@@ -25,11 +26,18 @@ pub(super) struct Curve {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Setting {
     key: String,
+    /// How the key stands at an axis.
+    axis: Axis,
     value: String,
 }
 
-/// The curves of a sweep of the keys `varied`, of which `along` is on the axis below.
-pub(super) fn curves(table: &Table, varied: &[String], along: &str) -> Vec<Curve> {
+/// The curves of a sweep, of whose keys `along` is on the axis below.
+pub(super) fn curves(swept: &Swept<'_>, along: &str) -> Vec<Curve> {
+    let &Swept {
+        table,
+        varied,
+        scenario,
+    } = swept;
     let others: Vec<_> = varied.iter().filter(|key| *key != along).collect();
     let columns: Vec<_> = others
         .iter()
@@ -38,6 +46,7 @@ pub(super) fn curves(table: &Table, varied: &[String], along: &str) -> Vec<Curve
     let settings = |row: usize| {
         let each = others.iter().zip(&columns).map(|(key, texts)| Setting {
             key: (*key).clone(),
+            axis: quantity::axis_in(scenario, key),
             value: texts.get(row).copied().unwrap_or_default().to_owned(),
         });
         each.collect::<Vec<_>>()
@@ -74,7 +83,7 @@ impl Setting {
         if self.key == SCHEME {
             return letters::escape(&self.value);
         }
-        let axis = quantity::axis(&self.key);
+        let axis = &self.axis;
         let value = match self.value.parse() {
             Ok(number) => with_minus(&shortest(number)),
             Err(_) => return format!("{} = {}", axis.name, letters::escape(&self.value)),
