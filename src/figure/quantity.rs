@@ -156,7 +156,10 @@ mod tests {
         );
         assert_eq!(written("start.tilt_deg"), pair("*θ*_{0}", "°"));
         assert_eq!(written("motion.time_step_s"), pair("Δ*t*", "s"));
-        assert_eq!(written("start.momentum_Js.2"), pair("*L*_{*z*,0}", "J s"));
+        assert_eq!(
+            written("start.momentum_Js.2"),
+            pair("start momentum *z*", "J s")
+        );
         assert_eq!(
             written("motion.gravity_m_per_s2"),
             pair("gravity", "m s^{−2}")
