@@ -87,7 +87,7 @@ fn too_many(quantities: &[Quantity]) -> String {
     let parts = quantities.iter().flat_map(|quantity| &quantity.parts);
     let names: Vec<_> = parts.map(|part| part.name.as_str()).collect();
     format!(
-        "{} quantities do not fit on a page: add the names of some, such as --kind {}; there are {}",
+        "{} quantities do not fit on a page: choose some with --kind, such as --kind {}; there are {}",
         quantities.len(),
         columns::example(quantities),
         names.join(", ")
