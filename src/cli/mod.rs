@@ -126,6 +126,9 @@ enum Refused {
 
 /// `error` with what a user may have meant: a command whose name is misspelt, an option of another command.
 fn explained(mut error: clap::Error) -> Refused {
+    if let Some(text) = command_behind_options(&error) {
+        return Refused::Named(text);
+    }
     if error.kind() == ErrorKind::ArgumentConflict {
         let typed = std::env::args_os().nth(1);
         let typed = typed.and_then(|typed| typed.into_string().ok());
@@ -147,6 +150,23 @@ fn explained(mut error: clap::Error) -> Refused {
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
     }
     Refused::ByClap(error)
+}
+
+/// What is said where options of the lab stand before a command, which clap then takes for a scenario.
+fn command_behind_options(error: &clap::Error) -> Option<String> {
+    if error.kind() != ErrorKind::ArgumentConflict {
+        return None;
+    }
+    let typed = std::env::args_os().skip(1);
+    let mut typed = typed.map_while(|word| word.into_string().ok());
+    let first = typed.next().filter(|first| first.starts_with('-'))?;
+    let command = Cli::command();
+    let name = typed.find(|word| command.find_subcommand(word).is_some())?;
+    let first = printable(&first).into_owned();
+    Some(format!(
+        "{first} is an option of the lab, and {name} is a command, which comes first, before its own options: \
+         gyrolab {name} --help lists them"
+    ))
 }
 
 /// What is said of an option that a command does not have, where what is meant is known.

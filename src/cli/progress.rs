@@ -175,8 +175,6 @@ pub(super) struct Meter {
 
 impl Meter {
     const QUIET: Duration = Duration::from_secs(1);
-    /// No time left is told to be longer, s: ten years.
-    const MOST_SECONDS: f64 = 3e8;
 
     pub(super) fn new() -> Self {
         Self::counting("step")
@@ -191,46 +189,78 @@ impl Meter {
         }
     }
 
+    /// Shows at once that there are `steps` to come, and none done.
+    pub(super) fn begin(&mut self, steps: u64) {
+        if io::stderr().is_terminal() {
+            self.bar(steps).tick();
+        }
+    }
+
     pub(super) fn show(&mut self, step: u64, steps: u64) {
-        if self.begin.elapsed() < Self::QUIET || !io::stderr().is_terminal() {
+        let is_early = self.bar.is_none() && self.begin.elapsed() < Self::QUIET;
+        if is_early || !io::stderr().is_terminal() {
             return;
         }
-        let bar = self.bar.get_or_insert_with(|| {
-            let bar =
-                ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr_with_hz(4));
-            let of = self.of;
-            let template = format!(
-                "{{wide_bar}} {of} {{human_pos}} of {{human_len}}, {{rate}}/s, {{rest}} left"
-            );
-            let style = ProgressStyle::with_template(&template)
-                .unwrap_or_else(|_| ProgressStyle::default_bar());
-            // Of all that is done, and all the time that it took: a rate of the last moments would be wrong at first.
-            let each =
-                |state: &ProgressState| state.elapsed().as_secs_f64() / state.pos().max(1) as f64;
-            // What cannot be shown of them is not worth an error.
-            let rate = move |state: &ProgressState, text: &mut dyn fmt::Write| {
-                let _ = write!(text, "{}", HumanCount((1.0 / each(state)).round() as u64));
-            };
-            let rest = move |state: &ProgressState, text: &mut dyn fmt::Write| {
-                let count = state.len().unwrap_or_default().saturating_sub(state.pos());
-                let seconds = (each(state) * count as f64).min(Self::MOST_SECONDS);
-                let _ = write!(
-                    text,
-                    "{:#}",
-                    HumanDuration(Duration::from_secs_f64(seconds))
-                );
-            };
-            let style = style.with_key("rate", rate).with_key("rest", rest);
-            bar.with_style(style.progress_chars("=> "))
-                .with_elapsed(self.begin.elapsed())
-        });
+        let bar = self.bar(steps);
         bar.set_length(steps); // a file of commands goes to one step after the other
         bar.set_position(step);
+    }
+
+    fn bar(&mut self, steps: u64) -> &ProgressBar {
+        let (of, begin) = (self.of, self.begin);
+        self.bar.get_or_insert_with(|| {
+            let bar =
+                ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr_with_hz(4));
+            let template = format!("{{wide_bar}} {of} {{human_pos}} of {{human_len}}{{pace}}");
+            let style = ProgressStyle::with_template(&template)
+                .unwrap_or_else(|_| ProgressStyle::default_bar());
+            let pace = move |state: &ProgressState, text: &mut dyn fmt::Write| {
+                let left = state.len().unwrap_or_default().saturating_sub(state.pos());
+                // What cannot be shown of it is not worth an error.
+                let _ = text.write_str(&pace(of, state.pos(), left, state.elapsed()));
+            };
+            let style = style.with_key("pace", pace).progress_chars("=> ");
+            bar.with_style(style).with_elapsed(begin.elapsed())
+        })
     }
 
     pub(super) fn clear(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
+    }
+}
+
+/// `, 12/s, 40s left` behind the count of `of`: the rate of all that is `done`, and all the time that it took, since a
+/// rate of the last moments would be wrong at first. Nothing before something is done; seconds for each where they are
+/// more than one.
+fn pace(of: &str, done: u64, left: u64, elapsed: Duration) -> String {
+    /// No time left is told to be longer, s: ten years.
+    const MOST_S: f64 = 3e8;
+    if done == 0 {
+        return String::new();
+    }
+    let each_s = elapsed.as_secs_f64() / done as f64;
+    let rest = Duration::from_secs_f64((each_s * left as f64).min(MOST_S));
+    let rate = match each_s {
+        each_s if each_s < 0.1 => format!("{}/s", HumanCount((1.0 / each_s).round() as u64)),
+        each_s if each_s <= 1.0 => format!("{:.1}/s", 1.0 / each_s),
+        each_s => format!("{each_s:.1} s a {of}"),
+    };
+    format!(", {rate}, {:#} left", HumanDuration(rest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rate_is_told_once_there_is_one_and_never_as_0() {
+        let told = |done, left, s| pace("row", done, left, Duration::from_secs_f64(s));
+        assert_eq!(told(0, 1000, 1.1), "");
+        assert_eq!(told(1000, 9000, 0.5), ", 2,000/s, 4s left");
+        assert_eq!(told(5, 5, 2.0), ", 2.5/s, 2s left");
+        assert_eq!(told(2, 98, 11.0), ", 5.5 s a row, 9m left");
+        assert_eq!(told(10, 0, 20.0), ", 2.0 s a row, 0s left");
     }
 }

@@ -1,5 +1,7 @@
 //! `gyrolab sweep`: a grid of runs, a row each.
 
+mod empty_rows;
+
 use super::args::Changes;
 use super::progress::{self, Interruption, Meter};
 use super::scenario::change;
@@ -12,8 +14,9 @@ use crate::study::sweep::join::join;
 use crate::study::sweep::part::{Opened, PartError, PartFile};
 use crate::study::sweep::shipped::{self, SWEEPS};
 use crate::study::sweep::{Shard, Sweep, SweepFile, axis};
-use crate::text::printable::{Shown, printable_lines};
+use crate::text::printable::Shown;
 use clap::Args;
+use empty_rows::EmptyRows;
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -64,12 +67,9 @@ pub(super) fn sweep(args: &SweepArgs) -> anyhow::Result<ExitCode> {
     match (&args.scenario, &args.output) {
         (Some(name), Some(output)) => run(&sweep_of(name, args)?, output, args.force),
         (None, Some(output)) if !args.join.is_empty() => {
-            let rows = join(&args.join, output, args.force)?;
-            tell(format_args!(
-                "gyrolab: {} in {}",
-                plural(rows, "row"),
-                Shown(output)
-            ));
+            let (sweep, rows) = join(&args.join, output, args.force)?;
+            EmptyRows::of_file(rows).tell(&sweep, &progress::interruption()?);
+            tell_of_rows(&sweep, output);
             Ok(ExitCode::SUCCESS)
         }
         _ => print(&list()?),
@@ -149,6 +149,10 @@ fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
         for problem in &mut placed.list {
             if let Some(argument) = argument_behind(problem, &keys, &args.vary) {
                 axis::place(problem, argument);
+            } else if problem.key == "measure" && !args.measure.is_empty() {
+                let name = problem.value.trim_matches('"');
+                problem.place = Some(format!("--measure {name}"));
+                problem.key.clear();
             }
         }
         placed
@@ -177,7 +181,8 @@ fn argument_behind<'a>(
 fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCode> {
     let interruption = progress::interruption()?;
     let mut part = match PartFile::open(output, sweep, may_replace)? {
-        Opened::Whole => {
+        Opened::Whole(there) => {
+            EmptyRows::of_file(there).tell(sweep, &interruption);
             let rows = plural(sweep.rows(), "row");
             tell(format_args!(
                 "gyrolab: {} is whole, {rows} of this very sweep",
@@ -189,22 +194,26 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
     };
     let begin = part.rows();
     if begin > 0 {
+        let empty = match part.found().empty() {
+            0 => String::new(),
+            empty => format!(", {empty} of them without readouts"),
+        };
         let (there, all) = (part.path(), sweep.rows());
         tell(format_args!(
-            "gyrolab: going on behind {begin} of {all} rows in {}",
+            "gyrolab: going on behind {begin} of {all} rows in {}{empty}",
             Shown(there)
         ));
     }
-    let mut failures = Failures::default();
+    let mut empty = EmptyRows::of_file(part.found().clone());
     let mut failed = None;
-    add_rows(sweep, &mut part, &interruption, &mut failures, &mut failed);
+    add_rows(sweep, &mut part, &interruption, &mut empty, &mut failed);
     let (rows, all) = (part.rows(), sweep.rows());
     let kept = format!(
         "{rows} of {} are in {}: the same command goes on behind them",
         plural(all, "row"),
         Shown(part.path())
     );
-    failures.tell();
+    empty.tell(sweep, &interruption);
     if let Some(error) = failed {
         tell(format_args!("gyrolab: {kept}"));
         return Err(error.into());
@@ -214,12 +223,14 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
         return Ok(ExitCode::from(INTERRUPTED));
     }
     part.keep()?;
-    tell(format_args!(
-        "gyrolab: {} in {}",
-        plural(rows, "row"),
-        Shown(output)
-    ));
+    tell_of_rows(sweep, output);
     Ok(ExitCode::SUCCESS)
+}
+
+/// Says that all rows are in the file.
+fn tell_of_rows(sweep: &Sweep, output: &Path) {
+    let rows = plural(sweep.rows(), "row");
+    tell(format_args!("gyrolab: {rows} in {}", Shown(output)));
 }
 
 /// Computes the rows that are not there yet and adds them to `part`.
@@ -227,11 +238,12 @@ fn add_rows(
     sweep: &Sweep,
     part: &mut PartFile,
     interruption: &Interruption,
-    failures: &mut Failures,
+    empty: &mut EmptyRows,
     failed: &mut Option<PartError>,
 ) {
     let (begin, all) = (part.rows(), sweep.rows());
     let mut meter = Meter::counting("row");
+    meter.begin(all - begin);
     let row = |row: u64, goes_on: &dyn Fn() -> bool| {
         sweep.row(row, &|| goes_on() && !interruption.has_come())
     };
@@ -241,9 +253,7 @@ fn add_rows(
         let count = rows.len() as u64;
         for (index, row) in (first..).zip(rows) {
             lines += &row.line;
-            if let Some(why) = row.failure {
-                failures.add(|| sweep.point_in_words(index), &why);
-            }
+            empty.add(sweep, index, &row);
         }
         if let Err(error) = part.add(&lines, count) {
             *failed = Some(error);
@@ -254,41 +264,6 @@ fn add_rows(
         interruption.go_on()
     });
     meter.clear();
-}
-
-/// The points that failed, counted, and the first of them with their reasons.
-#[derive(Debug, Default)]
-struct Failures {
-    count: u64,
-    told: Vec<String>,
-}
-
-impl Failures {
-    const MOST: usize = 8;
-
-    fn add(&mut self, point: impl FnOnce() -> String, why: &str) {
-        self.count += 1;
-        if self.told.len() < Self::MOST {
-            self.told.push(format!("{}: {why}", point()));
-        }
-    }
-
-    fn tell(&self) {
-        if self.count == 0 {
-            return;
-        }
-        let points = plural(self.count, "point");
-        tell(format_args!(
-            "gyrolab: {points} failed, and their rows hold no readouts:"
-        ));
-        for line in &self.told {
-            tell(format_args!("  {}", printable_lines(line)));
-        }
-        match self.count - self.told.len() as u64 {
-            0 => {}
-            more => tell(format_args!("  and {more} more")),
-        }
-    }
 }
 
 fn plural(count: u64, what: &str) -> String {

@@ -340,7 +340,7 @@ fn wrong_keys_values_and_readouts_are_refused_before_anything_runs() {
         ),
         (
             &["cusps", "--vary", vary, "--measure", "tilt"],
-            &["tilt", "did you mean tilt_deg?"],
+            &["gyrolab: --measure tilt: is no readout: did you mean tilt_deg?"],
         ),
         (
             &["cusps", "--vary", vary, "--measure", "wall_s"],
@@ -455,7 +455,7 @@ fn a_point_that_fails_is_a_row_without_readouts_and_its_reason_is_told() {
         ["report,1e200,,,", "rk4,1e200,,,"],
         "{csv}"
     );
-    assert!(told.contains("points failed"), "{told}");
+    assert!(told.contains("rows without readouts: 3 of 6"), "{told}");
     assert!(
         told.contains(
             "motion.scheme = \"rk4\", body.rim.height_m = 0.5: the numbers are no longer finite"
@@ -469,6 +469,98 @@ fn a_point_that_fails_is_a_row_without_readouts_and_its_reason_is_told() {
     );
     made(&sweep(&ground, &["sweep", "out.csv"], "again.csv"));
     assert_eq!(csv, ground.read("again.csv"));
+}
+
+/// A file does not say why a row is empty, and an earlier command, which was ended, has not said it.
+#[test]
+fn rows_without_readouts_are_told_by_every_command_that_finds_them() {
+    let ground = Ground::new();
+    let args = [
+        "sweep",
+        "method-2",
+        "--set",
+        "motion.steps=40",
+        "--vary",
+        "motion.scheme=report,rk4",
+        "--vary",
+        "body.rim.height_m=0.5,1e200",
+        "--measure=z_m",
+    ];
+    let count = "gyrolab: rows without readouts: 3 of 4\n";
+    let reasons = [
+        "motion.scheme = \"rk4\", body.rim.height_m = 0.5: the numbers are no longer finite",
+        "motion.scheme = \"report\", body.rim.height_m = 1e200: ",
+        "motion.scheme = \"rk4\", body.rim.height_m = 1e200: ",
+    ];
+    let is_told = |told: &str| {
+        assert!(told.contains(count), "{told}");
+        let missing = reasons.iter().find(|reason| !told.contains(*reason));
+        assert_eq!(missing, None, "{told}");
+    };
+    let told = made(&sweep(&ground, &args, "whole.csv"));
+    is_told(&told);
+    let whole = ground.read("whole.csv");
+    // A file that is whole already, and one that was ended behind its second row or before its last.
+    is_told(&made(&sweep(&ground, &args, "whole.csv")));
+    for (kept, words) in [
+        (
+            2,
+            "behind 2 of 4 rows in cut.csv.part, 1 of them without readouts\n",
+        ),
+        (
+            3,
+            "behind 3 of 4 rows in cut.csv.part, 2 of them without readouts\n",
+        ),
+    ] {
+        let lost: usize = rows(&whole)[1 + kept..]
+            .iter()
+            .map(|row| row.len() + 1)
+            .sum();
+        ground.write("cut.csv.part", &whole[..whole.len() - lost]);
+        let told = made(&sweep(&ground, &args, "cut.csv"));
+        assert!(told.contains(words), "{told}");
+        is_told(&told);
+        assert_eq!(ground.read("cut.csv"), whole);
+        fs::remove_file(ground.file("cut.csv")).unwrap();
+    }
+    // Shards joined, and once more where the file is whole.
+    for shard in ["1/2", "2/2"] {
+        let name = format!("{}.csv", &shard[..1]);
+        made(&sweep(
+            &ground,
+            &[&args[..], &["--shard", shard]].concat(),
+            &name,
+        ));
+    }
+    for _ in 0..2 {
+        let join = ["sweep", "--join", "1.csv", "2.csv"];
+        is_told(&made(&sweep(&ground, &join, "joined.csv")));
+    }
+    assert_eq!(ground.read("joined.csv"), whole);
+}
+
+/// What a broken disk leaves behind good rows is told as such, with what to do.
+#[test]
+fn damage_behind_good_rows_is_told_and_nothing_is_lost() {
+    let ground = Ground::new();
+    made(&sweep(&ground, &GRID, "grid.csv"));
+    let whole = ground.read("grid.csv");
+    let lost: usize = rows(&whole)[31..].iter().map(|row| row.len() + 1).sum();
+    let mut bytes = whole.as_bytes()[..whole.len() - lost].to_vec();
+    let good = bytes.len();
+    bytes.extend([0, 159, 10, 200, 10]);
+    fs::write(ground.file("cut.csv.part"), &bytes).unwrap();
+    let words = [
+        "cut.csv.part is damaged: its first 30 rows are of this sweep",
+        "goes on behind row 30",
+        "--force",
+    ];
+    refused(&sweep(&ground, &GRID, "cut.csv"), 1, &words);
+    assert_eq!(fs::read(ground.file("cut.csv.part")).unwrap(), bytes);
+    fs::write(ground.file("cut.csv.part"), &bytes[..good]).unwrap();
+    let told = made(&sweep(&ground, &GRID, "cut.csv"));
+    assert!(told.contains("behind 30 of 60 rows"), "{told}");
+    assert_eq!(ground.read("cut.csv"), whole);
 }
 
 #[test]
@@ -512,7 +604,7 @@ fn a_time_step_that_varies_holds_the_seconds() {
     ];
     let told = made(&sweep(&ground, &args, "acc.csv"));
     assert!(
-        told.contains("1 point failed") && told.contains("accumulates"),
+        told.contains("rows without readouts: 1 of 2") && told.contains("accumulates"),
         "{told}"
     );
 }

@@ -281,8 +281,13 @@ impl Sweep {
             Ok(cells) => (cells?, None),
             Err(why) => (vec![Readable::Nothing; self.measure.len()], Some(why)),
         };
+        let holds_readouts = cells.iter().any(|cell| *cell != Readable::Nothing);
         let line = line(&(self.labels(row), cells));
-        Some(SweepRow { line, failure })
+        Some(SweepRow {
+            line,
+            holds_readouts,
+            failure,
+        })
     }
 }
 

@@ -1,9 +1,10 @@
 //! One CSV of a sweep's shards.
 
 use super::grid::Sweep;
-use super::part::{PartError, is_whole, is_writable};
+use super::part::{PartError, is_writable, whole_rows};
+use super::row::RowsThere;
 use super::shard::Shard;
-use super::there::is_row;
+use super::there::{KindOfRow, kind_of_row};
 use crate::export::Destination;
 use crate::export::destination::DestinationError;
 use crate::scenario::Problems;
@@ -70,11 +71,15 @@ struct Part {
 }
 
 /// Writes to `path` the sweep whose shards are `parts`, in any order; the bytes are those of the sweep made at once. A file
-/// that is there and has them already is left as it is. Gives the number of rows.
+/// that is there and has them already is left as it is. Gives the sweep and its rows.
 ///
 /// # Errors
 /// When the parts are not all shards of one sweep, whole, and each once, or the file cannot be written.
-pub fn join(parts: &[PathBuf], path: &Path, may_replace: bool) -> Result<u64, JoinError> {
+pub fn join(
+    parts: &[PathBuf],
+    path: &Path,
+    may_replace: bool,
+) -> Result<(Sweep, RowsThere), JoinError> {
     let mut parts = parts
         .iter()
         .map(|path| Part::open(path))
@@ -82,8 +87,8 @@ pub fn join(parts: &[PathBuf], path: &Path, may_replace: bool) -> Result<u64, Jo
     parts.sort_by_key(|part| part.sweep.shard().number());
     let whole = of_one_sweep(&parts)?;
     is_writable(path)?;
-    if is_whole(path, &whole, may_replace)? {
-        return Ok(whole.rows());
+    if let Some(rows) = whole_rows(path, &whole, may_replace)? {
+        return Ok((whole, rows));
     }
     let mut output = BufWriter::new(Destination::open_file(path, may_replace)?);
     let cannot_write = |error| JoinError::Io {
@@ -94,9 +99,9 @@ pub fn join(parts: &[PathBuf], path: &Path, may_replace: bool) -> Result<u64, Jo
         .write_all(whole.header().as_bytes())
         .map_err(cannot_write)?;
     let of = parts.len() as u64;
-    let mut line = Vec::new();
+    let (mut rows, mut line) = (RowsThere::default(), Vec::new());
     for point in 0..whole.points() {
-        parts[(point % of) as usize].next(point / of, &mut line)?;
+        rows.add(parts[(point % of) as usize].next(point / of, &mut line)?);
         output.write_all(&line).map_err(cannot_write)?;
     }
     parts.iter_mut().try_for_each(Part::has_ended)?;
@@ -104,7 +109,7 @@ pub fn join(parts: &[PathBuf], path: &Path, may_replace: bool) -> Result<u64, Jo
     output
         .map_err(|error| cannot_write(error.into_error()))?
         .keep()?;
-    Ok(whole.rows())
+    Ok((whole, rows))
 }
 
 /// The sweep whose shards `parts`, in the order of their numbers, are.
@@ -190,7 +195,7 @@ impl Part {
         }
     }
 
-    fn next(&mut self, row: u64, line: &mut Vec<u8>) -> Result<(), JoinError> {
+    fn next(&mut self, row: u64, line: &mut Vec<u8>) -> Result<KindOfRow, JoinError> {
         line.clear();
         let read = self.rows.read_until(b'\n', line);
         read.map_err(|error| JoinError::Io {
@@ -198,14 +203,10 @@ impl Part {
             error,
         })?;
         match line.last() {
-            Some(b'\n') if is_row(line, &self.sweep, row) => Ok(()),
-            Some(b'\n') => {
-                let row = row + 1;
-                Err(self.fails(format!(
-                    "its row {row} is no row of shard {}",
-                    self.sweep.shard()
-                )))
-            }
+            Some(b'\n') => kind_of_row(line, &self.sweep, row).ok_or_else(|| {
+                let (row, shard) = (row + 1, self.sweep.shard());
+                self.fails(format!("its row {row} is no row of shard {shard}"))
+            }),
             _ => {
                 let (sweep, rows) = (&self.sweep, self.sweep.rows());
                 Err(self.fails(format!(

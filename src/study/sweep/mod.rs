@@ -23,5 +23,5 @@ mod there;
 pub use axis::Axis;
 pub use file::SweepFile;
 pub use grid::Sweep;
-pub use row::SweepRow;
+pub use row::{RowsThere, SweepRow};
 pub use shard::Shard;

@@ -5,6 +5,7 @@
 //! there are, and goes on behind them. When all are there the file gets its name.
 
 use super::grid::Sweep;
+use super::row::RowsThere;
 use super::there::{There, look};
 use crate::export::Destination;
 use crate::export::destination::is_workbook;
@@ -44,6 +45,18 @@ pub enum PartError {
         /// What differs.
         differs: String,
     },
+    /// Behind rows of this sweep there is something else.
+    #[error(
+        "{} is damaged: its first {rows} rows are of this sweep, and the line behind them is none of its rows. \
+         Remove that line and all below it, and the same command goes on behind row {rows}; --force begins again",
+        Shown(path)
+    )]
+    Damaged {
+        /// The part file.
+        path: PathBuf,
+        /// How many rows are good.
+        rows: u64,
+    },
     /// Somebody else is at it.
     #[error("{} is being written by another gyrolab now", Shown(.0))]
     Busy(PathBuf),
@@ -68,8 +81,8 @@ pub enum PartError {
 /// What there is to do for a file.
 #[derive(Debug)]
 pub enum Opened {
-    /// It is there, whole, and of this sweep.
-    Whole,
+    /// It is there, whole, and of this sweep; its rows.
+    Whole(RowsThere),
     /// Rows are to be added.
     Part(PartFile),
 }
@@ -84,6 +97,8 @@ pub struct PartFile {
     last: PathBuf,
     may_replace: bool,
     rows: u64,
+    /// Those that were there when it was opened.
+    found: RowsThere,
     synced: Instant,
 }
 
@@ -94,8 +109,8 @@ impl PartFile {
     /// When there is something else and may not be replaced, somebody else is writing, or the system reports an error.
     pub fn open(path: &Path, sweep: &Sweep, may_replace: bool) -> Result<Opened, PartError> {
         is_writable(path)?;
-        if is_whole(path, sweep, may_replace)? {
-            return Ok(Opened::Whole);
+        if let Some(rows) = whole_rows(path, sweep, may_replace)? {
+            return Ok(Opened::Whole(rows));
         }
         let part = part_of(path);
         is_writable(&part)?;
@@ -105,9 +120,9 @@ impl PartFile {
         };
         let file = locked(&part)?;
         // Another process may have made it whole meanwhile.
-        if is_whole(path, sweep, may_replace)? {
+        if let Some(rows) = whole_rows(path, sweep, may_replace)? {
             let _ = fs::remove_file(&part); // of which nothing but the name is left
-            return Ok(Opened::Whole);
+            return Ok(Opened::Whole(rows));
         }
         let mut part = Self {
             file,
@@ -115,6 +130,7 @@ impl PartFile {
             last: path.to_owned(),
             may_replace,
             rows: 0,
+            found: RowsThere::default(),
             synced: Instant::now(),
         };
         let there = look(&part.file, sweep).map_err(refused)?;
@@ -122,7 +138,14 @@ impl PartFile {
             There::Rows(rows, bytes) => {
                 part.file.set_len(bytes).map_err(refused)?;
                 part.file.seek(SeekFrom::End(0)).map_err(refused)?;
-                part.rows = rows;
+                part.rows = rows.count();
+                part.found = rows;
+            }
+            There::Damaged(rows) if !may_replace => {
+                return Err(PartError::Damaged {
+                    path: part.path,
+                    rows,
+                });
             }
             There::Other(differs) if !may_replace => {
                 return Err(PartError::OtherPart {
@@ -130,7 +153,7 @@ impl PartFile {
                     differs,
                 });
             }
-            There::Nothing | There::Other(_) => {
+            There::Nothing | There::Damaged(_) | There::Other(_) => {
                 part.file.set_len(0).map_err(refused)?;
                 part.file.rewind().map_err(refused)?;
                 part.write(sweep.header().as_bytes())?;
@@ -147,6 +170,11 @@ impl PartFile {
     /// How many rows are in it.
     pub fn rows(&self) -> u64 {
         self.rows
+    }
+
+    /// The rows that were there when it was opened.
+    pub fn found(&self) -> &RowsThere {
+        &self.found
     }
 
     /// Adds `count` rows, which are whole `lines`.
@@ -245,29 +273,36 @@ fn folder_of(path: &Path) -> &Path {
         .unwrap_or(Path::new("."))
 }
 
-/// Whether `path` is there with all rows of `sweep`.
+/// The rows in `path`, where all rows of `sweep` are there.
 ///
 /// # Errors
 /// When something else is there and may not be replaced.
-pub(super) fn is_whole(path: &Path, sweep: &Sweep, may_replace: bool) -> Result<bool, PartError> {
+pub(super) fn whole_rows(
+    path: &Path,
+    sweep: &Sweep,
+    may_replace: bool,
+) -> Result<Option<RowsThere>, PartError> {
     let refused = |error| PartError::Refused {
         path: path.to_owned(),
         error,
     };
     let file = match File::open(path) {
         Ok(file) => file,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(refused(error)),
     };
     let length = file.metadata().map_err(refused)?.len();
     let differs = match look(&file, sweep).map_err(refused)? {
-        There::Rows(rows, bytes) if rows == sweep.rows() && bytes == length => return Ok(true),
-        There::Rows(rows, _) => format!("it has {rows} of the {} rows", sweep.rows()),
+        There::Rows(rows, bytes) if rows.count() == sweep.rows() && bytes == length => {
+            return Ok(Some(rows));
+        }
+        There::Rows(rows, _) => format!("it has {} of the {} rows", rows.count(), sweep.rows()),
+        There::Damaged(rows) => format!("its row {} is no row of this sweep", rows + 1),
         There::Nothing => "it is no sweep's CSV".to_owned(),
         There::Other(differs) => differs,
     };
     match may_replace {
-        true => Ok(false),
+        true => Ok(None),
         false => Err(PartError::Other {
             path: path.to_owned(),
             differs,

@@ -1,5 +1,6 @@
-//! The row of one point, as it stands in the file.
+//! The row of one point as it stands in the file, and the rows that are there.
 
+use super::there::KindOfRow;
 use serde::Serialize;
 
 /// One row of a sweep's CSV.
@@ -7,8 +8,49 @@ use serde::Serialize;
 pub struct SweepRow {
     /// The row as it stands in the file, with its line end.
     pub line: String,
+    /// Whether at least one of its readouts has a value.
+    pub holds_readouts: bool,
     /// Why it holds no readouts.
     pub failure: Option<String>,
+}
+
+/// The rows that stand in a file: how many there are, and which of them hold no readouts.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RowsThere {
+    count: u64,
+    empty: u64,
+    first_empty: Vec<u64>,
+}
+
+impl RowsThere {
+    /// So many rows without readouts are kept by their number.
+    const MOST_KEPT: usize = 8;
+
+    /// How many rows there are.
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// How many of them hold no readouts.
+    pub fn empty(&self) -> u64 {
+        self.empty
+    }
+
+    /// The numbers of the first few that hold none, from 0.
+    pub fn first_empty(&self) -> &[u64] {
+        &self.first_empty
+    }
+
+    /// Counts the next row.
+    pub(super) fn add(&mut self, kind: KindOfRow) {
+        if kind == KindOfRow::Empty {
+            self.empty += 1;
+            if self.first_empty.len() < Self::MOST_KEPT {
+                self.first_empty.push(self.count);
+            }
+        }
+        self.count += 1;
+    }
 }
 
 /// `cells` as one line of CSV.

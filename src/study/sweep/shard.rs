@@ -50,7 +50,7 @@ impl FromStr for Shard {
             Some((number, of)) if (1..=of).contains(&number) && of <= MOST => {
                 Ok(Self { number, of })
             }
-            Some((number, of)) if number > of => {
+            Some((number, of)) if number > of && (1..=MOST).contains(&of) => {
                 Err(format!("must be one of the shards 1/{of} to {of}/{of}"))
             }
             _ => Err(format!(
@@ -97,6 +97,11 @@ mod tests {
             "1/99999999999",
         ] {
             assert!(wrong.parse::<Shard>().is_err(), "{wrong}");
+        }
+        // Where there are no shards at all none of them is proposed.
+        for (wrong, rule) in [("4/3", "1/3 to 3/3"), ("1/0", "must be K/N")] {
+            let told = wrong.parse::<Shard>().unwrap_err();
+            assert!(told.contains(rule), "{wrong}: {told}");
         }
         assert_eq!("3/3".parse::<Shard>().unwrap().to_string(), "3/3");
     }

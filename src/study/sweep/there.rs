@@ -2,13 +2,16 @@
 
 use super::difference::of_headers;
 use super::grid::Sweep;
+use super::row::RowsThere;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek};
 
 /// What stands in a file, held against a sweep.
 pub(super) enum There {
-    /// So many rows of it, and how many bytes they and the header take; a torn line behind them is not counted.
-    Rows(u64, u64),
+    /// Rows of it, and how many bytes they and the header take; a torn line behind them is not counted.
+    Rows(RowsThere, u64),
+    /// So many rows of it, and behind them a line that is none of its rows.
+    Damaged(u64),
     /// Nothing, or a beginning of the header.
     Nothing,
     /// Something else.
@@ -34,7 +37,7 @@ pub(super) fn look(file: &File, sweep: &Sweep) -> io::Result<There> {
             }
         });
     }
-    let (mut rows, mut bytes) = (0, header.len() as u64);
+    let (mut rows, mut bytes) = (RowsThere::default(), header.len() as u64);
     let mut line = Vec::new();
     loop {
         line.clear();
@@ -42,25 +45,31 @@ pub(super) fn look(file: &File, sweep: &Sweep) -> io::Result<There> {
         if line.last() != Some(&b'\n') {
             return Ok(There::Rows(rows, bytes));
         }
-        if rows == sweep.rows() {
+        if rows.count() == sweep.rows() {
             return Ok(There::Other("it has more rows than the sweep".to_owned()));
         }
-        if !is_row(&line, sweep, rows) {
-            let row = rows + 1;
-            return Ok(There::Other(format!(
-                "its row {row} is no row of this sweep"
-            )));
+        match kind_of_row(&line, sweep, rows.count()) {
+            Some(kind) => rows.add(kind),
+            None => return Ok(There::Damaged(rows.count())),
         }
-        (rows, bytes) = (rows + 1, bytes + line.len() as u64);
+        bytes += line.len() as u64;
     }
 }
 
-/// Whether `line` could be the `row`-th row of `sweep`: its values vary as they must, and it has as many cells as columns.
-pub(super) fn is_row(line: &[u8], sweep: &Sweep, row: u64) -> bool {
+/// Whether a row holds readouts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum KindOfRow {
+    /// It holds at least one.
+    Filled,
+    /// All of them are missing, as where its point has failed.
+    Empty,
+}
+
+/// What kind of row `line` is as the `row`-th of `sweep`; `None` where it cannot be that one: the values that vary must be
+/// those of its point, and it must have as many cells as there are columns.
+pub(super) fn kind_of_row(line: &[u8], sweep: &Sweep, row: u64) -> Option<KindOfRow> {
     let begin = sweep.row_begins(row);
-    let Some(rest) = line.strip_prefix(begin.as_bytes()) else {
-        return false;
-    };
+    let rest = line.strip_prefix(begin.as_bytes())?;
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .from_reader(rest);
@@ -68,7 +77,11 @@ pub(super) fn is_row(line: &[u8], sweep: &Sweep, row: u64) -> bool {
     let read = reader.read_byte_record(&mut cells).unwrap_or(false);
     // A line of one empty cell is taken for none.
     let count = if read { cells.len() } else { 1 };
-    count == sweep.measure().len()
+    let kind = match cells.iter().all(<[u8]>::is_empty) {
+        true => KindOfRow::Empty,
+        false => KindOfRow::Filled,
+    };
+    (count == sweep.measure().len()).then_some(kind)
 }
 
 /// The `# ` lines at the beginning of a file, of which no more is read than any header has.
