@@ -37,7 +37,7 @@ pub(super) struct CastArgs {
     #[arg(value_name = "FILE")]
     pub(super) commands: PathBuf,
 
-    /// Write the recording to this file (asciicast v3), or to stdout for -
+    /// Write the recording to this file (asciicast v3, for asciinema 3), or to stdout for -
     #[arg(short, long, value_name = "FILE.cast")]
     pub(super) output: PathBuf,
 
@@ -56,7 +56,10 @@ pub(super) struct CastArgs {
 
 const WHAT_PASSES: &str = "\
 Time passes at run, run_until and wait_s; a recording ends with the last command, so that one of wait_s at its end \
-shows the last picture for so long. chapter makes a marker. The same commands give the same bytes, on every machine.";
+shows the last picture for so long. chapter makes a marker. The same commands give the same bytes, on every machine.
+
+asciinema play shows a recording, from asciinema 3 on; version 2, as Debian 12 has it, plays only the older formats v1 and \
+v2, of which asciinema convert of version 3 makes one.";
 
 pub(super) fn cast(args: &CastArgs) -> anyhow::Result<ExitCode> {
     let commands = command::open(&args.commands)?;

@@ -16,7 +16,13 @@ use std::path::PathBuf;
 
 /// A terminal lab for the precession of a gyroscope: a report's stepper, better schemes, and any run as CSV.
 #[derive(Debug, Parser)]
-#[command(name = "gyrolab", bin_name = "gyrolab", version, about, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+#[command(
+    name = "gyrolab",
+    bin_name = "gyrolab",
+    version,
+    about,
+    args_conflicts_with_subcommands = true
+)]
 pub(super) struct Cli {
     #[command(subcommand)]
     pub(super) command: Option<Command>,
@@ -24,20 +30,6 @@ pub(super) struct Cli {
     #[command(flatten)]
     pub(super) workbench: WorkbenchArgs,
 }
-
-const EXAMPLES: &str = "\
-Examples:
-  gyrolab                                           open the lab: the report's Method 2, live
-  gyrolab cusps --paused --at 500                   a screen prepared for the class
-  gyrolab --resume                                  back to where the lab was left, or the line was lost
-  gyrolab --do demo.toml                            play the commands in a file
-  gyrolab lesson is-the-wobble-real                 a lesson beside the running lab
-  gyrolab sessions                                  which labs were left; gyrolab --resume 3 takes the one named 3
-  gyrolab presets                                   what there is to run
-  gyrolab run method-2                              the report's Method 2, how it ends
-  gyrolab run method-2 -o method-2.csv              every step of it as CSV
-  gyrolab run wobble-push --time-step 0.01 -o -
-  gyrolab run method-2.csv -o again.csv             a CSV runs again: its header is the run file";
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
@@ -53,7 +45,7 @@ pub(super) enum Command {
     Writeup(WriteupArgs),
     /// Compute a CSV again from its header: the same, or the first row that differs
     Verify(VerifyArgs),
-    /// Record the lab while it carries out a file of commands, as asciinema plays it
+    /// Record the lab while it carries out a file of commands, as asciinema 3 plays it
     Cast(CastArgs),
     /// Run a grid of runs on all cores and write a row for each, or list the shipped sweeps
     Sweep(SweepArgs),

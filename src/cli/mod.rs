@@ -164,8 +164,7 @@ fn command_behind_options(error: &clap::Error) -> Option<String> {
     let name = typed.find(|word| command.find_subcommand(word).is_some())?;
     let first = printable(&first).into_owned();
     Some(format!(
-        "{first} is an option of the lab, and {name} is a command, which comes first, before its own options: \
-         gyrolab {name} --help lists them"
+        "{name} is a command, and commands come before their options: gyrolab {name} ...; {first} is an option of the lab"
     ))
 }
 

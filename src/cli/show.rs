@@ -31,7 +31,8 @@ pub(super) struct ShowArgs {
     #[arg(long, value_name = "STEP", allow_negative_numbers = true, value_parser = steps)]
     pub(super) at: Option<u64>,
 
-    /// Show what the commands in this file, [[do]] tables, or of stdin for -, lead to from step 0; gyrolab man lists them
+    /// Show what the commands in this file, [[do]] tables, or of stdin for -, lead to from step 0; gyrolab man lists them.
+    /// Nobody waits here: wait_s is over at once, and only step, go_to and run_until let the run go on
     #[arg(long = "do", value_name = "FILE")]
     pub(super) commands: Option<PathBuf>,
 

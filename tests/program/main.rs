@@ -12,6 +12,7 @@ mod cli;
 mod commands;
 mod compare;
 mod escapes;
+mod examples;
 mod figures;
 mod fit;
 mod journeys;

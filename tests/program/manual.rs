@@ -1,6 +1,6 @@
 //! The manual's pages, and completion in the shells that are there.
 
-use crate::support::ground::{GYROLAB, Ground, done, failed, stdout};
+use crate::support::ground::{GYROLAB, Ground, done, failed, names, stdout};
 use std::path::Path;
 use std::process::Command;
 
@@ -28,14 +28,85 @@ fn every_command_has_a_page_with_examples() {
         assert!(stdout(&help).contains("Examples:\n"), "{command}");
     }
     let whole = ground.read("man1/gyrolab.1");
-    assert_eq!(whole, stdout(&done(ground.run(&["man"]))));
     for section in ["ENVIRONMENT", "FILES", "EXIT STATUS", "KEYS IN THE LAB"] {
         assert!(whole.contains(&format!(".SH \"{section}\"")), "{section}");
     }
+    assert!(
+        !whole.contains("gyrolab\\-help"),
+        "a page that there is not"
+    );
     let again = ground.run(&["man", "--all", "-o", "man1"]);
     failed(&again, &["man1/gyrolab.1 exists; --force replaces it"]);
     done(ground.run(&["man", "--all", "-o", "man1", "--force"]));
     failed(&ground.run(&["man", "verfy"]), &["did you mean verify?"]);
+}
+
+/// A pipe gets what a reader can read; the pages in roff are those of --all.
+#[test]
+fn a_pipe_gets_the_manual_as_text() {
+    let ground = Ground::new();
+    let whole = done(ground.run(&["man"]));
+    let page = done(ground.run(&["man", "run"]));
+    for text in [stdout(&whole), stdout(&page)] {
+        assert!(text.starts_with("NAME\n       gyrolab"), "{text}");
+        let roff = |line: &&str| line.starts_with(".S") || line.contains("\\f");
+        assert_eq!(text.lines().find(roff), None);
+    }
+    for section in ["ENVIRONMENT", "FILES", "EXIT STATUS", "KEYS IN THE LAB"] {
+        let title = format!("\n{section}\n");
+        assert!(stdout(&whole).contains(&title), "{section}");
+    }
+    // A topic that is a command's, too, says where the options are.
+    let topic = done(ground.run(&["man", "sweep"]));
+    let last = stdout(&topic).lines().last();
+    assert_eq!(
+        last,
+        Some("The options of the command: gyrolab sweep --help.")
+    );
+}
+
+/// No line of a page in roff, as man(1) lays it out, and no line of what a pipe gets is wider than a usual terminal.
+#[test]
+fn no_line_of_a_page_or_a_topic_is_wider_than_80_columns() {
+    let ground = Ground::new();
+    done(ground.run(&["man", "--all", "-o", "man1"]));
+    let mut lines_kept = 0;
+    for name in names(&ground.file("man1")) {
+        let page = ground.read(&format!("man1/{name}"));
+        let (mut is_kept, mut indent) = (false, 7);
+        for line in page.lines() {
+            match line {
+                ".nf" => is_kept = true,
+                ".fi" => is_kept = false,
+                ".in 0" => indent = 0,
+                ".in" => indent = 7,
+                _ if line.starts_with('.') => {}
+                _ => {
+                    let line = line.replace("\\&", "").replace("\\fB", "");
+                    let line = line.replace("\\fR", "").replace("\\-", "-");
+                    let width = match is_kept {
+                        true => indent + line.chars().count(),
+                        // Lines are broken between words: of an explanation, at 14 columns.
+                        false => {
+                            let words = line.split(' ');
+                            14 + words.map(|word| word.chars().count()).max().unwrap_or(0)
+                        }
+                    };
+                    lines_kept += usize::from(is_kept);
+                    assert!(width <= 80, "{name}: {line}");
+                }
+            }
+        }
+    }
+    assert!(lines_kept > 100, "{lines_kept}");
+    let topics = [
+        "class", "csv", "fit", "friction", "lab", "numbers", "scenario", "schemes", "sweep", "run",
+    ];
+    for args in std::iter::once(vec!["man"]).chain(topics.map(|topic| vec!["man", topic])) {
+        let text = done(ground.run(&args));
+        let wide = stdout(&text).lines().find(|line| line.chars().count() > 80);
+        assert_eq!(wide, None, "{args:?}");
+    }
 }
 
 /// The checkers of manual pages find nothing, where they are installed.
@@ -132,7 +203,7 @@ fn a_page_is_shown_without_man() {
     terminal.wait_for_end();
     let text = terminal.sent_text();
     assert!(
-        text.contains("Usage: gyrolab run") && !text.contains(".SH"),
+        text.contains("SYNOPSIS") && text.contains("gyrolab run [--set") && !text.contains(".SH"),
         "{text}"
     );
 }
@@ -140,7 +211,11 @@ fn a_page_is_shown_without_man() {
 /// Every environment variable that the sources read stands in the manual.
 #[test]
 fn the_manual_names_every_environment_variable() {
-    let manual = done(Ground::new().run(&["man"]));
+    let ground = Ground::new();
+    done(ground.run(&["man", "--all", "-o", "man1"]));
+    let manual = ground.read("man1/gyrolab.1");
+    // A library reads this one.
+    assert!(manual.contains("\\fB\\&RAYON_NUM_THREADS\\fR"));
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut folders = vec![source];
     let mut found = 0;
@@ -156,7 +231,7 @@ fn the_manual_names_every_environment_variable() {
                 for (at, _) in text.match_indices(call) {
                     let name = text[at + call.len()..].split('"').next().unwrap();
                     let place = format!("\\fB\\&{name}\\fR");
-                    assert!(stdout(&manual).contains(&place), "{name}: {path:?}");
+                    assert!(manual.contains(&place), "{name}: {path:?}");
                     found += 1;
                 }
             }

@@ -45,6 +45,10 @@ pub(super) const ENVIRONMENT: &[(&str, &str)] = &[
     ("USER", "The user whom that line names; else LOGNAME."),
     ("LOGNAME", "See USER."),
     (
+        "RAYON_NUM_THREADS",
+        "On how many cores gyrolab sweep, compare, fit and verify compute; by default on all. No number depends on it.",
+    ),
+    (
         complete::VARIABLE,
         "The shell that asks for completions; the script of gyrolab completions sets it.",
     ),

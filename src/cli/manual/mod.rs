@@ -2,6 +2,7 @@
 
 mod around;
 mod lab;
+mod plain;
 mod roff;
 pub(super) mod topics;
 
@@ -12,6 +13,7 @@ use crate::text::printable::{Shown, printable};
 use anyhow::{Context, bail};
 use clap::{Args, Command};
 use clap_mangen::Man;
+use plain::text_of;
 use roff::{synopsis, terms, title, verbatim};
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -40,23 +42,23 @@ pub(super) struct ManArgs {
 }
 
 pub(super) fn man(args: &ManArgs) -> anyhow::Result<ExitCode> {
-    let mut gyrolab = command();
+    let mut gyrolab = command().disable_help_subcommand(true); // which has no page
     gyrolab.build();
     if let Some(folder) = args.output.as_deref() {
         return write_all(&gyrolab, folder, args.force);
     }
     let Some(topic) = args.topic.as_deref() else {
-        let plain = || plain_text(&mut gyrolab.clone());
-        return show(&page(&gyrolab)?, plain, args);
+        return show(&page(&gyrolab)?, args);
     };
-    if let Some(text) = topics::text(topic)? {
+    let command = topics::commands(&gyrolab).find(|command| command.get_name() == topic);
+    if let Some(mut text) = topics::text(topic)? {
+        if command.is_some() {
+            text += &format!("\nThe options of the command: gyrolab {topic} --help.\n");
+        }
         return show_text(&text, args);
     }
-    match topics::commands(&gyrolab).find(|command| command.get_name() == topic) {
-        Some(command) => {
-            let plain = || command.clone().render_long_help().to_string();
-            show(&page_of(command)?, plain, args)
-        }
+    match command {
+        Some(command) => show(&page_of(command)?, args),
         None => {
             let names = topics::names_and_commands(&gyrolab);
             let near = nearest(topic, names.iter().map(String::as_str));
@@ -89,10 +91,10 @@ fn write_all(gyrolab: &Command, folder: &Path, replace: bool) -> anyhow::Result<
     Ok(ExitCode::SUCCESS)
 }
 
-/// Shows a page: on a terminal as man(1) shows it, or where there is none as `plain` text; else in roff.
-fn show(page: &str, plain: impl Fn() -> String, args: &ManArgs) -> anyhow::Result<ExitCode> {
+/// Shows a page: on a terminal as man(1) shows it; where there is none, or no terminal, as plain text.
+fn show(page: &str, args: &ManArgs) -> anyhow::Result<ExitCode> {
     if !io::stdout().is_terminal() {
-        return print(page);
+        return print(&text_of(page));
     }
     let mut man = process::Command::new("man");
     man.args(["-l", "-"]).stderr(Stdio::null());
@@ -101,7 +103,7 @@ fn show(page: &str, plain: impl Fn() -> String, args: &ManArgs) -> anyhow::Resul
     }
     match pager::shown_by(man, page) {
         Ok(true) => Ok(ExitCode::SUCCESS),
-        _ => show_text(&plain(), args),
+        _ => show_text(&text_of(page), args),
     }
 }
 
@@ -110,22 +112,6 @@ fn show_text(text: &str, args: &ManArgs) -> anyhow::Result<ExitCode> {
         true => print(text),
         false => pager::show(text),
     }
-}
-
-/// The help of the program and of each command.
-fn plain_text(gyrolab: &mut Command) -> String {
-    let whole = gyrolab.render_long_help().to_string();
-    let help = |command: &Command| {
-        let title = format!("gyrolab {}", command.get_name());
-        let line = "=".repeat(title.len());
-        format!(
-            "\n\n{title}\n{line}\n\n{}",
-            command.clone().render_long_help()
-        )
-    };
-    topics::commands(gyrolab)
-        .map(help)
-        .fold(whole, |text, help| text + &help)
 }
 
 /// The manual: the page of the program, then one section for each command.
@@ -138,9 +124,7 @@ fn page(gyrolab: &Command) -> anyhow::Result<String> {
     main.render_description_section(&mut page)?;
     main.render_options_section(&mut page)?;
     main.render_subcommands_section(&mut page)?;
-    let examples = gyrolab.get_after_help().map(ToString::to_string);
-    let examples = examples.unwrap_or_default();
-    let examples = examples.trim_start_matches("Examples:\n");
+    let examples = examples::of(gyrolab.get_name()).unwrap_or_default();
     page.extend(verbatim("Examples", examples).as_bytes());
     for command in topics::commands(gyrolab) {
         let title = format!("gyrolab {}", command.get_name());

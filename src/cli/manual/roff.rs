@@ -1,5 +1,7 @@
 //! Pieces of manual pages in roff, the language of man(1).
 
+use crate::text::wrap::columns;
+
 /// The day on which the manual was last gone through.
 const DATE: &str = "2026-11-22";
 
@@ -68,10 +70,19 @@ pub(super) fn plain(text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// A section of lines that stay as they are.
+/// Columns that are left on a terminal of 80 where man(1) indents text.
+const INDENTED: usize = 73;
+
+/// A section of lines that stay as they are. Those that would be too wide for a terminal of 80 columns are not indented.
 pub(super) fn verbatim(title: &str, text: &str) -> String {
-    let title = title.to_uppercase();
-    format!(".SH \"{title}\"\n.nf\n{}\n.fi\n", plain(text.trim_end()))
+    let (title, text) = (title.to_uppercase(), text.trim_end());
+    let is_wide = text.lines().any(|line| columns(line) > INDENTED);
+    let (begin, end) = match is_wide {
+        true => (".in 0\n", ".in\n"),
+        false => ("", ""),
+    };
+    let lines = plain(text);
+    format!(".SH \"{title}\"\n.nf\n{begin}{lines}\n{end}.fi\n")
 }
 
 /// A section of terms, each with its text.

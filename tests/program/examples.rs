@@ -1,0 +1,110 @@
+//! The examples of the helps and of the manual, carried out as they are printed.
+
+use crate::support::ground::{GYROLAB, Ground, done, stdout};
+use std::os::unix::fs::symlink;
+
+/// What is not carried out, and why: words that the line holds.
+const NOT_CARRIED_OUT: &[(&str, &str)] = &[
+    ("gyrolab --resume", "needs a terminal and a session"),
+    ("asciinema ", "another program"),
+    ("demo.toml", "a file of the user's own"),
+    ("lab.csv", "a file of the user's own"),
+    ("fit.csv", "made from files of the user's own"),
+    ("sweep.toml", "a file of the user's own, and a cluster"),
+    ("--join part-*", "files that a cluster has made"),
+    ("gyrolab lesson is-the-wobble-real\n", "needs a terminal"),
+];
+
+/// The commands below "Examples:" of a help: each with the lines that continue it.
+fn examples(help: &str) -> Vec<String> {
+    let text = help.split("\nExamples:\n").nth(1).unwrap_or_default();
+    assert!(!text.is_empty(), "{help}");
+    let mut commands: Vec<String> = Vec::new();
+    for line in text.lines() {
+        assert!(line.starts_with("  "), "{line}");
+        let line = &line[2..];
+        match commands.last_mut() {
+            Some(last) if last.ends_with("\\\n") => *last += &format!("{line}\n"),
+            _ => commands.push(format!("{line}\n")),
+        }
+    }
+    commands
+}
+
+/// The commands of several words that stand on lines of their own in the topic `text`, with those that continue them.
+fn commands_of_topic(text: &str) -> Vec<String> {
+    let mut commands: Vec<String> = Vec::new();
+    let mut is_continued = false;
+    for line in text.lines() {
+        let command = line.trim_start();
+        let is_prose = command.contains("runs it again") || command.contains(" lists them");
+        // Upper case stands for something of the reader's.
+        let is_whole = !command.split(' ').any(|word| {
+            word.len() > 2 && word.chars().all(|c| c.is_uppercase() || ".".contains(c))
+        });
+        if is_continued {
+            let last = commands.last_mut().unwrap();
+            *last += &format!("{command}\n");
+        } else if line.starts_with("  gyrolab ") || line.starts_with("    gyrolab ") {
+            let ends =
+                line.ends_with('\\') || line.starts_with("    ") || line.contains(" --schemes ");
+            if ends && !is_prose && is_whole {
+                commands.push(format!("{command}\n"));
+            } else {
+                continue;
+            }
+        } else {
+            continue;
+        }
+        is_continued = line.ends_with('\\');
+    }
+    commands
+}
+
+/// Carries out the commands in a folder of their own, one after the other, in a shell that stops at the first failure.
+#[track_caller]
+fn carry_out(of: &str, commands: &[String]) -> usize {
+    let ground = Ground::named("examples");
+    let bin = ground.file("bin");
+    std::fs::create_dir(&bin).unwrap();
+    symlink(GYROLAB, bin.join("gyrolab")).unwrap();
+    let is_skipped = |command: &&String| {
+        !NOT_CARRIED_OUT
+            .iter()
+            .any(|(words, _)| command.contains(words))
+    };
+    let script: String = commands.iter().filter(is_skipped).cloned().collect();
+    let script = format!("set -e\nPATH={}:$PATH HOME=$PWD\n{script}", bin.display());
+    let output = ground.shell(&script);
+    assert!(output.status.success(), "{of}:\n{script}{output:?}");
+    let is_command = |line: &&str| line.starts_with("gyrolab ");
+    script.lines().filter(is_command).count()
+}
+
+#[test]
+fn the_examples_of_every_help_work_as_they_are_printed() {
+    let ground = Ground::new();
+    let help = done(ground.run(&["--help"]));
+    let commands = stdout(&help).split("Commands:\n").nth(1).unwrap();
+    let commands = commands.split("\n\n").next().unwrap().lines();
+    let commands = commands.filter_map(|line| line.strip_prefix("  "));
+    let commands = commands.filter(|line| !line.starts_with(' '));
+    let commands = commands.filter_map(|line| line.split(' ').next());
+    let mut count = carry_out("gyrolab", &examples(stdout(&help)));
+    for command in commands.filter(|name| *name != "help") {
+        let help = done(ground.run(&[command, "--help"]));
+        count += carry_out(command, &examples(stdout(&help)));
+    }
+    assert!(count > 45, "{count}");
+}
+
+#[test]
+fn the_commands_of_the_topics_work_as_they_are_printed() {
+    let ground = Ground::new();
+    let mut count = 0;
+    for topic in ["fit", "schemes", "sweep"] {
+        let text = done(ground.run(&["man", topic]));
+        count += carry_out(topic, &commands_of_topic(stdout(&text)));
+    }
+    assert!(count >= 6, "{count}");
+}
