@@ -1,15 +1,20 @@
 //! Completion in the shell: what fits after the words that are typed. The script that `gyrolab completions` prints asks
 //! the program itself, so that presets, keys and names are always those of this version.
 
+mod keys;
+
 use super::manual::topics::names_and_commands;
 use super::{command, print};
 use crate::analysis::readouts::READOUTS;
 use crate::export::columns::{COLUMNS, OPTIONAL_COLUMNS};
 use crate::export::points::POINT_COLUMNS;
+use crate::figure::kind;
+use crate::measured::quantity::QUANTITIES;
 use crate::measured::shipped::SHIPPED;
-use crate::scenario::keys::{Effect, KEYS, Key, Kind};
 use crate::scenario::presets::PRESETS;
+use crate::study::sweep::shipped::SWEEPS;
 use crate::teach::shipped::LESSONS;
+use crate::text::shipped::Shipped;
 use anyhow::{Context, bail};
 use clap::{Arg, Command};
 use clap_complete::Shell;
@@ -17,6 +22,7 @@ use clap_complete::engine::{
     ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter,
 };
 use clap_complete::env::{CompleteEnv, Shells};
+use keys::{free_keys, settings, varied};
 use std::ffi::OsStr;
 use std::fmt::Write;
 use std::path::Path;
@@ -33,10 +39,11 @@ const COMPLETERS: &[(&str, Completer)] = &[
     ("scenario", scenarios),
     ("runs", scenarios),
     ("set", settings),
-    ("vary", settings),
+    ("vary", varied),
     ("free", free_keys),
     ("measured", measured),
     ("columns", columns),
+    ("kind", kinds),
     ("measure", readouts),
     ("files", files),
     ("commands", toml_files),
@@ -45,7 +52,8 @@ const COMPLETERS: &[(&str, Completer)] = &[
 
 /// The same for arguments whose name says less: command, argument.
 const COMPLETERS_OF: &[(&str, &str, Completer)] = &[
-    ("presets", "name", presets),
+    ("presets", "name", all_shipped),
+    ("sweep", "scenario", sweeps_and_scenarios),
     ("lesson", "name", lessons),
     ("verify", "files", csv_files),
 ];
@@ -147,9 +155,27 @@ fn presets(current: &OsStr) -> Vec<CompletionCandidate> {
     named(current, PRESETS.iter().map(|preset| (preset.name, "")))
 }
 
+fn shipped(current: &OsStr, list: &'static [Shipped]) -> Vec<CompletionCandidate> {
+    named(current, list.iter().map(|file| (file.name, "")))
+}
+
+/// All that `gyrolab presets` prints.
+fn all_shipped(current: &OsStr) -> Vec<CompletionCandidate> {
+    let lists = [
+        presets(current),
+        shipped(current, SWEEPS),
+        shipped(current, SHIPPED),
+    ];
+    lists.into_iter().flatten().collect()
+}
+
+fn sweeps_and_scenarios(current: &OsStr) -> Vec<CompletionCandidate> {
+    let lists = [shipped(current, SWEEPS), scenarios(current)];
+    lists.into_iter().flatten().collect()
+}
+
 fn lessons(current: &OsStr) -> Vec<CompletionCandidate> {
-    let shipped = named(current, LESSONS.iter().map(|lesson| (lesson.name, "")));
-    with_files(current, shipped, &["md"])
+    with_files(current, shipped(current, LESSONS), &["md"])
 }
 
 fn scenarios(current: &OsStr) -> Vec<CompletionCandidate> {
@@ -200,8 +226,7 @@ fn columns(current: &OsStr) -> Vec<CompletionCandidate> {
 
 /// Measured data that come with the program, and files of such.
 fn measured(current: &OsStr) -> Vec<CompletionCandidate> {
-    let shipped = named(current, SHIPPED.iter().map(|data| (data.name, "")));
-    with_files(current, shipped, &["csv"])
+    with_files(current, shipped(current, SHIPPED), &["csv"])
 }
 
 fn readouts(current: &OsStr) -> Vec<CompletionCandidate> {
@@ -212,66 +237,28 @@ fn readouts(current: &OsStr) -> Vec<CompletionCandidate> {
     )
 }
 
-/// Dotted keys that hold a number, behind those that are typed with commas between them; of vectors each number.
-fn free_keys(current: &OsStr) -> Vec<CompletionCandidate> {
+/// The kinds of figures; columns behind those that are typed with commas between them.
+fn kinds(current: &OsStr) -> Vec<CompletionCandidate> {
     let text = current.to_string_lossy();
-    let (typed, begin) = match text.rsplit_once(',') {
-        Some((typed, begin)) => (format!("{typed},"), begin),
-        None => (String::new(), &*text),
-    };
-    let is_fitted =
-        |key: &&Key| Effect::of(key.path) != Effect::None && !key.path.starts_with("edit.");
-    let mut found = Vec::new();
-    for key in KEYS.iter().filter(is_fitted) {
-        let path = key.path.replace('*', "0");
-        let names = match key.kind {
-            Kind::Number(_) => vec![path],
-            Kind::Vector => (0..3).map(|place| format!("{path}.{place}")).collect(),
-            _ => Vec::new(),
-        };
-        let fitting = names.iter().filter(|name| name.starts_with(begin));
-        found.extend(fitting.map(|name| candidate(&format!("{typed}{name}"), key.about)));
+    let (typed, begin) = behind_comma(&text);
+    let mut names: Vec<_> = COLUMNS.iter().map(|of| (of.name, of.about)).collect();
+    let others = QUANTITIES.iter().filter(|quantity| !quantity.is_column());
+    names.extend(others.map(|quantity| (quantity.name, "")));
+    if typed.is_empty() {
+        names.extend(kind::NAMES.map(|name| (name, "")));
     }
-    found
+    let fitting = names.iter().filter(|(name, _)| name.starts_with(begin));
+    fitting
+        .map(|(name, about)| candidate(&format!("{typed}{name}"), about))
+        .collect()
+}
+
+/// `text` up to its last comma, and what is behind it.
+fn behind_comma(text: &str) -> (&str, &str) {
+    text.split_at(text.rfind(',').map_or(0, |comma| comma + 1))
 }
 
 fn topics(current: &OsStr) -> Vec<CompletionCandidate> {
     let topics = names_and_commands(&command());
     named(current, topics.iter().map(|name| (name.as_str(), "")))
-}
-
-/// Dotted keys, the first entry of every list; behind `=` the words that the key may hold.
-fn settings(current: &OsStr) -> Vec<CompletionCandidate> {
-    let text = current.to_string_lossy();
-    let Some((key, begin)) = text.split_once('=') else {
-        let keys = KEYS.iter().filter(|key| !key.path.starts_with("edit."));
-        let keys: Vec<_> = keys
-            .map(|key| (format!("{}=", key.path.replace('*', "0")), key.about))
-            .collect();
-        return named(
-            current,
-            keys.iter().map(|(key, about)| (key.as_str(), *about)),
-        );
-    };
-    let is_that = |path: &str| {
-        let (mut parts, mut typed) = (path.split('.'), key.split('.'));
-        parts
-            .by_ref()
-            .zip(typed.by_ref())
-            .all(|(part, typed)| part == typed || part == "*" && typed.parse::<usize>().is_ok())
-            && path.split('.').count() == key.split('.').count()
-    };
-    let words: &[&str] = match KEYS
-        .iter()
-        .find(|row| is_that(row.path))
-        .map(|row| row.kind)
-    {
-        Some(Kind::OneOf(words) | Kind::WholeOr(_, words)) => words,
-        Some(Kind::Flag) => &["true", "false"],
-        _ => &[],
-    };
-    let fitting = words.iter().filter(|word| word.starts_with(begin));
-    fitting
-        .map(|word| CompletionCandidate::new(format!("{key}={word}")))
-        .collect()
 }

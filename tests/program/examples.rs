@@ -12,6 +12,7 @@ const NOT_CARRIED_OUT: &[(&str, &str)] = &[
     ("fit.csv", "made from files of the user's own"),
     ("sweep.toml", "a file of the user's own, and a cluster"),
     ("--join part-*", "files that a cluster has made"),
+    ("spin_rpm,friction.", "a fit that takes seconds"),
     ("gyrolab lesson is-the-wobble-real\n", "needs a terminal"),
 ];
 
@@ -106,5 +107,5 @@ fn the_commands_of_the_topics_work_as_they_are_printed() {
         let text = done(ground.run(&["man", topic]));
         count += carry_out(topic, &commands_of_topic(stdout(&text)));
     }
-    assert!(count >= 6, "{count}");
+    assert!(count >= 5, "{count}");
 }

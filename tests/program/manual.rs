@@ -267,6 +267,7 @@ fn bash_completes_presets_files_keys_values_and_names() {
     ground.write("completion.bash", stdout(&script));
     ground.write("mine.toml", "");
     ground.write("mine.txt", "");
+    ground.write("a file's.toml", "");
     for (line, wanted) in [
         ("gyrolab run cus", "cusps"),
         ("gyrolab run mine", "mine.toml"),
@@ -275,6 +276,34 @@ fn bash_completes_presets_files_keys_values_and_names() {
         ("gyrolab run cusps --set view.bare=", "true false"),
         ("gyrolab run cusps --columns t_s,energ", "t_s,energy_J"),
         ("gyrolab run cusps --scheme rk", "rk4"),
+        ("gyrolab run a", "a\\ file\\'s.toml"),
+        (
+            "gyrolab sweep wob",
+            "wobble-over-time-step wobble-push wobble-push-accumulating",
+        ),
+        ("gyrolab presets precession-over-t", "precession-over-tilt"),
+        ("gyrolab presets heidelberg-p", "heidelberg-precession"),
+        (
+            "gyrolab run cusps --set body.point.1.n",
+            "body.point.1.name=",
+        ),
+        ("gyrolab run cusps --set push.12.po", "push.12.point="),
+        (
+            "gyrolab sweep cusps --vary start.momentum_Js.",
+            "start.momentum_Js.0= start.momentum_Js.1= start.momentum_Js.2=",
+        ),
+        (
+            "gyrolab sweep cusps --vary motion.scheme=report,sr",
+            "report,srkn11b",
+        ),
+        ("gyrolab run lab-gyroscope --set push.0.point=wh", "wheel"),
+        ("gyrolab run method-2 --set trace=t", "top"),
+        (
+            "gyrolab cusps --set view.show='[\"ab'",
+            "\\[\\\"above\\\"\\]",
+        ),
+        ("gyrolab figure cusps --kind ab", "above"),
+        ("gyrolab figure cusps --kind z_m,tilt", "z_m,tilt_deg"),
         ("gyrolab lesson kap", "kappa-and-the-scheme"),
         ("gyrolab man num", "numbers"),
         ("gyrolab ver", "verify"),

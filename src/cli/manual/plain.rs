@@ -79,7 +79,8 @@ impl Text {
         if let Some(margin) = self.verbatim {
             self.line(margin, text);
         } else if std::mem::take(&mut self.is_term) {
-            self.line(self.margin, text);
+            let lines = wrapped(text, WIDTH - self.margin);
+            lines.iter().for_each(|line| self.line(self.margin, line));
         } else {
             self.paragraph += " ";
             self.paragraph += text;
