@@ -147,16 +147,26 @@ fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
     Sweep::new(file, &base, &|problems| {
         let mut placed = document.placed(problems);
         for problem in &mut placed.list {
-            if let Some(argument) = argument_behind(problem, &keys, &args.vary) {
-                axis::place(problem, argument);
-            } else if problem.key == "measure" && !args.measure.is_empty() {
-                let name = problem.value.trim_matches('"');
-                problem.place = Some(format!("--measure {name}"));
-                problem.key.clear();
-            }
+            place(problem, &keys, args);
         }
         placed
     })
+}
+
+/// Says of `problem` that it is about an option, if it is; `keys` are those that vary, in their order.
+fn place(problem: &mut Problem, keys: &[String], args: &SweepArgs) {
+    if let Some(argument) = argument_behind(problem, keys, &args.vary) {
+        return axis::place(problem, argument);
+    }
+    let option = match problem.key.as_str() {
+        "measure" if !args.measure.is_empty() => {
+            format!("--measure {}", problem.value.trim_matches('"'))
+        }
+        "vary" if !args.vary.is_empty() => "--vary".to_owned(),
+        _ => return,
+    };
+    problem.place = Some(option);
+    problem.key.clear();
 }
 
 /// The `--vary` that `problem` is about; `keys` are those that vary, in their order.

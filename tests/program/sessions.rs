@@ -54,6 +54,14 @@ fn on_a_full_disk_the_trouble_stays_and_nothing_is_promised() {
 
 #[test]
 fn a_command_behind_its_options_is_told_where_it_belongs() {
+    let output = Ground::new().run(&["--folder", ".", "run", "cusps"]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(
+        said,
+        "gyrolab: run is a command, and commands come before their options: gyrolab run ...; \
+         --folder is an option of the lab\n"
+    );
     let output = Ground::new().run(&["--folder", ".", "sessions"]);
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8(output.stderr).unwrap();

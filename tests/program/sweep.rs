@@ -362,6 +362,16 @@ fn wrong_keys_values_and_readouts_are_refused_before_anything_runs() {
             ],
             &["at most"],
         ),
+        (
+            &[
+                "cusps",
+                "--vary",
+                "motion.steps=1..2000000:2000000",
+                "--vary",
+                "motion.time_step_s=1e-9..1e-8:1000",
+            ],
+            &["gyrolab: --vary: is a grid of 2000000000 points: at most"],
+        ),
     ] {
         let output = sweep(&ground, &[&["sweep"], args].concat(), "out.csv");
         let told = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -777,4 +787,27 @@ fn the_shipped_sweeps_are_listed_and_printed() {
         man.contains("SLURM_ARRAY_TASK_ID") && man.contains("parallel"),
         "{man}"
     );
+}
+
+/// On a terminal there is something to see before the first row, and no rate or time left is made up.
+#[test]
+fn progress_is_shown_from_the_beginning() {
+    let ground = Ground::new();
+    let args = [
+        "sweep",
+        "cusps",
+        "--vary",
+        "start.tilt_deg=10..40:1000",
+        "--set",
+        "motion.steps=100000000",
+        "--measure=z_m",
+        "-o",
+        "slow.csv",
+    ];
+    let mut terminal = ground.open(&args);
+    terminal.wait_for("row 0 of 1,000");
+    let text = terminal.sent_text();
+    assert!(!text.contains("left") && !text.contains("/s"), "{text}");
+    terminal.press("\u{3}");
+    assert_eq!(terminal.wait_for_end().exit_code(), 130);
 }
