@@ -1,6 +1,6 @@
 //! The examples of the helps and of the manual, carried out as they are printed.
 
-use crate::support::ground::{GYROLAB, Ground, done, stdout};
+use crate::support::ground::{GYROLAB, Ground, done, stderr, stdout};
 use std::os::unix::fs::symlink;
 
 /// What is not carried out, and why: words that the line holds.
@@ -13,6 +13,10 @@ const NOT_CARRIED_OUT: &[(&str, &str)] = &[
     ("sweep.toml", "a file of the user's own, and a cluster"),
     ("--join part-*", "files that a cluster has made"),
     ("spin_rpm,friction.", "a fit that takes seconds"),
+    (
+        "start.spin_rpm=1000",
+        "750 s of the exact motion with friction take half a second",
+    ),
     ("gyrolab lesson is-the-wobble-real\n", "needs a terminal"),
 ];
 
@@ -78,6 +82,8 @@ fn carry_out(of: &str, commands: &[String]) -> usize {
     let script = format!("set -e\nPATH={}:$PATH HOME=$PWD\n{script}", bin.display());
     let output = ground.shell(&script);
     assert!(output.status.success(), "{of}:\n{script}{output:?}");
+    let has_empty_rows = stderr(&output).contains("without readouts");
+    assert!(!has_empty_rows, "{of}: {}", stderr(&output));
     let is_command = |line: &&str| line.starts_with("gyrolab ");
     script.lines().filter(is_command).count()
 }
@@ -107,5 +113,5 @@ fn the_commands_of_the_topics_work_as_they_are_printed() {
         let text = done(ground.run(&["man", topic]));
         count += carry_out(topic, &commands_of_topic(stdout(&text)));
     }
-    assert!(count >= 5, "{count}");
+    assert!(count >= 4, "{count}");
 }
