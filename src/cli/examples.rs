@@ -83,8 +83,8 @@ gyrolab figure error.csv -o error.pdf",
     (
         "cast",
         "\
-# ten seconds of the push
-echo 'do = [{ open = \"wobble-push\" }, { run = true }, { wait_s = 10 }]' | \\
+# nine seconds of the push
+echo 'do = [{open = \"wobble-push\"}, {run = true}, {wait_s = 9}]' | \\
     gyrolab cast - --size 80x24 --title 'A push' -o push.cast
 # commands in a file; asciinema must be version 3 or later
 gyrolab cast demo.toml -o demo.cast

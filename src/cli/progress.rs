@@ -258,7 +258,7 @@ mod tests {
     fn a_rate_is_told_once_there_is_one_and_never_as_0() {
         let told = |done, left, s| pace("row", done, left, Duration::from_secs_f64(s));
         assert_eq!(told(0, 1000, 1.1), "");
-        assert_eq!(told(1000, 9000, 0.5), ", 2,000/s, 4s left");
+        assert_eq!(told(1000, 9000, 0.5), ", 2,000/s, 5s left");
         assert_eq!(told(5, 5, 2.0), ", 2.5/s, 2s left");
         assert_eq!(told(2, 98, 11.0), ", 5.5 s a row, 9m left");
         assert_eq!(told(10, 0, 20.0), ", 2.0 s a row, 0s left");

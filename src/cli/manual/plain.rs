@@ -27,6 +27,8 @@ struct Text {
     lines: Vec<String>,
     /// The words of the paragraph that is not complete.
     paragraph: String,
+    /// What stands before its first line, as a bullet does.
+    mark: String,
     /// The margins that .RS has left, the innermost last.
     outer: Vec<usize>,
     margin: usize,
@@ -53,7 +55,7 @@ impl Text {
             "IP" => {
                 let mark = argument.split(' ').next().unwrap_or_default();
                 self.hanging = mark.chars().count() + 1;
-                self.paragraph = mark.to_owned();
+                self.mark = mark.to_owned();
             }
             "PP" => self.hanging = 0,
             "RS" => {
@@ -107,12 +109,16 @@ impl Text {
 
     fn end_paragraph(&mut self) {
         let paragraph = std::mem::take(&mut self.paragraph);
+        let mark = std::mem::take(&mut self.mark);
         if paragraph.trim().is_empty() {
             return;
         }
         let indent = self.margin + self.hanging;
-        for line in wrapped(&paragraph, WIDTH - indent) {
-            self.line(indent, &line);
+        for (index, line) in wrapped(&paragraph, WIDTH - indent).iter().enumerate() {
+            match index == 0 && !mark.is_empty() {
+                true => self.line(self.margin, &format!("{mark} {line}")),
+                false => self.line(indent, line),
+            }
         }
     }
 }

@@ -281,11 +281,9 @@ impl Sweep {
             Ok(cells) => (cells?, None),
             Err(why) => (vec![Readable::Nothing; self.measure.len()], Some(why)),
         };
-        let holds_readouts = cells.iter().any(|cell| *cell != Readable::Nothing);
-        let line = line(&(self.labels(row), cells));
         Some(SweepRow {
-            line,
-            holds_readouts,
+            holds_readouts: cells.iter().any(|cell| *cell != Readable::Nothing),
+            line: line(&(self.labels(row), cells)),
             failure,
         })
     }
