@@ -33,7 +33,7 @@ const ROUNDS: usize = 3;
 /// So many steps are measured together for what a thread has to do for one, so often.
 const STRETCH: u64 = 20_000;
 const STRETCHES: usize = 200;
-/// As many steps are handed over together as where a run is played ahead.
+/// So many steps are handed over together here, as where a run is played ahead to a near step.
 const TOGETHER: usize = 1024;
 
 fn main() {

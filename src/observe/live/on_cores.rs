@@ -12,10 +12,13 @@ use std::thread::{self, Scope, ScopedJoinHandle};
 
 /// Fewer steps than this are not worth a thread.
 const FEWEST: u64 = 4096;
-/// The most steps that are handed over together.
-const TOGETHER: usize = 1024;
-/// So many batches may wait for a thread that is slower than the one before it; then that one waits too.
-const WAITING: usize = 48;
+/// At least and at most so many steps are handed over together: every time, threads have to be woken, but until the first
+/// steps come and after the last ones the other threads have nothing to do.
+const TOGETHER: (u64, u64) = (1024, 16_384);
+/// What is to be stepped is handed over in about so many batches, within these limits.
+const BATCHES: u64 = 64;
+/// So many steps may wait for a thread that is slower than the one before it; then that one waits too.
+const WAITING: usize = 131_072;
 
 impl LiveRun {
     /// Steps until the run stands at `step`. All that is read off it then is as if it had taken them
@@ -25,8 +28,9 @@ impl LiveRun {
     /// When the numbers stop being finite; the run then stays at the step before.
     pub fn step_to(&mut self, step: u64) -> Result<(), NotFinite> {
         let steps = step.saturating_sub(self.simulation.step_number());
+        let together = (steps / BATCHES).clamp(TOGETHER.0, TOGETHER.1) as usize;
         if steps >= FEWEST
-            && let Some(stepped) = self.step_on_cores_to(step)
+            && let Some(stepped) = self.step_on_cores_to(step, together)
         {
             return stepped;
         }
@@ -40,8 +44,8 @@ impl LiveRun {
         Ok(())
     }
 
-    /// `None` where the system gives no threads; nothing has been done then.
-    fn step_on_cores_to(&mut self, step: u64) -> Option<Result<(), NotFinite>> {
+    /// Hands over `together` steps at a time. `None` where the system gives no threads; nothing has been done then.
+    fn step_on_cores_to(&mut self, step: u64, together: usize) -> Option<Result<(), NotFinite>> {
         let Self {
             simulation,
             monitor,
@@ -64,8 +68,8 @@ impl LiveRun {
             }
         };
         thread::scope(|scope| {
-            let (to_measure, to_be_measured) = mpsc::sync_channel(WAITING);
-            let (to_hold, to_be_held) = mpsc::sync_channel(WAITING);
+            let (to_measure, to_be_measured) = mpsc::sync_channel(WAITING / together);
+            let (to_hold, to_be_held) = mpsc::sync_channel(WAITING / together);
             let (seen_by_all, blank) = mpsc::channel();
             // Sending fails only where the other thread has panicked, which is reported where it is joined, or where no more
             // blank batches are wanted.
@@ -75,7 +79,7 @@ impl LiveRun {
                 follow(scope, "pictures", to_be_measured, measure, measured)?,
                 follow(scope, "beside", to_be_held, hold, held)?,
             ];
-            let mut steps = HandOver::to(to_measure, blank);
+            let mut steps = HandOver::to(to_measure, blank, together);
             let stepped = loop {
                 if simulation.step_number() >= step {
                     break Ok(());
@@ -122,23 +126,26 @@ struct HandOver {
     /// Batches that all have seen: their memory is used again.
     blank: Receiver<Batch>,
     batch: Batch,
+    /// The most steps of a batch.
+    together: usize,
 }
 
 impl HandOver {
-    fn to(to: SyncSender<Batch>, blank: Receiver<Batch>) -> Self {
+    fn to(to: SyncSender<Batch>, blank: Receiver<Batch>, together: usize) -> Self {
         Self {
             to,
             blank,
-            batch: Batch::with_capacity(TOGETHER),
+            batch: Batch::with_capacity(together),
+            together,
         }
     }
 
     #[inline]
     fn push(&mut self, step: &Step) {
-        if self.batch.len() == TOGETHER || !self.batch.push(step) {
+        if self.batch.len() == self.together || !self.batch.push(step) {
             let mut blank = match self.blank.try_recv() {
                 Ok(seen) => seen,
-                Err(_) => Batch::with_capacity(TOGETHER),
+                Err(_) => Batch::with_capacity(self.together),
             };
             blank.clear();
             blank.push(step);
