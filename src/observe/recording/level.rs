@@ -98,6 +98,9 @@ pub(super) trait Pieces {
     /// How many there have been.
     fn count(&self) -> u64;
 
+    /// How many of them make a piece of the next size.
+    fn in_next(&self) -> u64;
+
     /// Whether they can be cut back to `count`: those that will then be [waiting](Level::waiting) must not have been
     /// dropped.
     fn can_be_cut_to(&self, count: u64) -> bool;
@@ -122,6 +125,10 @@ impl<P: Piece> Pieces for Level<P> {
     #[inline]
     fn count(&self) -> u64 {
         self.dropped + self.pieces.len() as u64
+    }
+
+    fn in_next(&self) -> u64 {
+        P::IN_NEXT
     }
 
     fn can_be_cut_to(&self, count: u64) -> bool {

@@ -8,8 +8,8 @@ use std::ops::Range;
 const SMALLEST: u64 = Recorded::IN_NEXT;
 
 impl Piece for Recorded {
-    // A stretch of more moments than these is given in blocks of four, a thousand of them or more.
-    const RECENT: usize = 4096;
+    // A stretch of more moments than these is given in blocks of four, two thousand of them or more.
+    const RECENT: usize = 8192;
     const IN_NEXT: u64 = 4;
 
     fn begin_s(&self) -> f64 {

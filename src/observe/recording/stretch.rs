@@ -5,7 +5,7 @@ use super::level::Pieces;
 use super::levels::Levels;
 use std::ops::Range;
 
-/// A stretch is given as at most twice this many pieces of one size.
+/// A stretch is given in pieces of the next size where it would have more of those than this.
 pub(super) const FINEST: u64 = 2048;
 
 /// Which pieces cover a stretch: those of the smallest size that reaches back to its beginning and has not too many,
@@ -26,8 +26,11 @@ impl<'a> Stretch<'a> {
     /// The stretch from `since_s` to `until_s` (s).
     pub fn new(levels: &'a Levels, since_s: f64, until_s: f64) -> Self {
         let numbers = |pieces: &dyn Pieces| pieces.between(since_s, until_s);
-        let has_few = |numbers: Range<u64>| numbers.end - numbers.start <= 2 * FINEST;
-        let suits = |pieces: &dyn Pieces| pieces.reaches(since_s) && has_few(numbers(pieces));
+        let suits = |pieces: &dyn Pieces| {
+            let numbers = numbers(pieces);
+            let are_few = numbers.end - numbers.start <= FINEST * pieces.in_next();
+            pieces.reaches(since_s) && are_few
+        };
         let sizes = levels
             .sizes()
             .filter_map(|size| Some((size, levels.of(size)?)));

@@ -32,7 +32,7 @@ proptest! {
         for pair in blocks.windows(2) {
             prop_assert_eq!(pair[0].end_s + 1.0, pair[1].begin_s);
         }
-        prop_assert!(blocks.len() <= 2 * FINEST as usize + 16);
+        prop_assert!(blocks.len() <= 4 * FINEST as usize + 16);
     }
 
     #[test]
