@@ -12,8 +12,10 @@ use std::path::Path;
 use std::sync::Arc;
 use toml::{Table, Value};
 
-/// Stands between the name of the original and its `about` or `source`, in the file of a run that was changed since.
+/// Stands between the name of the original and its `about`, in the file of a run that was changed since.
 const AS_IT_WAS: &str = " as it was: ";
+/// Stands behind its `source` there.
+const CHANGED: &str = "; changed since";
 
 /// More changed values of one table than these are not listed.
 const MOST_VALUES: usize = 2;
@@ -78,10 +80,11 @@ impl Original {
         };
         let mut marked = Scenario::clone(now);
         let file = &mut marked.file;
-        for words in [&mut file.about, &mut file.source].into_iter().flatten() {
-            if !words.contains(AS_IT_WAS) {
-                words.insert_str(0, &format!("Of {}{AS_IT_WAS}", self.name));
-            }
+        if let Some(about) = file.about.as_mut().filter(|it| !it.contains(AS_IT_WAS)) {
+            about.insert_str(0, &format!("Of {}{AS_IT_WAS}", self.name));
+        }
+        if let Some(source) = file.source.as_mut().filter(|it| !it.ends_with(CHANGED)) {
+            source.push_str(CHANGED);
         }
         if let Some(view) = &mut file.view {
             view.look_at = view.look_at.take().map(|_| difference);

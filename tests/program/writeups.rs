@@ -58,7 +58,7 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
         "(0, 0, -50) N on the point top on 200 time steps from step 1 on",
         "700 of 0.1 s",
         "Do not believe this run",
-        "\n\nSource: report, section 4, the extra force on the axle top\n\n",
+        "\n\nSource: report, section 4, the extra force on the axle top; changed since\n\n",
         "| tilt swing since 20.1 s (`measured_tilt_swing_deg`) |",
         "as the steps show it; since the forces last changed, at t = 20.1 s\n",
         // The line of the preset speaks of another run.
