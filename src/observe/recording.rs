@@ -2,7 +2,7 @@
 //!
 //! They are stored as single moments, and in blocks of four of them, of eight, of sixteen and so on, so that every step's
 //! value is within the extremes of some block. A size that still reaches back to the start has up to 16 384 blocks, a
-//! smaller one the newest 2048, and of the moments the newest 8192 are kept. So any stretch of the run up to now is covered
+//! smaller one the newest 2048, and of the moments the newest 4096 are kept. So any stretch of the run up to now is covered
 //! by a thousand blocks or more, or by one for each step if it has fewer steps.
 //!
 //! A recording can be [cut back](Recording::cut_back) to an earlier moment. Its blocks there are coarser than they were

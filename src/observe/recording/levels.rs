@@ -8,8 +8,9 @@ use std::ops::Range;
 const SMALLEST: u64 = Recorded::IN_NEXT;
 
 impl Piece for Recorded {
-    // A stretch of more moments than these is given in blocks of four, two thousand of them or more.
-    const RECENT: usize = 8192;
+    // A stretch of more moments than these is given in blocks of four, a thousand of them or more. Twice as many would not
+    // stay in the processor's nearer caches: a step would take 17 ns longer.
+    const RECENT: usize = 4096;
     const IN_NEXT: u64 = 4;
 
     fn begin_s(&self) -> f64 {
