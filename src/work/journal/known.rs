@@ -220,8 +220,8 @@ fn join(open: &mut Option<EditFile>, entry: &Entry) {
 }
 
 /// Asserts that both ways to check give the same scenario, or the same refusal.
-#[cfg(debug_assertions)]
-#[allow(clippy::panic, reason = "it is in debug builds alone")]
+#[cfg(any(debug_assertions, test))]
+#[allow(clippy::panic, reason = "it is in debug builds and tests alone")]
 pub(super) fn assert_same(
     changed: &Result<Arc<Scenario>, Problems>,
     whole: &Result<Arc<Scenario>, Problems>,
