@@ -58,6 +58,15 @@ impl Beside {
         }
     }
 
+    /// The same of the next `states`, in less time.
+    pub fn hold_all(&mut self, states: &[State]) {
+        if let Some(truth) = &mut self.truth
+            && !self.farthest.follow_all(states, truth)
+        {
+            self.truth = None;
+        }
+    }
+
     /// Computes the largest distance so far to the last bit.
     pub fn settle(&mut self) {
         if let Some(truth) = &mut self.truth

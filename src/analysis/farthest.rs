@@ -51,13 +51,46 @@ impl Farthest {
         self.waiting.len() < AT_ONCE || self.look(truth)
     }
 
+    /// The same of `states`, which follow one another, without keeping them all.
+    pub fn follow_all(&mut self, states: &[State], truth: &mut Truth) -> bool {
+        let first = match self.waiting.len() {
+            0 => 0,
+            waiting => states.len().min(AT_ONCE - waiting),
+        };
+        let (first, states) = states.split_at(first);
+        let (together, last) = states.as_chunks();
+        let mut are_numbers = true;
+        for state in first {
+            are_numbers &= self.follow(state, truth);
+        }
+        for states in together {
+            are_numbers &= self.look_at_all(states, truth);
+        }
+        self.waiting.extend_from_slice(last);
+        are_numbers
+    }
+
     /// Looks at the steps that wait.
     fn look(&mut self, truth: &mut Truth) -> bool {
         let states = std::mem::take(&mut self.waiting);
-        let near = match states.first_chunk() {
-            Some(states) if self.near_m > WORTH_IT * self.off_m => distances_near(states, truth),
-            _ => None,
-        };
+        let mut are_numbers = true;
+        match states.as_array() {
+            Some(states) => are_numbers = self.look_at_all(states, truth),
+            None => {
+                for state in &states {
+                    are_numbers &= self.look_at(state, None, truth);
+                }
+            }
+        }
+        self.waiting = states;
+        self.waiting.clear();
+        are_numbers
+    }
+
+    /// Looks at steps that follow one another.
+    fn look_at_all(&mut self, states: &[State; AT_ONCE], truth: &mut Truth) -> bool {
+        let is_worth_it = self.near_m > WORTH_IT * self.off_m;
+        let near = is_worth_it.then(|| distances_near(states, truth)).flatten();
         let is_below = |near_m: &f64| *near_m < self.near_m - 2.0 * self.off_m;
         let mut are_numbers = true;
         if !near.is_some_and(|near| near.iter().all(is_below)) {
@@ -66,8 +99,6 @@ impl Farthest {
                 are_numbers &= self.look_at(state, near_m, truth);
             }
         }
-        self.waiting = states;
-        self.waiting.clear();
         are_numbers
     }
 
@@ -161,15 +192,26 @@ mod tests {
             let truths = || Truth::new(Arc::clone(&scenario));
             let (mut every, mut some) = (truths(), truths());
             let (mut most_m, mut farthest) = (0.0_f64, Farthest::new(scenario.arm_m()));
-            let mut kept = 0;
+            let (mut many, mut in_parts) = (truths(), Farthest::new(scenario.arm_m()));
+            let (mut kept, mut states) = (0, Vec::new());
             for number in 1..=scenario.steps {
                 let state = simulation.step().unwrap().after();
                 most_m = most_m.max(Deviation::distance_of(state, &mut every));
                 assert!(farthest.follow(state, &mut some));
                 kept = kept.max(farthest.kept.len());
+                states.push(*state);
+                // In parts of 1 to 40 steps: some shorter than those looked at together, some several times as long.
+                if states.len() as u64 > number % 41 {
+                    assert!(in_parts.follow_all(&states, &mut many));
+                    states.clear();
+                }
                 if number % 97 == 0 {
                     assert!(farthest.settle(&mut some));
                     assert_eq!(farthest.most_m().to_bits(), most_m.to_bits(), "{preset}");
+                    assert!(in_parts.follow_all(&states, &mut many));
+                    states.clear();
+                    assert!(in_parts.settle(&mut many));
+                    assert_eq!(in_parts.most_m().to_bits(), most_m.to_bits(), "{preset}");
                 }
             }
             let is_worth_it = most_m > WORTH_IT * farthest.off_m;

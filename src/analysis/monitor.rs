@@ -52,7 +52,7 @@ impl Monitor {
     /// A copy of how far the steps stray from the exact motion, all of them held against it.
     pub fn beside(&self) -> Beside {
         let mut beside = self.beside.clone();
-        self.unheld.iter().for_each(|state| beside.hold(state));
+        beside.hold_all(&self.unheld);
         beside
     }
 
@@ -86,7 +86,7 @@ impl Monitor {
     }
 
     fn hold_rest(&mut self) {
-        self.unheld.iter().for_each(|state| self.beside.hold(state));
+        self.beside.hold_all(&self.unheld);
         self.unheld.clear();
     }
 

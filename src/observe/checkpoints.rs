@@ -47,6 +47,12 @@ impl<T> Series<T> {
         }
     }
 
+    /// How many of the `steps` steps after `step` lead to the next that may be stored, or to the last of them.
+    pub fn until_due(&self, step: u64, steps: usize) -> usize {
+        let until_due = self.spacing - (step & (self.spacing - 1));
+        usize::try_from(until_due).map_or(steps, |until_due| until_due.min(steps))
+    }
+
     fn keep(&mut self, step: u64, part: impl FnOnce() -> T) {
         if self.later.last().is_some_and(|(last, _)| *last >= step) || step == 0 {
             return; // this step is stored already

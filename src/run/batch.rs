@@ -1,8 +1,8 @@
 //! Consecutive steps of a run, for whoever follows it on another core.
 //!
 //! A [`Step`] is read where the [simulation](super::Simulation) stands. What a step has that the one before has not is
-//! little: a batch holds its first step whole, and of each further one the state and the work done. The further ones have
-//! the forces of the first; where these change, another batch begins.
+//! little: a batch holds its first step whole, and of each one the state and the work done. All have the forces of the first;
+//! where these change, another batch begins.
 
 use super::Step;
 use crate::physics::State;
@@ -11,16 +11,18 @@ use crate::physics::State;
 #[derive(Clone, Debug, Default)]
 pub struct Batch {
     first: Option<Step>,
-    further: Vec<Further>,
+    /// After each step.
+    states: Vec<State>,
+    /// Up to the end of each step.
+    work: Vec<Work>,
 }
 
-/// What a step has that the one before has not.
+/// Work done since the start of the run.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Further {
-    pub after: State,
-    /// Work of pushes and edits since the start of the run, J.
-    pub work: f64,
-    /// Work of friction since then, J.
+pub(super) struct Work {
+    /// Of pushes and edits, J.
+    pub outside: f64,
+    /// Of friction, J.
     pub friction: f64,
 }
 
@@ -29,42 +31,44 @@ impl Batch {
     pub fn with_capacity(steps: usize) -> Self {
         Self {
             first: None,
-            further: Vec::with_capacity(steps),
+            states: Vec::with_capacity(steps),
+            work: Vec::with_capacity(steps),
         }
     }
 
     /// Appends `step`, the one after the last. Returns false, and does not, where it belongs into another batch.
     #[inline]
     pub fn push(&mut self, step: &Step) -> bool {
-        let Some(first) = &self.first else {
-            self.first = Some(step.clone());
-            return true;
-        };
-        let goes_on = step.changes == first.changes && step.segment == first.segment;
-        if goes_on {
-            self.further.push(Further {
-                after: step.after,
-                work: step.energy.work,
-                friction: step.energy.friction,
-            });
+        match &self.first {
+            Some(first) if step.changes != first.changes || step.segment != first.segment => {
+                return false;
+            }
+            Some(_) => {}
+            None => self.first = Some(step.clone()),
         }
-        goes_on
+        self.states.push(step.after);
+        self.work.push(Work {
+            outside: step.energy.work,
+            friction: step.energy.friction,
+        });
+        true
     }
 
     /// The number of its steps.
     pub fn len(&self) -> usize {
-        usize::from(self.first.is_some()) + self.further.len()
+        self.states.len()
     }
 
     /// Whether it has no step.
     pub fn is_empty(&self) -> bool {
-        self.first.is_none()
+        self.states.is_empty()
     }
 
     /// Removes its steps, and keeps their memory.
     pub fn clear(&mut self) {
         self.first = None;
-        self.further.clear();
+        self.states.clear();
+        self.work.clear();
     }
 
     /// Shows `follow` each of its steps, as the run stood there; workings are those of the first alone.
@@ -73,18 +77,22 @@ impl Batch {
             return;
         };
         follow(&step);
-        for further in &self.further {
-            step.go_on(further);
+        for (state, work) in self.states.iter().zip(&self.work).skip(1) {
+            step.go_on(state, work);
             follow(&step);
         }
     }
 
-    /// The number and the state of each of its steps: what [`each`](Self::each) shows, for who needs no more.
-    pub fn states(&self) -> impl Iterator<Item = (u64, &State)> {
-        let begin = self.first.as_ref().map_or(0, Step::number);
-        let first = self.first.iter().map(Step::after);
-        let states = first.chain(self.further.iter().map(|further| &further.after));
-        (begin..).zip(states)
+    /// The number of the step before its first; 0 where it has none.
+    pub fn before_first(&self) -> u64 {
+        self.first
+            .as_ref()
+            .map_or(0, |first| first.number.saturating_sub(1))
+    }
+
+    /// The state after each of its steps: of what [`each`](Self::each) shows this alone, for who needs no more.
+    pub fn states(&self) -> &[State] {
+        &self.states
     }
 }
 
@@ -134,11 +142,11 @@ mod tests {
                 });
             }
             assert!(again == seen, "{preset}");
-            let handed = batches.iter().flat_map(Batch::states);
-            assert!(
-                handed.map(|(step, state)| (step, *state)).eq(states),
-                "{preset}"
-            );
+            let handed = batches.iter().flat_map(|batch| {
+                let numbers = batch.before_first() + 1..;
+                numbers.zip(batch.states().iter().copied())
+            });
+            assert!(handed.eq(states), "{preset}");
             assert_eq!(batches.len() > 1, preset.starts_with("wobble"), "{preset}");
         }
     }

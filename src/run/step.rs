@@ -1,6 +1,6 @@
 //! One time step of a run, whole: everything that shows, measures, explains or exports a step reads this.
 
-use super::batch::Further;
+use super::batch::Work;
 use super::{EnergyScale, EnergyUnit, Sample};
 use crate::physics::observables::{self, Azimuth};
 use crate::physics::{Loads, State, Workings};
@@ -158,13 +158,14 @@ impl Step {
         self.energy.scale.map(|scale| scale.unit)
     }
 
-    /// Goes on to the next step, under the same forces.
+    /// Goes on to the next step, under the same forces: to the state `after` it and the `work` done by then.
     #[inline]
-    pub(super) fn go_on(&mut self, further: &Further) {
-        self.before = std::mem::replace(&mut self.after, further.after);
-        (self.energy.work, self.energy.friction) = (further.work, further.friction);
+    pub(super) fn go_on(&mut self, after: &State, work: &Work) {
+        self.before = std::mem::replace(&mut self.after, *after);
+        (self.energy.work, self.energy.friction) = (work.outside, work.friction);
         self.number += 1;
-        self.azimuth.follow(&self.after.axle());
+        // Read where it has long been: a processor waits where it loads together what has just been stored apart.
+        self.azimuth.follow(&after.axle());
         self.workings = None;
         self.derived = Derived::default();
     }

@@ -1,23 +1,22 @@
-//! Many steps at once: one thread does nothing but take them. It hands them over, many together, to another, which measures
-//! them and adds them to the pictures; that one passes them on to a third, which holds them against the exact motion. Each
-//! has its own part of the run and of its checkpoints. They share nothing but the steps that they pass on, so that what they
-//! find is the same on any number of cores.
+//! Many steps at once: one thread does nothing but take them, and hands them over, many together, to another, which measures
+//! them, adds them to the pictures and holds them against the exact motion. That takes about as long as stepping. They share
+//! nothing but the steps handed over, so that what is found is the same on any number of cores.
 
 use super::LiveRun;
 use crate::observe::checkpoints::bare;
 use crate::run::{Batch, NotFinite, Step};
 use std::panic;
-use std::sync::mpsc::{self, Receiver, SyncSender};
+use std::sync::mpsc::{self, Receiver, Sender, SyncSender};
 use std::thread::{self, Scope, ScopedJoinHandle};
 
 /// Fewer steps than this are not worth a thread.
 const FEWEST: u64 = 4096;
-/// At least and at most so many steps are handed over together: every time, threads have to be woken, but until the first
-/// steps come and after the last ones the other threads have nothing to do.
+/// At least and at most so many steps are handed over together: every time, a thread has to be woken, but until the first
+/// steps come and after the last ones one of the two has nothing to do.
 const TOGETHER: (u64, u64) = (1024, 16_384);
 /// What is to be stepped is handed over in about so many batches, within these limits.
 const BATCHES: u64 = 64;
-/// So many steps may wait for a thread that is slower than the one before it; then that one waits too.
+/// So many steps may wait to be followed; then stepping waits too.
 const WAITING: usize = 131_072;
 
 impl LiveRun {
@@ -54,32 +53,27 @@ impl LiveRun {
             ..
         } = self;
         let (gauges, beside) = monitor.parts();
-        let measure = |batch: &Batch| {
+        let follow = |batch: &Batch| {
             batch.each(|step| {
                 gauges.follow(step);
                 pictures.follow(step);
                 checkpoints.gauges.offer(step.number(), || gauges.clone());
             });
-        };
-        let hold = |batch: &Batch| {
-            for (step, state) in batch.states() {
-                beside.hold(state);
-                checkpoints.besides.offer(step, || beside.clone());
+            let (mut number, mut states) = (batch.before_first(), batch.states());
+            while !states.is_empty() {
+                let (next, later) =
+                    states.split_at(checkpoints.besides.until_due(number, states.len()));
+                beside.hold_all(next);
+                number += next.len() as u64;
+                checkpoints.besides.offer(number, || beside.clone());
+                states = later;
             }
         };
         thread::scope(|scope| {
-            let (to_measure, to_be_measured) = mpsc::sync_channel(WAITING / together);
-            let (to_hold, to_be_held) = mpsc::sync_channel(WAITING / together);
-            let (seen_by_all, blank) = mpsc::channel();
-            // Sending fails only where the other thread has panicked, which is reported where it is joined, or where no more
-            // blank batches are wanted.
-            let measured = move |batch| drop(to_hold.send(batch));
-            let held = move |batch| drop(seen_by_all.send(batch));
-            let following = [
-                follow(scope, "pictures", to_be_measured, measure, measured)?,
-                follow(scope, "beside", to_be_held, hold, held)?,
-            ];
-            let mut steps = HandOver::to(to_measure, blank, together);
+            let (to_follow, to_be_followed) = mpsc::sync_channel(WAITING / together);
+            let (seen, blank) = mpsc::channel();
+            let follower = follower(scope, to_be_followed, follow, seen)?;
+            let mut steps = HandOver::to(to_follow, blank, together);
             let stepped = loop {
                 if simulation.step_number() >= step {
                     break Ok(());
@@ -92,38 +86,35 @@ impl LiveRun {
                 stored.offer(simulation.step_number(), || bare(simulation));
             };
             steps.finish();
-            for thread in following {
-                if let Err(reason) = thread.join() {
-                    panic::resume_unwind(reason);
-                }
+            if let Err(reason) = follower.join() {
+                panic::resume_unwind(reason);
             }
             Some(stepped)
         })
     }
 }
 
-/// A thread that shows `look` every one of `batches` and then gives it to `pass_on`; `None` where the system gives none.
-fn follow<'scope>(
+/// A thread that shows `follow` every one of `batches` and then sends it to `seen`; `None` where the system gives none.
+fn follower<'scope>(
     scope: &'scope Scope<'scope, '_>,
-    name: &str,
     batches: Receiver<Batch>,
-    mut look: impl FnMut(&Batch) + Send + 'scope,
-    pass_on: impl Fn(Batch) + Send + 'scope,
+    mut follow: impl FnMut(&Batch) + Send + 'scope,
+    seen: Sender<Batch>,
 ) -> Option<ScopedJoinHandle<'scope, ()>> {
     let follow_all = move || {
         for batch in batches {
-            look(&batch);
-            pass_on(batch);
+            follow(&batch);
+            drop(seen.send(batch)); // this fails where no more blank batches are wanted
         }
     };
-    let thread = thread::Builder::new().name(name.to_owned());
+    let thread = thread::Builder::new().name("follower".to_owned());
     thread.spawn_scoped(scope, follow_all).ok()
 }
 
 /// Gathers steps into batches, and hands them over.
 struct HandOver {
     to: SyncSender<Batch>,
-    /// Batches that all have seen: their memory is used again.
+    /// Batches that have been seen: their memory is used again.
     blank: Receiver<Batch>,
     batch: Batch,
     /// The most steps of a batch.
@@ -155,10 +146,11 @@ impl HandOver {
 
     /// Hands over the steps so far, and goes on with `next`.
     fn give(&mut self, next: Batch) {
+        // This fails only where the other thread has panicked, which is reported where it is joined.
         drop(self.to.send(std::mem::replace(&mut self.batch, next)));
     }
 
-    /// Hands over what is left. The followers end when they have seen it.
+    /// Hands over what is left. The follower ends when it has seen it.
     fn finish(mut self) {
         self.give(Batch::default());
     }
