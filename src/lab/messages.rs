@@ -26,26 +26,28 @@ impl Lab {
         self.read_now();
         let next = self.next().filter(|_| halt == Halt::EndOfRun);
         let said = next.map(|next| format!("{END_OF_RUN}. Next: {next}"));
-        if let Some(text) = said.or_else(|| halt_in_words(halt)) {
-            let help = match halt {
-                Halt::NotFinite(_) => self.what_makes_finite(),
-                _ => String::new(),
-            };
-            self.tell(text + &help);
+        let said = said.or_else(|| halt_in_words(halt));
+        match (said, halt) {
+            (Some(text), Halt::NotFinite(_)) => self.tell_of_break(&text),
+            (Some(text), _) => self.tell(text),
+            (None, _) => {}
         }
     }
 
-    /// What helps where the numbers have stopped being finite: a key that mends the run, and what takes back an edit.
-    fn what_makes_finite(&self) -> String {
-        let mend = match self.player.is_seeking_advice() {
-            true => IS_SOUGHT.to_owned(),
-            false => self.what_mends(),
-        };
+    /// Says `text`, that the numbers have stopped being finite, and what helps: a key that mends the run, which may still be
+    /// looked for, and what takes back an edit.
+    fn tell_of_break(&mut self, text: &str) {
         let step = self.player.playback.step_number();
-        match self.work.journal().count_by(step) {
-            0 => format!(": {mend}"),
-            _ => format!(": {mend}, u takes the last edit back"),
-        }
+        let undo = match self.work.journal().count_by(step) {
+            0 => "",
+            _ => ", u takes the last edit back",
+        };
+        let text = format!("{text}: ");
+        self.on_top
+            .notice_mut()
+            .keep_seeking([&text, IS_SOUGHT, undo]);
+        self.changed = true;
+        self.tell_what_was_found();
     }
 
     /// What mends the run, as far as that is known.
@@ -54,14 +56,12 @@ impl Lab {
         offer.unwrap_or_else(|| "a shorter time step or another scheme may mend it (e)".to_owned())
     }
 
-    /// Where a message says that advice is looked for, and the search has ended: says what was found instead.
+    /// Where the message says that advice is looked for, and the search has ended: says what was found instead.
     pub(super) fn tell_what_was_found(&mut self) {
-        if self.player.is_seeking_advice() {
-            return;
-        }
-        let said = self.on_top.notice().text().unwrap_or_default();
-        if said.contains(IS_SOUGHT) {
-            self.tell(said.replace(IS_SOUGHT, &self.what_mends()));
+        if self.on_top.notice().is_seeking() && !self.player.is_seeking_advice() {
+            let found = self.what_mends();
+            self.on_top.notice_mut().find(&found);
+            self.changed = true;
         }
     }
 
@@ -108,8 +108,12 @@ impl Lab {
 
     /// Shows `text` before the present message, until the next key.
     pub fn tell_first(&mut self, text: &str) {
-        let said = self.on_top.notice().text().unwrap_or_default();
-        self.tell(format!("{text}{said}").trim_end_matches("; "));
+        let notice = self.on_top.notice_mut();
+        match notice.text() {
+            Some(_) => notice.keep_saying_first(text),
+            None => notice.keep_saying(text.trim_end_matches("; ")),
+        }
+        self.changed = true;
     }
 
     /// Shows why the session cannot be saved, until it can.

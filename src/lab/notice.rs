@@ -1,5 +1,6 @@
 //! The message at the bottom of the screen. It goes away after a few seconds or at the next key.
 
+use std::ops::Range;
 use std::time::Duration;
 
 /// How long a message stays unless a key removes it earlier.
@@ -8,21 +9,75 @@ const STANDS: Duration = Duration::from_secs(5);
 /// The present message, if there is one, and the lasting trouble with the session.
 #[derive(Clone, Debug, Default)]
 pub struct Notice {
-    /// The message, and the time at which it goes away; `None` where only a key removes it.
-    said: Option<(String, Option<Duration>)>,
+    said: Option<Said>,
     /// Why the session cannot be saved, if it cannot.
     trouble: Option<String>,
+}
+
+/// A message.
+#[derive(Clone, Debug)]
+struct Said {
+    text: String,
+    /// The time at which it goes away; `None` where only a key removes it.
+    until: Option<Duration>,
+    /// The bytes of the text that stand there until something has been found, and are then replaced by that.
+    unfound: Option<Range<usize>>,
 }
 
 impl Notice {
     /// Shows `text` for five seconds from `now` on.
     pub fn say(&mut self, text: impl Into<String>, now: Duration) {
-        self.said = Some((text.into(), Some(now + STANDS)));
+        self.said = Some(Said {
+            text: text.into(),
+            until: Some(now + STANDS),
+            unfound: None,
+        });
     }
 
     /// Shows `text` until the next key: for messages that must not be missed.
     pub fn keep_saying(&mut self, text: impl Into<String>) {
-        self.said = Some((text.into(), None));
+        self.said = Some(Said {
+            text: text.into(),
+            until: None,
+            unfound: None,
+        });
+    }
+
+    /// The same of three texts in a row, of which the one in the middle stands until [something is found](Self::find).
+    pub fn keep_seeking(&mut self, [before, unfound, after]: [&str; 3]) {
+        self.said = Some(Said {
+            text: [before, unfound, after].concat(),
+            until: None,
+            unfound: Some(before.len()..before.len() + unfound.len()),
+        });
+    }
+
+    /// Whether a part of the message stands until something is found.
+    pub fn is_seeking(&self) -> bool {
+        self.said
+            .as_ref()
+            .is_some_and(|said| said.unfound.is_some())
+    }
+
+    /// Shows what has been `found` in the place of the part that stood until then.
+    pub fn find(&mut self, found: &str) {
+        if let Some(said) = &mut self.said
+            && let Some(unfound) = said.unfound.take()
+        {
+            said.text.replace_range(unfound, found);
+        }
+    }
+
+    /// Shows `text` before the message, until the next key.
+    pub fn keep_saying_first(&mut self, text: &str) {
+        let Some(said) = &mut self.said else {
+            return self.keep_saying(text);
+        };
+        said.text.insert_str(0, text);
+        said.until = None;
+        if let Some(unfound) = &mut said.unfound {
+            *unfound = unfound.start + text.len()..unfound.end + text.len();
+        }
     }
 
     /// Removes the message; returns whether there was one.
@@ -37,13 +92,13 @@ impl Notice {
 
     /// How long the message stays from `now` on; `None` where only a key removes it, or there is none.
     pub fn ends_in(&self, now: Duration) -> Option<Duration> {
-        let (_, until) = self.said.as_ref()?;
+        let until = self.said.as_ref()?.until;
         until.map(|until| until.saturating_sub(now))
     }
 
     /// The message.
     pub fn text(&self) -> Option<&str> {
-        self.said.as_ref().map(|(text, _)| text.as_str())
+        self.said.as_ref().map(|said| said.text.as_str())
     }
 
     /// Records why the session cannot be saved, or that it can; returns whether that is new.
@@ -76,6 +131,28 @@ mod tests {
         assert!(!notice.expire(at(1000)));
         assert_eq!(notice.text(), Some("the end"));
         assert!(notice.take_back() && notice.text().is_none());
+    }
+
+    #[test]
+    fn what_is_found_takes_the_place_of_what_stood_until_then() {
+        let mut notice = Notice::default();
+        notice.keep_seeking(["the end: ", "a cure is looked for", ", u goes back"]);
+        assert!(notice.is_seeking());
+        notice.keep_saying_first("opened; ");
+        assert_eq!(
+            notice.text(),
+            Some("opened; the end: a cure is looked for, u goes back")
+        );
+        notice.find("a shorter step");
+        let found = "opened; the end: a shorter step, u goes back";
+        assert_eq!(notice.text(), Some(found));
+        assert!(!notice.is_seeking());
+        // Nothing is left to be replaced; and another message is not changed either.
+        notice.find("again");
+        assert_eq!(notice.text(), Some(found));
+        notice.keep_saying("a cure is looked for");
+        notice.find("again");
+        assert_eq!(notice.text(), Some("a cure is looked for"));
     }
 
     #[test]
