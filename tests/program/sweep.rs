@@ -440,21 +440,24 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_line() {
     );
 }
 
+/// A sweep over the scheme, of which the rows by rk4 break down.
+const SOME_ROWS_FAIL: [&str; 6] = [
+    "sweep",
+    "method-2",
+    "--set",
+    "motion.steps=40",
+    "--vary",
+    "motion.scheme=report,rk4",
+];
+
 #[test]
 fn a_point_that_fails_is_a_row_without_readouts_and_its_reason_is_told() {
     let ground = Ground::new();
-    let args = [
-        "sweep",
-        "method-2",
-        "--set",
-        "motion.steps=40",
-        "--vary",
-        "motion.scheme=report,rk4",
-        "--vary",
-        "body.rim.height_m=0.5,0,1e200",
-        "--measure",
-        "z_m,path,steps",
+    let more = [
+        "--vary=body.rim.height_m=0.5,0,1e200",
+        "--measure=z_m,path,steps",
     ];
+    let args = [&SOME_ROWS_FAIL[..], &more].concat();
     let told = made(&sweep(&ground, &args, "out.csv"));
     let csv = ground.read("out.csv");
     let rows = rows(&csv);
@@ -485,17 +488,8 @@ fn a_point_that_fails_is_a_row_without_readouts_and_its_reason_is_told() {
 #[test]
 fn rows_without_readouts_are_told_by_every_command_that_finds_them() {
     let ground = Ground::new();
-    let args = [
-        "sweep",
-        "method-2",
-        "--set",
-        "motion.steps=40",
-        "--vary",
-        "motion.scheme=report,rk4",
-        "--vary",
-        "body.rim.height_m=0.5,1e200",
-        "--measure=z_m",
-    ];
+    let more = ["--vary=body.rim.height_m=0.5,1e200", "--measure=z_m"];
+    let args = [&SOME_ROWS_FAIL[..], &more].concat();
     let count = "gyrolab: rows without readouts: 3 of 4\n";
     let reasons = [
         "motion.scheme = \"rk4\", body.rim.height_m = 0.5: the numbers are no longer finite",
