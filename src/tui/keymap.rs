@@ -95,7 +95,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('i')], Action::TogglePin, "", "pin this run as the reference beside every other, or take it away"),
     row(&[Lab], &[Char('a')], Action::TakeAdvice, "", "take the advice about the numbers: the run from the start with what mends them"),
     row(&[Lab], &[Char('x')], Action::Export, "export", "write the run up to here as CSV"),
-    row(&[Lab], &[Char('X')], Action::Figure, "", "draw the run up to here, for a write-up: SVG, PDF or PNG"),
+    row(&[Lab], &[Char('X')], Action::Figure, "", "figure of the run up to here, for a write-up: SVG, PDF or PNG"),
     row(&[Lab], &[Char('s')], Action::SaveRun, "", "save the run file: scenario and all that was done"),
     row(&[Lab], &[Char('S')], Action::SavePresent, "", "save the present state as a scenario"),
     row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file"),
