@@ -2,12 +2,13 @@
 
 use super::chart::legend::longest_name;
 use super::chart::{Axis, Chart, Errors, Panel, Series, Style};
+use super::drawn::Figure;
 use super::kind::Plotted;
 use super::of_runs::charts::both_ranges;
 use super::page::ink::LABEL_PT;
 use super::page::letters;
 use super::quantity;
-use super::request::{Figure, Known, Request, Run};
+use super::request::{Known, Request, Run};
 use super::size;
 use crate::measured::{self, Curve, Measured, Point, at_times, places, residuals as held_against};
 use crate::run::Clock;

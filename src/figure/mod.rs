@@ -6,12 +6,14 @@
 //!   [`course`] takes the numbers from stepping through the runs ([`over_time`]: those of a curve, in bounded memory),
 //!   `measured` draws what was measured with them, [`dense`] finds the figures that would be solid black, `size` tells what
 //!   of a curve is rounding.
+//!   `request` says what is asked for, and `drawn` what a figure is once it is drawn.
 //! - [`of_table`]: figures of a comparison, of a sweep or of a fit, read by [`table`].
 //! - [`quantity`]: columns and readouts as they stand at an axis.
 
 pub mod chart;
 pub mod course;
 pub mod dense;
+mod drawn;
 pub mod kind;
 mod measured;
 mod names;

@@ -2,9 +2,7 @@
 
 use super::chart::Style;
 use super::course::{Course, Recorded, Wanted};
-use super::dense::Dense;
 use super::kind::Kind;
-use super::page::scene::Scene;
 use crate::measured::Measured;
 use crate::scenario::Scenario;
 use std::sync::Arc;
@@ -33,27 +31,6 @@ pub struct Run {
     pub scenario: Arc<Scenario>,
     /// How the user named it.
     pub named: String,
-}
-
-/// A figure, and what its reader should know of it.
-#[derive(Clone, Debug)]
-pub struct Figure {
-    /// The page.
-    pub scene: Scene,
-    /// Warnings but for that of `dense`, each a sentence without its end.
-    pub warnings: Vec<String>,
-    /// What covers the paper so densely that it is solid black, where something does.
-    pub dense: Option<Dense>,
-    /// Which run's numbers stopped being finite, and at which step.
-    pub broke: Option<String>,
-}
-
-impl Figure {
-    /// All that its reader should know of it, each a sentence without its end.
-    pub fn told(&self) -> impl Iterator<Item = String> + '_ {
-        let dense = self.dense.iter().map(ToString::to_string);
-        self.warnings.iter().cloned().chain(dense)
-    }
 }
 
 /// What is known of a single run before its figures are drawn: so much of it need not be computed once more.

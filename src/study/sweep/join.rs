@@ -2,9 +2,9 @@
 
 use super::grid::Sweep;
 use super::part::{PartError, is_writable, whole_rows};
-use super::row::RowsThere;
+use super::row::{KindOfRow, RowsThere};
 use super::shard::Shard;
-use super::there::{KindOfRow, kind_of_row};
+use super::there::kind_of_row;
 use crate::export::Destination;
 use crate::export::destination::DestinationError;
 use crate::scenario::Problems;

@@ -1,6 +1,5 @@
 //! The row of one point as it stands in the file, and the rows that are there.
 
-use super::there::KindOfRow;
 use serde::Serialize;
 
 /// One row of a sweep's CSV.
@@ -12,6 +11,15 @@ pub struct SweepRow {
     pub holds_readouts: bool,
     /// Why it holds no readouts.
     pub failure: Option<String>,
+}
+
+/// Whether a row holds readouts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum KindOfRow {
+    /// It holds at least one.
+    Filled,
+    /// All of them are missing, as where its point has failed.
+    Empty,
 }
 
 /// The rows that stand in a file: how many there are, and which of them hold no readouts.

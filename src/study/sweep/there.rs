@@ -2,7 +2,7 @@
 
 use super::difference::of_headers;
 use super::grid::Sweep;
-use super::row::RowsThere;
+use super::row::{KindOfRow, RowsThere};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek};
 
@@ -54,15 +54,6 @@ pub(super) fn look(file: &File, sweep: &Sweep) -> io::Result<There> {
         }
         bytes += line.len() as u64;
     }
-}
-
-/// Whether a row holds readouts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum KindOfRow {
-    /// It holds at least one.
-    Filled,
-    /// All of them are missing, as where its point has failed.
-    Empty,
 }
 
 /// What kind of row `line` is as the `row`-th of `sweep`; `None` where it cannot be that one: the values that vary must be

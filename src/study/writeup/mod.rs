@@ -6,6 +6,7 @@
 pub mod figures;
 mod languages;
 mod latex;
+mod markdown;
 pub mod measured;
 mod page;
 mod quantities;

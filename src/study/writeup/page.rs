@@ -1,6 +1,7 @@
 //! The first page of a write-up, `README.md`: what was run, what came out, whether to believe it, how to make it again.
 
 use super::languages::Lines;
+use super::markdown::escaped;
 use super::quantities::Quantity;
 use super::{Beside, CSV, Drawing, RUN_FILE, Writeup, setup};
 use crate::text::number::NONE;
@@ -197,19 +198,4 @@ fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(char::to_uppercase);
     first.into_iter().flatten().chain(letters).collect()
-}
-
-/// `text` so that Markdown shows it as it stands, in a table too.
-pub(super) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '\n' => out.push(' '),
-            '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '#' | '|' | '~' | '&' | '$' => {
-                out.extend(['\\', c]);
-            }
-            c => out.push(c),
-        }
-    }
-    out
 }

@@ -1,7 +1,7 @@
 //! What was run, as a table of Markdown: body, start, forces, scheme, time steps, pushes and edits.
 
 use super::Writeup;
-use super::page::escaped;
+use super::markdown::escaped;
 use crate::export::summary::steps_in_words;
 use crate::physics::{SchemeInfo, SymmetricTop};
 use crate::scenario::file::{BodyFile, FrictionFile};
