@@ -196,7 +196,7 @@ impl LiveRun {
         mut is_fulfilled: impl FnMut(&mut Self) -> bool,
     ) -> Played {
         let begin_s = self.now().time_s;
-        let look_every = (STEPS_PER_LOOK / self.scenario().body.mechanics.points().len()).max(1);
+        let look_every = self.steps_per_look();
         let mut until_look = look_every;
         let end = loop {
             let time_step_s = self.simulation.motion().time_step_s;
@@ -224,6 +224,11 @@ impl LiveRun {
             stepped_s: self.now().time_s - begin_s,
             end,
         }
+    }
+
+    /// Steps between two readings of the clock.
+    fn steps_per_look(&self) -> usize {
+        (STEPS_PER_LOOK / self.scenario().body.mechanics.points().len()).max(1)
     }
 
     /// Shows the exact motion beside the run, or does not.

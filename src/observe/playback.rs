@@ -146,10 +146,18 @@ impl Playback {
 
     /// Plays `owed_s` of simulated time, or until `enough` returns true. Returns why the playback stopped, if it did.
     fn play(&mut self, owed_s: f64, wall: Duration, enough: impl FnMut() -> bool) -> Option<Halt> {
-        let mut until = self.until.as_mut();
-        let is_fulfilled = |run: &mut LiveRun| until.as_mut().is_some_and(|until| until(run));
-        let Played { stepped_s, end } = self.run.play(owed_s, self.stop, enough, is_fulfilled);
-        self.pace.spend(stepped_s, wall, end == PlayEnd::CutShort);
+        let end = match self.hurries {
+            true => self.run.hurry_to(self.stop, enough),
+            false => {
+                let mut until = self.until.as_mut();
+                let is_fulfilled =
+                    |run: &mut LiveRun| until.as_mut().is_some_and(|until| until(run));
+                let Played { stepped_s, end } =
+                    self.run.play(owed_s, self.stop, enough, is_fulfilled);
+                self.pace.spend(stepped_s, wall, end == PlayEnd::CutShort);
+                end
+            }
+        };
         let halt = match end {
             PlayEnd::InTime | PlayEnd::CutShort => return None,
             PlayEnd::Fulfilled => Halt::Fulfilled,

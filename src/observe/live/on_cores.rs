@@ -2,7 +2,7 @@
 //! them, adds them to the pictures and holds them against the exact motion. That takes about as long as stepping. They share
 //! nothing but the steps handed over, so that what is found is the same on any number of cores.
 
-use super::LiveRun;
+use super::{LiveRun, PlayEnd};
 use crate::observe::checkpoints::bare;
 use crate::run::{Batch, NotFinite, Step};
 use std::panic;
@@ -11,13 +11,13 @@ use std::thread::{self, Scope, ScopedJoinHandle};
 
 /// Fewer steps than this are not worth a thread.
 const FEWEST: u64 = 4096;
+/// The most batches that wait to be followed; then stepping waits too.
+const WAITING: usize = 8;
 /// At least and at most so many steps are handed over together: every time, a thread has to be woken, but until the first
 /// steps come and after the last ones one of the two has nothing to do.
 const TOGETHER: (u64, u64) = (1024, 16_384);
 /// What is to be stepped is handed over in about so many batches, within these limits.
 const BATCHES: u64 = 64;
-/// So many steps may wait to be followed; then stepping waits too.
-const WAITING: usize = 131_072;
 
 impl LiveRun {
     /// Steps until the run stands at `step`. All that is read off it then is as if it had taken them
@@ -29,11 +29,34 @@ impl LiveRun {
         let steps = step.saturating_sub(self.simulation.step_number());
         let together = (steps / BATCHES).clamp(TOGETHER.0, TOGETHER.1) as usize;
         if steps >= FEWEST
-            && let Some(stepped) = self.step_on_cores_to(step, together)
+            && let Some(stepped) = self.step_on_cores_to(step, together, || false)
         {
             return stepped;
         }
         self.step_alone_to(step)
+    }
+
+    /// Steps until the run stands at the step `stop`, or `enough` returns true because the time for computing is used up.
+    pub fn hurry_to(&mut self, stop: u64, mut enough: impl FnMut() -> bool) -> PlayEnd {
+        let steps = stop.saturating_sub(self.simulation.step_number());
+        if steps < FEWEST {
+            return self.play(f64::INFINITY, stop, enough, |_| false).end;
+        }
+        let (every, mut is_enough) = (self.steps_per_look(), false);
+        let mut until_look = every;
+        let look = || {
+            until_look -= 1;
+            if until_look == 0 {
+                (until_look, is_enough) = (every, enough());
+            }
+            is_enough
+        };
+        match self.step_on_cores_to(stop, TOGETHER.0 as usize, look) {
+            Some(Ok(())) if self.simulation.step_number() >= stop => PlayEnd::AtStop,
+            Some(Ok(())) => PlayEnd::CutShort,
+            Some(Err(error)) => PlayEnd::NotFinite(error),
+            None => self.play(f64::INFINITY, stop, enough, |_| false).end,
+        }
     }
 
     fn step_alone_to(&mut self, step: u64) -> Result<(), NotFinite> {
@@ -43,8 +66,14 @@ impl LiveRun {
         Ok(())
     }
 
-    /// Hands over `together` steps at a time. `None` where the system gives no threads; nothing has been done then.
-    fn step_on_cores_to(&mut self, step: u64, together: usize) -> Option<Result<(), NotFinite>> {
+    /// Hands over `together` steps at a time, up to `step` or the first one after which `is_enough`. `None` where the system
+    /// gives no thread; nothing has been done then.
+    fn step_on_cores_to(
+        &mut self,
+        step: u64,
+        together: usize,
+        mut is_enough: impl FnMut() -> bool,
+    ) -> Option<Result<(), NotFinite>> {
         let Self {
             simulation,
             monitor,
@@ -70,7 +99,7 @@ impl LiveRun {
             }
         };
         thread::scope(|scope| {
-            let (to_follow, to_be_followed) = mpsc::sync_channel(WAITING / together);
+            let (to_follow, to_be_followed) = mpsc::sync_channel(WAITING);
             let (seen, blank) = mpsc::channel();
             let follower = follower(scope, to_be_followed, follow, seen)?;
             let mut steps = HandOver::to(to_follow, blank, together);
@@ -84,6 +113,9 @@ impl LiveRun {
                 }
                 let stored = &mut checkpoints.simulations;
                 stored.offer(simulation.step_number(), || bare(simulation));
+                if is_enough() {
+                    break Ok(());
+                }
             };
             steps.finish();
             if let Err(reason) = follower.join() {
@@ -206,16 +238,48 @@ mod tests {
     }
 
     #[test]
+    fn in_a_hurry_it_ends_at_its_stop_or_when_the_time_is_used_up() {
+        for name in ["method-2", "wobble-push"] {
+            let (mut one_by_one, mut in_parts) = (run(name), run(name));
+            let mut parts = 0;
+            loop {
+                let begin = in_parts.simulation.step_number();
+                let mut looks = 0;
+                let end = in_parts.hurry_to(STEPS, || {
+                    looks += 1;
+                    looks == 3
+                });
+                let here = in_parts.simulation.step_number();
+                parts += 1;
+                if end == PlayEnd::AtStop {
+                    assert_eq!(here, STEPS);
+                    break;
+                }
+                assert_eq!(end, PlayEnd::CutShort);
+                let every = in_parts.steps_per_look() as u64;
+                assert_eq!(here - begin, 3 * every, "{name}");
+            }
+            assert!(parts > 10, "{name}: {parts}");
+            one_by_one.step_alone_to(STEPS).unwrap();
+            assert!(read(&mut one_by_one) == read(&mut in_parts), "{name}");
+        }
+    }
+
+    #[test]
     fn it_stays_before_the_step_whose_numbers_are_not_finite() {
         let mut document = Document::open("method-2").unwrap();
         document.set("motion.time_step_s=1e3").unwrap();
         document.set("motion.gravity_m_per_s2=1e306").unwrap();
         let scenario = Arc::new(document.scenario().unwrap());
+        let mut in_a_hurry = LiveRun::new(Arc::clone(&scenario));
         let (mut one_by_one, mut at_once) =
             (LiveRun::new(Arc::clone(&scenario)), LiveRun::new(scenario));
         let alone = one_by_one.step_alone_to(STEPS);
         assert!(alone.is_err());
         assert_eq!(at_once.step_to(STEPS), alone);
         assert_eq!(at_once.now(), one_by_one.now());
+        let end = in_a_hurry.hurry_to(STEPS, || false);
+        assert_eq!(Err(end), alone.map_err(PlayEnd::NotFinite));
+        assert_eq!(in_a_hurry.now(), one_by_one.now());
     }
 }
