@@ -71,12 +71,10 @@ pub struct Recorder {
 impl Recorder {
     /// A recorder of what is `wanted` of the run of `scenario`, before its start.
     pub fn new(scenario: &Arc<Scenario>, wanted: Wanted) -> Self {
-        let edits = scenario.edits.iter().map(|edit| edit.motion.time_step_s);
-        let least_s = edits.fold(scenario.motion.time_step_s, f64::min);
         Self {
             stretch_end_s: wanted.end_s(scenario),
             places: Places::new(scenario.arm_m()),
-            curves: vec![OverTime::new(least_s); wanted.columns.len()],
+            curves: vec![OverTime::new(scenario.least_time_step_s()); wanted.columns.len()],
             path: Vec::new(),
             end_s: 0.0,
             is_empty: true,

@@ -62,7 +62,8 @@ pub fn chart(table: &Table, columns: &[&str], width_pt: f64) -> Result<Chart, St
 pub fn warnings(table: &Table, columns: &[&str]) -> Vec<String> {
     match &table.subject {
         Subject::Sweep { varied, .. } => sweep::gaps(table, columns, varied),
-        Subject::Comparison | Subject::Fit { .. } => Vec::new(),
+        Subject::Comparison => comparison::missing(table, columns),
+        Subject::Fit { .. } => Vec::new(),
     }
 }
 

@@ -138,6 +138,7 @@ impl Lab {
     /// From now on looks in the background for a scheme or time step that would make doubtful numbers right.
     pub fn take_advice(&mut self) {
         self.player.is_advised = true;
+        self.read_now(); // a run that stands still is not read again by itself
     }
 
     /// From now on remembers what dots and colours the user chooses.

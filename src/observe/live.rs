@@ -249,6 +249,12 @@ impl LiveRun {
         self.overlay.as_ref()
     }
 
+    /// Where the exact motion stands, where it is shown and has come as far as the run.
+    pub fn exact_now(&self) -> Option<&Moment> {
+        let overlay = self.overlay.as_ref()?;
+        (!self.overlay_is_behind()).then(|| overlay.now())
+    }
+
     /// Whether the exact motion is shown and its time is earlier than the run's.
     pub fn overlay_is_behind(&self) -> bool {
         self.overlay

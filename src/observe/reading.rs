@@ -3,6 +3,7 @@
 
 use super::live::LiveRun;
 use super::pace::{Pace, Speed};
+use super::recording::Moment;
 use crate::analysis::{Measured, Readouts};
 use crate::physics::State;
 use crate::text::number::{exponent, fixed, shortest};
@@ -20,6 +21,8 @@ pub struct Reading {
     pub state: State,
     /// The step of that state, if the scheme has broken down since; else `None`.
     pub last_whole: Option<u64>,
+    /// The exact motion at that time, where it is shown and has come so far.
+    pub exact: Option<Moment>,
     /// Whether the run goes on, and how fast.
     pub pace: String,
 }
@@ -31,6 +34,7 @@ impl Reading {
         Self {
             state: last_whole.map_or(*run.simulation().state(), |(_, state)| *state),
             last_whole: last_whole.map(|(step, _)| *step),
+            exact: run.exact_now().copied(),
             readouts: run.readouts(),
             pace: pace_in_words(pace),
         }

@@ -131,6 +131,19 @@ impl Scenario {
         self.body.mechanics.points()[self.trace].at.norm()
     }
 
+    /// The shortest time step by which a run of it is stepped, edits included, s.
+    pub fn least_time_step_s(&self) -> f64 {
+        let (mut least_s, mut since, mut now_s) = (f64::INFINITY, 0, self.motion.time_step_s);
+        for edit in &self.edits {
+            // No step is taken between edits at the same one.
+            if edit.step > since {
+                least_s = least_s.min(now_s);
+            }
+            (since, now_s) = (edit.step, edit.motion.time_step_s);
+        }
+        least_s.min(now_s)
+    }
+
     /// The rate at which the body spins about its axle in `state`, rad/s: ω3, or L along the axle over the rotor's moment
     /// where only one part spins.
     pub fn spin_rad_per_s(&self, state: &State) -> f64 {

@@ -20,7 +20,7 @@ pub fn answers(
     let pages = lesson.pages.len();
     let mut parts = vec![
         format!("# {}", lesson.title),
-        format!("Taken as far as page {} of {pages}.", place.page),
+        format!("Left at page {} of {pages}.", place.page),
     ];
     for page in &lesson.pages {
         walk.enter(page, go_on)?;

@@ -643,6 +643,10 @@ fn a_comparison_shows_its_slope() {
             "1",
         ],
     );
+    let told = of_table::warnings(&table(COMPARISON), &[]);
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].starts_with("1 of 4 time steps of exact have no point"));
+    assert!(of_table::warnings(&table(COMPARISON), &["energy_drift"]).is_empty());
     let other = of_table::chart(&table(COMPARISON), &["energy_drift"], COLUMN_PT).unwrap();
     says(&other.scene(), &["energy drift"]);
     let wrong = of_table::chart(&table(COMPARISON), &["eror_m"], COLUMN_PT).unwrap_err();

@@ -150,6 +150,20 @@ fn what_mends_a_run_that_broke_down_is_told_as_soon_as_it_is_found() {
         .shows("no longer finite at step 3: a: dt 0.005 s mends it");
 }
 
+/// A run that stands still is not read again by itself: the search has to begin as soon as it may.
+#[test]
+fn advice_is_looked_for_where_the_lab_opens_paused() {
+    let mut stage = Stage::open("wobble-push", &[], SMALL);
+    stage.commands("pause = true");
+    stage.lab.begin_at(300).unwrap();
+    stage.lab.take_advice();
+    assert!(stage.lab.player().is_seeking_advice());
+    while stage.lab.player().is_seeking_advice() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    stage.wait(0.1).shows("a: dt 0.01 s mends it");
+}
+
 #[test]
 fn what_a_broken_scheme_leaves_is_not_shown_as_a_place() {
     let mut stage = Stage::open("wobble-push", &["motion.scheme=rk4"], LARGE);

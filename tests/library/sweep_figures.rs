@@ -19,7 +19,6 @@ fn a_line_of_theory_with_gaps_says_where_they_are_explained() {
     let measured = ["measured_precession_rad_per_s"];
     assert!(of_table::warnings(&table(&gappy), &measured).is_empty());
     assert!(of_table::warnings(&table(SWEEP), &[]).is_empty());
-    assert!(of_table::warnings(&table(COMPARISON), &[]).is_empty());
 }
 
 const SWEEP: &str = "\

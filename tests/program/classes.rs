@@ -35,7 +35,7 @@ fn a_prediction_survives_a_kill_and_is_handed_in() {
     let answers = done(ground.run(&["lesson", LESSON, "--answers", "-o", "mine.md"]));
     assert!(stdout(&answers).is_empty());
     let text = ground.read("mine.md");
-    assert!(text.contains("Taken as far as page 3 of 10."), "{text}");
+    assert!(text.contains("Left at page 3 of 10."), "{text}");
     assert!(
         text.contains("**Came out.** The tilt now stays within 0.057 degrees"),
         "{text}"

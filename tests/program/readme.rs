@@ -68,10 +68,10 @@ fn the_scenario_is_good_and_its_mistakes_are_told_as_shown() {
     let wrong = scenario
         .replace("point_mass_kg = 0.5", "point_mass_kg = -0.1")
         .replace("tilt_deg = 45 ", "tilt = 45 ");
-    ground.write("my.toml", &wrong);
-    let told = said(&ground.run(&["check", "my.toml"]).stderr);
-    let shown = block("text", "gyrolab check my.toml");
-    assert_eq!(shown, format!("$ gyrolab check my.toml\n{told}"));
+    ground.write("with-mistakes.toml", &wrong);
+    let told = said(&ground.run(&["check", "with-mistakes.toml"]).stderr);
+    let shown = block("text", "gyrolab check with-mistakes.toml");
+    assert_eq!(shown, format!("$ gyrolab check with-mistakes.toml\n{told}"));
 }
 
 #[test]

@@ -59,8 +59,8 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
         "700 of 0.1 s",
         "Do not believe this run",
         "\n\nSource: report, section 4, the extra force on the axle top; changed since\n\n",
-        "| tilt swing since 20.1 s (`measured_tilt_swing_deg`) |",
-        "as the steps show it; since the forces last changed, at t = 20.1 s\n",
+        "| tilt swing since 20 s (`measured_tilt_swing_deg`) |",
+        "as the steps show it; since the forces last changed, at t = 20 s\n",
         // The line of the preset speaks of another run.
         "\n\nDiffers from the preset wobble-push: other pushes\n\n",
         "\n\nOf the preset wobble-push as it was: ",

@@ -19,11 +19,7 @@ pub(super) fn drawn(
     let steps = numbers(table, "time_step_s")?;
     let schemes = table.texts("scheme").unwrap_or_default();
     let groups = grouped(&schemes);
-    let columns = if columns.is_empty() {
-        &["error_m"]
-    } else {
-        columns
-    };
+    let columns = or_error(columns);
     let panel = |name: &&str| -> Result<Panel, String> {
         let values = numbers(table, name)?;
         let mut best: Option<(usize, f64)> = None;
@@ -65,6 +61,36 @@ pub(super) fn drawn(
         ..quantity::axis("time_step_s")
     };
     Ok((x, panels))
+}
+
+/// What is said of time steps that have no point: a run that breaks down has no error.
+pub(super) fn missing(table: &Table, columns: &[&str]) -> Vec<String> {
+    let schemes = table.texts("scheme").unwrap_or_default();
+    let groups = grouped(&schemes);
+    let missing = |(scheme, rows): &(String, Vec<usize>)| {
+        let is_missing = |row: &&usize| {
+            let values = or_error(columns)
+                .iter()
+                .filter_map(|name| table.numbers(name));
+            values.into_iter().any(|values| !values[**row].is_finite())
+        };
+        let count = rows.iter().filter(is_missing).count();
+        (count > 0).then(|| {
+            format!(
+                "{count} of {} time steps of {scheme} have no point: there is no number for them, as where a run breaks down",
+                rows.len()
+            )
+        })
+    };
+    groups.iter().filter_map(missing).collect()
+}
+
+/// The columns that are drawn where `columns` were asked for.
+fn or_error<'a>(columns: &'a [&'a str]) -> &'a [&'a str] {
+    match columns.is_empty() {
+        true => &["error_m"],
+        false => columns,
+    }
 }
 
 /// The axis of a column of a comparison.

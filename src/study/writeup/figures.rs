@@ -37,6 +37,8 @@ const SWINGS: &str = "swings";
 const MANY_SWINGS: f64 = 15.0;
 /// Fewer steps a swing make a curve with corners.
 const SMOOTH: f64 = 40.0;
+/// Figures of measured data end where the data do, and this factor later.
+const BEYOND_DATA: f64 = 1.05;
 /// So many swings are in that one.
 const FEW_SWINGS: f64 = 8.0;
 
@@ -113,6 +115,8 @@ pub fn figures(
         && measured.count() > 0
         && let Ok(series) = measured.series()
     {
+        let last_s = series.times_s.last().copied().unwrap_or_default();
+        let end_s = end_s.min(BEYOND_DATA * last_s);
         let name = &measured.origin;
         let over_time = format!("What was measured, `{name}`, and the run{also}");
         let less = format!("What was measured, `{name}`, less what the run says");
@@ -121,7 +125,7 @@ pub fn figures(
             (RESIDUALS, Kind::Residuals, less),
         ];
         for (place, (name, kind, caption)) in kinds.into_iter().enumerate() {
-            wanted.insert(place, (name, kind, Some(*end_s), caption));
+            wanted.insert(place, (name, kind, Some(end_s), caption));
         }
     }
     let has_places = beside.is_some_and(|beside| !beside.compared.places.is_empty());

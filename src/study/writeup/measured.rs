@@ -117,7 +117,7 @@ impl Beside {
                 format!(
                     "{} at {} s",
                     significant(largest.sigmas, 3),
-                    shortest(largest.time_s)
+                    significant(largest.time_s, 9)
                 )
             });
             let rms = own

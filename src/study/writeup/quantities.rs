@@ -20,7 +20,12 @@ pub struct Quantity {
     pub predicted: Option<f64>,
     /// Since when it counts, s, where that is not the start.
     pub since_s: Option<f64>,
+    /// Whether the time step is too long to see it: what was measured is no number of the motion then.
+    pub is_strobed: bool,
 }
+
+/// The number that a time step can be too long to see.
+const NUTATION: &str = "measured_nutation_period_s";
 
 /// How the names of measured numbers begin.
 const MEASURED: &str = "measured_";
@@ -34,7 +39,10 @@ const DECIMALS: usize = 6;
 /// Every measured number of the table of readouts that `readouts`, of the run of `scenario`, has a value of, or theory.
 pub fn quantities(scenario: &Scenario, readouts: &Readouts) -> Vec<Quantity> {
     let since = readouts.since;
-    let since_s = (since > 0).then(|| Clock::at(scenario, since).time_s(since));
+    // The first step under other forces: they changed where it began.
+    let changed = since.checked_sub(1).filter(|step| *step > 0);
+    let since_s = changed.map(|step| Clock::at(scenario, step).time_s(step));
+    let is_strobed = readouts.nutation_is_resolved() == Some(false);
     let measured = READOUTS
         .iter()
         .filter(|readout| readout.name.starts_with(MEASURED) && !readout.is_uncertainty());
@@ -49,6 +57,7 @@ pub fn quantities(scenario: &Scenario, readouts: &Readouts) -> Vec<Quantity> {
             uncertainty: number(uncertainty),
             predicted: number(predicted),
             since_s: since_s.filter(|_| readout.source == Source::Measured),
+            is_strobed: is_strobed && readout.name == NUTATION,
         }
     });
     quantities
@@ -65,24 +74,26 @@ impl Quantity {
         bare[..bare.len() - end.len()].replace('_', " ")
     }
 
-    /// Its name with the time since when it counts: "tilt swing since 25 s".
+    /// Its name with what its reader must know of it: "nutation period (strobed) since 25 s", the time since when it counts.
     pub fn label(&self) -> String {
-        match self.since_s {
-            Some(since_s) => format!("{} since {} s", self.name(), significant(since_s, 9)),
-            None => self.name(),
-        }
+        let strobed = if self.is_strobed { " (strobed)" } else { "" };
+        let since = self
+            .since_s
+            .map(|since_s| format!(" since {} s", significant(since_s, 9)));
+        self.name() + strobed + &since.unwrap_or_default()
     }
 
     /// What it is.
     pub fn meaning(&self) -> String {
-        let meaning = self.readout.meaning;
-        match self.since_s {
-            Some(since_s) => format!(
-                "{meaning}; since the forces last changed, at t = {} s",
-                significant(since_s, 9)
-            ),
-            None => meaning.to_owned(),
+        let mut meaning = self.readout.meaning.to_owned();
+        if let Some(since_s) = self.since_s {
+            let since_s = significant(since_s, 9);
+            meaning += &format!("; since the forces last changed, at t = {since_s} s");
         }
+        if self.is_strobed {
+            meaning += "; strobed: the time step is too long to see the nutation, and what was measured is what the steps make of it";
+        }
+        meaning
     }
 
     /// The measured number with its uncertainty, where it has one.
@@ -109,6 +120,9 @@ impl Quantity {
     /// By how many standard errors it is off theory, as text: `+1.2`; where they are more than a hundred, which says nothing
     /// any more, by what part of theory: `-3.4 %`.
     pub fn apart_text(&self) -> String {
+        if self.is_strobed {
+            return NONE.to_owned();
+        }
         match (self.measured, self.uncertainty, self.predicted) {
             (Some(measured), Some(error), Some(predicted)) if error > 0.0 => {
                 let apart = (measured - predicted) / error;

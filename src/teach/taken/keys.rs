@@ -19,7 +19,7 @@ impl Taken {
                 let stood = self.stand(lab);
                 told(stood, lab);
             }
-            LessonKey::ShowTask => self.show_task(lab),
+            LessonKey::ShowTask => return self.show_task(lab),
             LessonKey::Notes => {
                 self.clock = match self.clock {
                     None => Some(Clock::Up),
@@ -84,13 +84,14 @@ impl Taken {
     }
 
     /// Shows the hints of the page, or does its task where they are shown already.
-    fn show_task(&mut self, lab: &mut Lab) {
+    /// Shows how the task of the page is done: first the hints, if it has any, and scrolls down to them.
+    fn show_task(&mut self, lab: &mut Lab) -> Option<Direction> {
         let has_hint = self.page().is_some_and(|page| {
             let mut checks = page.checks();
             checks.any(|check| !check.hint.is_empty())
         });
         if has_hint && !std::mem::replace(&mut self.shows_hints, true) {
-            return;
+            return Some(Direction::PageDown);
         }
         let lesson = Arc::clone(&self.lesson);
         let page = self.place.page;
@@ -98,6 +99,7 @@ impl Taken {
             Some(stage) => self.begin(&stage, Block::Task(page), lab),
             None => lab.refuse("this page has no task"),
         }
+        None
     }
 
     /// Selects the answer above or below; scrolls where none is to be chosen.

@@ -29,7 +29,7 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let step = shortest(motion.time_step_s);
     let clock = clock(
         lab.player().reading(),
-        motion.time_step_s,
+        lab.player().run().scenario().least_time_step_s(),
         area.width as usize,
     );
     let clock_x = area.width.saturating_sub(clock.chars().count() as u16);
@@ -62,7 +62,7 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
 /// Title and time.
 fn bare_title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let digits = digits(lab.player().motion().time_step_s);
+    let digits = digits(lab.player().run().scenario().least_time_step_s());
     let time_s = lab.player().reading().readouts.sample.time_s;
     let time = format!("t {:>8} s ", fixed(time_s, digits));
     let x = area.width.saturating_sub(time.len() as u16);
@@ -75,7 +75,7 @@ fn bare_title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     write(left, (1, 0), title, theme.style(Role::Heading), buf);
 }
 
-/// Digits after the point of a time that tell every step from the next.
+/// Digits after the point of a time that tell every step from the next, of a run whose shortest step is `time_step_s`.
 fn digits(time_step_s: f64) -> usize {
     (-time_step_s.log10()).ceil().clamp(0.0, 6.0) as usize
 }

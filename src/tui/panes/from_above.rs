@@ -205,6 +205,13 @@ impl FromAbove<'_> {
         }
     }
 
+    /// The exact motion at `time_s` (s), the moment that is shown; `None` where it is not shown, or has not come so far yet.
+    fn exact_at(&self, time_s: f64) -> Option<&Moment> {
+        let read = self.reading.and_then(|reading| reading.exact.as_ref());
+        let known = [self.run.exact_now(), read].into_iter().flatten();
+        known.into_iter().find(|exact| exact.time_s == time_s)
+    }
+
     fn path(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
         let mut dots = Dots::new(picture, self.view.marker);
         if let Some(ghost) = self.ghost {
@@ -287,11 +294,11 @@ impl FromAbove<'_> {
         if plan.shows(0.0, 0.0) {
             mark(plan.cell(0.0, 0.0), "+", Role::Quiet);
         }
-        let at = self.now(plan.across).position;
-        let here = plan.cell(at.x, at.y);
+        let now = self.now(plan.across);
+        let here = plan.cell(now.position.x, now.position.y);
         let mut sign = "o";
-        if let Some(overlay) = self.run.overlay() {
-            let at = overlay.now().position;
+        if let Some(exact) = self.exact_at(now.time_s) {
+            let at = exact.position;
             let exact = plan.cell(at.x, at.y);
             if plan.shows(at.x, at.y) {
                 mark(exact, "e", Role::Exact);
