@@ -170,6 +170,18 @@ fn esc_leaves_the_values_where_they_fill_the_screen() {
     stage.shows_no("parameters");
 }
 
+/// The clock tells the steps before an edit from one another too, which were shorter.
+#[test]
+fn the_clock_has_the_digits_of_the_shortest_step() {
+    let mut stage = Stage::open("cusps", &[], SMALL);
+    stage.commands("pause = true\ngo_to = 1468").wait(0.5);
+    stage.shows("t    1.468 s");
+    stage
+        .commands("set = { \"motion.time_step_s\" = 5 }")
+        .wait(0.5);
+    stage.shows("t    1.468 s");
+}
+
 #[test]
 fn esc_leads_from_a_value_that_was_found_to_the_page() {
     let mut stage = Stage::open("method-2", &[], SMALL);
