@@ -13,6 +13,9 @@ use std::time::Duration;
 
 /// The longest time of stepping between two readings of the keyboard.
 const STEPPING: Duration = Duration::from_millis(12);
+/// The same of a run on its way to a step that was asked for: each time that the keyboard is read, its two threads wait for
+/// one another.
+const HURRYING: Duration = Duration::from_millis(40);
 /// Computing time for the exact motion in each round of the loop while the run steps flat out: a tenth of that time.
 const FOLLOWING_FLAT_OUT: Duration = Duration::from_micros(1200);
 /// The same otherwise: a tenth of a frame at 15 frames a second.
@@ -109,8 +112,8 @@ impl Playback {
         }
     }
 
-    /// Plays the simulated time that is due after `wall` of wall time, but steps no longer than 12 ms after `now`, as
-    /// `clock` tells it. Returns why the playback stopped, if it did.
+    /// Plays the simulated time that is due after `wall` of wall time, but steps no longer than 12 ms after `now` (40 ms on its
+    /// way to a step), as `clock` tells it. Returns why the playback stopped, if it did.
     pub fn advance(
         &mut self,
         now: Duration,
@@ -125,7 +128,10 @@ impl Playback {
         if owed_s <= 0.0 {
             return None;
         }
-        let deadline = now + STEPPING;
+        let deadline = match self.hurries {
+            true => now + HURRYING,
+            false => now + STEPPING,
+        };
         self.play(owed_s, wall, || clock() >= deadline)
     }
 

@@ -42,15 +42,17 @@ pub fn run(lab: &mut Lab, class: &mut Class, session: Option<&Session>) -> io::R
         }
         #[cfg(debug_assertions)]
         panic_if_asked(begin.elapsed());
+        let was_on_its_way = lab.player().playback().steps_to_go().is_some();
         lab.advance(&mut || begin.elapsed());
+        let has_arrived = was_on_its_way && lab.player().playback().steps_to_go().is_none();
         class.advance(begin.elapsed(), lab);
         if lab.has_changed() {
             screen::refit(lab, screen.size()?);
         }
         keep(lab, session);
         let now = begin.elapsed();
-        // The answer to a key is drawn at once, without waiting for the next frame.
-        if (acted || pacing.is_due(now)) && lab.take_changed() {
+        // The answer to a key is drawn at once, without waiting for the next frame; so is the step that was asked for.
+        if (acted || has_arrived || pacing.is_due(now)) && lab.take_changed() {
             let bytes = screen.draw(|area, buf| screen::draw(lab, true, area, buf))?;
             pacing.drawn(now, bytes, screen.size()?.area());
         }

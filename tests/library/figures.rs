@@ -613,7 +613,7 @@ pub(crate) fn table(text: &str) -> Table {
     Table::read(&file).unwrap().unwrap()
 }
 
-pub(crate) const COMPARISON: &str = "\
+const COMPARISON: &str = "\
 # title = \"Cusps\"
 scheme,time_step_s,steps,error_m,error_at_end_m,order,energy_drift
 rk4,0.1,10,1e-1,1e-1,n/a,1e-3

@@ -1,6 +1,6 @@
 //! Figures of sweeps: what was measured, theory, and what is neither are told apart, and so are the curves.
 
-use crate::figures::{COMPARISON, is_tidy, says, table, words};
+use crate::figures::{is_tidy, says, table, words};
 use gyrolab::figure::COLUMN_PT;
 use gyrolab::figure::chart::{Chart, Series};
 use gyrolab::figure::of_table;

@@ -16,6 +16,8 @@ const WAITING: usize = 8;
 /// At least and at most so many steps are handed over together: every time, a thread has to be woken, but until the first
 /// steps come and after the last ones one of the two has nothing to do.
 const TOGETHER: (u64, u64) = (1024, 16_384);
+/// So many where the run stops every now and then, for the keyboard to be read.
+const TOGETHER_IN_A_HURRY: usize = 4096;
 /// What is to be stepped is handed over in about so many batches, within these limits.
 const BATCHES: u64 = 64;
 
@@ -51,7 +53,7 @@ impl LiveRun {
             }
             is_enough
         };
-        match self.step_on_cores_to(stop, TOGETHER.0 as usize, look) {
+        match self.step_on_cores_to(stop, TOGETHER_IN_A_HURRY, look) {
             Some(Ok(())) if self.simulation.step_number() >= stop => PlayEnd::AtStop,
             Some(Ok(())) => PlayEnd::CutShort,
             Some(Err(error)) => PlayEnd::NotFinite(error),
