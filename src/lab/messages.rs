@@ -108,11 +108,7 @@ impl Lab {
 
     /// Shows `text` before the present message, until the next key.
     pub fn tell_first(&mut self, text: &str) {
-        let notice = self.on_top.notice_mut();
-        match notice.text() {
-            Some(_) => notice.keep_saying_first(text),
-            None => notice.keep_saying(text.trim_end_matches("; ")),
-        }
+        self.on_top.notice_mut().keep_saying_first(text);
         self.changed = true;
     }
 

@@ -68,10 +68,10 @@ impl Notice {
         }
     }
 
-    /// Shows `text` before the message, until the next key.
+    /// Shows `text` before the message, until the next key; alone it does without the "; " at its end.
     pub fn keep_saying_first(&mut self, text: &str) {
         let Some(said) = &mut self.said else {
-            return self.keep_saying(text);
+            return self.keep_saying(text.trim_end_matches("; "));
         };
         said.text.insert_str(0, text);
         said.until = None;

@@ -164,7 +164,6 @@ impl Step {
         self.before = std::mem::replace(&mut self.after, *after);
         (self.energy.work, self.energy.friction) = (work.outside, work.friction);
         self.number += 1;
-        // Read where it has long been: a processor waits where it loads together what has just been stored apart.
         self.azimuth.follow(&after.axle());
         self.workings = None;
         self.derived = Derived::default();

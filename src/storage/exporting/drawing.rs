@@ -92,12 +92,7 @@ impl Drawing {
             path: self.path,
             rows: None,
             bytes: bytes.len() as u64,
-            warnings: figure
-                .broke
-                .clone()
-                .into_iter()
-                .chain(figure.told())
-                .collect(),
+            warnings: figure.broke.iter().cloned().chain(figure.told()).collect(),
             not_finite: None,
         })
     }

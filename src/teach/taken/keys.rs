@@ -83,8 +83,7 @@ impl Taken {
         lab.turn_to_sheet();
     }
 
-    /// Shows the hints of the page, or does its task where they are shown already.
-    /// Shows how the task of the page is done: first the hints, if it has any, and scrolls down to them.
+    /// Shows the hints of the page and scrolls down to them, or does its task where they are shown already or there are none.
     fn show_task(&mut self, lab: &mut Lab) -> Option<Direction> {
         let has_hint = self.page().is_some_and(|page| {
             let mut checks = page.checks();
