@@ -134,13 +134,13 @@ fn column(name: &str) -> Result<Plotted, String> {
         Some(_) => {
             let columns: Vec<_> = Plotted::names().collect();
             format!(
-                "is a readout, one number of a run, and no column: a sweep's table is drawn by its readouts; over time there is {}",
+                "{name} is a readout, one number of a run, and no column: a sweep's table is drawn by its readouts; over time there is {}",
                 columns.join(", ")
             )
         }
         None => {
             let near = problem::nearest(name, known);
-            format!("is neither traces, above, 3d, residuals nor a column of the CSV: {near}")
+            format!("{name} is neither traces, above, 3d, residuals nor a column of the CSV: {near}")
         }
     })
 }

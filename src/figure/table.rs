@@ -3,6 +3,7 @@
 use crate::export::comments::above_run_file;
 use crate::scenario::Problem;
 use crate::text::number::NONE;
+use crate::text::unread;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -81,7 +82,7 @@ impl Table {
         if !(is_csv || is_part) || !path.is_file() {
             return Ok(None);
         }
-        let refused = |error: std::io::Error| Problem::at("", format!("cannot be read: {error}"));
+        let refused = |error: std::io::Error| Problem::at("", unread::why(&error));
         let file = File::open(path).map_err(refused)?;
         let size = file.metadata().map_err(refused)?.len();
         let mut lines = BufReader::new(file);

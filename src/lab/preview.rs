@@ -170,7 +170,7 @@ mod tests {
                 .as_ref()
                 .as_ref()
                 .unwrap_err()
-                .contains("cannot be read")
+                .contains("there is no such file")
         );
     }
 }

@@ -1,8 +1,9 @@
 //! A CSV taken apart: its comments, the names of its columns, and its cells as texts, each with its line.
 
 use crate::scenario::{Problem, Problems};
+use crate::text::unread;
 use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::Read;
 use std::path::Path;
 
 /// The longest file that is read, bytes.
@@ -48,10 +49,7 @@ pub(super) fn text_of(path: &Path) -> Result<String, Problem> {
     if path.is_dir() {
         return Err(whole("is a folder: name a CSV file in it"));
     }
-    let cannot = |error: std::io::Error| match error.kind() {
-        ErrorKind::NotFound => whole("there is no such file"),
-        _ => whole(format!("cannot be read: {error}")),
-    };
+    let cannot = |error: std::io::Error| whole(unread::why(&error));
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(cannot)?;
     // Of a FIFO no more than the limit.

@@ -8,6 +8,7 @@ use super::syntax::{mistake, offset_of, syntax_problem};
 use super::{file::ScenarioFile, keys, model::Scenario, presets, rescale, reshape, start, tables};
 use crate::text::number::shortest;
 use crate::text::printable::{brief, printable};
+use crate::text::unread;
 use std::io::Read;
 use std::path::Path;
 use toml::Value;
@@ -71,7 +72,7 @@ impl Document {
     pub fn read_from(origin: &str, reader: impl Read) -> Result<Self, Problems> {
         let mut text = Vec::new();
         let read = reader.take(LONGEST + 1).read_to_end(&mut text);
-        let read = read.map_err(|error| Problem::at("", format!("cannot be read: {error}")));
+        let read = read.map_err(|error| Problem::at("", unread::why(&error)));
         let fail = |problem| Problems {
             origin: origin.to_owned(),
             list: vec![problem],

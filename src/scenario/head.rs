@@ -1,6 +1,7 @@
 //! Files as they are read: the whole of a scenario, or the head of a CSV, which holds the run file.
 
 use super::problem::Problem;
+use crate::text::unread;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
@@ -96,7 +97,7 @@ fn without_mark(line: &[u8]) -> &[u8] {
 /// The text of a scenario, or the run file in the header of a CSV, of which no more is read.
 pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
     let whole = |rule: String| Problem::at("", rule);
-    let cannot = |error: io::Error| whole(format!("cannot be read: {error}"));
+    let cannot = |error: io::Error| whole(unread::why(&error));
     if path.is_dir() {
         return Err(whole("is a folder: name a file in it".to_owned()));
     }

@@ -14,6 +14,7 @@ use crate::run::{NotFinite, Simulation, Step};
 use crate::scenario::head::Head;
 use crate::scenario::{Document, Problem, Problems, Scenario};
 use crate::text::printable::printable;
+use crate::text::unread;
 pub use lines::{Difference, What};
 use lines::{Held, Lines};
 pub use row::Field;
@@ -77,7 +78,7 @@ pub fn verify(
 ) -> Result<Verified, Unverified> {
     let origin = path.display().to_string();
     let refused = |problem| Unverified::Refused(Problems::one(origin.as_str(), problem));
-    let cannot_read = |error: io::Error| refused(whole(format!("cannot be read: {error}")));
+    let cannot_read = |error: io::Error| refused(whole(unread::why(&error)));
     if path.is_dir() {
         return Err(refused(whole("is a folder: name a CSV in it".to_owned())));
     }

@@ -5,6 +5,7 @@
 //! - [`printable`]: text with nothing in it that steers a terminal.
 //! - [`shipped`]: files that come with the program.
 //! - [`mod@unit`]: units at the end of names.
+//! - [`unread`]: why a file cannot be read.
 //! - [`wrap`]: text in lines of a width.
 
 pub mod ladder;
@@ -12,4 +13,5 @@ pub mod number;
 pub mod printable;
 pub mod shipped;
 pub mod unit;
+pub mod unread;
 pub mod wrap;

@@ -239,7 +239,10 @@ fn files_that_are_no_text_are_refused() {
         of(folder),
         format!("{folder}: is a folder: name a CSV file in it")
     );
-    assert_eq!(of("./nothing.csv"), "./nothing.csv: there is no such file");
+    assert_eq!(
+        of("./nothing.csv"),
+        "./nothing.csv: there is no such file: check the name, and the folder you are in"
+    );
     assert_eq!(
         of("heidelberg-nutatoin"),
         "heidelberg-nutatoin: no measured data of that name: did you mean heidelberg-nutation? (a file's name holds a / or ends in .csv)"
