@@ -34,7 +34,7 @@ impl fmt::Display for Dense {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "on {} mm {} cover the paper: the figure is solid black; {} shows a part of it",
+            "on {} mm {} cover the paper: there the figure is solid black; {} shows a part of it",
             self.width_mm,
             self.what,
             self.options()

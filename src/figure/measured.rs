@@ -116,7 +116,7 @@ pub(super) fn above(
     };
     if let [panel] = &mut chart.panels[..] {
         panel.series.push(added);
-        let (x, y) = both_ranges(&panel.series, &panel.circles, size::of(runs, "x_m"));
+        let (x, y) = both_ranges(&panel.series, &panel.circles.radii, size::of(runs, "x_m"));
         (chart.x.range, panel.y.range) = (Some(x), Some(y));
     }
     Ok(None)

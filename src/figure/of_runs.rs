@@ -4,6 +4,7 @@ pub(super) mod charts;
 
 use super::chart::Style;
 use super::chart::legend::longest_name;
+use super::chords;
 use super::course::{self, Wanted};
 use super::dense;
 pub use super::drawn::Figure;
@@ -174,11 +175,13 @@ fn draw(
             let mut chart = charts::above(title, runs, drawn, request);
             warnings.extend(measured::above(&mut chart, runs, request)?);
             dense = charts::path_warning(&chart, drawn, request);
+            warnings.extend(chords::warning(drawn));
             chart.scene()
         }
         Kind::ThreeD | Kind::Residuals => {
             let scene;
             (scene, dense) = space::scene(&title, runs, drawn, request);
+            warnings.extend(chords::warning(drawn));
             warnings.extend(measured::in_space(request));
             scene
         }

@@ -10,6 +10,7 @@ use super::chart::curve;
 use super::chart::layout::EDGE;
 use super::chart::legend::Legend;
 use super::chart::ticks::{Tick, Ticks};
+use super::chords;
 use super::dense::{self, Dense};
 use super::page::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
 use super::page::scene::{Color, Pen, Point, Scene};
@@ -60,9 +61,9 @@ pub(super) fn scene(
         ranges: ranges(drawn, size::of(runs, "z_m")),
         side_pt: 0.5 * width_pt,
     };
-    let series = drawn
-        .iter()
-        .map(|drawn| (drawn.name.as_str(), &drawn.style));
+    let names: Vec<_> = drawn.iter().map(chords::name).collect();
+    let series = names.iter().zip(drawn);
+    let series = series.map(|(name, drawn)| (name.as_str(), &drawn.style));
     let legend = Legend::new(series, space.stretched().as_deref());
     // The labels do not grow with the box: the room that is left over tells how much larger it may be. All paths are in it.
     for _ in 0..4 {

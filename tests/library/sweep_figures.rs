@@ -19,6 +19,31 @@ fn a_line_of_theory_with_gaps_says_where_they_are_explained() {
     let measured = ["measured_precession_rad_per_s"];
     assert!(of_table::warnings(&table(&gappy), &measured).is_empty());
     assert!(of_table::warnings(&table(SWEEP), &[]).is_empty());
+    let names = |text: &str| chart(text).panels[0].series[0].name.clone();
+    assert_eq!(names(&gappy), "theory (gaps: none stated)");
+    assert_eq!(names(SWEEP), "theory");
+}
+
+#[test]
+fn two_theories_of_one_quantity_have_two_marks() {
+    let both = SWEEP
+        .replace(
+            "predicted_precession_rad_per_s,path",
+            "predicted_precession_rad_per_s,fast_top_precession_rad_per_s,path",
+        )
+        .replace("cusps\n", "0.8,cusps\n")
+        .replace("0.87,\n", "0.87,0.8,\n")
+        .replace("scenario = \"0.8,cusps", "scenario = \"cusps");
+    let chart = chart(&both);
+    let marks = chart.panels[0]
+        .series
+        .iter()
+        .map(|series| series.style.mark);
+    let marks: Vec<_> = marks.collect();
+    assert_eq!(
+        marks,
+        [Some(Mark::Cross), Some(Mark::Plus), Some(Mark::Dot)]
+    );
 }
 
 const SWEEP: &str = "\
@@ -91,8 +116,8 @@ fn theory_is_drawn_once_with_what_was_measured() {
     );
     assert_eq!(precession.series[0].style.mark, Some(Mark::Cross));
     assert_eq!(precession.series[1].style.mark, Some(Mark::Dot));
-    // What is neither has no mark of what was measured, and no name: the legend says it of the colours.
-    assert_eq!(names(&turns.series), ["", ""]);
+    // What is neither has no mark of what was measured, and a name of its own.
+    assert_eq!(names(&turns.series), ["other values", "other values"]);
     assert_eq!(turns.series[0].style.mark, Some(Mark::Speck));
 }
 

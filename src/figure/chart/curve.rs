@@ -1,7 +1,7 @@
 //! The line of a series on the page, without the points that nobody could see.
 
-use super::Series;
 use super::layout::Placed;
+use super::{Circles, Series};
 use crate::figure::page::clip::clipped;
 use crate::figure::page::ink::{Frame, at};
 use crate::figure::page::scene::{Path, Pen, Point, Scene};
@@ -29,6 +29,22 @@ impl Placed {
         let places = series.points.iter().map(|point| self.place(point));
         let pieces = clipped(places, &self.frame.grown(BEYOND_PT));
         put(&pieces, &series.style.pen(), Some(&self.frame), scene);
+    }
+
+    /// Whether a part of one of `circles` is drawn in `frame`.
+    pub fn has_circle_in(&self, frame: &Frame, circles: &Circles) -> bool {
+        let middle = self.place(&[0.0, 0.0]);
+        let near = |low: f64, high: f64, at: f64| (low - at).max(at - high).max(0.0);
+        let far = |low: f64, high: f64, at: f64| (at - low).abs().max((high - at).abs());
+        let [nearest, farthest] = [&near as &dyn Fn(f64, f64, f64) -> f64, &far].map(|distance| {
+            let across = distance(frame.left, frame.right, middle.x);
+            across.hypot(distance(frame.top, frame.bottom, middle.y))
+        });
+        let mut radii = circles.radii.iter();
+        radii.any(|radius| {
+            let radius = self.x.place(*radius) - middle.x;
+            (nearest..=farthest).contains(&radius)
+        })
     }
 
     /// Whether something of `series` is drawn in `frame`.

@@ -4,8 +4,8 @@ use super::layout::{EDGE, GAP, Layout, Placed};
 use super::legend::Legend;
 use super::slope;
 use super::ticks::Ticks;
-use super::{Chart, Panel, Series};
-use crate::figure::page::ink::{self, BLACK, LABEL_PT, MARK_PT, at, circle, grey, pen};
+use super::{Chart, Circles, Panel, Series};
+use crate::figure::page::ink::{self, BLACK, LABEL_PT, MARK_PT, at, circle, pen};
 use crate::figure::page::letters;
 use crate::figure::page::scene::Scene;
 
@@ -138,10 +138,10 @@ impl Panel {
     fn draw(&self, placed: &Placed, layout: &Layout, scene: &mut Scene) {
         let frame = &placed.frame;
         let to_page = |radius: f64| placed.x.place(radius) - placed.x.place(0.0);
-        for &radius in &self.circles {
+        for &radius in &self.circles.radii {
             let middle = placed.place(&[0.0, 0.0]);
             let ring = circle(middle, to_page(radius));
-            scene.stroke(ring, pen(0.4, grey(165)), Some(frame));
+            scene.stroke(ring, Circles::style().pen(), Some(frame));
         }
         let points = |is_behind: bool, scene: &mut Scene| {
             let series = self.series.iter();

@@ -1,7 +1,7 @@
 //! Which line is what: in a corner of the panel where nothing is drawn, or above the panels.
 
 use super::layout::{EDGE, Layout};
-use super::{Chart, Style};
+use super::{Chart, Circles, Style};
 use crate::figure::page::ink::{self, Frame, LABEL_PT, WHITE, at};
 use crate::figure::page::scene::{Path, Pen, Point, Scene};
 
@@ -65,10 +65,12 @@ impl Legend {
     /// The legend of `chart`.
     pub fn of(chart: &Chart, remark: Option<&str>) -> Self {
         let series = chart.panels.iter().flat_map(|panel| &panel.series);
-        Self::new(
-            series.map(|series| (series.name.as_str(), &series.style)),
-            remark,
-        )
+        let series = series.map(|series| (series.name.as_str(), &series.style));
+        let circles = chart.panels.iter().map(|panel| &panel.circles);
+        let circles = circles.filter(|circles| !circles.radii.is_empty());
+        let style = Circles::style();
+        let circles = circles.map(|circles| (circles.name.as_str(), &style));
+        Self::new(series.chain(circles), remark)
     }
 
     /// The rows in which it stands above the panels, within `room` pt.
@@ -125,10 +127,9 @@ impl Legend {
         });
         let is_free = |corner: &Frame| {
             let around = corner.grown(FREE);
-            panel
-                .series
-                .iter()
-                .all(|series| !placed.has_in(&around, series))
+            let mut series = panel.series.iter();
+            series.all(|series| !placed.has_in(&around, series))
+                && !placed.has_circle_in(&around, &panel.circles)
         };
         corners.into_iter().find(is_free)
     }

@@ -76,8 +76,28 @@ pub struct Panel {
     pub series: Vec<Series>,
     /// The slope of a triangle to be drawn where no curve is: for two logarithmic axes.
     pub slope: Option<f64>,
-    /// Lines that are drawn faintly behind the series: circles about the origin, by their radius.
-    pub circles: Vec<f64>,
+    /// Lines that are drawn faintly behind the series.
+    pub circles: Circles,
+}
+
+/// Circles about the origin.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Circles {
+    /// Their name in the legend, as markup.
+    pub name: String,
+    /// Their radii, in the unit of the axes.
+    pub radii: Vec<f64>,
+}
+
+impl Circles {
+    /// How they are drawn.
+    pub fn style() -> Style {
+        Style {
+            color: grey(165),
+            width_pt: 0.4,
+            ..Style::default()
+        }
+    }
 }
 
 /// A curve, or points.
@@ -226,7 +246,7 @@ impl Style {
     pub fn theory_marked(index: usize, place: usize) -> Self {
         Self {
             width_pt: 0.35,
-            mark: Some(Mark::Cross),
+            mark: Some([Mark::Cross, Mark::Plus][place % 2]),
             ..Self::theory(index, 2 + place)
         }
     }

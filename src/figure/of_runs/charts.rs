@@ -1,11 +1,11 @@
 //! The charts of runs: their curves over time, their paths from above.
 
 use crate::figure::chart::layout::Layout;
-use crate::figure::chart::{Axis, Chart, Errors, Panel, Series};
+use crate::figure::chart::{Axis, Chart, Circles, Errors, Panel, Series};
 use crate::figure::dense::Dense;
 use crate::figure::kind::Plotted;
 use crate::figure::request::{Drawn, Request, Run};
-use crate::figure::{dense, quantity, size};
+use crate::figure::{chords, dense, quantity, size};
 use crate::run::Truth;
 use std::sync::Arc;
 
@@ -62,7 +62,7 @@ pub(super) fn over_time(
 /// The paths from above.
 pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Request) -> Chart {
     let series = drawn.iter().map(|drawn| Series {
-        name: drawn.name.clone(),
+        name: chords::name(drawn),
         points: drawn.course.path.iter().map(|at| [at[0], at[1]]).collect(),
         style: drawn.style.clone(),
         ..Series::default()
@@ -70,9 +70,9 @@ pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Requ
     let series: Vec<_> = series.collect();
     let circles = match (request.exact, runs) {
         (true, [run]) => circles(run),
-        _ => Vec::new(),
+        _ => Circles::default(),
     };
-    let (x, y) = both_ranges(&series, &circles, size::of(runs, "x_m"));
+    let (x, y) = both_ranges(&series, &circles.radii, size::of(runs, "x_m"));
     Chart {
         title,
         width_pt: request.width_pt,
@@ -108,7 +108,7 @@ pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) ->
 
 /// The radii of the circles between which the exact motion of the traced point stays, from above, m; none where pushes or
 /// edits change the motion, or it has no closed form.
-fn circles(run: &Run) -> Vec<f64> {
+fn circles(run: &Run) -> Circles {
     const SAME: f64 = 0.01;
     let scenario = &run.scenario;
     let at = scenario.body.mechanics.points()[scenario.trace].at;
@@ -118,15 +118,21 @@ fn circles(run: &Run) -> Vec<f64> {
     let is_steady = scenario.pushes.is_empty() && scenario.edits.is_empty();
     let is_heavy = scenario.motion.gravity > 0.0;
     let Some(motion) = closed.filter(|_| is_steady && is_on_axle && is_heavy) else {
-        return Vec::new();
+        return Circles::default();
     };
     let (low, high) = motion.tilt_range();
     let radius = |tilt: f64| at.norm() * libm::sin(tilt);
     let (inner, outer) = (radius(low), radius(high));
     if (outer - inner).abs() <= SAME * outer.max(inner) {
-        return vec![0.5 * (inner + outer)];
+        return Circles {
+            name: "radius of exact".to_owned(),
+            radii: vec![0.5 * (inner + outer)],
+        };
     }
-    vec![inner, outer]
+    Circles {
+        name: "limits of exact".to_owned(),
+        radii: vec![inner, outer],
+    }
 }
 
 /// The stretches of both axes of paths of that `size`, m: one is never less than half of the other, so that a path along a

@@ -3,7 +3,7 @@
 use super::{grouped, numbers};
 use crate::figure::chart::legend::longest_name;
 use crate::figure::chart::ticks;
-use crate::figure::chart::{Axis, Panel, Series, Style};
+use crate::figure::chart::{Axis, Circles, Panel, Series, Style};
 use crate::figure::page::ink::{self, LABEL_PT};
 use crate::figure::page::letters;
 use crate::figure::quantity;
@@ -52,7 +52,7 @@ pub(super) fn drawn(
             },
             series,
             slope: best.map(|(_, slope)| slope),
-            circles: Vec::new(),
+            circles: Circles::default(),
         })
     };
     let panels = columns.iter().map(panel).collect::<Result<Vec<_>, _>>()?;

@@ -69,6 +69,7 @@ pub(super) fn drawn(
         curves: &curves,
         width_pt,
         has: Roles::of(&quantities),
+        has_gaps: !lines_with_gaps(table, columns, varied).is_empty(),
     };
     let panels = quantities.iter().map(|quantity| drawing.panel(quantity));
     let mut panels = panels.collect::<Result<Vec<_>, _>>()?;
@@ -94,22 +95,45 @@ fn too_many(quantities: &[Quantity]) -> String {
     )
 }
 
-/// What is said of lines of theory that have gaps, and of runs that failed.
-pub(super) fn gaps(table: &Table, columns: &[&str], varied: &[String]) -> Vec<String> {
+/// What follows the name of theory of which some line has gaps.
+const IN_GAPS: &str = " (gaps: none stated)";
+/// What the legend calls values that were neither measured nor are theory, beside those that were measured.
+const OTHER: &str = "other values";
+
+/// The rows of `table` whose runs did not fail.
+fn rows_run(table: &Table, varied: &[String]) -> Vec<usize> {
     let readouts = table.names.iter().filter(|name| !varied.contains(name));
     let readouts: Vec<_> = readouts.filter_map(|name| table.texts(name)).collect();
     let has_run = |row: &usize| readouts.iter().any(|texts| !texts[*row].is_empty());
-    let rows: Vec<usize> = (0..table.count()).filter(has_run).collect();
-    let gaps = columns::theory(table, columns).filter_map(|name| {
+    (0..table.count()).filter(has_run).collect()
+}
+
+/// The columns of theory that have no value in some rows, and in how many.
+fn lines_with_gaps<'a>(
+    table: &'a Table,
+    columns: &'a [&'a str],
+    varied: &[String],
+) -> Vec<(&'a str, usize)> {
+    let rows = rows_run(table, varied);
+    let with_gaps = columns::theory(table, columns).filter_map(|name| {
         let values = table.numbers(name)?;
         let missing = rows.iter().filter(|row| values[**row].is_nan()).count();
-        let is_line = (1..rows.len()).contains(&missing);
-        is_line.then(|| {
-            format!(
-                "the line of {name} has gaps: in {missing} of {} rows theory states no value, for a reason that gyrolab man numbers gives",
-                rows.len()
-            )
-        })
+        (1..rows.len())
+            .contains(&missing)
+            .then_some((name, missing))
+    });
+    with_gaps.collect()
+}
+
+/// What is said of lines of theory that have gaps, and of runs that failed.
+pub(super) fn gaps(table: &Table, columns: &[&str], varied: &[String]) -> Vec<String> {
+    let rows = rows_run(table, varied);
+    let gaps = lines_with_gaps(table, columns, varied);
+    let gaps = gaps.into_iter().map(|(name, missing)| {
+        format!(
+            "the line of {name} has gaps: in {missing} of {} rows theory states no value, for a reason that gyrolab man numbers gives",
+            rows.len()
+        )
     });
     let failed = table.count() - rows.len();
     let failed = (failed > 0).then(|| {
@@ -149,6 +173,8 @@ struct Drawing<'a> {
     curves: &'a [Curve],
     width_pt: f64,
     has: Roles,
+    /// Whether a line of theory has gaps.
+    has_gaps: bool,
 }
 
 impl Drawing<'_> {
@@ -188,11 +214,12 @@ impl Drawing<'_> {
         let values = numbers(self.table, &part.name)?;
         let errors = part.uncertainty.as_ref();
         let errors = errors.map(|name| numbers(self.table, name)).transpose()?;
+        let is_other = part.role == Role::Value && self.has.measured;
         let word = match self.has.theory {
+            _ if is_other => OTHER.to_owned(),
             true => part.word(false),
             false => String::new(),
         };
-        let is_told = part.role == Role::Measured || !self.has.measured;
         let curves = self.curves.iter().map(|curve| {
             let rows = self.rows(curve);
             let errors = errors.iter().flat_map(|errors| {
@@ -200,9 +227,9 @@ impl Drawing<'_> {
                 errors.collect::<Vec<_>>()
             });
             Series {
-                name: match is_told {
-                    true => self.name(&word, &curve.settings),
-                    false => String::new(),
+                name: match is_other {
+                    true => self.name(&word, &[]),
+                    false => self.name(&word, &curve.settings),
                 },
                 errors: errors.collect(),
                 points: rows
@@ -211,7 +238,7 @@ impl Drawing<'_> {
                     .collect(),
                 style: match part.role {
                     Role::Measured => Style::points(curve.index),
-                    _ if self.has.measured => Style::specks(curve.index),
+                    _ if is_other => Style::specks(curve.index),
                     _ => Style::marked_line(curve.index),
                 },
                 ..Series::default()
@@ -235,6 +262,7 @@ impl Drawing<'_> {
         let lines = theory::lines(each).into_iter().map(|line| Series {
             // The curves are told apart by the points: of theory it is said once how it is drawn.
             name: match is_beside {
+                true if self.has_gaps => self.name(&(part.word(is_alone) + IN_GAPS), &[]),
                 true => self.name(&part.word(is_alone), &[]),
                 false => self.name("", &line.settings),
             },

@@ -132,6 +132,8 @@ pub enum Mark {
     Tip,
     /// An upright cross turned by an eighth.
     Cross,
+    /// An upright cross.
+    Plus,
     /// A small dot.
     Speck,
 }
@@ -139,7 +141,7 @@ pub enum Mark {
 impl Mark {
     /// Whether it marks what can have an error: neither theory nor a number that is known exactly.
     pub fn is_of_measured(self) -> bool {
-        !matches!(self, Self::Cross | Self::Speck)
+        !matches!(self, Self::Cross | Self::Plus | Self::Speck)
     }
 }
 
@@ -223,6 +225,13 @@ impl Scene {
             Mark::Cross => {
                 for sign in [-1.0, 1.0] {
                     let ends = [-r, r].map(|x| at(middle.x + 1.1 * x, middle.y + 1.1 * sign * x));
+                    self.line(ends, 0.5, color);
+                }
+                return;
+            }
+            Mark::Plus => {
+                for (x, y) in [(1.4 * r, 0.0), (0.0, 1.4 * r)] {
+                    let ends = [-1.0, 1.0].map(|end| at(middle.x + end * x, middle.y + end * y));
                     self.line(ends, 0.5, color);
                 }
                 return;
