@@ -156,7 +156,7 @@ impl Between {
     /// Counts the candidate once the axle has truly gone away from it. A turning point of the same kind as the last is
     /// rounding.
     fn confirm(&mut self) {
-        let Some(candidate) = self.candidate else {
+        let Some(candidate) = &self.candidate else {
             return;
         };
         let away = candidate.height() - self.now.swing.axle.z;
@@ -164,7 +164,9 @@ impl Between {
         if away <= self.confirmed_by {
             return;
         }
-        self.candidate = None;
+        let Some(candidate) = self.candidate.take() else {
+            return;
+        };
         if self
             .last
             .is_some_and(|(_, last)| last.is_top == candidate.is_top)
