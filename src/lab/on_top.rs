@@ -282,8 +282,11 @@ impl OnTop {
     }
 
     pub(super) fn edit_field(&mut self, edit: FieldEdit) {
-        if let Some(dialog) = &mut self.dialog {
-            dialog.edit_field(edit);
+        match (&mut self.dialog, self.mode) {
+            (Some(dialog), _) => dialog.edit_field(edit),
+            (None, Mode::Help) if edit == FieldEdit::Clear => self.help.clear(),
+            (None, Mode::Filter) if edit == FieldEdit::Clear => self.browser.clear_filter(),
+            _ => {} // the cursor moves in dialogs alone
         }
     }
 

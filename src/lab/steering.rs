@@ -1,7 +1,7 @@
 //! Carries actions out. An action stands for commands, or it changes the interface, which no command does: dialogs, the
 //! browser, the focus, dots and colours.
 
-use super::action::{Action, Direction, LessonKey};
+use super::action::{Action, Direction, FieldEdit, LessonKey};
 use super::answer::{Answer, Done};
 use super::command::{Command, CursorTo};
 use super::commands_of::{FAR, repeated};
@@ -184,6 +184,9 @@ impl Lab {
             Action::Type(typed) => self.on_top.type_char(typed),
             Action::Erase => self.on_top.erase(),
             Action::DoEntry => {} // tui does it
+            Action::InField(FieldEdit::Clear) if self.on_top.mode() == Mode::Find => {
+                self.values.forget_name();
+            }
             Action::InField(edit) => self.on_top.edit_field(edit),
             Action::Accept => return self.accept(),
             Action::Help => self.on_top.toggle_help(),
@@ -241,7 +244,7 @@ impl Lab {
     }
 
     /// Closes or stops the first of these that there is: what lies on top, the script, the steps asked for, the cursor,
-    /// the pane that fills the screen, the focus on the parameters, the export. If there is none of these, it says how
+    /// the pane that fills the screen, the focus on the parameters, the export, the step pane in focus. If there is none of these, it says how
     /// to leave, unless the key has already removed a message or a count.
     fn close(&mut self, cleared: &Cleared) -> Option<Request> {
         let is_found = self.on_top.mode() == Mode::Find;
@@ -275,6 +278,8 @@ impl Lab {
             // The key has done something already.
         } else if self.files.is_exporting() {
             self.files.stop_export();
+        } else if self.view.focus == Pane::STEP && self.view.shows_step() {
+            self.toggle_step();
         } else if self.view.sheet.is_some() {
             return Some(Request::Lesson(LessonKey::Leave));
         } else {

@@ -142,7 +142,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Filter, Find, Help, Dialog], &[Backspace, Ctrl('h')], Action::Erase, "", "take the last character away"),
     row(&[Dialog], &[Enter], Action::Accept, "take it", "take what is typed"),
     row(&[Dialog], &[Delete, Ctrl('d')], Action::InField(FieldEdit::Delete), "", "take the character at the cursor away"),
-    row(&[Dialog], &[Ctrl('u')], Action::InField(FieldEdit::Clear), "", "take all of it away"),
+    row(&[Filter, Find, Help, Dialog], &[Ctrl('u')], Action::InField(FieldEdit::Clear), "", "take all of it away"),
     row(&[Dialog], &[Left, Ctrl('b')], Action::InField(FieldEdit::Left), "", "the cursor to the left"),
     row(&[Dialog], &[Right, Ctrl('f')], Action::InField(FieldEdit::Right), "", "the cursor to the right"),
     row(&[Dialog], &[Home, Ctrl('a')], Action::InField(FieldEdit::Home), "", "to the beginning"),

@@ -154,14 +154,13 @@ fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
             .iter()
             .chain(panes::PANES.iter().flat_map(|pane| pane.keys));
         let of_table = |row: &Binding| {
-            let words = [
-                row.footer,
-                if row.footer == "pause" {
-                    "go on"
-                } else {
-                    row.footer
-                },
-            ];
+            let otherwise = match row.footer {
+                "pause" => "go on",
+                "next phase" => "next step",
+                "why sideways" => "phases",
+                always => always,
+            };
+            let words = [row.footer, otherwise];
             words
                 .iter()
                 .any(|word| item == format!("{} {word}", row.keys[0]))

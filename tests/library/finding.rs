@@ -61,6 +61,21 @@ fn letters_of_the_help_are_typed_and_esc_clears_them_first() {
 }
 
 #[test]
+fn ctrl_u_takes_away_what_is_searched_for() {
+    let mut stage = open(SMALL);
+    stage.press("?qkj").shows("help: qkj_ (0)");
+    stage.key(Key::Ctrl('u'));
+    stage.shows("help: type to search").press(ESC);
+    stage.press("o/fast").shows("fast_");
+    stage.key(Key::Ctrl('u'));
+    stage.shows_no("fast_").press("loops").shows("loops_");
+    stage.press(ESC).press(ESC).press("/gravity");
+    stage.shows("/gravity_");
+    stage.key(Key::Ctrl('u'));
+    stage.shows("/_ 1 of").press("tilt").shows("/tilt_");
+}
+
+#[test]
 fn a_word_is_explained_by_its_sentence() {
     let words = [
         "nutation",

@@ -294,6 +294,8 @@ fn v_shows_the_step_and_takes_it_away_again() {
             .shows("┌ 3-D");
         stage.press("v");
         assert_eq!(stage.picture(), before);
+        stage.press("v\u{1b}");
+        assert_eq!(stage.picture(), before, "Esc takes it away too");
         // From a pane that fills the screen, too.
         stage.press("dv");
         assert_eq!(stage.focus(), "step");
@@ -402,7 +404,9 @@ fn why_comes_back_to_where_it_was_asked() {
     stage.commands("pause = true\nstep = 300").press("v...");
     let place = stage.lab.view().page;
     assert!(matches!(place, Page::Number(2..)));
+    stage.shows(". next phase").shows("y why sideways");
     stage.press("y").shows("not down?").shows("first dip");
+    stage.shows(". next step").shows("y phases");
     stage.press("y");
     assert_eq!(stage.lab.view().page, place);
 }

@@ -313,3 +313,22 @@ fn a_file_in_a_folder_is_opened_with_enter() {
     }
     stage.shows("Cusps of June");
 }
+
+#[test]
+fn keys_that_play_on_are_not_offered_where_no_further_step_is_finite() {
+    let mut stage = Stage::open("method-2", &["motion.scheme='rk4'"], LARGE);
+    stage.commands("pause = true");
+    stage.shows("space go on").shows(". step");
+    stage.commands("go_to = 2000");
+    assert!(stage.lab.player().run().simulation().has_ended());
+    stage.shows_no("space go on").shows_no(". step");
+    stage.press(",").shows("space go on").shows(". step");
+}
+
+#[test]
+fn the_next_page_is_offered_where_there_is_one() {
+    let mut stage = Stage::open("method-2", &[], LARGE);
+    stage.lesson("halve-the-step", 1).wait(6.0);
+    stage.shows("n next page").press("L");
+    stage.shows_no("n next page");
+}

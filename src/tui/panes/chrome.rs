@@ -5,6 +5,7 @@ use crate::analysis::remarks::{Remark, remarks};
 use crate::lab::Lab;
 use crate::lab::action::{Action, LessonKey};
 use crate::lab::view::Part;
+use crate::lab::view::step::Page;
 use crate::observe::reading::Reading;
 use crate::text::number::{fixed, shortest};
 use crate::tui::keymap::{BINDINGS, Binding, Key, Mode};
@@ -182,7 +183,9 @@ fn length(key: Key, word: &str) -> u16 {
 
 fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
     let (mode, is_running) = (lab.on_top().mode(), lab.player().playback().is_running());
-    let enter = lab.view().sheet.as_ref().map_or("", |sheet| sheet.enter);
+    let is_why = lab.view().page == Page::Why;
+    let sheet = lab.view().sheet.as_ref();
+    let (enter, has_next) = sheet.map_or(("", false), |sheet| (sheet.enter, sheet.has_next));
     let of_pane = super::keys_of(lab);
     let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
     let is_new = |row: &&Binding| of_mode.clone().all(|other| other.keys[0] != row.keys[0]);
@@ -190,12 +193,16 @@ fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
         .chain(BINDINGS.iter().filter(is_new))
         .filter(|row| row.modes.contains(&mode) && !row.footer.is_empty())
         .filter(|row| row.action != Action::ToggleResiduals || lab.player().measured().is_some())
-        .filter(|row| row.action != Action::Lesson(LessonKey::Take) || !enter.is_empty());
+        .filter(|row| row.action != Action::Lesson(LessonKey::Take) || !enter.is_empty())
+        .filter(|row| row.action != Action::Lesson(LessonKey::Next) || has_next)
+        .filter(|row| !goes_on(row.action) || !lab.player().run().simulation().has_ended());
     let mut words: Vec<_> = rows
         .map(|row| {
             let word = match row.action {
                 Action::TogglePause if !is_running => "go on",
                 Action::Lesson(LessonKey::Take) => enter,
+                Action::NextPhase if is_why => "next step",
+                Action::Why if is_why => "phases",
                 _ => row.footer,
             };
             (row.keys[0], word, worth(row.action, lab))
@@ -222,6 +229,11 @@ fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
         .into_iter()
         .map(|(key, word, _)| (key, word))
         .collect()
+}
+
+/// Whether `action` plays the run on, which a run whose numbers are no longer finite cannot.
+fn goes_on(action: Action) -> bool {
+    matches!(action, Action::TogglePause | Action::Step)
 }
 
 /// How long the footer names a key where there is not room for all: the least go first.

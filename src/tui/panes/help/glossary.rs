@@ -179,6 +179,10 @@ pub(super) const GLOSSARY: &[Word] = &[
         "the upper strip of the traces: the tilt over about ten swings, enlarged; the others show a longer time",
     ),
     (
+        "held",
+        "\"zoom, held\": the strip is drawn once a second and stands still meanwhile; its time would pass before anyone had seen it",
+    ),
+    (
         "timeline",
         "the line below the panes: the run from its start to its end; a click on it, or g, goes there",
     ),

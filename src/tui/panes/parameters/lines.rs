@@ -117,16 +117,21 @@ pub(super) fn body_lines(scenario: &Scenario) -> Vec<Line> {
 pub(super) fn start_lines(scenario: &Scenario) -> Vec<Line> {
     let tilt = scenario.file.start.tilt_deg.unwrap_or(0.0);
     let momentum = scenario.file.start.momentum_Js;
-    let [x, y, z] = momentum.unwrap_or(scenario.start.momentum.into());
     let size = scenario.start.momentum.norm();
+    let [x, y, z] = momentum.unwrap_or(scenario.start.momentum.into());
+    // What was given is shown as it was given, what follows from it in the digits of |L|.
+    let part = |label, number| match momentum {
+        Some(_) => given(5, label, number, 3, "J s"),
+        None => sized(5, label, number, size, 3, "J s"),
+    };
     let frame = scenario.file.start.momentum_frame.unwrap_or_default();
     vec![
         heading("start"),
         given(2, "tilt", tilt, 3, "deg"),
         sized(0, "|L|", size, size, 3, "J s"),
-        given(5, "Lx", x, 3, "J s"),
-        given(5, "Ly", y, 3, "J s"),
-        given(5, "Lz", z, 3, "J s"),
+        part("Lx", x),
+        part("Ly", y),
+        part("Lz", z),
         value(5, "L given in", frame.name().to_owned(), ""),
     ]
 }
