@@ -11,6 +11,8 @@ pub struct Sheet {
     pub seen: Option<usize>,
     /// What Enter does here, in one word; empty where it does nothing.
     pub enter: &'static str,
+    /// Whether there is a page after it.
+    pub has_next: bool,
 }
 
 /// A paragraph.

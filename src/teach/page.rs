@@ -68,6 +68,7 @@ pub(super) fn sheet(taken: &Taken, now: Duration, lab: &Lab) -> Sheet {
         lab,
         sheet: Sheet {
             title: format!("{page} of {pages} · {}", lesson.title),
+            has_next: page < pages,
             ..Sheet::default()
         },
     };

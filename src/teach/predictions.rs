@@ -94,7 +94,8 @@ impl Compare {
         value(self.with.as_ref()?, lab, kept)
     }
 
-    /// What is said, in Markdown, with the numbers of `lab` and the prediction.
+    /// What is said, in Markdown, with the numbers of `lab` and the prediction. Where nothing was predicted, the sentences that
+    /// tell the prediction are left out.
     pub fn filled(
         &self,
         lesson: &Lesson,
@@ -104,7 +105,7 @@ impl Compare {
     ) -> String {
         let with = self.came_out(lab, kept);
         let predicted = self.predicted(lesson, predictions);
-        self.text.filled(|expression, format: Format| {
+        let text = self.text.filled(|expression, format: Format| {
             if expression.text().trim() == PREDICTION {
                 return predicted.clone().unwrap_or_else(|| NOTHING.to_owned());
             }
@@ -113,8 +114,38 @@ impl Compare {
                 name => super::names::number(name, lab, kept),
             });
             format.written(number)
-        })
+        });
+        match predicted {
+            Some(_) => text,
+            None => without(NOTHING, &text),
+        }
     }
+}
+
+/// `text` without the sentences that have `part`; all of it where nothing else would be left.
+fn without(part: &str, text: &str) -> String {
+    let mut rest = text;
+    let mut kept = String::new();
+    while !rest.is_empty() {
+        let (sentence, others) = rest.split_at(end_of_sentence(rest));
+        if !sentence.contains(part) {
+            kept.push_str(sentence);
+        }
+        rest = others;
+    }
+    let kept = kept.trim_end();
+    if kept.is_empty() { text } else { kept }.to_owned()
+}
+
+/// Where the first sentence of `text` ends, the blanks after it counted in.
+fn end_of_sentence(text: &str) -> usize {
+    let stops = text.match_indices(['.', '!', '?']);
+    let mut after = stops.map(|(at, stop)| at + stop.len());
+    let end = after.find(|&after| text[after..].starts_with(char::is_whitespace));
+    end.map_or(text.len(), |end| {
+        let blanks = text[end..].find(|c: char| !c.is_whitespace());
+        blanks.map_or(text.len(), |blanks| end + blanks)
+    })
 }
 
 /// In the text of a comparison: the prediction, and the number that it is compared with.

@@ -674,7 +674,7 @@ fn a_lesson_is_played_to_its_end() {
     let told = not_good("open = \"method-2\"", "open = \"./nowhere.toml\"");
     assert!(
         told.starts_with(&format!(
-            "a.md:{}: open: ./nowhere.toml: cannot be read",
+            "a.md:{}: open: ./nowhere.toml: there is no such file",
             task - 1
         )),
         "{told}"
@@ -948,13 +948,13 @@ fn the_comparison_has_the_prediction_and_what_came_out() {
     let with = compare.came_out(walk.lab(), walk.kept()).unwrap();
     let coarse = walk.kept()["coarse"];
     assert!(coarse > 10.0 * with && with > 0.0, "{coarse} {with}");
-    let words = format!("It was {coarse:.2} degrees and is {with:.2}. You said: ");
-    assert_eq!(said(&predictions), format!("{words}…."));
+    let words = format!("It was {coarse:.2} degrees and is {with:.2}.");
+    assert_eq!(said(&predictions), words, "nothing was said yet");
     let finer = lesson.predict("finer").unwrap();
     predictions
         .lock(finer, Answer::Choice("is gone".to_owned()))
         .unwrap();
-    assert_eq!(said(&predictions), format!("{words}is gone."));
+    assert_eq!(said(&predictions), format!("{words} You said: is gone."));
 }
 
 #[test]

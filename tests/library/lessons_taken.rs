@@ -132,8 +132,11 @@ fn an_open_prediction_can_be_left_open() {
     let (mut stage, _folder, _) = taken(1);
     stage.press("nn").arrive().shows("2 of 4");
     stage
-        .shows("You said: it ….")
+        .shows("It is 5.0.")
+        .shows_no("You said: it")
         .shows("You predicted nothing: page 1 asks");
+    // Where nothing else is said, a blank stands for the prediction.
+    stage.shows("You said: ….");
 }
 
 #[test]

@@ -29,7 +29,7 @@ pub const ROW: PaneRow = PaneRow {
 const KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Char('n')], Action::Lesson(LessonKey::Next), "next page", "the next page"),
     row(&[Mode::Lab], &[Key::Enter], Action::Lesson(LessonKey::Take), "answer", "lock the selected answer, or type a number; in the list: open the lesson"),
-    row(&[Mode::Lab], &[Key::Char('N')], Action::Lesson(LessonKey::Before), "", "the page before"),
+    row(&[Mode::Lab], &[Key::Char('N')], Action::Lesson(LessonKey::Before), "", "the page before; its run begins again"),
     row(&[Mode::Lab], &[Key::Up, Key::Char('k')], Action::Lesson(LessonKey::Move(Direction::Up)), "", "the answer above; without a question: scroll"),
     row(&[Mode::Lab], &[Key::Down, Key::Char('j')], Action::Lesson(LessonKey::Move(Direction::Down)), "", "the answer below; without a question: scroll"),
     row(&[Mode::Lab], &[Key::PageUp], Action::Lesson(LessonKey::Move(Direction::PageUp)), "", "scroll the page up"),
