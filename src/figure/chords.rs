@@ -1,7 +1,8 @@
 //! Paths of which a figure shows too few points: straight lines between them cut the bends off.
 //!
 //! A run that takes ten time steps for a turn of its path is drawn as chords, which lie inside the circle that its points lie
-//! on. Beside the exact motion that looks like an error of the run.
+//! on. Beside the exact motion that looks like an error of the run. Of the exact motion itself, too, there are no more points
+//! than so many in a long stretch of time.
 
 use super::request::Drawn;
 use nalgebra::Vector3;
@@ -9,28 +10,29 @@ use std::f64::consts::TAU;
 
 /// A path with more points than this in a turn, on the average, looks round: the chords are off it by 1.5 % of its radius.
 const ROUND: f64 = 18.0;
-/// A path bends where so many of its points, at least, turn on.
-const FEWEST: usize = 4;
+/// Of fewer bends than these there is no average.
+const FEWEST: u32 = 3;
+/// About so many points of a path are looked at.
+const LOOKED_AT: usize = 50_000;
 
 /// How many points there are to a turn of `path` (m), where they are too few to look round.
 fn points_a_turn(path: &[[f64; 3]]) -> Option<f64> {
-    let steps = path
-        .windows(2)
-        .map(|pair| Vector3::from(pair[1]) - Vector3::from(pair[0]));
-    let steps: Vec<_> = steps.filter(|step| step.norm() > 0.0).collect();
-    if steps.len() < FEWEST {
-        return None;
-    }
-    let angles = steps.windows(2).map(|pair| pair[0].angle(&pair[1]));
-    let a_turn = TAU * (steps.len() - 1) as f64 / angles.sum::<f64>();
-    (a_turn < ROUND).then_some(a_turn)
+    let angles = path.windows(3).step_by(1 + path.len() / LOOKED_AT);
+    let angles = angles.filter_map(|three| {
+        let [a, b, c] = [0, 1, 2].map(|place| Vector3::from(three[place]));
+        let moves = a != b && b != c;
+        moves.then(|| (b - a).angle(&(c - b)))
+    });
+    let (count, sum) = angles.fold((0, 0.0), |(count, sum), angle| (count + 1, sum + angle));
+    let a_turn = TAU * f64::from(count) / sum;
+    (count >= FEWEST && a_turn < ROUND).then_some(a_turn)
 }
 
 /// The name of what is drawn; of a path in chords it says so.
 pub(super) fn name(drawn: &Drawn) -> String {
     let is_in_chords = points_a_turn(&drawn.course.path).is_some();
     match is_in_chords && !drawn.name.is_empty() {
-        true => format!("{}, steps joined", drawn.name),
+        true => format!("{}, points joined", drawn.name),
         false => drawn.name.clone(),
     }
 }
@@ -44,7 +46,7 @@ pub(super) fn warning(drawn: &[Drawn]) -> Option<String> {
             name => format!(" of {name}"),
         };
         Some(format!(
-            "the line{of} joins time steps, about {a_turn:.0} to a turn: between them it cuts the bends off, and the run says nothing"
+            "the line{of} joins points, about {a_turn:.0} to a turn: between them it cuts the bends off, where nothing was computed"
         ))
     })
 }

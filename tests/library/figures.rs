@@ -293,13 +293,10 @@ fn a_path_of_few_steps_a_turn_says_that_its_line_is_made_of_chords() {
     };
     for kind in ["above", "3d"] {
         let coarse = drawn(&[run("method-1", &["motion.steps=200"])], &exact(kind));
-        says(&coarse.scene, &["report, steps joined", "exact"]);
+        says(&coarse.scene, &["report, points joined", "exact"]);
         let told = coarse.told().collect::<Vec<_>>();
         let told = told.join("; ");
-        assert!(
-            told.contains("joins time steps, about 10 to a turn"),
-            "{told}"
-        );
+        assert!(told.contains("joins points, about 10 to a turn"), "{told}");
         let fine = drawn(&[run("cusps", &[])], &exact(kind));
         says(&fine.scene, &["rk4", "exact"]);
         assert_eq!(fine.told().next(), None);
@@ -511,7 +508,7 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
     ] {
         let runs = [run(name, &[])];
         let figure = drawn(&runs, &request(kind));
-        let is_of_chords = |told: &String| told.contains("joins time steps");
+        let is_of_chords = |told: &String| told.contains("joins points");
         let told = |figure: &Figure| -> Vec<String> {
             let told = figure.told().map(|told| told.to_string());
             told.filter(|told| !is_of_chords(told)).collect()

@@ -5,7 +5,6 @@ use super::{Circles, Series};
 use crate::figure::page::clip::clipped;
 use crate::figure::page::ink::{Frame, at};
 use crate::figure::page::scene::{Path, Pen, Point, Scene};
-use crate::figure::page::simplify::simplified;
 use crate::figure::page::thin::{Thinned, plane_curve};
 
 /// Width of a column of which only first, lowest, highest and last point are drawn, pt. It is well below the width of a line,
@@ -13,8 +12,6 @@ use crate::figure::page::thin::{Thinned, plane_curve};
 const THINNED_PT: f64 = 0.2;
 /// Swings of a dashed line that are lower than this are drawn as their middle, pt: they would take up its dashes.
 const FLAT_PT: f64 = 0.4;
-/// How far a dashed line may leave its points, as a share of its width.
-const TOLERANCE: f64 = 0.02;
 /// How far outside of its panel a line is followed, pt: half its width, which is cut off at the edge.
 const BEYOND_PT: f64 = 2.0;
 
@@ -81,13 +78,8 @@ pub fn put(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene: &mut S
     let lines = if runs_right {
         let flat = if is_dashed { FLAT_PT } else { 0.0 };
         pieces.iter().map(|piece| thinned(piece, flat)).collect()
-    } else if is_dashed {
-        let within = TOLERANCE * pen.width_pt;
-        pieces
-            .iter()
-            .map(|piece| simplified(piece, within))
-            .collect()
     } else {
+        // A dashed line that runs over itself so often fills its gaps: it is an area too.
         match plane_curve(pieces, pen.width_pt) {
             Thinned::Lines(lines) => lines,
             Thinned::Area(area) => return scene.fill_in(area, pen.color, clip),

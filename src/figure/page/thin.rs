@@ -18,7 +18,7 @@ pub enum Thinned {
     Area(Path),
 }
 
-/// A solid line with round corners and ends, `width_pt` wide, with fewer points. Where it runs over itself so often that the
+/// A line with round corners and ends, `width_pt` wide, with fewer points. Where it runs over itself so often that the
 /// outline of its ink has fewer points than the line, it becomes that area.
 pub fn plane_curve(pieces: &[Vec<Point>], width_pt: f64) -> Thinned {
     let lines: Vec<Vec<Point>> = pieces
