@@ -115,32 +115,37 @@ impl Kind {
             RESIDUALS => return Ok(Self::Residuals),
             _ => {}
         }
-        let names = name.split(',').map(str::trim);
-        names
-            .map(column)
-            .collect::<Result<_, _>>()
-            .map(Self::OverTime)
+        let is_list = name.contains(',');
+        let columns = name.split(',').map(str::trim).map(|name| {
+            // Whoever shows the refusal names the whole list.
+            column(name).map_err(|rule| match is_list {
+                true => format!("{name} {rule}"),
+                false => rule,
+            })
+        });
+        columns.collect::<Result<_, _>>().map(Self::OverTime)
     }
 }
 
 fn column(name: &str) -> Result<Plotted, String> {
+    if name.is_empty() {
+        return Err("lacks a name: traces, above, 3d, residuals, or columns of the CSV with commas between them".to_owned());
+    }
     if NAMES.contains(&name) {
-        return Err(format!(
-            "{name} is a figure of its own: no columns can stand beside it"
-        ));
+        return Err("is a figure of its own: no columns can stand beside it".to_owned());
     }
     let known = NAMES.into_iter().chain(Plotted::names());
     Plotted::find(name).ok_or_else(|| match readouts::find(name) {
         Some(_) => {
             let columns: Vec<_> = Plotted::names().collect();
             format!(
-                "{name} is a readout, one number of a run, and no column: a sweep's table is drawn by its readouts; over time there is {}",
+                "is a readout, one number of a run, and no column: a sweep's table is drawn by its readouts; over time there is {}",
                 columns.join(", ")
             )
         }
         None => {
             let near = problem::nearest(name, known);
-            format!("{name} is neither traces, above, 3d, residuals nor a column of the CSV: {near}")
+            format!("is neither traces, above, 3d, residuals nor a column of the CSV: {near}")
         }
     })
 }

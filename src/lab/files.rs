@@ -103,7 +103,7 @@ impl Files {
         force: bool,
     ) -> Answer {
         self.may_export_to(path)?;
-        let kind = Kind::named(kind).map_err(|refusal| format!("{kind} {refusal}"))?;
+        let kind = Kind::named(kind).map_err(|refusal| format!("kind {kind} {refusal}"))?;
         let format = Format::of(path).map_err(|refusal| refusal.to_string())?;
         let drawn = Drawn {
             kind,

@@ -314,6 +314,13 @@ impl Document {
                     Some(mistake) if problem.key == setting.key => {
                         (problem.value, problem.rule) = (String::new(), mistake.clone());
                     }
+                    _ if problem.rule.starts_with(keys::UNKNOWN)
+                        && let Some(meant) = keys::meant(&setting.key) =>
+                    {
+                        // The whole key: whoever typed the argument does not see the tables of a file.
+                        problem.key.clone_from(&setting.key);
+                        problem.rule = format!("{}: did you mean {meant}?", keys::UNKNOWN);
+                    }
                     _ => problem.rule += &self.that_are_there(&problem, written.as_ref()),
                 }
                 lines.push((usize::MAX, problem));

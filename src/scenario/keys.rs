@@ -12,7 +12,6 @@ use super::solids;
 use crate::physics::scheme;
 pub use check::check;
 pub(super) use check::check_part;
-use check::elsewhere;
 pub(super) use check::is_under;
 use toml::Value;
 
@@ -279,12 +278,43 @@ pub fn find(key: &str) -> Result<(&'static Key, Kind), String> {
             _ => Err("unknown key: a vector's numbers are .0, .1 and .2".to_owned()),
         };
     }
-    let near = key
-        .rsplit('.')
-        .next()
-        .and_then(elsewhere)
-        .unwrap_or_else(|| nearest(&pattern(key), KEYS.iter().map(|key| key.path)));
-    Err(format!("unknown key: {near}"))
+    let near = match meant(key) {
+        Some(meant) => format!("did you mean {meant}?"),
+        None => nearest(&pattern(key), KEYS.iter().map(|key| key.path)),
+    };
+    Err(format!("{UNKNOWN}: {near}"))
+}
+
+/// What is said of a key that there is not.
+pub(super) const UNKNOWN: &str = "unknown key";
+
+/// What the screen calls some values, and their keys.
+const ON_SCREEN: [(&str, &str); 4] = [
+    ("dt", "motion.time_step_s"),
+    ("g", "motion.gravity_m_per_s2"),
+    ("L", "start.momentum_Js"),
+    ("rpm", "start.spin_rpm"),
+];
+
+/// The whole key of which the unknown `key` has a part: its name in another table, the name without its unit, or what the
+/// screen calls its value. `None` where it may be several, or none.
+pub(super) fn meant(key: &str) -> Option<&'static str> {
+    let name = key.rsplit('.').next().unwrap_or(key);
+    let on_screen = ON_SCREEN.iter().find(|(word, _)| *word == name);
+    let only = |is_it: &dyn Fn(&str) -> bool| {
+        let last = |key: &&Key| key.path.rsplit('.').next().is_some_and(is_it);
+        let mut found = KEYS.iter().filter(last).map(|key| key.path);
+        let first = found.next();
+        first.filter(|path| found.next().is_none() && !path.contains('*') && *path != key)
+    };
+    let without_unit = |last: &str| {
+        let unit = last.strip_prefix(name);
+        unit.is_some_and(|unit| unit.starts_with('_'))
+    };
+    on_screen
+        .map(|(_, key)| *key)
+        .or_else(|| only(&|last| last == name))
+        .or_else(|| only(&without_unit))
 }
 
 /// Whether the dotted `key` leads to a table of keys, or to an element of an array of such.

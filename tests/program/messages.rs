@@ -70,7 +70,10 @@ fn wrong_arguments_are_told_in_words() {
 fn a_wrong_setting_is_named_without_a_file_that_nobody_named() {
     let ground = Ground::new();
     for (set, words) in [
-        ("motion.time_step=3", "did you mean time_step_s?"),
+        (
+            "motion.time_step=3",
+            "motion.time_step: unknown key: did you mean motion.time_step_s?",
+        ),
         (
             "push.1.force_N=[0,0,1]",
             "push.1 would be a new one, there is only push.0",

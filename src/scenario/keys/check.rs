@@ -72,7 +72,7 @@ fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Foun
 }
 
 /// Where a name belongs that stands in the wrong table.
-pub(super) fn elsewhere(name: &str) -> Option<String> {
+fn elsewhere(name: &str) -> Option<String> {
     let mut homes = KEYS
         .iter()
         .filter(|key| key.path.rsplit('.').next() == Some(name) && key.path != name);
