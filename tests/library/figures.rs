@@ -336,7 +336,7 @@ fn the_circles_of_the_exact_motion_have_a_name_that_hides_none_of_them() {
                 let is_hidden = |(x, y): (f64, f64)| {
                     (legend[0]..=legend[2]).contains(&x) && (legend[1]..=legend[3]).contains(&y)
                 };
-                assert!(!on_circle.map(is_hidden).any(|hidden| hidden), "{preset}");
+                assert!(!{ on_circle }.any(is_hidden), "{preset}");
             }
         }
     }

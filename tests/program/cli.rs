@@ -860,7 +860,7 @@ fn check_looks_at_every_file() {
     failed(
         &output,
         &[
-            "none.toml: cannot be read",
+            "none.toml: there is no such file",
             "bad.toml:",
             "motion.steps (0) must be 1 or more",
         ],

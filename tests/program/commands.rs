@@ -105,7 +105,7 @@ fn what_is_refused_is_told_and_the_picture_up_to_there_shown() {
     );
     let (_, talk, code) = run(&folder, &["show", "--do", "none.toml"]);
     assert_eq!(code, Some(1));
-    assert!(talk.contains("none.toml: cannot be read"), "{talk}");
+    assert!(talk.contains("none.toml: there is no such file"), "{talk}");
     assert_eq!(run(&folder, &["show"]).2, Some(2));
 }
 

@@ -137,7 +137,7 @@ fn a_handout_obeys_the_rules_for_files() {
         .unwrap();
     let refused = ground.run(&["lesson", "wrong.md", "--handout", "-o", "wrong-paper.md"]);
     failed(&refused, &[]);
-    let told = format!("wrong.md:{line}: open: ./nowhere.toml: cannot be read");
+    let told = format!("wrong.md:{line}: open: ./nowhere.toml: there is no such file");
     assert!(stderr(&refused).contains(&told), "{refused:?}");
     assert_eq!(ground.files(), ["my.md", "paper.md", "wrong.md"]);
 }

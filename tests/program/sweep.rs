@@ -323,7 +323,7 @@ fn wrong_keys_values_and_readouts_are_refused_before_anything_runs() {
             &["precesion-over-tilt"],
             &["did you mean precession-over-tilt?"],
         ),
-        (&["none.toml"], &["none.toml", "cannot be read"]),
+        (&["none.toml"], &["none.toml", "there is no such file"]),
         (
             &["cusps", "--vary", "motion.step=1,2"],
             &["motion.step", "did you mean motion.steps?"],
@@ -744,7 +744,7 @@ fn only_whole_shards_of_one_sweep_are_joined() {
         ),
         (
             &["1.csv", "2.csv", "none.csv"],
-            &["none.csv", "cannot be read"],
+            &["none.csv", "there is no such file"],
         ),
     ] {
         let join = [&["sweep", "--join"], parts].concat();

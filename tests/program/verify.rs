@@ -81,7 +81,7 @@ fn what_differs_is_told_with_exit_code_1() {
     let said = stderr(&output);
     for words in [
         "b.csv: is no CSV that gyrolab wrote",
-        "d.csv: cannot be read",
+        "d.csv: there is no such file",
     ] {
         assert!(said.contains(words), "{said}");
     }

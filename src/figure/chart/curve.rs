@@ -127,7 +127,34 @@ fn thinned(points: &[Point], flat_pt: f64) -> Vec<Point> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure::chart::Style;
+    use crate::figure::page::scene::Paint;
     use proptest::prelude::*;
+
+    #[test]
+    fn a_dashed_line_that_covers_itself_becomes_an_area_and_another_keeps_its_dashes() {
+        let zigzag = |apart: f64| -> Vec<Point> {
+            let place = |i: i32| at(f64::from(i % 2) * 40.0, f64::from(i) * apart);
+            (0..10_000).map(place).collect()
+        };
+        let drawn = |apart: f64| {
+            let mut scene = Scene::new(100.0, 100.0, "");
+            let pen = Style::exact().pen();
+            put(&[zigzag(apart)], &pen, None, &mut scene);
+            scene.items
+        };
+        let [area] = &drawn(0.01)[..] else {
+            panic!("one area")
+        };
+        assert!(matches!(area.paint, Paint::Fill(_)) && area.path.0.len() < 1000);
+        let [line] = &drawn(3.0)[..] else {
+            panic!("one line")
+        };
+        let Paint::Stroke(pen) = &line.paint else {
+            panic!("it is stroked")
+        };
+        assert!(!pen.dash_pt.is_empty() && line.path.0.len() == 10_000);
+    }
 
     proptest! {
         #[test]
