@@ -95,7 +95,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char('i')], Action::TogglePin, "", "pin this run as the reference beside every other, or take it away"),
     row(&[Lab], &[Char('a')], Action::TakeAdvice, "", "take the advice about the numbers: the run from the start with what mends them"),
     row(&[Lab], &[Char('x')], Action::Export, "export", "write the run up to here as CSV"),
-    row(&[Lab], &[Char('X')], Action::Figure, "", "figure of the run up to here, for a write-up: SVG, PDF or PNG"),
+    row(&[Lab], &[Char('X')], Action::Figure, "", "figure of the run up to here (a plot, a graph): SVG, PDF or PNG"),
     row(&[Lab], &[Char('s')], Action::SaveRun, "", "save the run file: scenario and all that was done"),
     row(&[Lab], &[Char('S')], Action::SavePresent, "", "save the present state as a scenario"),
     row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file"),
@@ -153,7 +153,7 @@ pub static BINDINGS: &[Binding] = &[
     row(&[Lab, Browser, Help], &[Char('?')], Action::Help, "help", "this list, and away again: type to search it"),
     row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('l')], Action::Redraw, "", "draw the whole screen again"),
     row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('z')], Action::Suspend, "", "back to the shell; fg returns"),
-    row(&[Lab, Browser], &[Char('q')], Action::Quit, "quit", "leave the lab"),
+    row(&[Lab, Browser], &[Char('q')], Action::Quit, "quit", "leave the lab: exit"),
     row(&[Lab, Browser, Filter, Find, Help, Dialog], &[Ctrl('c')], Action::Quit, "", "leave the lab"),
 ];
 

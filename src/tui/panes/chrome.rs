@@ -195,6 +195,7 @@ fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
         .filter(|row| row.action != Action::ToggleResiduals || lab.player().measured().is_some())
         .filter(|row| row.action != Action::Lesson(LessonKey::Take) || !enter.is_empty())
         .filter(|row| row.action != Action::Lesson(LessonKey::Next) || has_next)
+        .filter(|row| !is_why || !matches!(row.action, Action::Move(_)))
         .filter(|row| !goes_on(row.action) || !lab.player().run().simulation().has_ended());
     let mut words: Vec<_> = rows
         .map(|row| {
@@ -209,7 +210,13 @@ fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
         })
         .collect();
     if mode != Mode::Lab {
-        words.insert(0, (Key::Esc, "close", Worth::Kept));
+        let searches = match mode {
+            Mode::Help => !lab.on_top().help().text().is_empty(),
+            Mode::Filter | Mode::Find => true,
+            _ => false,
+        };
+        let word = if searches { "clear" } else { "close" };
+        words.insert(0, (Key::Esc, word, Worth::Kept));
     } else if lab.view().filled && lab.view().sheet.is_some() {
         words.insert(0, (Key::Esc, "to the page", Worth::Kept));
     }

@@ -14,6 +14,10 @@ pub(super) const GLOSSARY: &[Word] = &[
         "the fast nodding of the axle about its slow way; for a fast top its period is 2 pi I1/L, I1 the inertia across the axle",
     ),
     (
+        "nutation?",
+        "the question mark: what seems to nod is strobed, and not the nutation of the motion",
+    ),
+    (
         "axle",
         "the direction in the body that was upright before the start turned it; tilt and azimuth are the axle's",
     ),
@@ -48,7 +52,7 @@ pub(super) const GLOSSARY: &[Word] = &[
     ),
     (
         "lags",
-        "\"axle lags L 198 times too far\": the angle between axle and L is so many times that of the exact motion",
+        "\"axle lags L 198 times too far\": their mean angle is so many times that of the exact motion; the one shown is that of now",
     ),
     (
         "run",
@@ -93,6 +97,10 @@ pub(super) const GLOSSARY: &[Word] = &[
     (
         "drift",
         "the energy that the scheme has gained or lost, the work of pushes taken off; it should be 0",
+    ),
+    (
+        "friction",
+        "what slows the spin or the swing of the axle: [friction] of a scenario; e shows it, gyrolab man friction explains it",
     ),
     (
         "mgl",
