@@ -28,7 +28,8 @@ pub fn plane_curve(pieces: &[Vec<Point>], width_pt: f64) -> Thinned {
     let count: usize = lines.iter().map(Vec::len).sum();
     if count > MANY {
         let area = cover::area(&lines, width_pt);
-        if area.0.len() < count {
+        // Nothing is found of lines that need too large a grid.
+        if !area.0.is_empty() && area.0.len() < count {
             return Thinned::Area(area);
         }
     }
