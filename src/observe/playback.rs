@@ -13,9 +13,10 @@ use std::time::Duration;
 
 /// The longest time of stepping between two readings of the keyboard.
 const STEPPING: Duration = Duration::from_millis(12);
-/// The same of a run on its way to a step that was asked for: each time that the keyboard is read, its two threads wait for
-/// one another.
-const HURRYING: Duration = Duration::from_millis(40);
+/// The longest time of stepping of a run on its way to a step that was asked for: each time that it ends, its two threads
+/// wait for one another. It ends earlier where somebody waits for an answer, which is looked for so often.
+const HURRYING: Duration = Duration::from_millis(500);
+const LOOKING: Duration = Duration::from_millis(5);
 /// Computing time for the exact motion in each round of the loop while the run steps flat out: a tenth of that time.
 const FOLLOWING_FLAT_OUT: Duration = Duration::from_micros(1200);
 /// The same otherwise: a tenth of a frame at 15 frames a second.
@@ -112,13 +113,15 @@ impl Playback {
         }
     }
 
-    /// Plays the simulated time that is due after `wall` of wall time, but steps no longer than 12 ms after `now` (40 ms on its
-    /// way to a step), as `clock` tells it. Returns why the playback stopped, if it did.
+    /// Plays the simulated time that is due after `wall` of wall time, but steps no longer than 12 ms after `now`, as `clock`
+    /// tells it. On its way to a step that is 500 ms, or until `is_called` says that somebody waits for an answer. Returns
+    /// why the playback stopped, if it did.
     pub fn advance(
         &mut self,
         now: Duration,
         wall: Duration,
         clock: &mut dyn FnMut() -> Duration,
+        is_called: &mut dyn FnMut() -> bool,
     ) -> Option<Halt> {
         let owed_s = if self.hurries {
             f64::INFINITY
@@ -128,11 +131,19 @@ impl Playback {
         if owed_s <= 0.0 {
             return None;
         }
-        let deadline = match self.hurries {
-            true => now + HURRYING,
-            false => now + STEPPING,
-        };
-        self.play(owed_s, wall, || clock() >= deadline)
+        if !self.hurries {
+            let deadline = now + STEPPING;
+            return self.play(owed_s, wall, || clock() >= deadline);
+        }
+        let (deadline, mut next_look) = (now + HURRYING, now + LOOKING);
+        self.play(owed_s, wall, || {
+            let here = clock();
+            let looks = here >= next_look;
+            if looks {
+                next_look = here + LOOKING;
+            }
+            here >= deadline || (looks && is_called())
+        })
     }
 
     /// Plays to the requested step, or until the condition holds, however long that takes. Returns why the playback
