@@ -155,14 +155,53 @@ fn the_numbers_of_the_page_are_those_of_the_summary() {
     assert!((stated / sigma - 1.0).abs() < 0.05, "{stated} for {sigma}");
     let predicted = number("predicted_precession_rad_per_s");
     assert_eq!(row[3], format!("{predicted:.decimals$}"));
-    let apart: f64 = row[4].parse().unwrap();
-    assert!((apart - (measured - predicted) / sigma).abs() < 0.01 * apart.abs() + 0.01);
+    let difference: f64 = row[4].parse().unwrap();
+    assert!((difference - (measured - predicted)).abs() <= 0.05 * difference.abs());
+    let in_errors: f64 = row[5].parse().unwrap();
+    assert!((in_errors - (measured - predicted) / sigma).abs() < 0.01 * in_errors.abs() + 0.01);
+    // Of the swing theory says the difference of its greatest and its least tilt.
+    let swing = row_of(&page, "measured_tilt_swing_deg");
+    let range = number("predicted_highest_tilt_deg") - number("predicted_lowest_tilt_deg");
+    assert_eq!(swing[3], format!("{range:.6}"));
     // What the clock says differs each time: it is not in the folder.
     let readouts: serde_json::Value = serde_json::from_str(&lab.read("w/readouts.json")).unwrap();
     assert_eq!(readouts["measured_precession_rad_per_s"], measured);
     assert!(readouts.get("wall_s").is_none() && json.get("wall_s").is_some());
     let latex = lab.read("w/readouts.tex");
     assert!(latex.contains(&format!("${}$", row[2])), "{latex}");
+    let caption = r"\caption{Cusps. Scheme rk4, time steps: 10000 of 0.001 s. The numbers hold:";
+    assert!(latex.contains(caption), "{latex}");
+}
+
+#[test]
+fn what_a_user_wrote_is_not_said_to_be_a_presets() {
+    let lab = Ground::new();
+    let cusps = String::from_utf8(done(lab.run(&["presets", "cusps"])).stdout).unwrap();
+    let line = |key: &str| {
+        let begin = format!("{key} = ");
+        let found = cusps.lines().find(|line| line.starts_with(&begin));
+        found
+            .unwrap_or_else(|| panic!("{key} in {cusps}"))
+            .to_owned()
+    };
+    // The look_at line is left as it was, which is now of another motion.
+    let mine = cusps
+        .replace(&line("source"), "source = \"my homework\"")
+        .replace(&line("tilt_deg"), "tilt_deg = 50");
+    let (before, about) = mine.split_once("about = \"\"\"").unwrap();
+    let (_, after) = about.split_once("\"\"\"").unwrap();
+    lab.write("mine.toml", &format!("{before}about = \"My top.\"{after}"));
+    let checked = done(lab.run(&["check", "mine.toml"]));
+    let told = String::from_utf8(checked.stdout).unwrap();
+    assert!(
+        told.contains("this one differs from the preset cusps: start.tilt_deg 50, not 30"),
+        "{told}"
+    );
+    done(lab.run(&["writeup", "mine.toml", "--steps", "50", "-o", "w"]));
+    let page = lab.read("w/README.md");
+    assert!(page.contains("\n\nMy top.\n\n"), "{page}");
+    assert!(page.contains("\n\nSource: my homework\n\n"), "{page}");
+    assert!(page.contains("Differs from the preset cusps: "), "{page}");
 }
 
 /// The row of `name` in the table of what was run.

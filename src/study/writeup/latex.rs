@@ -3,8 +3,9 @@
 use super::quantities::Quantity;
 use crate::text::number::Uncertain;
 
-/// The table of `quantities`: what, measured, theory, unit. `caption` says whose numbers they are.
-pub fn table(quantities: &[Quantity], caption: &str) -> String {
+/// The table of `quantities`: what, measured, theory, unit. `caption` says whose numbers they are, `verdict` whether they are
+/// to be believed; both are printed.
+pub fn table(quantities: &[Quantity], caption: &str, verdict: &str) -> String {
     let rows: String = quantities.iter().map(row).collect();
     let meanings = quantities
         .iter()
@@ -14,7 +15,7 @@ pub fn table(quantities: &[Quantity], caption: &str) -> String {
         r"{meanings}% Digits in parentheses are one standard error, in units of the last digits.
 \begin{{table}}
 \centering
-\caption{{{}}}
+\caption{{{} {}}}
 \footnotesize
 \begin{{tabular}}{{@{{}}p{{0.42\columnwidth}}rr@{{}}}}
 \hline
@@ -24,7 +25,8 @@ pub fn table(quantities: &[Quantity], caption: &str) -> String {
 \end{{tabular}}
 \end{{table}}
 ",
-        escaped(caption)
+        escaped(caption),
+        escaped(verdict)
     )
 }
 

@@ -15,6 +15,7 @@ mod setup;
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Source};
 use crate::export::columns::COLUMNS;
+use crate::export::summary::steps_in_words;
 use crate::figure::{self, Format, Unwritable};
 use crate::run::NotFinite;
 use crate::scenario::Scenario;
@@ -82,11 +83,17 @@ impl Writeup {
     /// When a figure is too large for its form.
     pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Unwritable> {
         let page = page::page(self).unwrap_or_default(); // a String takes what is written to it
-        let caption = &self.readouts.title;
+        let caption = format!(
+            "{}. Scheme {}, time steps: {}.",
+            self.readouts.title,
+            self.readouts.scheme,
+            steps_in_words(&self.scenario, self.readouts.sample.step)
+        );
+        let verdict = self.readouts.health.sentence(self.readouts.advice.as_ref());
         let texts = [
             (RUN_FILE, self.scenario.to_toml()),
             (READOUTS_FILE, self.readouts_json()),
-            (LATEX, latex::table(&self.quantities, caption)),
+            (LATEX, latex::table(&self.quantities, &caption, &verdict)),
             (PAGE, page),
         ];
         let mut files: Vec<_> = texts

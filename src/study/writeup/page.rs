@@ -63,17 +63,21 @@ fn write_quantities(page: &mut String, quantities: &[Quantity]) -> fmt::Result {
             "The run is too short for that: nothing could be measured on it."
         );
     }
-    writeln!(page, "| what | measured | theory | apart | unit |")?;
-    writeln!(page, "| --- | --- | --- | --- | --- |")?;
+    writeln!(
+        page,
+        "| what | measured | theory | difference | in errors | unit |"
+    )?;
+    writeln!(page, "| --- | --- | --- | --- | --- | --- |")?;
     for quantity in quantities {
         writeln!(
             page,
-            "| {} (`{}`) | {} | {} | {} | {} |",
+            "| {} (`{}`) | {} | {} | {} | {} | {} |",
             quantity.label(),
             quantity.readout.name,
             quantity.measured_text(),
             quantity.predicted_text(),
-            quantity.apart_text(),
+            quantity.difference_text(),
+            quantity.in_errors_text(),
             quantity.readout.unit
         )?;
     }
@@ -88,13 +92,14 @@ fn write_quantities(page: &mut String, quantities: &[Quantity]) -> fmt::Result {
     }
     writeln!(
         page,
-        "\nDigits in parentheses are one standard error, in units of the last digits: 0.886033(24) is 0.886033 ± 0.000024. \
-         \"Apart\" is how many of them lie between the measured number and theory, or, where these are more than a hundred, by what \
-         part of theory the run is off: that is the scheme's and its time step's doing. The least and \
-         the greatest values are those of the whole run. Theory is that of the exact motion under the forces at the end of \
-         the run; the standard error is that of reading the number off this run, and does not hold what the time step has done to it. \
-         {NONE}: there is no such number, or none that can be stated. The same table for LaTeX is in `{}`, every readout in \
-         `{}`.",
+        "\nMeasured means read off the steps of this run; theory is that of the exact motion under the forces at the end of \
+         the run. Digits in parentheses are one standard error of reading the number off the steps, in units of the last \
+         digits: 0.886033(24) is 0.886033 ± 0.000024. \"In errors\" is the difference in standard errors. Up to about 3 of \
+         them, reading alone explains it (exactly ±1.00: the reading's own known error, stated and not taken away). What is \
+         more is the doing of the scheme and its time step, which the standard error does not hold: where the numbers hold, it \
+         may be many errors and still be tiny. The least and the greatest values are those of the whole run; where the \
+         forces changed on the way, theory has no difference to them. {NONE}: there is no such number, or none that can be \
+         stated. The same table for LaTeX is in `{}`, every readout in `{}`.",
         super::LATEX,
         super::READOUTS_FILE
     )

@@ -1,7 +1,7 @@
 //! The measured numbers of a run beside those of theory.
 
 use crate::analysis::Readouts;
-use crate::analysis::readouts::{READOUTS, Readout, Source};
+use crate::analysis::readouts::{READOUTS, Readout, Source, find};
 use crate::run::Clock;
 use crate::scenario::Scenario;
 use crate::text::number::{NONE, Uncertain, fixed, short, significant, uncertain};
@@ -18,6 +18,8 @@ pub struct Quantity {
     pub uncertainty: Option<f64>,
     /// What theory says, in the same unit.
     pub predicted: Option<f64>,
+    /// How much more was measured than theory says, in the same unit, where both speak of the same stretch of the run.
+    pub difference: Option<f64>,
     /// Since when it counts, s, where that is not the start.
     pub since_s: Option<f64>,
     /// Whether the time step is too long to see it: what was measured is no number of the motion then.
@@ -30,8 +32,8 @@ const NUTATION: &str = "measured_nutation_period_s";
 /// How the names of measured numbers begin.
 const MEASURED: &str = "measured_";
 
-/// So many standard errors off theory, a number is not off by the reading of it.
-const FAR: f64 = 100.0;
+/// The number of which theory is the difference of two others.
+const SWING: &str = "measured_tilt_swing_deg";
 
 /// Digits after the point of a number that has no uncertainty.
 const DECIMALS: usize = 6;
@@ -51,13 +53,24 @@ pub fn quantities(scenario: &Scenario, readouts: &Readouts) -> Vec<Quantity> {
         // Of the swing that the report's scheme makes there is a formula, which is no theory of the exact motion.
         let predicted = readout.predicted().filter(|it| it.source == Source::Theory);
         let uncertainty = readout.uncertainty().filter(|_| predicted.is_some());
+        let (measured, predicted) = match readout.name {
+            SWING => (number(Some(readout)), swing_by_theory(readouts)),
+            _ => (number(Some(readout)), number(predicted)),
+        };
+        let is_since = readout.source == Source::Measured;
+        let is_strobed = is_strobed && readout.name == NUTATION;
+        let are_of_the_same = !is_strobed && (is_since || since_s.is_none());
+        let difference = measured
+            .zip(predicted)
+            .map(|(measured, predicted)| measured - predicted);
         Quantity {
             readout,
-            measured: number(Some(readout)),
+            measured,
             uncertainty: number(uncertainty),
-            predicted: number(predicted),
-            since_s: since_s.filter(|_| readout.source == Source::Measured),
-            is_strobed: is_strobed && readout.name == NUTATION,
+            predicted,
+            difference: difference.filter(|_| are_of_the_same),
+            since_s: since_s.filter(|_| is_since),
+            is_strobed,
         }
     });
     quantities
@@ -117,28 +130,37 @@ impl Quantity {
         }
     }
 
-    /// By how many standard errors it is off theory, as text: `+1.2`; where they are more than a hundred, which says nothing
-    /// any more, by what part of theory: `-3.4 %`.
-    pub fn apart_text(&self) -> String {
-        if self.is_strobed {
-            return NONE.to_owned();
-        }
-        match (self.measured, self.uncertainty, self.predicted) {
-            (Some(measured), Some(error), Some(predicted)) if error > 0.0 => {
-                let apart = (measured - predicted) / error;
-                let sign = if apart < 0.0 { '-' } else { '+' };
-                match apart.abs() <= FAR {
-                    true => format!("{sign}{}", short(apart.abs())),
-                    false if predicted == 0.0 => "far".to_owned(),
-                    false => {
-                        let part = ((measured - predicted) / predicted).abs();
-                        let sign = if measured < predicted { '-' } else { '+' };
-                        format!("{sign}{} %", significant(100.0 * part, 2))
-                    }
-                }
+    /// How much more was measured than theory says, as text with two digits: `+5.2e-10`.
+    pub fn difference_text(&self) -> String {
+        self.difference.map_or(NONE.to_owned(), |difference| {
+            with_sign(difference, &significant(difference.abs(), 2))
+        })
+    }
+
+    /// The same in standard errors: `+64.4`.
+    pub fn in_errors_text(&self) -> String {
+        match (self.difference, self.uncertainty) {
+            (Some(difference), Some(error)) if error > 0.0 => {
+                let errors = difference / error;
+                with_sign(errors, &short(errors.abs()))
             }
             _ => NONE.to_owned(),
         }
+    }
+}
+
+/// The swing of the tilt between its least and its greatest value of theory, degrees.
+fn swing_by_theory(readouts: &Readouts) -> Option<f64> {
+    let of = |name| find(name)?.of(readouts).number();
+    Some(of("predicted_highest_tilt_deg")? - of("predicted_lowest_tilt_deg")?)
+}
+
+/// `size`, which is written without a sign, with that of `number`.
+fn with_sign(number: f64, size: &str) -> String {
+    match number {
+        number if number < 0.0 => format!("-{size}"),
+        number if number > 0.0 => format!("+{size}"),
+        _ => size.to_owned(),
     }
 }
 

@@ -12,6 +12,9 @@ use std::fmt::{self, Write};
 /// More parts, pushes or edits than these are counted, not listed.
 const MOST_LISTED: usize = 12;
 
+/// A part of L that is smaller than this part of |L| is zero.
+const ROUNDING: f64 = 1e-14;
+
 /// Writes the table.
 ///
 /// # Errors
@@ -122,7 +125,14 @@ fn moments(scenario: &Scenario) -> String {
 fn start(scenario: &Scenario) -> String {
     let tilt_deg = scenario.start.axle().z.clamp(-1.0, 1.0);
     let tilt_deg = libm::acos(tilt_deg).to_degrees();
-    let [x, y, z] = [0, 1, 2].map(|axis| significant(scenario.start.momentum[axis], 9));
+    let momentum = &scenario.start.momentum;
+    // What is left of a zero by the turn from the body frame is rounding.
+    let rounding = ROUNDING * momentum.norm();
+    let part = |axis: usize| match momentum[axis] {
+        part if part.abs() < rounding => 0.0,
+        part => part,
+    };
+    let [x, y, z] = [0, 1, 2].map(|axis| significant(part(axis), 9));
     format!(
         "axle tilted by {} degrees, L = ({x}, {y}, {z}) J s in the world frame",
         fixed(tilt_deg, 4)
