@@ -15,10 +15,12 @@ use crate::study::sweep::{Sweep, shipped as sweeps};
 use crate::teach::shipped;
 use crate::text::number::{decimal, shortest};
 use crate::text::printable::{Shown, printable, printable_lines};
+use crate::work::changed::Original;
 use anyhow::bail;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 pub(super) fn presets(name: Option<&str>) -> anyhow::Result<ExitCode> {
     let Some(name) = name else {
@@ -164,7 +166,12 @@ fn checked(document: &Document) -> Result<String, Problems> {
     if document.is_sweep() {
         return Sweep::open(document).map(|sweep| described_sweep(&sweep));
     }
-    document.scenario().map(|scenario| described(&scenario))
+    let scenario = document.scenario()?;
+    let words = Original::of("", &Arc::new(scenario.clone())).difference(&scenario);
+    let words = words.map(|difference| {
+        format!("\n  its look_at line, or its about, is of another motion: this one {difference}")
+    });
+    Ok(described(&scenario) + &words.unwrap_or_default())
 }
 
 fn described_sweep(sweep: &Sweep) -> String {

@@ -80,10 +80,16 @@ impl Original {
         };
         let mut marked = Scenario::clone(now);
         let file = &mut marked.file;
-        if let Some(about) = file.about.as_mut().filter(|it| !it.contains(AS_IT_WAS)) {
+        // What the user wrote anew is of this run.
+        let original = &self.scenario.file;
+        if file.about == original.about
+            && let Some(about) = file.about.as_mut().filter(|it| !it.contains(AS_IT_WAS))
+        {
             about.insert_str(0, &format!("Of {}{AS_IT_WAS}", self.name));
         }
-        if let Some(source) = file.source.as_mut().filter(|it| !it.ends_with(CHANGED)) {
+        if file.source == original.source
+            && let Some(source) = file.source.as_mut().filter(|it| !it.ends_with(CHANGED))
+        {
             source.push_str(CHANGED);
         }
         if let Some(view) = &mut file.view {
@@ -169,9 +175,13 @@ fn values<T: Serialize + PartialEq>(name: &str, before: &T, now: &T) -> Option<S
         .filter(|(key, value)| before.get(*key) != Some(*value));
     let new: Vec<_> = new
         .map(|(key, value)| {
-            let old = before.get(key).and_then(number);
-            let old = old.filter(|_| number(value).is_some());
-            let old = old.map(|old| format!(", not {old}")).unwrap_or_default();
+            let is_plain = |value: &&Value| number(value).is_some() || value.is_array();
+            let old = before
+                .get(key)
+                .filter(is_plain)
+                .filter(|_| is_plain(&value));
+            let old = old.map(|old| format!(", not {}", written(old)));
+            let old = old.unwrap_or_default();
             format!("{name}.{key} {}{old}", written(value))
         })
         .collect();
