@@ -1,6 +1,7 @@
 //! The output of an export: a file that appears only once it is complete, or a stream.
 
 use crate::text::printable::Shown;
+use crate::text::unwritten;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
@@ -55,7 +56,7 @@ pub enum DestinationError {
         folder: PathBuf,
     },
     /// The system reported an error.
-    #[error("cannot write {}: {error}", Shown(path))]
+    #[error("cannot write {}: {}", Shown(path), unwritten::why(error))]
     Refused {
         /// The path of the output.
         path: PathBuf,

@@ -144,13 +144,19 @@ impl Summary {
             let why = "without a load the axle goes round L, and no spin is too small to stand";
             return writeln!(f, "  steady        {why}");
         }
-        let [slow, fast] = [theory.slow_precession, theory.fast_precession]
-            .map(|rate| rate.map_or("none".to_owned(), |rate| fixed(rate, 6)));
         let about = about(axis);
-        writeln!(
-            f,
-            "  steady        precession of {slow} (slow) or {fast} (fast) rad/s at this tilt{about}"
-        )?;
+        let [slow, fast] = [theory.slow_precession, theory.fast_precession];
+        let steady = match (slow, fast) {
+            (None, None) => {
+                "none at this tilt: the top is too slow for a steady precession".to_owned()
+            }
+            _ => {
+                let [slow, fast] =
+                    [slow, fast].map(|rate| rate.map_or("none".to_owned(), |rate| fixed(rate, 6)));
+                format!("precession of {slow} (slow) or {fast} (fast) rad/s at this tilt")
+            }
+        };
+        writeln!(f, "  steady        {steady}{about}")?;
         let spin = self.readouts.spin;
         let sleeps = if spin.abs() > theory.sleeping_limit {
             "it would"
@@ -243,7 +249,9 @@ impl Comparison {
             None if readouts.health.slowing.is_some() => {
                 format!("none by theory, as friction changes it, {measured}")
             }
-            None if readouts.kappa.is_none() => format!("lopsided by theory, {measured}"),
+            None if readouts.kappa.is_none() => {
+                format!("none by theory, which is of symmetric bodies, {measured}")
+            }
             None => format!("none by theory{about}, {measured}"),
         }
     }

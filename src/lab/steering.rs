@@ -243,9 +243,9 @@ impl Lab {
         }
     }
 
-    /// Closes or stops the first of these that there is: what lies on top, the script, the steps asked for, the cursor,
-    /// the pane that fills the screen, the focus on the parameters, the export, the step pane in focus. If there is none of these, it says how
-    /// to leave, unless the key has already removed a message or a count.
+    /// Closes or stops the first of these that there is: what lies on top, the script, the steps asked for, the cursor, the
+    /// pane that fills the screen, the focus on the parameters, the export, the step pane in focus. If there is none of these,
+    /// it says how to leave, unless the key has already removed a message or a count.
     fn close(&mut self, cleared: &Cleared) -> Option<Request> {
         let is_found = self.on_top.mode() == Mode::Find;
         let is_filtered = self.on_top.mode() == Mode::Lab && self.view.focus == Pane::PARAMETERS;

@@ -76,8 +76,7 @@ impl Head {
     /// When there is none, or it is not text.
     pub fn run_file(&self) -> Result<String, Problem> {
         if self.comments().is_empty() {
-            let rule =
-                "is a CSV with no run file in its header, the \"# \" lines that gyrolab writes";
+            let rule = "is a CSV with no run file in its header, the \"# \" lines that gyrolab writes, and other programs drop: name the file as gyrolab wrote it";
             return Err(Problem::at("", rule));
         }
         let lines = utf8(self.comments().to_vec())?;

@@ -6,6 +6,7 @@
 //! - [`shipped`]: files that come with the program.
 //! - [`mod@unit`]: units at the end of names.
 //! - [`unread`]: why a file cannot be read.
+//! - [`unwritten`]: why a file cannot be written.
 //! - [`wrap`]: text in lines of a width.
 
 pub mod ladder;
@@ -14,4 +15,5 @@ pub mod printable;
 pub mod shipped;
 pub mod unit;
 pub mod unread;
+pub mod unwritten;
 pub mod wrap;

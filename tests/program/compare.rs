@@ -466,3 +466,23 @@ fn time_steps_that_cannot_be_counted_are_refused_with_a_remedy() {
         "{stderr}"
     );
 }
+
+#[test]
+fn runs_that_break_down_are_told_below_the_table() {
+    let lab = Ground::new();
+    let told = |scheme: &str| {
+        let table = done(lab.run(&[
+            "compare",
+            "method-2",
+            "--duration",
+            "1",
+            "--schemes",
+            scheme,
+        ]));
+        String::from_utf8(table.stdout)
+            .unwrap()
+            .contains("the run broke down")
+    };
+    assert!(told("rk4"));
+    assert!(!told("srkn11b"));
+}

@@ -96,7 +96,7 @@ fn cause(health: &Health) -> String {
         }
         _ if psi >= TOO_FAR_RAD => {
             format!(
-                "the body turns {turns} times in a time step, more than the scheme {name} can follow"
+                "the body turns {turns} times in a time step, more than the scheme {name} can follow with this body"
             )
         }
         _ if health.scheme.order.is_none() => {
