@@ -28,7 +28,8 @@ use std::sync::Arc;
 
 #[derive(Debug, Args)]
 pub(super) struct FigureArgs {
-    /// Presets' names, or files (.toml or .csv): what gyrolab run takes, or the CSV of compare, of a sweep or of a fit
+    /// Presets' names, or files (.toml or .csv): what gyrolab run takes, or the CSV of compare, of a sweep or of a fit.
+    /// Of compare the slope is told where the error falls evenly over three time steps or more
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<String>,
 

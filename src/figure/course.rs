@@ -2,6 +2,7 @@
 
 use super::kind::Plotted;
 use super::over_time::OverTime;
+use crate::analysis::Beside;
 use crate::export::stream::{self, Ended};
 use crate::physics::State;
 use crate::physics::exact::LagrangeTop;
@@ -39,6 +40,8 @@ pub struct Course {
     pub is_empty: bool,
     /// Where its numbers stopped being finite, if they did.
     pub broke: Option<NotFinite>,
+    /// How far its traced point has been off the exact motion at most, m; `None` where it was not held against that.
+    pub most_off_m: Option<f64>,
 }
 
 /// So many points of a path are kept, all of them. Of a longer one, those that reach places of its picture where it has not
@@ -71,10 +74,15 @@ pub struct Recorder {
 impl Recorder {
     /// A recorder of what is `wanted` of the run of `scenario`, before its start.
     pub fn new(scenario: &Arc<Scenario>, wanted: Wanted) -> Self {
+        Self::of_moments(scenario, wanted, scenario.least_time_step_s())
+    }
+
+    /// The same of moments that are about `apart_s` apart, s.
+    fn of_moments(scenario: &Arc<Scenario>, wanted: Wanted, apart_s: f64) -> Self {
         Self {
             stretch_end_s: wanted.end_s(scenario),
             places: Places::new(scenario.arm_m()),
-            curves: vec![OverTime::new(scenario.least_time_step_s()); wanted.columns.len()],
+            curves: vec![OverTime::new(apart_s); wanted.columns.len()],
             path: Vec::new(),
             end_s: 0.0,
             is_empty: true,
@@ -128,6 +136,7 @@ impl Recorder {
                 end_s: self.end_s,
                 is_empty: self.is_empty,
                 broke,
+                most_off_m: None,
             },
             wanted: self.wanted,
         }
@@ -164,6 +173,7 @@ impl Recorded {
             end_s: self.course.end_s.min(end_s),
             is_empty: self.course.is_empty,
             broke: self.course.broke,
+            most_off_m: self.course.most_off_m,
         })
     }
 }
@@ -216,8 +226,12 @@ pub fn play(
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let mut recorder = Recorder::new(scenario, wanted.clone());
     let last = Simulation::step_at(scenario, wanted.end_s(scenario)).min(scenario.steps);
+    let mut beside = Beside::new(scenario);
     recorder.follow(simulation.now());
-    let each = |step: &Step| recorder.follow(step);
+    let each = |step: &Step| {
+        recorder.follow(step);
+        beside.hold(step.after());
+    };
     let ended = stream::play::<io::Sink>(&mut simulation, last, None, each, |progress| {
         watch(progress.step, progress.steps)
     });
@@ -226,7 +240,11 @@ pub fn play(
         Ok((Ended::NotFinite(error), _)) => Some(error),
         Ok((Ended::Done, _)) | Err(_) => None, // nothing is written that could fail
     };
-    Some(recorder.end(broke).course)
+    beside.settle();
+    Some(Course {
+        most_off_m: beside.is_known().then(|| beside.most_distance_m()),
+        ..recorder.end(broke).course
+    })
 }
 
 /// Moments of the exact motion within the shortest of its periods that is known, and at least over the whole stretch; and at
@@ -242,7 +260,6 @@ pub fn exact(
     mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> Option<Course> {
     let mut truth = Truth::new(Arc::clone(scenario));
-    let mut recorder = Recorder::new(scenario, wanted.clone());
     // The azimuth is counted on from the start, and nothing else needs what came before.
     let is_counted = wanted
         .columns
@@ -262,6 +279,8 @@ pub fn exact(
     let fine_s = period_s.map_or(f64::INFINITY, |period_s| period_s / A_PERIOD);
     let apart_s = fine_s.min(scenario.motion.time_step_s);
     let count = ((end_s - begin_s) / apart_s).ceil().clamp(LEAST, MOST) as u64;
+    let apart_s = (end_s - begin_s) / count as f64;
+    let mut recorder = Recorder::of_moments(scenario, wanted.clone(), apart_s);
     let mut azimuth = Azimuth::start(&scenario.start.axle());
     for number in 0..=count {
         let time_s = begin_s + (end_s - begin_s) * (number as f64 / count as f64);

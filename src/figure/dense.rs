@@ -34,7 +34,7 @@ impl fmt::Display for Dense {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "on {} mm {} cover the paper: there the figure is solid black; {} shows a part of it",
+            "on {} mm {} cover the paper, so that nothing of them is told apart; {} shows a part",
             self.width_mm,
             self.what,
             self.options()
@@ -106,8 +106,24 @@ const INSIDE: usize = 3;
 const LINE_PT: f64 = 0.9;
 const LOOSE: f64 = 0.3;
 
+/// As [`warning`], of the paths of `drawn`, the points of which stand at `places` on the page: of the runs, and where none of
+/// them is dense, of the exact motion.
+pub(super) fn of_paths(
+    drawn: &[Drawn],
+    request: &Request,
+    places: impl Fn(&Drawn) -> Vec<Point>,
+) -> Option<Dense> {
+    let earliest = |is_exact: bool| {
+        let drawn = drawn.iter().filter(|drawn| drawn.is_exact == is_exact);
+        let dense =
+            drawn.filter_map(|drawn| path_warning(&places(drawn), drawn.course.end_s, request));
+        dense.min_by(|a, b| a.to_s.total_cmp(&b.to_s))
+    };
+    earliest(false).or_else(|| earliest(true))
+}
+
 /// As [`warning`], of a path whose points stand at `places` on the page, in the order of time up to `end_s`.
-pub(super) fn path_warning(places: &[Point], end_s: f64, request: &Request) -> Option<Dense> {
+fn path_warning(places: &[Point], end_s: f64, request: &Request) -> Option<Dense> {
     if places.len() < 2000 {
         return None;
     }

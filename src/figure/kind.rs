@@ -145,7 +145,7 @@ fn column(name: &str) -> Result<Plotted, String> {
         }
         None => {
             let near = problem::nearest(name, known);
-            format!("is neither traces, above, 3d, residuals nor a column of the CSV: {near}")
+            format!("is no kind of figure (traces, above, 3d, residuals) and no column of the CSV: {near}")
         }
     })
 }

@@ -22,6 +22,9 @@ use std::sync::Arc;
 /// The room before the first and after the last residual, of the time between them.
 const MARGIN: f64 = 0.02;
 
+/// The room before a first and after a last point that would stand on the frame, of the time that is drawn.
+const BESIDE_POINTS: f64 = 0.015;
+
 /// Adds the points to the panels of `columns`, and the time in which they were measured to the axis of the time. Returns
 /// what is to be said where no panel shows what was measured.
 ///
@@ -55,6 +58,21 @@ pub(super) fn over_time(
             range.1 = range.1.max(last);
         }
         drawn_on.push((index, shown));
+    }
+    let times = || {
+        drawn_on
+            .iter()
+            .flat_map(|(_, shown)| shown.iter().map(|(at, _)| at[0]))
+    };
+    if let Some((begin, end)) = &mut chart.x.range {
+        // A point on the frame has its error bar on it too.
+        let room = BESIDE_POINTS * (*end - *begin);
+        if times().any(|time| time < *begin + room) {
+            *begin -= room;
+        }
+        if times().any(|time| time > *end - room) {
+            *end += room;
+        }
     }
     let count = drawn_on.iter().map(|(_, shown)| shown.len()).sum();
     for (index, shown) in drawn_on {
@@ -116,7 +134,7 @@ pub(super) fn above(
     };
     if let [panel] = &mut chart.panels[..] {
         panel.series.push(added);
-        let (x, y) = both_ranges(&panel.series, &panel.circles.radii, size::of(runs, "x_m"));
+        let (x, y) = both_ranges(&panel.series, size::of(runs, "x_m"));
         (chart.x.range, panel.y.range) = (Some(x), Some(y));
     }
     Ok(None)

@@ -4,7 +4,7 @@
 //! - [`chart`]: what a figure with axes shows, and its place on a page.
 //! - [`of_runs`]: figures of runs: their curves over time, from above and in space. [`kind`] has the names of these,
 //!   [`course`] takes the numbers from stepping through the runs ([`over_time`]: those of a curve, in bounded memory),
-//!   `measured` draws what was measured with them, [`dense`] finds the figures that would be solid black, `chords` those
+//!   `measured` draws what was measured with them, [`dense`] finds the figures that would be solid ink, `chords` those
 //!   whose paths have too few points, `size` tells what of a curve is rounding.
 //!   `request` says what is asked for, and `drawn` what a figure is once it is drawn.
 //! - [`of_table`]: figures of a comparison, of a sweep or of a fit, read by [`table`].

@@ -2,10 +2,10 @@
 
 pub(super) mod charts;
 
-use super::chart::Style;
 use super::chart::legend::longest_name;
+use super::chart::{KINDS_OF_LINE, Style};
 use super::chords;
-use super::course::{self, Wanted};
+use super::course::{self, Course, Wanted};
 use super::dense;
 pub use super::drawn::Figure;
 use super::kind::Kind;
@@ -15,7 +15,9 @@ use super::page::letters;
 use super::request::Drawn;
 pub use super::request::{Known, Request, Run};
 use super::space;
+use crate::analysis::health::BELIEVED_WITHIN;
 use crate::scenario::Scenario;
+use crate::text::number::{short, shortest};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -96,7 +98,7 @@ fn play(
     check_range(runs, request)?;
     let wanted = wanted(request, kinds);
     let mut broke = None;
-    let mut drawn = Vec::new();
+    let (mut drawn, mut warnings) = (Vec::new(), Vec::new());
     let named = names(runs, request.is_beside(), longest_name(request.width_pt));
     for (index, (run, name)) in runs.iter().zip(named).enumerate() {
         let recorded = known.recorded.as_ref();
@@ -108,14 +110,16 @@ fn play(
         if let Some(error) = course.broke {
             broke.get_or_insert_with(|| format!("{}: {error}", run.named));
         }
+        warnings.extend(not_believed(run, &course, request.exact));
         let style = Style::curve(index);
         drawn.push(Drawn {
             name,
             style,
+            few_a_turn: chords::points_a_turn(&course.path),
             course,
+            is_exact: false,
         });
     }
-    let mut warnings = Vec::new();
     if request.exact {
         let is_exact = |run: &Run| is_exact(&run.scenario);
         warnings.extend(runs.iter().any(is_exact).then(|| IS_EXACT.to_owned()));
@@ -130,10 +134,13 @@ fn play(
             drawn.push(Drawn {
                 name,
                 style,
+                few_a_turn: chords::points_a_turn(&course.path),
                 course,
+                is_exact: true,
             });
         }
     }
+    warnings.extend(look_alike(&drawn));
     if drawn.iter().all(|drawn| drawn.course.is_empty) {
         return Err(match broke {
             Some(error) => error,
@@ -248,6 +255,33 @@ fn title(runs: &[Run]) -> String {
         }
     }
     titles.join("; ")
+}
+
+/// What is said of `run` where its traced point was too far off the exact motion to be believed.
+fn not_believed(run: &Run, course: &Course, exact: bool) -> Option<String> {
+    let (most_m, arm_m) = (course.most_off_m?, run.scenario.arm_m());
+    (most_m > BELIEVED_WITHIN * arm_m).then(|| {
+        format!(
+            "do not believe {} with the scheme {} at {} s: its traced point is up to {} m ({} % of its arm) off the exact motion{}",
+            run.named,
+            run.scenario.motion.scheme.name,
+            shortest(run.scenario.motion.time_step_s),
+            short(most_m),
+            short(100.0 * most_m / arm_m),
+            if exact { "" } else { "; --exact draws that beside it" }
+        )
+    })
+}
+
+/// What is said of more curves than there are kinds of line.
+fn look_alike(drawn: &[Drawn]) -> Option<String> {
+    let repeated = drawn.get(KINDS_OF_LINE)?;
+    Some(format!(
+        "{} curves have {KINDS_OF_LINE} kinds of line: {} looks like {}, and those after it like the next ones; fewer curves in a figure are told apart",
+        drawn.len(),
+        repeated.name,
+        drawn[0].name
+    ))
 }
 
 /// Whether every step of `scenario` is the exact motion's.

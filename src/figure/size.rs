@@ -11,6 +11,15 @@ pub(super) fn of(runs: &[Run], name: &str) -> f64 {
     sizes.filter(|size| size.is_finite()).fold(0.0, f64::max)
 }
 
+/// The part of its size below which a difference of the column or quantity `name` is drawn flat. Drawn as high as the page, an
+/// error of the scheme in the eighth digit of a position or an angle looks like a motion.
+pub(super) fn flat_below(name: &str) -> f64 {
+    match name {
+        "x_m" | "y_m" | "z_m" | "tilt_deg" | "azimuth_deg" => 1e-7,
+        _ => 0.0,
+    }
+}
+
 /// That of a run of `scenario`: the traced point's arm, one radian, or what the start has of the quantity.
 fn of_run(scenario: &Scenario, name: &str) -> f64 {
     let (body, state) = (&scenario.body.mechanics, &scenario.start);

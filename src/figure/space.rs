@@ -5,11 +5,11 @@
 
 mod path;
 
-use super::chart::Axis;
 use super::chart::curve;
 use super::chart::layout::EDGE;
 use super::chart::legend::Legend;
 use super::chart::ticks::{Tick, Ticks};
+use super::chart::{Axis, Style};
 use super::chords;
 use super::dense::{self, Dense};
 use super::page::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
@@ -61,20 +61,20 @@ pub(super) fn scene(
         ranges: ranges(drawn, size::of(runs, "z_m")),
         side_pt: 0.5 * width_pt,
     };
-    let names: Vec<_> = drawn.iter().map(chords::name).collect();
-    let series = names.iter().zip(drawn);
-    let series = series.map(|(name, drawn)| (name.as_str(), &drawn.style));
+    let named: Vec<_> = drawn.iter().map(chords::as_drawn).collect();
+    let series = named.iter().map(|(name, style)| (name.as_str(), style));
     let legend = Legend::new(series, space.stretched().as_deref());
     // The labels do not grow with the box: the room that is left over tells how much larger it may be. All paths are in it.
     for _ in 0..4 {
-        let (left, _, right, _) = extent(&space.draw(&[]));
+        let (left, _, right, _) = extent(&space.draw(&[], &[]));
         let over = right - left - (width_pt - 2.0 * EDGE);
         space.side_pt = (space.side_pt - over / 1.45).max(0.1 * width_pt);
         if over.abs() < 0.2 {
             break;
         }
     }
-    let mut items = space.draw(drawn);
+    let styles: Vec<_> = named.iter().map(|(_, style)| style.clone()).collect();
+    let mut items = space.draw(drawn, &styles);
     let (left, top, right, bottom) = extent(&items);
     let above = legend.height_above(width_pt) + EDGE;
     let shift = at(0.5 * (width_pt - left - right), above - top);
@@ -85,12 +85,10 @@ pub(super) fn scene(
     items.width_pt = width_pt;
     items.height_pt = above + bottom - top + EDGE;
     legend.draw_above(width_pt, EDGE, &mut items);
-    let dense = drawn.iter().filter_map(|drawn| {
+    let dense = dense::of_paths(drawn, request, |drawn| {
         let path = drawn.course.path.iter();
-        let places: Vec<_> = path.map(|at| space.place(&space.boxed(at))).collect();
-        dense::path_warning(&places, drawn.course.end_s, request)
+        path.map(|at| space.place(&space.boxed(at))).collect()
     });
-    let dense = dense.min_by(|a, b| a.to_s.total_cmp(&b.to_s));
     (items, dense)
 }
 
@@ -110,6 +108,7 @@ fn ranges(drawn: &[Drawn], size: f64) -> [(f64, f64); 3] {
         let values = drawn.iter().flat_map(|drawn| drawn.course.path.iter());
         let axis = Axis {
             size,
+            flat_below: size::flat_below("z_m"),
             ..Axis::default()
         };
         axis.range_of(values.map(|point| point[index]))
@@ -173,28 +172,28 @@ impl Space {
         }
     }
 
-    fn draw(&self, drawn: &[Drawn]) -> Scene {
+    /// The box with the paths of `drawn`, each in one of `styles`.
+    fn draw(&self, drawn: &[Drawn], styles: &[Style]) -> Scene {
         let mut scene = Scene::new(0.0, 0.0, "");
         let edges = [self.edge(0), self.edge(1), self.edge(2)];
         let ticks = [0, 1, 2].map(|axis| self.ticks(axis, &edges[axis]));
         self.walls(&ticks, &mut scene);
-        for drawn in drawn {
+        for (drawn, style) in drawn.iter().zip(styles) {
             let floor = |point: &[f64; 3]| {
                 let mut boxed = self.boxed(point);
                 boxed.z = -0.5 * TALL;
                 self.place(&boxed)
             };
             let shadow = drawn.course.path.iter().map(|point| (floor(point), 0.0));
-            let shadow = path::fresh(shadow.collect()).into_iter();
+            let shadow = path::fresh(shadow.collect(), path::PLACE_PT).into_iter();
             let shadow = shadow.map(|piece| piece.into_iter().map(|(place, _)| place).collect());
-            curve::put(
-                &shadow.collect::<Vec<_>>(),
-                &round(0.45, grey(198)),
-                None,
-                &mut scene,
-            );
+            let shadow: Vec<Vec<_>> = match style.is_dots {
+                true => curve::dots(shadow.flat_map(|piece: Vec<_>| piece)),
+                false => shadow.collect(),
+            };
+            curve::put(&shadow, &round(0.45, grey(198)), None, &mut scene);
         }
-        self.paths(drawn, &mut scene);
+        self.paths(drawn, styles, &mut scene);
         for axis in 0..3 {
             self.axis(axis, &edges[axis], &ticks[axis], &mut scene);
         }

@@ -286,17 +286,23 @@ fn the_exact_motion_is_dashed_and_named() {
 }
 
 #[test]
-fn a_path_of_few_steps_a_turn_says_that_its_line_is_made_of_chords() {
+fn a_path_of_few_steps_a_turn_is_drawn_as_points() {
     let exact = |kind: &str| Request {
         exact: true,
         ..request(kind)
     };
     for kind in ["above", "3d"] {
         let coarse = drawn(&[run("method-1", &["motion.steps=200"])], &exact(kind));
-        says(&coarse.scene, &["report, points joined", "exact"]);
+        says(&coarse.scene, &["report, every step", "exact"]);
         let told = coarse.told().collect::<Vec<_>>();
         let told = told.join("; ");
-        assert!(told.contains("joins points, about 10 to a turn"), "{told}");
+        assert!(told.contains("about 10 time steps for a turn"), "{told}");
+        // Nothing is drawn from one step to the next.
+        let is_dot = |item: &&Item| matches!(&item.paint, Paint::Stroke(pen) if pen.width_pt >= 0.5 && pen.dash_pt.is_empty());
+        let dots = coarse.scene.items.iter().filter(is_dot).map(extent);
+        let dots =
+            dots.filter(|[left, top, right, bottom]| right - left < 0.03 && bottom - top < 0.03);
+        assert!(dots.count() >= 200, "{kind}");
         let fine = drawn(&[run("cusps", &[])], &exact(kind));
         says(&fine.scene, &["rk4", "exact"]);
         assert_eq!(fine.told().next(), None);
@@ -316,27 +322,19 @@ fn the_circles_of_the_exact_motion_have_a_name_that_hides_none_of_them() {
         };
         let figure = drawn(&[run(preset, &["motion.steps=300"])], &asked);
         says(&figure.scene, &[name]);
-        let circle =
-            |item: &&Item| matches!(item.paint, Paint::Stroke(ref pen) if pen.width_pt == 0.4);
+        let circle = |item: &&Item| {
+            item.clip.is_some()
+                && matches!(item.paint, Paint::Stroke(ref pen) if pen.width_pt == 0.4)
+        };
         let white = |item: &&Item| matches!(item.paint, Paint::Fill(color) if color == WHITE);
         let circles: Vec<_> = figure.scene.items.iter().filter(circle).collect();
         assert!(!circles.is_empty(), "{preset}");
         for legend in figure.scene.items.iter().filter(white).map(extent) {
             for circle in &circles {
-                let [left, top, right, bottom] = extent(circle);
-                let (x, y, radius) = (
-                    0.5 * (left + right),
-                    0.5 * (top + bottom),
-                    0.5 * (right - left),
-                );
-                let on_circle = (0..720).map(|part| {
-                    let angle = f64::from(part).to_radians() * 0.5;
-                    (x + radius * angle.cos(), y + radius * angle.sin())
-                });
-                let is_hidden = |(x, y): (f64, f64)| {
-                    (legend[0]..=legend[2]).contains(&x) && (legend[1]..=legend[3]).contains(&y)
+                let is_hidden = |p: Point| {
+                    (legend[0]..=legend[2]).contains(&p.x) && (legend[1]..=legend[3]).contains(&p.y)
                 };
-                assert!(!{ on_circle }.any(is_hidden), "{preset}");
+                assert!(!circle.path.points().any(is_hidden), "{preset}");
             }
         }
     }
@@ -502,13 +500,12 @@ fn rounding_is_drawn_as_a_flat_line() {
 fn a_black_figure_proposes_a_stretch_that_is_not() {
     for (name, kind) in [
         ("method-1", "traces"),
-        ("method-1", "above"),
         ("method-2-slow", "3d"),
         ("fast-top", "3d"),
     ] {
         let runs = [run(name, &[])];
         let figure = drawn(&runs, &request(kind));
-        let is_of_chords = |told: &String| told.contains("joins points");
+        let is_of_chords = |told: &String| told.contains("drawn as points");
         let told = |figure: &Figure| -> Vec<String> {
             let told = figure.told().map(|told| told.to_string());
             told.filter(|told| !is_of_chords(told)).collect()
@@ -516,7 +513,10 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
         let [warning] = &told(&figure)[..] else {
             panic!("{name} {kind}: {:?}", figure.warnings)
         };
-        assert!(warning.contains("solid black"), "{warning}");
+        assert!(
+            warning.contains("nothing of them is told apart"),
+            "{warning}"
+        );
         let (_, proposed) = warning.split_once("--to ").unwrap();
         let to_s: f64 = proposed.split(' ').next().unwrap().parse().unwrap();
         let part = Request {
@@ -532,8 +532,84 @@ fn a_black_figure_proposes_a_stretch_that_is_not() {
         ("cusps", "3d"),
     ] {
         let figure = drawn(&[run(name, &[])], &request(kind));
-        assert_eq!(figure.told().next(), None, "{name} {kind}");
+        assert_eq!(figure.dense, None, "{name} {kind}");
     }
+}
+
+#[test]
+fn a_run_that_is_not_to_be_believed_is_told() {
+    let told = |scenario: &[Run], asked: &Request| -> Vec<String> {
+        let figure = drawn(scenario, asked);
+        figure.told().map(|told| told.to_string()).collect()
+    };
+    let exact = Request {
+        exact: true,
+        ..request("tilt_deg")
+    };
+    for asked in [request("traces"), request("above"), exact] {
+        let told = told(&[run("wobble-push", &[]), run("cusps", &[])], &asked);
+        let [only] = &told[..] else {
+            panic!("{told:?}")
+        };
+        let begin = "do not believe wobble-push with the scheme report at 0.1 s: its traced point is up to 0.389 m (34.4 % of its arm)";
+        assert!(only.starts_with(begin), "{only}");
+        assert_eq!(only.contains("--exact draws that"), !asked.exact);
+    }
+}
+
+#[test]
+fn more_curves_than_kinds_of_line_are_told() {
+    let runs = |count: usize| -> Vec<Run> {
+        let names = [
+            "cusps",
+            "loops",
+            "waves",
+            "steady-slow",
+            "steady-fast",
+            "falling",
+            "sleeping",
+        ];
+        let names = names.iter().take(count);
+        names.map(|name| run(name, &["motion.steps=20"])).collect()
+    };
+    assert_eq!(drawn(&runs(6), &request("tilt_deg")).told().next(), None);
+    let seven = drawn(&runs(7), &request("tilt_deg"));
+    let told: Vec<_> = seven.told().map(|told| told.to_string()).collect();
+    assert!(
+        told.len() == 1 && told[0].contains("A sleeping top looks like Cusps"),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn an_error_in_the_last_digits_is_drawn_flat() {
+    // A steady precession keeps its tilt; the scheme changes it in the tenth digit.
+    let runs = [run("steady-slow", &[])];
+    for kind in ["tilt_deg", "3d", "traces"] {
+        let figure = drawn(&runs, &request(kind));
+        let words = words(&figure.scene);
+        assert!(!words.iter().any(|word| word.contains("10⁻")), "{words:?}");
+    }
+}
+
+#[test]
+fn the_exact_motion_is_a_smooth_curve_beside_few_steps() {
+    let asked = Request {
+        exact: true,
+        from_s: 0.5,
+        to_s: Some(0.52),
+        ..request("z_m")
+    };
+    let figure = drawn(&[run("method-1", &[])], &asked);
+    let panel = panels(&figure.scene)[0];
+    let lines = lines(&figure.scene, panel);
+    let exact = lines.iter().filter(|line| match &line.paint {
+        Paint::Stroke(pen) => !pen.dash_pt.is_empty(),
+        Paint::Fill(_) => false,
+    });
+    // 0.02 s are two nutations, of 20 steps.
+    let points: usize = exact.map(|line| line.path.points().count()).sum();
+    assert!(points > 200, "{points}");
 }
 
 #[test]
@@ -711,7 +787,29 @@ fn a_comparison_shows_its_slope() {
     assert!(told[0].starts_with("1 of 4 time steps of exact have no point"));
     assert!(of_table::warnings(&table(COMPARISON), &["energy_drift"]).is_empty());
     let other = of_table::chart(&table(COMPARISON), &["energy_drift"], COLUMN_PT).unwrap();
-    says(&other.scene(), &["energy drift"]);
+    says(&other.scene(), &["relative energy drift"]);
+    // A scheme without any error has no place on a logarithmic axis.
+    let none = COMPARISON
+        .replace("3e-15", "0")
+        .replace("4e-15", "0")
+        .replace("40,n/a", "40,0");
+    let told = of_table::warnings(&table(&none), &[]);
+    assert!(
+        told.len() == 1 && told[0].starts_with("exact has no points: they are 0"),
+        "{told:?}"
+    );
+    let names = |text: &str| {
+        of_table::chart(&table(text), &[], COLUMN_PT)
+            .unwrap()
+            .panels[0]
+            .series[1]
+            .name
+            .clone()
+    };
+    assert_eq!(
+        (names(COMPARISON).as_str(), names(&none).as_str()),
+        ("exact", "")
+    );
     let wrong = of_table::chart(&table(COMPARISON), &["eror_m"], COLUMN_PT).unwrap_err();
     assert!(wrong.contains("error_m"), "{wrong}");
 }

@@ -13,14 +13,25 @@ fn a_line_of_theory_with_gaps_says_where_they_are_explained() {
     assert_eq!(
         told,
         [
-            "the line of predicted_precession_rad_per_s has gaps: in 1 of 4 rows theory states no value, for a reason that gyrolab man numbers gives"
+            "the line of predicted_precession_rad_per_s has gaps: in 1 of 4 rows theory states no value, for a reason that gyrolab man numbers gives",
+            "there is no measured_precession_rad_per_s in 1 of 4 rows: no point is drawn for them",
         ]
     );
     let measured = ["measured_precession_rad_per_s"];
-    assert!(of_table::warnings(&table(&gappy), &measured).is_empty());
-    assert!(of_table::warnings(&table(SWEEP), &[]).is_empty());
+    assert_eq!(of_table::warnings(&table(&gappy), &measured), told[1..]);
+    let whole = SWEEP.replace("30,,,0.87,\n", "");
+    assert!(of_table::warnings(&table(&whole), &[]).is_empty());
+    // A logarithmic axis does not show 0.
+    let zero = whole
+        .replace("0.90,0.01", "0,0.01")
+        .replace("0.88,0.02", "900,0.02");
+    let told = of_table::warnings(&table(&zero), &measured);
+    assert!(
+        told.len() == 1 && told[0].starts_with("in 1 of 3 rows"),
+        "{told:?}"
+    );
     let names = |text: &str| chart(text).panels[0].series[0].name.clone();
-    assert_eq!(names(&gappy), "theory (gaps: none stated)");
+    assert_eq!(names(&gappy), "theory (gaps: no prediction)");
     assert_eq!(names(SWEEP), "theory");
 }
 
@@ -76,7 +87,7 @@ fn a_sweep_shows_measured_points_with_bars_on_the_predicted_line() {
         &[
             "theory",
             "measured",
-            "uncertainties of reading the run (not the scheme's errors) smaller than marks",
+            "errors of reading the run smaller than marks where no bar is drawn",
             "θ₀ (°)",
         ],
     );

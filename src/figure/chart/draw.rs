@@ -5,9 +5,11 @@ use super::legend::Legend;
 use super::slope;
 use super::ticks::Ticks;
 use super::{Chart, Circles, Panel, Series};
-use crate::figure::page::ink::{self, BLACK, LABEL_PT, MARK_PT, at, circle, pen};
+use crate::figure::page::clip::clipped;
+use crate::figure::page::ink::{self, BLACK, Frame, LABEL_PT, at, pen};
 use crate::figure::page::letters;
-use crate::figure::page::scene::Scene;
+use crate::figure::page::scene::{Path, Point, Scene};
+use std::f64::consts::{PI, TAU};
 
 /// Width of axes, ticks and error bars, pt.
 const FRAME_PT: f64 = 0.5;
@@ -16,17 +18,24 @@ const TICK: f64 = 3.0;
 const MINOR_TICK: f64 = 1.7;
 /// Half the width of the ends of an error bar, pt.
 const BAR_END: f64 = 1.7;
+/// An error bar from end to end that the lowest of the marks covers, pt.
+const COVERED_PT: f64 = 2.8;
 
 impl Chart {
     /// The chart on its page.
     pub fn scene(&self) -> Scene {
         let bare = Layout::new(self, 0.0);
         let known = if self.lacks_errors() { "known " } else { "" };
-        let remark = self.hides_errors(&bare).then(|| {
-            let errors = self.errors.words();
-            let remark = format!("{known}{errors} smaller than marks");
-            letters::shortened(&remark, LABEL_PT, self.width_pt - 2.0 * EDGE)
-        });
+        let errors = self.errors.words();
+        let remark = match self.bars_hidden(&bare) {
+            (0, _) => None,
+            (hidden, all) if hidden == all => Some(format!("{known}{errors} smaller than marks")),
+            _ => Some(format!(
+                "{known}{errors} smaller than marks where no bar is drawn"
+            )),
+        };
+        let remark =
+            remark.map(|remark| letters::shortened(&remark, LABEL_PT, self.width_pt - 2.0 * EDGE));
         let legend = Legend::of(self, remark.as_deref());
         let corner = legend.free_corner(self, &bare);
         let layout = match corner {
@@ -73,14 +82,14 @@ impl Chart {
         })
     }
 
-    /// Whether some error bar is too small to be drawn.
-    fn hides_errors(&self, layout: &Layout) -> bool {
+    /// How many error bars are too small to be drawn, and how many there are.
+    fn bars_hidden(&self, layout: &Layout) -> (usize, usize) {
         let panels = self.panels.iter().zip(&layout.panels);
-        let mut all = panels
+        let series = panels
             .flat_map(|(panel, placed)| panel.series.iter().map(move |series| (series, placed)));
-        all.any(|(series, placed)| {
-            let mut bars = placed.bars(series);
-            bars.any(|bar| bar.is_hidden)
+        let bars = series.flat_map(|(series, placed)| placed.bars(series));
+        bars.fold((0, 0), |(hidden, all), bar| {
+            (hidden + usize::from(bar.is_hidden), all + 1)
         })
     }
 }
@@ -109,7 +118,7 @@ impl Placed {
             let (top, bottom) = (limit(y(1.0)), limit(y(-1.0)));
             Bar {
                 x: self.x.place(point[0]),
-                is_hidden: bottom - top < 2.0 * MARK_PT + 0.6,
+                is_hidden: bottom - top < COVERED_PT,
                 top,
                 bottom,
             }
@@ -130,7 +139,7 @@ impl Placed {
             };
             (x(-1.0), x(1.0), self.y.place(point[1]))
         });
-        bars.filter(|(left, right, _)| right - left >= 2.0 * MARK_PT + 0.6)
+        bars.filter(|(left, right, _)| right - left >= COVERED_PT)
     }
 }
 
@@ -140,8 +149,9 @@ impl Panel {
         let to_page = |radius: f64| placed.x.place(radius) - placed.x.place(0.0);
         for &radius in &self.circles.radii {
             let middle = placed.place(&[0.0, 0.0]);
-            let ring = circle(middle, to_page(radius));
-            scene.stroke(ring, Circles::style().pen(), Some(frame));
+            for arc in arcs(middle, to_page(radius), frame) {
+                scene.stroke(Path::polyline(arc), Circles::style().pen(), Some(frame));
+            }
         }
         let points = |is_behind: bool, scene: &mut Scene| {
             let series = self.series.iter();
@@ -167,6 +177,22 @@ impl Panel {
             scene.write(&tick.label, LABEL_PT, place, 1.0);
         }
     }
+}
+
+/// The parts in `frame` of the circle of that radius (pt), as lines: it may be far larger than the page.
+fn arcs(middle: Point, radius_pt: f64, frame: &Frame) -> Vec<Vec<Point>> {
+    /// How far the lines are off it, pt, and how many there are at most.
+    const OFF_PT: f64 = 0.02;
+    const MOST: f64 = 1e5;
+    let count = (PI * (0.5 * radius_pt / OFF_PT).sqrt())
+        .ceil()
+        .clamp(8.0, MOST);
+    let places = (0..=count as u32).map(|number| {
+        let angle = TAU * f64::from(number) / count;
+        let (x, y) = (libm::cos(angle), libm::sin(angle));
+        at(middle.x + radius_pt * x, middle.y + radius_pt * y)
+    });
+    clipped(places, frame)
 }
 
 /// The frame and its ticks, on all four sides, inwards.

@@ -172,6 +172,10 @@ impl Entry {
             let ends = [at(place.x, y), at(place.x + KEY, y)];
             let pen = Pen {
                 is_round: false,
+                dash_pt: match style.is_dots {
+                    true => vec![style.width_pt, 2.0 * style.width_pt],
+                    false => style.dash_pt.to_vec(),
+                },
                 ..style.pen()
             };
             scene.stroke(Path::polyline(ends), pen, None);

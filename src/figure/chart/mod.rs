@@ -1,10 +1,11 @@
 //! What a figure with axes shows, before anything of it has a place: panels one above the other over one axis.
 //!
 //! [`axis`] and [`ticks`] say what stands at an axis, [`layout`] gives the parts their places, and [`draw`] puts them on a
-//! page: [`curve`] the curves, [`legend`] their names, [`slope`] the triangle beside a power law.
+//! page: [`curve`] the curves with their [`dashes`], [`legend`] their names, [`slope`] the triangle beside a power law.
 
 pub mod axis;
 pub mod curve;
+pub mod dashes;
 pub mod draw;
 pub mod layout;
 pub mod legend;
@@ -47,7 +48,7 @@ impl Errors {
     pub fn words(self) -> &'static str {
         match self {
             Self::OfData => "errors",
-            Self::OfReading => "uncertainties of reading the run (not the scheme's errors)",
+            Self::OfReading => "errors of reading the run",
         }
     }
 }
@@ -65,6 +66,8 @@ pub struct Axis {
     pub range: Option<(f64, f64)>,
     /// How large the quantity is by its nature, in its unit: differences far below that are rounding. 0: not known.
     pub size: f64,
+    /// Differences below this part of that size are drawn flat, where it is more than rounding.
+    pub flat_below: f64,
 }
 
 /// Curves and points over one stretch of the axis below.
@@ -128,6 +131,8 @@ pub struct Style {
     pub mark: Option<Mark>,
     /// Whether its points are drawn behind all lines.
     pub is_behind: bool,
+    /// Whether its line is a dot at each of its points, which are not joined.
+    pub is_dots: bool,
 }
 
 impl Default for Style {
@@ -138,13 +143,17 @@ impl Default for Style {
             dash_pt: &[],
             mark: None,
             is_behind: false,
+            is_dots: false,
         }
     }
 }
 
+/// So many curves, or series of points, are told apart.
+pub const KINDS_OF_LINE: usize = 6;
+
 /// Colours that people with any colour vision tell apart (Okabe and Ito, 2008), in the order in which their greys, too, are
 /// told apart from the ones before.
-const COLORS: [Color; 6] = [
+const COLORS: [Color; KINDS_OF_LINE] = [
     BLACK,
     Color([213, 94, 0]),
     Color([0, 114, 178]),
@@ -153,7 +162,7 @@ const COLORS: [Color; 6] = [
     Color([204, 121, 167]),
 ];
 /// Strokes and gaps, pt.
-const DASHES: [&[f64]; 6] = [
+const DASHES: [&[f64]; KINDS_OF_LINE] = [
     &[],
     &[3.2, 1.6],
     &[1.0, 1.2],
@@ -161,7 +170,7 @@ const DASHES: [&[f64]; 6] = [
     &[6.5, 2.0],
     &[2.0, 1.0, 2.0, 3.0],
 ];
-const MARKS: [Mark; 6] = [
+const MARKS: [Mark; KINDS_OF_LINE] = [
     Mark::Dot,
     Mark::Square,
     Mark::Triangle,
@@ -169,6 +178,9 @@ const MARKS: [Mark; 6] = [
     Mark::Ring,
     Mark::Tip,
 ];
+
+/// Width of the dots of a path whose points are not joined, pt.
+const DOT_PT: f64 = 1.1;
 
 impl Style {
     /// The line of the curve `index` of several over time: colour, dashes and width tell them apart.
@@ -179,6 +191,7 @@ impl Style {
             width_pt: if index == 0 { 0.7 } else { 0.85 },
             mark: None,
             is_behind: false,
+            is_dots: false,
         }
     }
 
@@ -190,6 +203,7 @@ impl Style {
             dash_pt: DASHES[1],
             mark: None,
             is_behind: false,
+            is_dots: false,
         }
     }
 
@@ -212,6 +226,7 @@ impl Style {
             dash_pt: &[],
             mark: Some(MARKS[index % MARKS.len()]),
             is_behind: false,
+            is_dots: false,
         }
     }
 
@@ -256,6 +271,16 @@ impl Style {
         Self {
             mark: Some(Mark::Speck),
             ..Self::points(index)
+        }
+    }
+
+    /// The same with a dot at each point in place of a line.
+    pub fn as_dots(self) -> Self {
+        Self {
+            dash_pt: &[],
+            width_pt: DOT_PT,
+            is_dots: true,
+            ..self
         }
     }
 
@@ -334,10 +359,10 @@ impl Axis {
         }
         let largest = low.abs().max(high.abs());
         let span = high - low;
-        if span > ROUNDING * largest.max(self.size) {
+        if span > (ROUNDING * largest.max(self.size)).max(self.flat_below * self.size) {
             return (low - MARGIN * span, high + MARGIN * span);
         }
-        if largest <= ROUNDING * self.size {
+        if self.size > 0.0 && largest <= ROUNDING.max(self.flat_below) * self.size {
             // Zero, as well as the numbers tell it.
             return (-AROUND * self.size, AROUND * self.size);
         }

@@ -24,6 +24,7 @@ pub(super) fn over_time(
     let panel = |(place, column): (usize, &Plotted)| Panel {
         y: Axis {
             size: size::of(runs, column.name()),
+            flat_below: size::flat_below(column.name()),
             ..quantity::axis(column.name())
         },
         series: drawn
@@ -61,18 +62,21 @@ pub(super) fn over_time(
 
 /// The paths from above.
 pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Request) -> Chart {
-    let series = drawn.iter().map(|drawn| Series {
-        name: chords::name(drawn),
-        points: drawn.course.path.iter().map(|at| [at[0], at[1]]).collect(),
-        style: drawn.style.clone(),
-        ..Series::default()
+    let series = drawn.iter().map(|drawn| {
+        let (name, style) = chords::as_drawn(drawn);
+        Series {
+            name,
+            points: drawn.course.path.iter().map(|at| [at[0], at[1]]).collect(),
+            style,
+            ..Series::default()
+        }
     });
     let series: Vec<_> = series.collect();
     let circles = match (request.exact, runs) {
         (true, [run]) => circles(run),
         _ => Circles::default(),
     };
-    let (x, y) = both_ranges(&series, &circles.radii, size::of(runs, "x_m"));
+    let (x, y) = both_ranges(&series, size::of(runs, "x_m"));
     Chart {
         title,
         width_pt: request.width_pt,
@@ -98,12 +102,10 @@ pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Requ
 pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) -> Option<Dense> {
     let layout = Layout::new(chart, 0.0);
     let placed = layout.panels.first()?;
-    let series = &chart.panels.first()?.series;
-    let dense = drawn.iter().zip(series).filter_map(|(drawn, series)| {
-        let places: Vec<_> = series.points.iter().map(|at| placed.place(at)).collect();
-        dense::path_warning(&places, drawn.course.end_s, request)
-    });
-    dense.min_by(|a, b| a.to_s.total_cmp(&b.to_s))
+    dense::of_paths(drawn, request, |drawn| {
+        let path = drawn.course.path.iter();
+        path.map(|at| placed.place(&[at[0], at[1]])).collect()
+    })
 }
 
 /// The radii of the circles between which the exact motion of the traced point stays, from above, m; none where pushes or
@@ -137,20 +139,24 @@ fn circles(run: &Run) -> Circles {
 
 /// The stretches of both axes of paths of that `size`, m: one is never less than half of the other, so that a path along a
 /// line has a picture too.
-pub(in crate::figure) fn both_ranges(
-    series: &[Series],
-    circles: &[f64],
-    size: f64,
-) -> ((f64, f64), (f64, f64)) {
+pub(in crate::figure) fn both_ranges(series: &[Series], size: f64) -> ((f64, f64), (f64, f64)) {
     const LEAST: f64 = 0.5;
-    let ends = || circles.iter().flat_map(|radius| [-radius, *radius]);
     let range = |index: usize| {
-        let values = series.iter().flat_map(|series| &series.points);
+        let values = series.iter().flat_map(|series| {
+            let errors = [&series.errors_across, &series.errors][index];
+            let error = |place: usize| errors.get(place).copied().filter(|it| it.is_finite());
+            let points = series.points.iter().enumerate();
+            points.flat_map(move |(place, point)| {
+                let error = error(place).unwrap_or(0.0);
+                [point[index] - error, point[index] + error]
+            })
+        });
         let axis = Axis {
             size,
+            flat_below: size::flat_below("x_m"),
             ..Axis::default()
         };
-        axis.range_of(values.map(|point| point[index]).chain(ends()))
+        axis.range_of(values)
     };
     let (x, y) = (range(0), range(1));
     let least = LEAST * (x.1 - x.0).max(y.1 - y.0);

@@ -36,8 +36,13 @@ pub(super) fn drawn(
             let slope = slope.map(|(_, slope)| format!(", slope {}", significant(slope, 2)));
             let slope = ticks::with_minus(&slope.unwrap_or_default());
             let room = longest_name(width_pt) - ink::width(&slope, LABEL_PT);
+            let is_shown = points.iter().any(|point| point[1] > 0.0);
             Series {
-                name: letters::shortened(scheme, LABEL_PT, room) + &slope,
+                name: if !is_shown {
+                    String::new()
+                } else {
+                    letters::shortened(scheme, LABEL_PT, room) + &slope
+                },
                 points,
                 errors: Vec::new(),
                 errors_across: Vec::new(),
@@ -74,6 +79,17 @@ pub(super) fn missing(table: &Table, columns: &[&str]) -> Vec<String> {
                 .filter_map(|name| table.numbers(name));
             values.into_iter().any(|values| !values[**row].is_finite())
         };
+        let is_zero = |row: &&usize| {
+            let values = or_error(columns)
+                .iter()
+                .filter_map(|name| table.numbers(name));
+            values.into_iter().any(|values| values[**row] == 0.0)
+        };
+        if rows.iter().all(|row| is_zero(&row)) {
+            return Some(format!(
+                "{scheme} has no points: they are 0, which a logarithmic axis does not show"
+            ));
+        }
         let count = rows.iter().filter(is_missing).count();
         (count > 0).then(|| {
             format!(
@@ -97,17 +113,20 @@ fn or_error<'a>(columns: &'a [&'a str]) -> &'a [&'a str] {
 fn of_comparison(name: &str) -> Axis {
     match name {
         "error_m" => Axis::new("largest error", "m"),
+        "energy_drift" => Axis::new("relative energy drift", ""),
+        "L_axle_drift" => Axis::new("relative drift of *L*_{3}", ""),
+        "Lz_drift" => Axis::new("relative drift of *L*_{*z*}", ""),
         "ns_per_step" => Axis::new("cost of a step", "ns"),
         name => quantity::axis(name),
     }
 }
 
 /// The slope of a line of errors on logarithmic axes, and between how many pairs of points it was found: where the error falls
-/// evenly, from one slope to the next by a quarter of it at most, over three points or more. Of coarse steps it does not yet,
-/// and what no longer falls is rounding.
+/// evenly, from one slope to the next by an eighth of it at most, over three points or more; it is that from the first of them
+/// to the last. Of coarse steps it does not yet, and what no longer falls is rounding.
 fn slope(points: &[[f64; 2]]) -> Option<(usize, f64)> {
     const LEAST: f64 = 0.3;
-    const EVEN: f64 = 0.25;
+    const EVEN: f64 = 0.125;
     let is_sound = |point: &&[f64; 2]| point[0] > 0.0 && point[1] > 0.0 && point[1].is_finite();
     let points: Vec<_> = points.iter().filter(is_sound).collect();
     let slope = |pair: &[&[f64; 2]]| {
@@ -115,15 +134,17 @@ fn slope(points: &[[f64; 2]]) -> Option<(usize, f64)> {
     };
     let slopes: Vec<f64> = points.windows(2).map(slope).collect();
     let goes_on = |a: &f64, b: &f64| (a - b).abs() <= EVEN * a.max(*b);
-    let even = slopes
-        .chunk_by(goes_on)
-        .filter(|even| even.len() >= 2 && even.iter().all(|slope| *slope > LEAST));
+    let mut first = 0;
+    let even = slopes.chunk_by(goes_on).filter_map(|even| {
+        let place = first..first + even.len();
+        first = place.end;
+        (even.len() >= 2 && even.iter().all(|slope| *slope > LEAST)).then_some(place)
+    });
     // Of two that are as long, the one of the shorter steps, which come first.
-    let longest = even.rev().max_by_key(|even| even.len())?;
-    let mut sorted = longest.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let middle = sorted[sorted.len() / 2];
-    Some((sorted.len(), (middle * 10.0).round() / 10.0))
+    let even: Vec<_> = even.collect();
+    let longest = even.into_iter().rev().max_by_key(ExactSizeIterator::len)?;
+    let whole = slope(&[points[longest.start], points[longest.end]]);
+    Some((longest.len(), (whole * 10.0).round() / 10.0))
 }
 
 /// `points` in the order of their first numbers.
@@ -149,9 +170,9 @@ mod tests {
 
     #[test]
     fn a_slope_is_told_where_the_error_falls_evenly_over_three_points() {
-        assert_eq!(slope(&errors(&[2.0, 2.01, 1.99, 2.4])), Some((4, 2.0)));
+        assert_eq!(slope(&errors(&[2.0, 2.01, 1.99, 2.4])), Some((3, 2.0)));
         assert_eq!(slope(&errors(&[0.02, -0.1, 4.0, 3.9])), Some((2, 4.0)));
-        assert_eq!(slope(&errors(&[10.9, 11.1])), Some((2, 11.1)));
+        assert_eq!(slope(&errors(&[10.9, 11.1])), Some((2, 11.0)));
     }
 
     #[test]
@@ -159,6 +180,8 @@ mod tests {
         // strang on method-2: between its coarsest steps the error falls by a factor of 280, and rises then.
         assert_eq!(slope(&errors(&[0.78, -2.19, 8.16])), None);
         assert_eq!(slope(&errors(&[1.0, 2.0, 4.0])), None);
+        // srkn11b on method-2: it has not come to its order yet.
+        assert_eq!(slope(&errors(&[5.98, 4.98, 3.18])), None);
         assert_eq!(slope(&errors(&[2.0])), None);
     }
 }

@@ -95,8 +95,11 @@ fn too_many(quantities: &[Quantity]) -> String {
     )
 }
 
+/// Values of which the greatest is so many times the least stand on a logarithmic axis.
+const DECADES: f64 = 1e3;
+
 /// What follows the name of theory of which some line has gaps.
-const IN_GAPS: &str = " (gaps: none stated)";
+const IN_GAPS: &str = " (gaps: no prediction)";
 /// What the legend calls values that were neither measured nor are theory, beside those that were measured.
 const OTHER: &str = "other values";
 
@@ -135,6 +138,7 @@ pub(super) fn gaps(table: &Table, columns: &[&str], varied: &[String]) -> Vec<St
             rows.len()
         )
     });
+    let unmeasured = unmeasured(table, columns, varied, &rows);
     let failed = table.count() - rows.len();
     let failed = (failed > 0).then(|| {
         format!(
@@ -142,7 +146,36 @@ pub(super) fn gaps(table: &Table, columns: &[&str], varied: &[String]) -> Vec<St
             table.count()
         )
     });
-    gaps.chain(failed).collect()
+    gaps.chain(unmeasured).chain(failed).collect()
+}
+
+/// What is said of `rows` whose run did give no number, or one that its axis cannot show.
+fn unmeasured(table: &Table, columns: &[&str], varied: &[String], rows: &[usize]) -> Vec<String> {
+    let quantities = columns::quantities(table, varied, columns);
+    let parts = quantities.iter().flat_map(|quantity| &quantity.parts);
+    let parts = parts.filter(|part| part.role != Role::Theory);
+    let told = parts.filter_map(|part| {
+        let values = table.numbers(&part.name)?;
+        let count = |is: &dyn Fn(f64) -> bool| rows.iter().filter(|row| is(values[**row])).count();
+        let missing = count(&|value| !value.is_finite());
+        let zeros = count(&|value| value == 0.0);
+        if missing > 0 {
+            return Some(format!(
+                "there is no {} in {missing} of {} rows: no point is drawn for them",
+                part.name,
+                rows.len()
+            ));
+        }
+        let is_log = spans_decades(values.into_iter(), DECADES);
+        (zeros > 0 && is_log).then(|| {
+            format!(
+                "in {zeros} of {} rows {} is 0, which a logarithmic axis does not show",
+                rows.len(),
+                part.name
+            )
+        })
+    });
+    told.collect()
 }
 
 /// Whose numbers a chart has.
@@ -192,7 +225,7 @@ impl Drawing<'_> {
             panel.series.extend(series);
         }
         let values = panel.series.iter().flat_map(|series| &series.points);
-        panel.y.is_log = spans_decades(values.map(|point| point[1]), 1e3);
+        panel.y.is_log = spans_decades(values.map(|point| point[1]), DECADES);
         Ok(panel)
     }
 
@@ -305,15 +338,14 @@ impl Drawing<'_> {
     }
 }
 
-/// Whether all `values` are above 0, and the greatest is so many times the least.
+/// Whether none of `values` is below 0, and the greatest is so many times the least of those above it.
 fn spans_decades(values: impl Iterator<Item = f64>, times: f64) -> bool {
-    let extent =
-        values
-            .filter(|value| value.is_finite())
-            .fold(None, |extent: Option<(f64, f64)>, value| {
-                let (low, high) = extent.unwrap_or((value, value));
-                Some((low.min(value), high.max(value)))
-            });
+    let extent = values
+        .filter(|value| value.is_finite() && *value != 0.0)
+        .fold(None, |extent: Option<(f64, f64)>, value| {
+            let (low, high) = extent.unwrap_or((value, value));
+            Some((low.min(value), high.max(value)))
+        });
     extent.is_some_and(|(low, high)| low > 0.0 && high / low >= times)
 }
 

@@ -1,8 +1,10 @@
 //! The paths in the box: what is near is wide and dark.
 
 use super::{Space, round};
+use crate::figure::chart::Style;
 use crate::figure::chart::axis::Scale;
 use crate::figure::chart::curve;
+use crate::figure::chart::dashes::Ground;
 use crate::figure::page::scene::{Color, Pen, Point, Scene};
 use crate::figure::request::Drawn;
 use foldhash::fast::FixedState;
@@ -17,15 +19,33 @@ const FARTHEST_WHITE: f64 = 0.58;
 
 impl Space {
     /// The paths, the farthest parts first.
-    pub(super) fn paths(&self, drawn: &[Drawn], scene: &mut Scene) {
+    pub(super) fn paths(&self, drawn: &[Drawn], styles: &[Style], scene: &mut Scene) {
         let paths: Vec<Vec<Vec<(Point, f64)>>> = drawn
             .iter()
-            .map(|drawn| {
+            .zip(styles)
+            .map(|(drawn, style)| {
                 let boxed = drawn.course.path.iter().map(|point| self.boxed(point));
                 let place = |boxed: Vector3<f64>| (self.place(&boxed), self.view.depth(&boxed));
-                fresh(boxed.map(place).collect())
+                let place_pt = match style.dash_pt.is_empty() {
+                    true => PLACE_PT,
+                    false => DASHED_PLACE_PT,
+                };
+                fresh(boxed.map(place).collect(), place_pt)
             })
             .collect();
+        // A dashed line is not in its own gaps.
+        let ground = |(path, style): (&Vec<Vec<(Point, f64)>>, &Style)| {
+            let is_dashed = !style.dash_pt.is_empty();
+            let path = if is_dashed { &path[..] } else { &[] };
+            let places = path
+                .iter()
+                .map(|piece| piece.iter().map(|(place, _)| *place));
+            let mut ground = Ground::of(places);
+            // In more than one piece it has been where it is before.
+            ground.is_covered |= path.len() > 1;
+            ground
+        };
+        let grounds: Vec<_> = paths.iter().zip(styles).map(ground).collect();
         let depths = || paths.iter().flatten().flatten().map(|(_, depth)| *depth);
         let (near, far) = (
             depths().fold(f64::INFINITY, f64::min),
@@ -39,15 +59,22 @@ impl Space {
         let degree = |depth: f64| (share.place(depth).max(0.0) as usize).min(DEPTHS - 1);
         let by_degree: Vec<_> = paths.iter().map(|path| by_degree(path, degree)).collect();
         for nearness in 0..DEPTHS {
-            for (pieces, drawn) in by_degree.iter().zip(drawn) {
+            for ((pieces, style), ground) in by_degree.iter().zip(styles).zip(&grounds) {
                 let part = nearness as f64 / (DEPTHS - 1) as f64;
                 let width = WIDTHS.1 + part * (WIDTHS.0 - WIDTHS.1);
-                let color = paler(drawn.style.color, FARTHEST_WHITE * (1.0 - part));
+                let color = paler(style.color, FARTHEST_WHITE * (1.0 - part));
                 let pen = Pen {
-                    dash_pt: drawn.style.dash_pt.to_vec(),
+                    dash_pt: style.dash_pt.to_vec(),
                     ..round(width, color)
                 };
-                curve::put(&pieces[nearness], &pen, None, scene);
+                match style.is_dots {
+                    true => {
+                        let ends = pieces[nearness].iter().flat_map(|piece| &piece[1..]);
+                        let dots = curve::dots(ends.copied());
+                        curve::put(&dots, &pen, None, scene);
+                    }
+                    false => curve::put_in(ground, &pieces[nearness], &pen, None, scene),
+                }
             }
         }
     }
@@ -56,15 +83,17 @@ impl Space {
 /// From so many points on, a path leaves out the lines that it has drawn before.
 const MANY: usize = 50_000;
 /// Two points within a square of this side stand at one place, pt: a sixth of a line's width.
-const PLACE_PT: f64 = 0.1;
+pub(super) const PLACE_PT: f64 = 0.1;
+/// The same of a dashed line, the strokes of which are cut piece by piece: a third of its width.
+const DASHED_PLACE_PT: f64 = 0.3;
 
-/// `path` in pieces: where it has many points, without the lines between places that a line connects already.
-pub(super) fn fresh(path: Vec<(Point, f64)>) -> Vec<Vec<(Point, f64)>> {
+/// `path` in pieces: where it has many points, without the lines between places of that size (pt) that a line connects already.
+pub(super) fn fresh(path: Vec<(Point, f64)>, place_pt: f64) -> Vec<Vec<(Point, f64)>> {
     if path.len() < MANY {
         return vec![path];
     }
     let place = |point: &Point| {
-        let number = |length: f64| u64::from((length / PLACE_PT).floor() as i32 as u32);
+        let number = |length: f64| u64::from((length / place_pt).floor() as i32 as u32);
         number(point.x) << 32 | number(point.y)
     };
     let mut drawn = HashSet::with_hasher(FixedState::default());
@@ -136,8 +165,8 @@ mod tests {
 
     #[test]
     fn a_path_is_drawn_over_itself_once() {
-        assert_eq!(fresh(circle(2000)), [circle(2000)]);
-        let pieces = fresh(circle(200_000));
+        assert_eq!(fresh(circle(2000), PLACE_PT), [circle(2000)]);
+        let pieces = fresh(circle(200_000), PLACE_PT);
         let points: usize = pieces.iter().map(Vec::len).sum();
         assert!(points < 20_000, "{points}");
         // Nothing is missing of the first time around.
