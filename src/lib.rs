@@ -7,6 +7,7 @@
 //! The modules; each uses only modules listed before it:
 //!
 //! - [`text`](mod@text): numbers and words as people read them, without control characters that a terminal would obey.
+//! - [`cores`]: work on all cores.
 //! - [`physics`]: body, state, loads, schemes, observables. It uses no file, no wall clock and no terminal.
 //! - [`scenario`]: a TOML file becomes a checked [`Scenario`](scenario::Scenario); every refusal names file,
 //!   line, key, value and rule. The shipped presets live here too.
@@ -32,6 +33,7 @@
 
 pub mod analysis;
 pub mod cli;
+pub mod cores;
 pub mod export;
 pub mod figure;
 pub mod lab;

@@ -1,13 +1,12 @@
 //! Schemes and time steps held against the exact motion: a table of errors, drifts, cost and measured order.
 
 use super::Trial;
+use crate::cores;
 use crate::physics::SchemeInfo;
 use crate::run::EnergyUnit;
 use crate::run::resample::resampled;
 use crate::scenario::Scenario;
 use crate::text::number::{NONE, exponent, fixed, shortest};
-use rayon::ThreadPoolBuilder;
-use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 use std::fmt;
@@ -89,11 +88,7 @@ pub fn compare(
         });
         trial.map(|trial| ComparisonRow::new(cell, &trial))
     };
-    // Not rayon's own threads, without which it would panic.
-    let rows: Option<Vec<ComparisonRow>> = match ThreadPoolBuilder::new().build() {
-        Ok(pool) => pool.install(|| cells.par_iter().map(row).collect()),
-        Err(_) => cells.iter().map(row).collect(),
-    };
+    let rows: Option<Vec<ComparisonRow>> = cores::map(&cells, row);
     rows.map(|rows| with_orders(rows, ROUNDING * scenario.arm_m()))
 }
 

@@ -5,7 +5,6 @@
 
 mod path;
 
-use super::chart::curve;
 use super::chart::layout::EDGE;
 use super::chart::legend::Legend;
 use super::chart::ticks::{Tick, Ticks};
@@ -178,21 +177,6 @@ impl Space {
         let edges = [self.edge(0), self.edge(1), self.edge(2)];
         let ticks = [0, 1, 2].map(|axis| self.ticks(axis, &edges[axis]));
         self.walls(&ticks, &mut scene);
-        for (drawn, style) in drawn.iter().zip(styles) {
-            let floor = |point: &[f64; 3]| {
-                let mut boxed = self.boxed(point);
-                boxed.z = -0.5 * TALL;
-                self.place(&boxed)
-            };
-            let shadow = drawn.course.path.iter().map(|point| (floor(point), 0.0));
-            let shadow = path::fresh(shadow.collect(), path::PLACE_PT).into_iter();
-            let shadow = shadow.map(|piece| piece.into_iter().map(|(place, _)| place).collect());
-            let shadow: Vec<Vec<_>> = match style.is_dots {
-                true => curve::dots(shadow.flat_map(|piece: Vec<_>| piece)),
-                false => shadow.collect(),
-            };
-            curve::put(&shadow, &round(0.45, grey(198)), None, &mut scene);
-        }
         self.paths(drawn, styles, &mut scene);
         for axis in 0..3 {
             self.axis(axis, &edges[axis], &ticks[axis], &mut scene);

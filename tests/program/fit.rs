@@ -201,3 +201,16 @@ fn ctrl_c_ends_it_with_130_and_leaves_no_file() {
     assert_eq!(fit.wait().unwrap().code(), Some(130));
     assert_eq!(ground.files(), ["long.csv"]);
 }
+
+/// A stack larger than any memory: no thread can be had.
+#[test]
+fn without_threads_it_finds_the_same() {
+    let ground = Ground::new();
+    let fit = |least_stack: &str| {
+        let mut command = ground.command(&NUTATION);
+        let output = command.env("RUST_MIN_STACK", least_stack).output().unwrap();
+        assert_eq!((code(&output), text(&output.stderr)), (0, String::new()));
+        text(&output.stdout)
+    };
+    assert_eq!(fit("4611686018427387904"), fit("2097152"));
+}

@@ -151,7 +151,7 @@ pub(super) fn by_way(points: &[Point], dash_pt: &[f64]) -> Option<Strokes> {
 }
 
 /// The part of the page that a line lies on, pt, and whether it covers itself there.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Ground {
     /// Whether it does: then its dashes would lie in its gaps.
     pub is_covered: bool,

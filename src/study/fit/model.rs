@@ -4,13 +4,14 @@ use super::free::Free;
 use super::levenberg::Stop;
 use crate::analysis::at_end;
 use crate::analysis::readouts::{self, Readout};
+use crate::cores;
 use crate::measured::{
     Data, Measured, Point, Quantity, Residual, Series, Table, at_times, residuals,
 };
 use crate::run::Clock;
 use crate::scenario::dotted::is_in;
 use crate::scenario::{Document, Problem, Problems, Scenario, ScenarioFile};
-use rayon::prelude::*;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Value;
@@ -176,30 +177,22 @@ impl Model {
     ) -> Result<Vec<f64>, Stop> {
         let document = self.document(p).map_err(Stop::Impossible)?;
         let wanted: Vec<&Readout> = self.columns.iter().map(|column| column.readout).collect();
-        let mut is_wanted = vec![false; table.lines.len()];
-        for datum in &self.data {
-            is_wanted[datum.point.row] = true;
-        }
-        let rows: Vec<Vec<Option<f64>>> = is_wanted
-            .par_iter()
-            .enumerate()
-            .map(|(row, is_wanted)| {
-                if !is_wanted {
-                    return Ok(Vec::new());
-                }
-                let document = with_settings(&document, table, row, changed);
-                let scenario = document.and_then(|document| checked(&document));
-                let scenario = scenario
-                    .map_err(|why| Stop::Impossible(format!("in {}: {why}", self.row(row))))?;
-                self.runs.fetch_add(1, Ordering::Relaxed);
-                let read = at_end::readouts(scenario, &wanted, &|| go_on());
-                let read =
-                    read.map_err(|why| Stop::Impossible(format!("in {}: {why}", self.row(row))))?;
-                let read = read.ok_or(Stop::Interrupted)?;
-                Ok(read.iter().map(readouts::Value::number).collect())
-            })
-            .collect::<Result<_, Stop>>()?;
-        let of = |datum: &Datum| self.finite(datum, rows[datum.point.row][datum.column]);
+        let rows: BTreeSet<usize> = self.data.iter().map(|datum| datum.point.row).collect();
+        let rows: Vec<usize> = rows.into_iter().collect();
+        let of_row = |&row: &usize| {
+            let impossible = |why| Stop::Impossible(format!("in {}: {why}", self.row(row)));
+            let document = with_settings(&document, table, row, changed);
+            let scenario = document.and_then(|document| checked(&document));
+            let scenario = scenario.map_err(impossible)?;
+            self.runs.fetch_add(1, Ordering::Relaxed);
+            let read = at_end::readouts(scenario, &wanted, &|| go_on());
+            let read = read.map_err(impossible)?.ok_or(Stop::Interrupted)?;
+            let values = read.iter().map(readouts::Value::number);
+            Ok((row, values.collect()))
+        };
+        let of_rows: Result<HashMap<usize, Vec<Option<f64>>>, Stop> = cores::map(&rows, of_row);
+        let of_rows = of_rows?;
+        let of = |datum: &Datum| self.finite(datum, of_rows[&datum.point.row][datum.column]);
         self.data.iter().map(of).collect()
     }
 

@@ -6,10 +6,10 @@ use super::model::Model;
 use super::quality::{self, Quality};
 use super::solution::{SILENT, Solution};
 use super::weights::Weights;
+use crate::cores;
 use crate::measured::Residual;
 use crate::text::number::significant;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A fit that has found its minimum.
@@ -257,10 +257,10 @@ impl Problem for Weighed<'_> {
             bounds: self.bounds,
             go_on: self.go_on,
         };
-        let found: Vec<(Vec<f64>, f64)> = (0..p.len())
-            .into_par_iter()
-            .map(|index| slopes.of(p, index, changes[index]))
-            .collect::<Result<_, Stop>>()?;
+        let of = |(index, change): &(usize, _)| slopes.of(p, *index, *change);
+        let changes: Vec<_> = changes.into_iter().enumerate().collect();
+        let found: Result<Vec<(Vec<f64>, f64)>, Stop> = cores::map(&changes, of);
+        let found = found?;
         let column = |(index, (slope, _)): (usize, &(Vec<f64>, f64))| {
             let column = self.weights.whitened(slope);
             // The slope of what does not move is rounding, and would lead anywhere.

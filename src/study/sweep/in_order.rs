@@ -1,6 +1,6 @@
 //! Work on all cores whose results are taken in order.
 
-use rayon::ThreadPoolBuilder;
+use crate::cores;
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -25,8 +25,7 @@ pub fn in_order<T: Send>(
     of: impl Fn(u64, &dyn Fn() -> bool) -> Option<T> + Sync,
     mut take: impl FnMut(Vec<T>) -> ControlFlow<()>,
 ) {
-    // Not rayon's own threads, without which it would panic.
-    let Ok(pool) = ThreadPoolBuilder::new().build() else {
+    let Some(pool) = cores::threads() else {
         for index in range {
             let result = of(index, &|| true);
             if result.is_none_or(|result| take(vec![result]).is_break()) {
