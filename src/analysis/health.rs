@@ -85,10 +85,12 @@ pub enum Picture {
 pub struct Nutation {
     /// |A|, the factor on the nutation's size each step; the truth is 1.
     pub multiplier: f64,
-    /// Lag of the axle behind L in steady precession under the scheme, degrees.
-    pub scheme_lag_deg: f64,
-    /// The true one, degrees.
-    pub true_lag_deg: f64,
+    /// How many times the true angle between axle and L in steady precession is the scheme's, for a small angle: κ ψ/|1 − A|.
+    /// `None` without a torque, and where the scheme has no such angle.
+    pub lag_ratio: Option<f64>,
+    /// The true angle between axle and L in slow steady precession at this tilt and spin, degrees; `None` where there is no
+    /// such precession.
+    pub true_lag_deg: Option<f64>,
 }
 
 /// What would mend a run.
@@ -208,29 +210,27 @@ impl Picture {
 impl Nutation {
     fn of(step: &Step, motion: &Motion, psi: f64) -> Option<Self> {
         let scenario = step.scenario();
-        let state = step.after();
+        let (state, loads) = (step.after(), step.loads());
         let body = &scenario.body.mechanics;
         let top = SymmetricTop::of(body).filter(|_| motion.scheme.name == "report")?;
-        let (kappa, momentum) = (top.kappa(), state.momentum.norm());
+        let kappa = top.kappa();
         let (sin, cos) = psi.sin_cos();
-        let off_one = kappa * (1.0 - cos).hypot(sin);
-        let kick = torque(&state.orientation, &step.loads().moment(body)).norm()
-            * motion.time_step_s
-            / momentum;
-        Some(Self {
+        let ratio = psi / (1.0 - cos).hypot(sin);
+        let has_torque = torque(&state.orientation, &loads.moment(body)).norm() > 0.0;
+        let load = loads.on_axle(body, &top);
+        let true_lag = load.and_then(|load| top.steady_lag(state, &load));
+        psi.is_finite().then(|| Self {
             multiplier: (1.0 - 2.0 * kappa * (1.0 - kappa) * (1.0 - cos))
                 .max(0.0)
                 .sqrt(),
-            scheme_lag_deg: (kick / off_one).to_degrees(),
-            true_lag_deg: (kick / (kappa * psi)).to_degrees(),
+            lag_ratio: Some(ratio).filter(|ratio| has_torque && ratio.is_finite()),
+            true_lag_deg: true_lag.map(f64::to_degrees).filter(|lag| lag.is_finite()),
         })
-        .filter(|nutation| nutation.scheme_lag_deg.is_finite() && nutation.true_lag_deg.is_finite())
     }
 
-    /// How many times the true lag the scheme's is; `None` where there is no true one.
-    pub fn lag_ratio(&self) -> Option<f64> {
-        let ratio = self.scheme_lag_deg / self.true_lag_deg;
-        ratio.is_finite().then_some(ratio)
+    /// The scheme's angle between axle and L in slow steady precession, degrees; `None` where it has none.
+    pub fn scheme_lag_deg(&self) -> Option<f64> {
+        Some(self.true_lag_deg? * self.lag_ratio?)
     }
 }
 

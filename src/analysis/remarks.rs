@@ -137,7 +137,7 @@ fn mend(health: &Health, advice: &Advice) -> Option<Remark> {
 fn swing_of(health: &Health, nutation: &Nutation) -> Vec<(bool, Remark)> {
     let changed = health.changed_nutation();
     let is_right = changed.is_none() && health.is_believed() != Some(false);
-    let lag = match nutation.lag_ratio() {
+    let lag = match nutation.lag_ratio {
         // A lag that is right is not said beside what is wrong.
         Some(0.5..2.0) => {
             is_right.then(|| Remark::new("axle lags L as far as it should".to_owned(), false))
@@ -283,15 +283,16 @@ pub fn lag_in_full(health: &Health) -> String {
     let Some(nutation) = health.nutation else {
         return now;
     };
-    let steady = format!(
-        "{now}; steady: {} by the scheme, {} in truth",
-        fixed(nutation.scheme_lag_deg, 4),
-        fixed(nutation.true_lag_deg, 4)
-    );
-    match nutation.lag_ratio() {
-        Some(ratio) => format!("{steady}, {} times", fixed(ratio, 1)),
-        None => steady,
-    }
+    let (Some(scheme), Some(truth)) = (nutation.scheme_lag_deg(), nutation.true_lag_deg) else {
+        return now;
+    };
+    let ratio = nutation.lag_ratio.unwrap_or(1.0);
+    format!(
+        "{now}; in steady precession {} by the scheme, {} times the true {}",
+        fixed(scheme, 4),
+        fixed(ratio, 1),
+        fixed(truth, 4)
+    )
 }
 
 /// How far the constants of the motion are off, for a line of the summary; `None` where that is not known.

@@ -1,7 +1,7 @@
 //! Bodies that are symmetric about their axle, and forces that act on it: what the closed form and the theory of the
 //! heavy top need.
 
-use super::{Body, Loads};
+use super::{Body, Loads, State};
 use nalgebra::Vector3;
 
 /// A body whose moments differ by less than this part of the whole is symmetric, and a point that is off the axle by less
@@ -66,6 +66,21 @@ pub fn steady_precession(across_cos: f64, spin: f64, load: f64) -> (Option<f64>,
     let larger = 0.5 * (spin + discriminant.sqrt().copysign(spin));
     let fast = larger / across_cos;
     (Some(load / larger), fast.is_finite().then_some(fast))
+}
+
+impl SymmetricTop {
+    /// The angle between axle and L, rad, with which the top would precess slowly and steadily at the tilt and with the spin
+    /// that it has in `state`: of L the part I1 w sin θ lies across the axle. `load` is that of [`Loads::on_axle`], N m, world
+    /// frame. `None` where it spins too slowly for a steady precession.
+    pub fn steady_lag(&self, state: &State, load: &Vector3<f64>) -> Option<f64> {
+        let (axle, spin) = (state.axle(), state.momentum.dot(&state.axle()));
+        let Some(down) = load.try_normalize(0.0) else {
+            return Some(0.0);
+        };
+        let (rate, _) = steady_precession(-self.across * axle.dot(&down), spin, load.norm());
+        let across = self.across * rate? * axle.cross(&down).norm();
+        Some(libm::atan2(across.abs(), spin.abs()))
+    }
 }
 
 impl Loads {
