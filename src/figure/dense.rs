@@ -89,7 +89,9 @@ pub(super) fn warning(
     });
     // What shows the most swings shows those of the other curves too.
     let turns = all.flatten().max()?;
-    let (begin_s, end_s) = layout.panels.first()?.x.range;
+    let (_, end_s) = layout.panels.first()?.x.range;
+    // The axis may begin before the run, so that a measured point at 0 has room.
+    let begin_s = request.from_s;
     let window_s = 2.0 * SWINGS * (end_s - begin_s) / turns as f64;
     Some(proposal(
         begin_s,

@@ -61,21 +61,21 @@ impl Original {
     /// Lists the differences that make `now` move differently. `None` where there are none, or where the `look_at` line
     /// itself is a new one.
     pub fn difference(&self, now: &Scenario) -> Option<String> {
+        let is_its = look_at(&self.scenario) == look_at(now);
+        self.change(now).filter(|_| is_its)
+    }
+
+    /// Lists the differences that make `now` move differently; `None` where there are none.
+    fn change(&self, now: &Scenario) -> Option<String> {
         let changes = changes(&self.scenario, now);
-        if changes.is_empty() || look_at(&self.scenario) != look_at(now) {
-            return None;
-        }
-        Some(format!(
-            "differs from {}: {}",
-            self.name,
-            changes.join(", ")
-        ))
+        let list = || format!("differs from {}: {}", self.name, changes.join(", "));
+        (!changes.is_empty()).then(list)
     }
 
     /// `now` as it is to be written to a file: where it moves differently, the words say of which motion they were
     /// written, `look_at` says what was changed, and the numbers expected of the original are left out.
     pub fn marked(&self, now: &Arc<Scenario>) -> Arc<Scenario> {
-        let Some(difference) = self.difference(now) else {
+        let Some(difference) = self.change(now) else {
             return Arc::clone(now);
         };
         let mut marked = Scenario::clone(now);
@@ -92,7 +92,8 @@ impl Original {
         {
             source.push_str(CHANGED);
         }
-        if let Some(view) = &mut file.view {
+        let is_its = look_at(&self.scenario) == look_at(now);
+        if let Some(view) = file.view.as_mut().filter(|_| is_its) {
             view.look_at = view.look_at.take().map(|_| difference);
             view.next = None;
         }

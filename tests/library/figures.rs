@@ -783,8 +783,13 @@ fn a_comparison_shows_its_slope() {
         ],
     );
     let told = of_table::warnings(&table(COMPARISON), &[]);
-    assert_eq!(told.len(), 1, "{told:?}");
-    assert!(told[0].starts_with("1 of 4 time steps of exact have no point"));
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(told[0].starts_with("1 of 4 time steps of exact have no point of error_m: it is 0"));
+    assert!(
+        told[1]
+            .starts_with("1 of 4 time steps of exact have no point of error_m: there is no number")
+    );
+    // Each column by itself.
     assert!(of_table::warnings(&table(COMPARISON), &["energy_drift"]).is_empty());
     let other = of_table::chart(&table(COMPARISON), &["energy_drift"], COLUMN_PT).unwrap();
     says(&other.scene(), &["relative energy drift"]);
@@ -795,7 +800,7 @@ fn a_comparison_shows_its_slope() {
         .replace("40,n/a", "40,0");
     let told = of_table::warnings(&table(&none), &[]);
     assert!(
-        told.len() == 1 && told[0].starts_with("exact has no points: they are 0"),
+        told.len() == 1 && told[0].starts_with("exact has no points of error_m: it is 0, which"),
         "{told:?}"
     );
     let names = |text: &str| {

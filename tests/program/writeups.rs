@@ -202,6 +202,51 @@ fn what_a_user_wrote_is_not_said_to_be_a_presets() {
     assert!(page.contains("\n\nMy top.\n\n"), "{page}");
     assert!(page.contains("\n\nSource: my homework\n\n"), "{page}");
     assert!(page.contains("Differs from the preset cusps: "), "{page}");
+    // A new look_at line alone: the preset's other words are of another motion all the same.
+    let set = [
+        "--set",
+        "view.look_at=My line.",
+        "--set",
+        "start.tilt_deg=50",
+    ];
+    let words = ["writeup", "cusps", "--steps", "50", "-o", "line"];
+    done(lab.run(&[&words[..], &set[..]].concat()));
+    let page = lab.read("line/README.md");
+    assert!(page.contains("\n\nMy line.\n\n"), "{page}");
+    assert!(
+        page.contains("\n\nOf the preset cusps as it was: "),
+        "{page}"
+    );
+}
+
+/// Least and greatest values are of the whole run, and so is what theory says of them; the motion since a push has ended is
+/// another.
+#[test]
+fn theory_of_the_extremes_is_of_the_whole_run() {
+    let lab = Ground::new();
+    let run = ["writeup", "wobble-push", "--time-step", "0.01", "-o", "w"];
+    done(lab.run(&run));
+    let page = lab.read("w/README.md");
+    // Of the steps of `gyrolab run wobble-push --scheme exact --time-step 0.0005`.
+    for (name, theory) in [
+        ("measured_lowest_tilt_deg", 44.994_287),
+        ("measured_highest_tilt_deg", 45.036_558),
+        ("measured_lowest_z_m", 0.799_489),
+        ("measured_highest_z_m", 0.800_080),
+    ] {
+        let row = row_of(&page, name);
+        let number = |place: usize| row[place].parse::<f64>().unwrap();
+        assert!((number(3) - theory).abs() < 2e-6, "{row:?}");
+        let less = number(2) - number(3);
+        assert!(
+            (number(4) - less).abs() < 0.02 * less.abs() + 2e-6,
+            "{row:?}"
+        );
+    }
+    assert!(
+        page.contains("![Tilt from 20 s, when the forces last changed, to 20."),
+        "{page}"
+    );
 }
 
 /// The row of `name` in the table of what was run.
@@ -314,7 +359,7 @@ fn a_figure_that_is_covered_says_so_and_names_a_stretch_that_is_not() {
     let page = lab.read("w/README.md");
     let begin = "On 86 mm about 203 swings cover the paper: none is told from the next";
     let remark = page.lines().find(|line| line.starts_with(begin)).unwrap();
-    assert!(remark.contains("`swings.pdf` shows the first"), "{remark}");
+    assert!(remark.contains("`swings.pdf` shows a few"), "{remark}");
     // The command is one that works.
     let command = remark.split('`').find(|part| part.starts_with("gyrolab "));
     let words: Vec<_> = command.unwrap().split(' ').skip(1).collect();
@@ -359,5 +404,5 @@ fn labels_of_the_latex_table_are_short() {
     let labels: Vec<_> = labels.filter_map(|line| line.split('~').next()).collect();
     assert!(labels.contains(&"precession"), "{labels:?}");
     assert!(labels.iter().all(|label| label.len() < 20), "{labels:?}");
-    assert!(table.contains("% precession: mean precession about +z; null under friction"));
+    assert!(table.contains("% precession: mean precession about +z; none under friction"));
 }

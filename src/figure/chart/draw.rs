@@ -78,7 +78,9 @@ impl Chart {
         let mut series = self.panels.iter().flat_map(|panel| &panel.series);
         series.any(|series| {
             let mark = series.style.mark.filter(|mark| mark.is_of_measured());
-            mark.is_some() && series.errors.is_empty()
+            let mut points = series.points.iter().zip(&series.errors);
+            let is_unknown = points.any(|(point, error)| point[1].is_finite() && error.is_nan());
+            mark.is_some() && (series.errors.is_empty() || is_unknown)
         })
     }
 
@@ -87,9 +89,14 @@ impl Chart {
         let panels = self.panels.iter().zip(&layout.panels);
         let series = panels
             .flat_map(|(panel, placed)| panel.series.iter().map(move |series| (series, placed)));
-        let bars = series.flat_map(|(series, placed)| placed.bars(series));
-        bars.fold((0, 0), |(hidden, all), bar| {
-            (hidden + usize::from(bar.is_hidden), all + 1)
+        series.fold((0, 0), |(hidden, all), (series, placed)| {
+            let bars: Vec<bool> = placed.bars(series).map(|bar| bar.is_hidden).collect();
+            let across = placed.bars_across(series).count();
+            let is_hidden = |hidden: &&bool| **hidden;
+            (
+                hidden + bars.iter().filter(is_hidden).count(),
+                all + bars.len() + across,
+            )
         })
     }
 }
@@ -124,9 +131,7 @@ impl Placed {
             }
         })
     }
-}
 
-impl Placed {
     /// The level error bars of `series` that its marks do not cover: their ends, and at which height.
     fn bars_across<'a>(&'a self, series: &'a Series) -> impl Iterator<Item = (f64, f64, f64)> + 'a {
         let points = series.points.iter().zip(&series.errors_across);

@@ -72,33 +72,34 @@ pub(super) fn drawn(
 pub(super) fn missing(table: &Table, columns: &[&str]) -> Vec<String> {
     let schemes = table.texts("scheme").unwrap_or_default();
     let groups = grouped(&schemes);
-    let missing = |(scheme, rows): &(String, Vec<usize>)| {
-        let is_missing = |row: &&usize| {
-            let values = or_error(columns)
-                .iter()
-                .filter_map(|name| table.numbers(name));
-            values.into_iter().any(|values| !values[**row].is_finite())
+    let columns = or_error(columns).iter();
+    let columns: Vec<_> = columns
+        .filter_map(|name| Some((*name, table.numbers(name)?)))
+        .collect();
+    let all = groups
+        .iter()
+        .flat_map(|group| columns.iter().map(move |column| (group, column)));
+    let missing = |((scheme, rows), (name, values)): (&(String, Vec<usize>), &(&str, Vec<f64>))| {
+        let count = |is: fn(f64) -> bool| rows.iter().filter(|row| is(values[**row])).count();
+        let (all, zeros, none) = (
+            rows.len(),
+            count(|it| it == 0.0),
+            count(|it| !it.is_finite()),
+        );
+        let zeros = match zeros {
+            0 => None,
+            zeros if zeros == all => Some(format!("{scheme} has no points of {name}: it is 0")),
+            zeros => Some(format!(
+                "{zeros} of {all} time steps of {scheme} have no point of {name}: it is 0"
+            )),
         };
-        let is_zero = |row: &&usize| {
-            let values = or_error(columns)
-                .iter()
-                .filter_map(|name| table.numbers(name));
-            values.into_iter().any(|values| values[**row] == 0.0)
-        };
-        if rows.iter().all(|row| is_zero(&row)) {
-            return Some(format!(
-                "{scheme} has no points: they are 0, which a logarithmic axis does not show"
-            ));
-        }
-        let count = rows.iter().filter(is_missing).count();
-        (count > 0).then(|| {
-            format!(
-                "{count} of {} time steps of {scheme} have no point: there is no number for them, as where a run breaks down",
-                rows.len()
-            )
-        })
+        let none = (none > 0).then(|| {
+            format!("{none} of {all} time steps of {scheme} have no point of {name}: there is no number for them, as where a run breaks down")
+        });
+        let zeros = zeros.map(|told| told + ", which a logarithmic axis does not show");
+        [zeros, none].into_iter().flatten()
     };
-    groups.iter().filter_map(missing).collect()
+    all.flat_map(missing).collect()
 }
 
 /// The columns that are drawn where `columns` were asked for.
@@ -122,11 +123,11 @@ fn of_comparison(name: &str) -> Axis {
 }
 
 /// The slope of a line of errors on logarithmic axes, and between how many pairs of points it was found: where the error falls
-/// evenly, from one slope to the next by an eighth of it at most, over three points or more; it is that from the first of them
+/// evenly, from one slope to the next by a sixteenth of it at most, over three points or more; it is that from the first of them
 /// to the last. Of coarse steps it does not yet, and what no longer falls is rounding.
 fn slope(points: &[[f64; 2]]) -> Option<(usize, f64)> {
     const LEAST: f64 = 0.3;
-    const EVEN: f64 = 0.125;
+    const EVEN: f64 = 1.0 / 16.0;
     let is_sound = |point: &&[f64; 2]| point[0] > 0.0 && point[1] > 0.0 && point[1].is_finite();
     let points: Vec<_> = points.iter().filter(is_sound).collect();
     let slope = |pair: &[&[f64; 2]]| {

@@ -11,7 +11,7 @@ use crate::figure::{COLUMN_PT, Scene};
 use crate::run::Clock;
 use crate::scenario::Scenario;
 use crate::scenario::screen::{ABOVE, THREE_D, TRACES};
-use crate::text::number::{rounded, shortest};
+use crate::text::number::{rounded, significant};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -33,14 +33,40 @@ const MEASURED: &str = "measured";
 const RESIDUALS: &str = "residuals";
 /// That of the first swings of a run of many.
 const SWINGS: &str = "swings";
-/// A run of more swings than this has a figure of its first few of its own.
+/// A run has it where it has more swings than this.
 const MANY_SWINGS: f64 = 15.0;
+/// So many swings are in it.
+const FEW_SWINGS: f64 = 8.0;
 /// Fewer steps a swing make a curve with corners.
 const SMOOTH: f64 = 40.0;
 /// Figures of measured data end where the data do, and this factor later.
 const BEYOND_DATA: f64 = 1.05;
-/// So many swings are in that one.
-const FEW_SWINGS: f64 = 8.0;
+
+/// A figure that is to be drawn.
+struct Planned {
+    name: &'static str,
+    kind: Kind,
+    from_s: f64,
+    /// `None`: to the end of the run.
+    to_s: Option<f64>,
+    caption: String,
+    /// Whether it shows what was measured too.
+    shows_measured: bool,
+}
+
+impl Planned {
+    /// One of the whole run.
+    fn whole(name: &'static str, kind: Kind, caption: String) -> Self {
+        Self {
+            name,
+            kind,
+            from_s: 0.0,
+            to_s: None,
+            caption,
+            shows_measured: false,
+        }
+    }
+}
 
 /// What is to be shown the start and every step of the run of `scenario`, so that its figures need not play it once more.
 pub fn recorder(scenario: &Arc<Scenario>, beside: Option<&Beside>) -> Recorder {
@@ -86,31 +112,9 @@ pub fn figures(
         .filter(|steps| *steps < SMOOTH)
         .map(|steps| format!("; straight lines join the run's steps, about {steps:.0} a swing"));
     let also = format!("{dashed}{}", joined.unwrap_or_default());
-    let mut wanted = vec![
-        (
-            TRACES,
-            Kind::traces(),
-            None,
-            format!("x, y and z of the traced point over time{also}"),
-        ),
-        (
-            ABOVE,
-            Kind::Above,
-            None,
-            format!("Path of the traced point from above{also}"),
-        ),
-        (
-            THREE_D,
-            Kind::ThreeD,
-            None,
-            format!("Path of the traced point in space{also}"),
-        ),
-    ];
-    if let Some(to_s) = few_swings_s(scenario, readouts) {
-        let caption = format!("Tilt in the first {} s{also}", shortest(to_s));
-        wanted.insert(1, (SWINGS, Kind::named("tilt_deg")?, Some(to_s), caption));
-    }
+    let has_places = beside.is_some_and(|beside| !beside.compared.places.is_empty());
     let measured = beside.map(|beside| (beside.reached(), beside.end_s));
+    let mut planned = Vec::new();
     if let Some((measured, end_s)) = &measured
         && measured.count() > 0
         && let Ok(series) = measured.series()
@@ -120,28 +124,46 @@ pub fn figures(
         let name = &measured.origin;
         let over_time = format!("What was measured, `{name}`, and the run{also}");
         let less = format!("What was measured, `{name}`, less what the run says");
-        let kinds = [
-            (MEASURED, Kind::measured(series), over_time),
-            (RESIDUALS, Kind::Residuals, less),
-        ];
-        for (place, (name, kind, caption)) in kinds.into_iter().enumerate() {
-            wanted.insert(place, (name, kind, Some(end_s), caption));
-        }
+        let of_data = |name, kind, caption| Planned {
+            to_s: Some(end_s),
+            shows_measured: true,
+            ..Planned::whole(name, kind, caption)
+        };
+        planned.push(of_data(MEASURED, Kind::measured(series), over_time));
+        planned.push(of_data(RESIDUALS, Kind::Residuals, less));
     }
-    let has_places = beside.is_some_and(|beside| !beside.compared.places.is_empty());
-    let is_beside = |name: &str| match name {
-        ABOVE => has_places,
-        name => [MEASURED, RESIDUALS].contains(&name),
-    };
-    let requests = wanted.iter().map(|(name, kind, to_s, _)| Request {
-        kind: kind.clone(),
-        from_s: 0.0,
-        to_s: *to_s,
+    let caption = format!("x, y and z of the traced point over time{also}");
+    planned.push(Planned::whole(TRACES, Kind::traces(), caption));
+    if let Some((from_s, to_s)) = few_swings_s(scenario, readouts) {
+        let to = significant(to_s, 9);
+        let tilt = if from_s > 0.0 {
+            let from = significant(from_s, 9);
+            format!("Tilt from {from} s, when the forces last changed, to {to} s")
+        } else {
+            format!("Tilt in the first {to} s")
+        };
+        planned.push(Planned {
+            from_s,
+            to_s: Some(to_s),
+            ..Planned::whole(SWINGS, Kind::named("tilt_deg")?, tilt + &also)
+        });
+    }
+    let caption = format!("Path of the traced point from above{also}");
+    planned.push(Planned {
+        shows_measured: has_places,
+        ..Planned::whole(ABOVE, Kind::Above, caption)
+    });
+    let caption = format!("Path of the traced point in space{also}");
+    planned.push(Planned::whole(THREE_D, Kind::ThreeD, caption));
+    let requests = planned.iter().map(|planned| Request {
+        kind: planned.kind.clone(),
+        from_s: planned.from_s,
+        to_s: planned.to_s,
         // A run of the exact motion is drawn once, with the circles that bound it.
         exact: exact || is_exact,
         measured: measured
             .as_ref()
-            .filter(|_| is_beside(name))
+            .filter(|_| planned.shows_measured)
             .map(|(measured, _)| Arc::clone(measured)),
         width_pt: COLUMN_PT,
     });
@@ -151,15 +173,15 @@ pub fn figures(
         said: beside.map(|beside| beside.said.clone()),
     };
     let drawn = of_runs::figures(&runs, &requests, &known, watch)?;
-    let has_swings = wanted.iter().any(|(name, ..)| *name == SWINGS);
+    let has_swings = planned.iter().any(|planned| planned.name == SWINGS);
     let drawings = |drawn: Vec<Figure>| {
-        let each = wanted.into_iter().zip(drawn);
-        each.map(|((name, kind, _, caption), figure)| Drawing {
-            name,
-            caption,
+        let each = planned.into_iter().zip(drawn);
+        each.map(|(planned, figure)| Drawing {
             remark: figure
                 .dense
-                .map(|dense| crowded(&dense, &kind, exact, has_swings)),
+                .map(|dense| crowded(&dense, &planned.kind, exact, has_swings)),
+            name: planned.name,
+            caption: planned.caption,
             scene: figure.scene,
         })
         .collect()
@@ -174,7 +196,7 @@ fn crowded(dense: &Dense, kind: &Kind, exact: bool, has_swings: bool) -> String 
         false => "",
     };
     let swings = match has_swings && matches!(kind, Kind::OverTime(_)) {
-        true => format!("`{SWINGS}.pdf` shows the first of them; "),
+        true => format!("`{SWINGS}.pdf` shows a few of them; "),
         false => String::new(),
     };
     format!(
@@ -188,9 +210,15 @@ fn crowded(dense: &Dense, kind: &Kind, exact: bool, has_swings: bool) -> String 
     )
 }
 
-/// Where the run has many swings, the time that a few of them take, s.
-fn few_swings_s(scenario: &Scenario, readouts: &Readouts) -> Option<f64> {
+/// Where the run has many swings, the begin and the end of a few of them, s: of the first after the forces last changed, if that
+/// leaves enough of the run.
+fn few_swings_s(scenario: &Scenario, readouts: &Readouts) -> Option<(f64, f64)> {
     let swing_s = readouts.swing_s()?;
-    let is_long = Clock::end_s(scenario) > MANY_SWINGS * swing_s;
-    is_long.then(|| rounded(FEW_SWINGS * swing_s, 2))
+    let end_s = Clock::end_s(scenario);
+    let few_s = rounded(FEW_SWINGS * swing_s, 2);
+    // The first step under other forces: they changed where it began.
+    let changed = readouts.since.saturating_sub(1);
+    let from_s = Clock::at(scenario, changed).time_s(changed);
+    let from_s = if from_s + few_s <= end_s { from_s } else { 0.0 };
+    (end_s > MANY_SWINGS * swing_s).then_some((from_s, from_s + few_s))
 }

@@ -86,6 +86,8 @@ fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
+            // LaTeX makes one dash of two.
+            '-' if out.ends_with('-') => out.push_str("{}-"),
             '\\' => out.push_str(r"\textbackslash{}"),
             '~' => out.push_str(r"\textasciitilde{}"),
             '^' => out.push_str(r"\textasciicircum{}"),
@@ -106,6 +108,7 @@ mod tests {
             escaped(r"50% of a_b & {c} \d ~ ^ # $"),
             r"50\% of a\_b \& \{c\} \textbackslash{}d \textasciitilde{} \textasciicircum{} \# \$"
         );
+        assert_eq!(escaped("a-b --time-step"), "a-b -{}-time-step");
     }
 
     #[test]

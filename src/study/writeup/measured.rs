@@ -1,6 +1,6 @@
 //! Measured data in a write-up: their file, and how far the run is from them.
 
-use super::{CSV, LATEX, PAGE, READOUTS_FILE, RUN_FILE};
+use super::{AGAIN, CSV, LATEX, PAGE, READOUTS_FILE, RUN_FILE};
 use crate::measured::compared::{Compared, Sum};
 use crate::measured::{Measured, Quantity, Series, at_times};
 use crate::scenario::Scenario;
@@ -187,7 +187,8 @@ fn name_of_copy(origin: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
     let stem = stem.filter(|stem| stem.chars().all(is_plain) && !stem.starts_with(['-', '.']));
     let name = stem.map(|stem| format!("{stem}.csv"));
-    let is_taken = |name: &String| [CSV, RUN_FILE, PAGE, LATEX, READOUTS_FILE].contains(&&**name);
+    let is_taken =
+        |name: &String| [CSV, RUN_FILE, PAGE, LATEX, READOUTS_FILE, AGAIN].contains(&&**name);
     name.filter(|name| !is_taken(name))
         .unwrap_or_else(|| OTHERWISE.to_owned())
 }
@@ -203,6 +204,7 @@ mod tests {
             ("../a folder/bench-2.txt", "bench-2.csv"),
             ("heidelberg-spin-decay", "heidelberg-spin-decay.csv"),
             ("old/run.csv", "measured.csv"),
+            ("again.csv", "measured.csv"),
             ("our data.csv", "measured.csv"),
             ("-rf.csv", "measured.csv"),
             ("/dev/fd/63", "63.csv"),

@@ -3,6 +3,7 @@
 //!
 //! The same run gives the same bytes each time: what the machine's clock says is left out.
 
+mod exact_range;
 pub mod figures;
 mod languages;
 mod latex;
@@ -12,6 +13,7 @@ mod page;
 mod quantities;
 mod setup;
 
+use self::exact_range::ExactRange;
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Source};
 use crate::export::columns::COLUMNS;
@@ -36,6 +38,8 @@ pub const PAGE: &str = "README.md";
 pub const LATEX: &str = "readouts.tex";
 /// Every readout.
 pub const READOUTS_FILE: &str = "readouts.json";
+/// The CSV that the page's commands write beside the others.
+const AGAIN: &str = "again.csv";
 
 /// The name, among the readouts, of what was measured.
 const MEASURED_DATA: &str = "measured_data";
@@ -70,7 +74,11 @@ impl Writeup {
         Self {
             broken,
             beside,
-            quantities: quantities::quantities(&scenario, &readouts),
+            quantities: quantities::quantities(
+                &scenario,
+                &readouts,
+                ExactRange::new(&scenario, readouts.sample.time_s),
+            ),
             scenario,
             readouts,
             drawings,

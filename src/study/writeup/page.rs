@@ -3,7 +3,7 @@
 use super::languages::Lines;
 use super::markdown::escaped;
 use super::quantities::Quantity;
-use super::{Beside, CSV, Drawing, RUN_FILE, Writeup, setup};
+use super::{AGAIN, Beside, CSV, Drawing, RUN_FILE, Writeup, setup};
 use crate::text::number::NONE;
 use std::fmt::{self, Write};
 
@@ -97,8 +97,8 @@ fn write_quantities(page: &mut String, quantities: &[Quantity]) -> fmt::Result {
          digits: 0.886033(24) is 0.886033 ± 0.000024. \"In errors\" is the difference in standard errors. Up to about 3 of \
          them, reading alone explains it (exactly ±1.00: the reading's own known error, stated and not taken away). What is \
          more is the doing of the scheme and its time step, which the standard error does not hold: where the numbers hold, it \
-         may be many errors and still be tiny. The least and the greatest values are those of the whole run; where the \
-         forces changed on the way, theory has no difference to them. {NONE}: there is no such number, or none that can be \
+         may be many errors and still be tiny. The least and the greatest values are those of the whole run, in \
+         theory too. {NONE}: there is no such number, or none that can be \
          stated. The same table for LaTeX is in `{}`, every readout in `{}`.",
         super::LATEX,
         super::READOUTS_FILE
@@ -131,7 +131,7 @@ fn write_again(page: &mut String, beside: Option<&Beside>) -> fmt::Result {
             format!("verify {CSV}"),
             "computes the rows anew and says whether they are the same",
         ),
-        (format!("run {RUN_FILE} -o again.csv"), same.as_str()),
+        (format!("run {RUN_FILE} -o {AGAIN}"), same.as_str()),
         (
             format!("writeup {RUN_FILE}{measured} -o again"),
             "this folder",

@@ -1,5 +1,6 @@
 //! The measured numbers of a run beside those of theory.
 
+use super::exact_range::ExactRange;
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Readout, Source, find};
 use crate::run::Clock;
@@ -18,7 +19,7 @@ pub struct Quantity {
     pub uncertainty: Option<f64>,
     /// What theory says, in the same unit.
     pub predicted: Option<f64>,
-    /// How much more was measured than theory says, in the same unit, where both speak of the same stretch of the run.
+    /// How much more was measured than theory says, in the same unit; `None` of what is strobed.
     pub difference: Option<f64>,
     /// Since when it counts, s, where that is not the start.
     pub since_s: Option<f64>,
@@ -38,8 +39,13 @@ const SWING: &str = "measured_tilt_swing_deg";
 /// Digits after the point of a number that has no uncertainty.
 const DECIMALS: usize = 6;
 
-/// Every measured number of the table of readouts that `readouts`, of the run of `scenario`, has a value of, or theory.
-pub fn quantities(scenario: &Scenario, readouts: &Readouts) -> Vec<Quantity> {
+/// Every measured number of the table of readouts that `readouts`, of the run of `scenario`, has a value of, or theory; `range`
+/// is that of the exact motion beside it.
+pub fn quantities(
+    scenario: &Scenario,
+    readouts: &Readouts,
+    range: Option<ExactRange>,
+) -> Vec<Quantity> {
     let since = readouts.since;
     // The first step under other forces: they changed where it began.
     let changed = since.checked_sub(1).filter(|step| *step > 0);
@@ -55,11 +61,16 @@ pub fn quantities(scenario: &Scenario, readouts: &Readouts) -> Vec<Quantity> {
         let uncertainty = readout.uncertainty().filter(|_| predicted.is_some());
         let (measured, predicted) = match readout.name {
             SWING => (number(Some(readout)), swing_by_theory(readouts)),
+            name if readout.source == Source::EveryStep => {
+                // What theory says of the motion since the forces last changed says nothing of the run before.
+                let by_formula = number(predicted).filter(|_| since_s.is_none());
+                let seen = range.and_then(|range| range.of(name));
+                (number(Some(readout)), by_formula.or(seen))
+            }
             _ => (number(Some(readout)), number(predicted)),
         };
         let is_since = readout.source == Source::Measured;
         let is_strobed = is_strobed && readout.name == NUTATION;
-        let are_of_the_same = !is_strobed && (is_since || since_s.is_none());
         let difference = measured
             .zip(predicted)
             .map(|(measured, predicted)| measured - predicted);
@@ -68,7 +79,7 @@ pub fn quantities(scenario: &Scenario, readouts: &Readouts) -> Vec<Quantity> {
             measured,
             uncertainty: number(uncertainty),
             predicted,
-            difference: difference.filter(|_| are_of_the_same),
+            difference: difference.filter(|_| !is_strobed),
             since_s: since_s.filter(|_| is_since),
             is_strobed,
         }
