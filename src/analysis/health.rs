@@ -181,6 +181,15 @@ impl Health {
             .filter(|left| is_there && (left - 1.0).abs() > LEAST_CHANGE)
     }
 
+    /// How many times as far as it should the axle lags behind L, where that shifts the swing of its nutation by more than a
+    /// twentieth of it: the axle swings about the lag. `None` too where it is not known whether there is a nutation.
+    pub fn shifted_swing(&self) -> Option<f64> {
+        let (nutation, swing_deg) = (self.nutation?, self.swing_deg?);
+        let ratio = nutation.lag_ratio?;
+        let shift_deg = 2.0 * nutation.true_lag_deg? * (ratio - 1.0).abs();
+        (swing_deg > LEAST_SWING_DEG && shift_deg > LEAST_CHANGE * swing_deg).then_some(ratio)
+    }
+
     /// Whether what the scheme has made of the nutation is large enough to be what puts the traced point off.
     pub(super) fn nutation_is_the_cause(&self) -> bool {
         let (Some(left), Some(swing), Some(most)) = (

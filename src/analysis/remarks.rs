@@ -133,14 +133,22 @@ fn mend(health: &Health, advice: &Advice) -> Option<Remark> {
     })
 }
 
+/// A lag between these parts of the true one is right.
+const LAG_IS_RIGHT_FROM: f64 = 0.95;
+const LAG_IS_RIGHT_TO: f64 = 1.05;
+
 /// How far the axle lags behind L, and what becomes of the nutation, which is the fault of the run where it is changed.
 fn swing_of(health: &Health, nutation: &Nutation) -> Vec<(bool, Remark)> {
     let changed = health.changed_nutation();
     let is_right = changed.is_none() && health.is_believed() != Some(false);
     let lag = match nutation.lag_ratio {
         // A lag that is right is not said beside what is wrong.
-        Some(0.5..2.0) => {
+        Some(LAG_IS_RIGHT_FROM..LAG_IS_RIGHT_TO) => {
             is_right.then(|| Remark::new("axle lags L as far as it should".to_owned(), false))
+        }
+        Some(ratio @ LAG_IS_RIGHT_TO..2.0) => {
+            let text = format!("axle lags L {} % too far", short(100.0 * (ratio - 1.0)));
+            Some(Remark::new(text, true))
         }
         Some(ratio @ 2.0..) => {
             let text = format!("axle lags L {} times too far", times(ratio));

@@ -61,8 +61,13 @@ fn sentence(health: &Health, advice: Option<&Advice>) -> String {
 
 /// What is not the run's although its traced point holds: a nutation too small to show there, which the scheme has changed.
 fn lost_nutation(health: &Health) -> Option<String> {
-    let (nutation, left) = (health.nutation?, health.changed_nutation()?);
-    let swing = short(health.swing_deg?);
+    let (nutation, swing) = (health.nutation?, short(health.swing_deg?));
+    let Some(left) = health.changed_nutation() else {
+        let ratio = short(health.shifted_swing()?);
+        return Some(format!(
+            "the nutation, a swing of {swing} degrees, is not the body's: at this time step the scheme's axle lags behind L {ratio} times as far as it should and swings about that, which a shorter time step mends"
+        ));
+    };
     let now = match left {
         left if left < 1e-3 => "is gone".to_owned(),
         left => format!("has {} times its size", short(left)),
