@@ -3,7 +3,7 @@
 use crate::analysis::theory::{Axis, Path, Theory};
 use crate::analysis::{Measured, Readouts, remarks};
 use crate::scenario::Scenario;
-use crate::text::number::{NONE, exponent, fixed, shortest};
+use crate::text::number::{NONE, exponent, fixed, shortest, significant};
 use serde::Serialize;
 use std::fmt;
 use std::time::Duration;
@@ -23,6 +23,8 @@ struct Comparison {
     unit: &'static str,
     measured: Option<Measured>,
     predicted: Option<f64>,
+    /// Whether the steps are too far apart to see it.
+    is_strobed: bool,
 }
 
 impl Summary {
@@ -95,11 +97,13 @@ impl Summary {
             unit: "rad/s",
             measured: readouts.precession,
             predicted: theory.and_then(|theory| theory.precession),
+            is_strobed: false,
         };
         let nutation = Comparison {
             unit: "s",
             measured: readouts.nutation,
             predicted: theory.and_then(|theory| theory.nutation_period_s),
+            is_strobed: readouts.nutation_is_resolved() == Some(false),
         };
         let path = readouts.theory.as_ref().map(|theory| theory.path);
         let why = match (precession.predicted, path) {
@@ -108,12 +112,7 @@ impl Summary {
         };
         let precession = precession.in_words(readouts);
         writeln!(f, "  precession    {precession}{why}")?;
-        let strobed = match readouts.nutation_is_resolved() {
-            Some(false) => ": strobed, the time step is too long to see it",
-            _ => "",
-        };
-        let nutation = nutation.in_words(readouts);
-        writeln!(f, "  nutation      {nutation}{strobed}")
+        writeln!(f, "  nutation      {}", nutation.in_words(readouts))
     }
 
     fn write_theory(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -230,29 +229,38 @@ impl Comparison {
             .theory
             .as_ref()
             .map_or(Axis::Z, |theory| theory.axis);
+        let about = about(&axis);
+        let theory = match self.predicted {
+            Some(value) => format!("{} {unit} by theory{about}", fixed(value, 6)),
+            None if readouts.health.slowing.is_some() => {
+                "none by theory, as friction changes it".to_owned()
+            }
+            None if readouts.kappa.is_none() => {
+                "none by theory, which is of symmetric bodies".to_owned()
+            }
+            None => format!("none by theory{about}"),
+        };
         let measured = match self.measured {
             Some(Measured {
                 value, uncertainty, ..
             }) if value.is_finite() && uncertainty.is_finite() => {
+                if self.is_strobed {
+                    let shown = significant(value, 3);
+                    return format!(
+                        "{theory}, strobed: the steps are too far apart to see it, and show {shown} {unit}"
+                    );
+                }
                 let (value, uncertainty) = (fixed(value, 6), exponent(uncertainty, 1));
                 format!("{value} +- {uncertainty} {unit} measured")
             }
+            _ if self.is_strobed => {
+                "none measured: strobed, the steps are too far apart to see it".to_owned()
+            }
             _ => "none measured".to_owned(),
         };
-        let measured = match axis {
-            Axis::Z => measured,
-            _ => format!("{measured} about +z"),
-        };
-        let about = about(&axis);
-        match self.predicted {
-            Some(value) => format!("{} {unit} by theory{about}, {measured}", fixed(value, 6)),
-            None if readouts.health.slowing.is_some() => {
-                format!("none by theory, as friction changes it, {measured}")
-            }
-            None if readouts.kappa.is_none() => {
-                format!("none by theory, which is of symmetric bodies, {measured}")
-            }
-            None => format!("none by theory{about}, {measured}"),
+        match axis {
+            Axis::Z => format!("{theory}, {measured}"),
+            _ => format!("{theory}, {measured} about +z"),
         }
     }
 }

@@ -16,7 +16,9 @@ use super::request::Drawn;
 pub use super::request::{Known, Request, Run};
 use super::space;
 use crate::analysis::health::BELIEVED_WITHIN;
+use crate::run::Truth;
 use crate::scenario::Scenario;
+use crate::text::ladder;
 use crate::text::number::{short, shortest};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -110,7 +112,9 @@ fn play(
         if let Some(error) = course.broke {
             broke.get_or_insert_with(|| format!("{}: {error}", run.named));
         }
-        warnings.extend(not_believed(run, &course, request.exact));
+        let is_over_time = kinds.iter().any(|kind| matches!(kind, Kind::OverTime(_)));
+        let faults = || not_believed(run, &course, request.exact);
+        warnings.extend(faults().or_else(|| few_a_swing(run).filter(|_| is_over_time)));
         let style = Style::curve(index);
         drawn.push(Drawn {
             name,
@@ -272,6 +276,32 @@ fn not_believed(run: &Run, course: &Course, exact: bool) -> Option<String> {
         )
     })
 }
+
+/// A nutation with fewer time steps than these is not seen in the lines from one to the next.
+const LEAST_A_SWING: f64 = 6.0;
+/// A nutation by less than this is none, rad.
+const LEAST_SWING_RAD: f64 = 2e-8;
+
+/// What is said of `run` where it has too few time steps in a nutation for a curve over time.
+fn few_a_swing(run: &Run) -> Option<String> {
+    let truth = Truth::new(Arc::clone(&run.scenario));
+    let motion = truth.motion().closed_form()?;
+    let ((low, high), period_s) = (motion.tilt_range(), motion.nutation_period()?);
+    let time_step_s = run.scenario.motion.time_step_s;
+    let steps = period_s / time_step_s;
+    (high - low > LEAST_SWING_RAD && steps < LEAST_A_SWING).then(|| {
+        format!(
+            "{} has {} time steps in a nutation of {} s: the lines between them show slow swings that the motion does not have; a time step of {} s would show the nutation",
+            run.named,
+            short(steps),
+            short(period_s),
+            shortest(ladder::at_or_below(period_s / A_SMOOTH_SWING))
+        )
+    })
+}
+
+/// So many time steps in a nutation show it as a smooth curve.
+const A_SMOOTH_SWING: f64 = 20.0;
 
 /// What is said of more curves than there are kinds of line.
 fn look_alike(drawn: &[Drawn]) -> Option<String> {

@@ -558,6 +558,30 @@ fn a_run_that_is_not_to_be_believed_is_told() {
 }
 
 #[test]
+fn lines_between_too_few_steps_of_a_nutation_are_told() {
+    let told = |time_step: &str, kind: &str| -> Vec<String> {
+        let run = run(
+            "fast-top",
+            &[time_step, "motion.steps=500", "motion.scheme=exact"],
+        );
+        let figure = drawn(&[run], &request(kind));
+        figure.told().map(|told| told.to_string()).collect()
+    };
+    let [only] = &told("motion.time_step_s=0.02", "tilt_deg")[..] else {
+        panic!("none")
+    };
+    assert!(
+        only.starts_with("fast-top has 4.15 time steps in a nutation of 0.0829 s: "),
+        "{only}"
+    );
+    assert!(
+        only.contains("; a time step of 0.002 s would show the nutation"),
+        "{only}"
+    );
+    assert!(told("motion.time_step_s=0.001", "tilt_deg").is_empty());
+}
+
+#[test]
 fn more_curves_than_kinds_of_line_are_told() {
     let runs = |count: usize| -> Vec<Run> {
         let names = [

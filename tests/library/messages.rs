@@ -89,10 +89,10 @@ fn one_word_stands_for_what_a_long_time_step_shows() {
 /// From a tenth of a turn a step on the wheel's ten points are taken for one another: that is no fault of the run.
 #[test]
 fn a_wheel_that_is_strobed_is_no_fault_of_the_run() {
-    let good = health("method-2", &["motion.time_step_s=0.01"]);
+    let good = health("method-2", &["motion.time_step_s=0.003"]);
     assert_eq!(good.is_believed(), Some(true));
     let remarks = remarks(&good, None);
-    assert_eq!(remarks[0].short, "0.497 turns a step");
+    assert_eq!(remarks[0].short, "0.149 turns a step");
     assert!(remarks.iter().all(|remark| !remark.warns), "{remarks:?}");
     let last = remarks.last().map(|remark| remark.long.as_str());
     assert_eq!(
@@ -100,7 +100,7 @@ fn a_wheel_that_is_strobed_is_no_fault_of_the_run() {
         Some("the wheel's picture is strobed, the motion is not")
     );
     for size in [SMALL, LARGE] {
-        Stage::open("method-2", &["motion.time_step_s=0.01"], size).shows_no(": strobed");
+        Stage::open("method-2", &["motion.time_step_s=0.003"], size).shows_no(": strobed");
     }
 }
 

@@ -215,13 +215,13 @@ readouts! {
     "cusp_tilt_deg", "deg", Theory, "tilt at which the axle stands still in azimuth", |r| r.lasting_theory().and_then(|theory| theory.cusp_tilt_deg);
     "predicted_precession_rad_per_s", "rad/s", Theory, "mean precession of the exact motion about +z", |r| r.lasting_theory().and_then(|theory| theory.precession), "*Ω*_{p}";
     "measured_precession_rad_per_s", "rad/s", Measured, "mean precession about +z; none under friction, which changes it all the time", |r| value(r.precession), "*Ω*_{p}";
-    "measured_precession_uncertainty_rad_per_s", "rad/s", Measured, "one standard error of it", |r| uncertainty(r.precession);
+    "measured_precession_uncertainty_rad_per_s", "rad/s", Measured, "one standard error of reading it off the steps; the error that the scheme and its time step make is not in it", |r| uncertainty(r.precession);
     "slow_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the slow one", |r| r.theory_about_z().and_then(|theory| theory.slow_precession), "*Ω*_{slow}";
     "fast_precession_rad_per_s", "rad/s", Theory, "steady precession at this tilt, the fast one", |r| r.theory_about_z().and_then(|theory| theory.fast_precession), "*Ω*_{fast}";
     "fast_top_precession_rad_per_s", "rad/s", Theory, "the fast top's precession M g h/L3", |r| r.theory_about_z().and_then(|theory| theory.fast_top_precession), "*M* *g* *h*/*L*_{3}";
     "predicted_nutation_period_s", "s", Theory, "nutation period of the exact motion", |r| r.lasting_theory().and_then(|theory| theory.nutation_period_s), "*T*_{n}";
     "measured_nutation_period_s", "s", Measured, "mean time from one greatest tilt to the next; none under friction", |r| value(r.nutation), "*T*_{n}";
-    "measured_nutation_uncertainty_s", "s", Measured, "one standard error of it", |r| uncertainty(r.nutation);
+    "measured_nutation_uncertainty_s", "s", Measured, "one standard error of reading it off the steps; the error that the scheme and its time step make is not in it", |r| uncertainty(r.nutation);
     "nutation_is_resolved", "", State, "false: the time step is too long to see the nutation, what is measured is strobed", |r| r.nutation_is_resolved();
     "predicted_precession_period_s", "s", Theory, "time of one turn of the mean precession of the exact motion about +z", |r| r.lasting_theory().and_then(Theory::precession_period_s), "*T*_{p}";
     "predicted_body_cone_period_s", "s", Theory, "free symmetric body: time in which the instantaneous axis goes once round the axle, seen from the body, (I1/|I3 - I1|) 2 pi/omega3; null under a load, without spin, for I3 = I1, and where only a rotor spins", |r| r.theory.filter(|theory| !r.has_rotor && !theory.is_of_a_moment).and_then(|theory| theory.body_cone_period_s), "*T*_{c}";

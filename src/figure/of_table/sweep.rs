@@ -49,7 +49,7 @@ pub(super) fn drawn(
     let curves = curves::curves(swept, key);
     if curves.len() > MOST_SERIES {
         return Err(format!(
-            "{} curves would stand beside each other, and {MOST_SERIES} can be told apart: vary {} at fewer values",
+            "{} curves would stand beside each other, and {MOST_SERIES} can be told apart: vary {} at fewer values, or name the key with the most values last, which makes it the horizontal axis",
             curves.len(),
             varied
                 .iter()

@@ -12,7 +12,7 @@ pub fn table(quantities: &[Quantity], caption: &str, verdict: &str) -> String {
         .map(|quantity| format!("% {}: {}.\n", quantity.name(), quantity.meaning()));
     let meanings: String = meanings.collect();
     format!(
-        r"{meanings}% Digits in parentheses are one standard error, in units of the last digits.
+        r"{meanings}% Digits in parentheses are one standard error of reading the number off the steps, in units of the last digits.
 \begin{{table}}
 \centering
 \caption{{{} {}}}

@@ -6,12 +6,12 @@ use crate::text::number::decimal;
 /// What the title says of bands where there is room.
 const BANDS: &str = "bands: lowest, mean (dotted) and highest of fast swings";
 /// What the title says of the exact motion, the run before and the pinned run: at length, in short and shorter.
-const EXACT: [&str; 3] = ["dashed: exact motion", "- - exact", "--exact"];
-const OTHER: [&str; 3] = ["dotted: all of the other run", "··· other run", "···other"];
+const EXACT: [&str; 3] = ["dashed: exact motion", "- - exact", "-- exact"];
+const OTHER: [&str; 3] = ["dotted: all of the other run", "··· other run", "··· other"];
 const PINNED: [&str; 3] = [
     "long and short: all of the pinned run",
     "-- - pinned",
-    "-- -pinned",
+    "-- - pin",
 ];
 
 impl Traces<'_> {
