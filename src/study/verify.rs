@@ -13,6 +13,7 @@ use crate::export::{CsvWriter, Layout};
 use crate::run::{NotFinite, Simulation, Step};
 use crate::scenario::head::Head;
 use crate::scenario::{Document, Problem, Problems, Scenario};
+use crate::study::sweep::Sweep;
 use crate::text::printable::printable;
 use crate::text::unread;
 pub use lines::{Difference, What};
@@ -101,7 +102,11 @@ pub fn verify(
             let rule = "is the CSV of a fit, which is not computed again: its data stand in another file. The line command at its top makes the fit again: give it -o again.csv, and compare the two files";
             return Err(refused(whole(rule.to_owned())));
         }
-        _ if document.table().contains_key("vary") => of_sweep::verify(path, watch)?,
+        _ if document.table().contains_key("vary") => {
+            let sweep = Sweep::open(&document).map_err(Unverified::Refused)?;
+            let verified = of_sweep::verify(&sweep, &head, lines, watch);
+            verified.map_err(cannot_read)?.ok_or(Unverified::Stopped)?
+        }
         _ => {
             let layout = Layout::read(&text).map_err(|error| refused(of_layout(&error)))?;
             let scenario = document.scenario().map_err(Unverified::Refused)?;

@@ -1,11 +1,12 @@
 //! Sweeps in the library: those that are shipped, and the rows computed again.
 
 use gyrolab::scenario::Document;
-use gyrolab::study::sweep::recompute::{Verdict, verify};
 use gyrolab::study::sweep::shipped::{self, SWEEPS};
 use gyrolab::study::sweep::{Shard, Sweep};
+use gyrolab::study::verify::{Field, Kind, Unverified, What, verify};
 use std::collections::BTreeSet;
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 fn shipped(name: &str) -> Sweep {
@@ -111,40 +112,72 @@ fn verification_finds_one_changed_digit() {
     let good = csv(&parsed(SMALL));
     let verified = |text: &str| {
         fs::write(&path, text).unwrap();
-        verify(&path, &|| true, |_, _| {}).unwrap()
+        verify(&path, |_, _| ControlFlow::Continue(())).unwrap()
     };
     let same = verified(&good);
-    assert_eq!((same.rows, same.verdict), (6, Verdict::Same));
-    assert_eq!(same.version.as_deref(), Some(env!("CARGO_PKG_VERSION")));
-    let last_digit = good.trim_end().rfind(|c: char| c.is_ascii_digit()).unwrap();
-    let mut wrong = good.clone().into_bytes();
-    wrong[last_digit] = if wrong[last_digit] == b'5' {
-        b'6'
-    } else {
-        b'5'
+    assert_eq!((same.rows, same.difference), (6, None));
+    assert_eq!(same.kind, Kind::Sweep { failures: 0 });
+    let other_version = good.replace("# gyrolab = \"", "# gyrolab = \"9.");
+    let other = verified(&other_version);
+    assert_eq!((other.rows, other.difference), (6, None));
+    let version = format!("9.{}", env!("CARGO_PKG_VERSION"));
+    assert_eq!(other.written_by, Some(version));
+    let last = good.lines().last().unwrap();
+    let cells: Vec<&str> = last.split(',').collect();
+    let digit = if cells[2].ends_with('5') { "6" } else { "5" };
+    let changed = format!("{}{digit}", &cells[2][..cells[2].len() - 1]);
+    let wrong = format!(
+        "{}{}\n",
+        &good[..good.len() - last.len() - 1],
+        last.replace(cells[2], &changed)
+    );
+    let difference = |text: &str, rows: u64| {
+        let found = verified(text);
+        assert_eq!(found.rows, rows);
+        let found = found.difference.unwrap();
+        (found.line as usize, found.what)
     };
-    let wrong = String::from_utf8(wrong).unwrap();
-    let Verdict::Differs(found) = verified(&wrong).verdict else {
-        panic!("not found")
+    let lines = good.lines().count();
+    let field = Field {
+        row: "motion.steps = 3, start.momentum_Js.2 = 60.0".to_owned(),
+        row_name: "the point".to_owned(),
+        column: "z_m".to_owned(),
+        stands: changed,
+        computed: cells[2].to_owned(),
     };
-    assert_eq!(found.row, 6);
-    assert_eq!(found.line as usize, wrong.lines().count());
-    assert_eq!(found.point, "motion.steps = 3, start.momentum_Js.2 = 60.0");
-    assert_eq!(found.there.as_deref(), wrong.lines().last());
-    assert_eq!(found.here.as_deref(), good.lines().last());
-    let end = good.trim_end().rfind('\n').unwrap();
-    let Verdict::Differs(found) = verified(&good[..=end]).verdict else {
-        panic!("not found")
-    };
-    assert_eq!((found.row, found.there), (6, None));
+    assert_eq!(difference(&wrong, 5), (lines, What::Field(field)));
+    let end = good.len() - last.len() - 1;
+    let computed = last.to_owned();
+    assert_eq!(
+        difference(&good[..end], 5),
+        (lines, What::Missing { computed })
+    );
+    let stands = "x".to_owned();
     let longer = format!("{good}x\n");
-    let Verdict::Differs(found) = verified(&longer).verdict else {
-        panic!("not found")
-    };
-    assert_eq!((found.row, found.here), (7, None));
+    assert_eq!(difference(&longer, 6), (lines + 1, What::Extra { stands }));
     fs::write(&path, &good).unwrap();
-    let stopped = verify(&path, &|| false, |_, _| {}).unwrap();
-    assert_eq!(stopped.verdict, Verdict::Stopped);
-    fs::write(&path, good.replace("z_m,path", "path,z_m")).unwrap();
-    assert!(verify(&path, &|| true, |_, _| {}).is_err());
+    let stopped = verify(&path, |_, _| ControlFlow::Break(()));
+    assert!(matches!(stopped, Err(Unverified::Stopped)), "{stopped:?}");
+    let (line, what) = difference(&good.replace("z_m,path", "path,z_m"), 0);
+    assert_eq!(line, lines - 6);
+    assert!(matches!(what, What::Line { .. }), "{what:?}");
+}
+
+#[test]
+fn a_row_that_begins_as_the_header_does_is_a_row() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("small.csv");
+    let good = csv(&parsed(
+        "scenario = \"cusps\"\nmeasure = [\"z_m\"]\n\
+         [[vary]]\nkey = \"about\"\nvalues = [\"# 1\", \"# gyrolab = 2\"]\n",
+    ));
+    let verified = |text: &str| {
+        fs::write(&path, text).unwrap();
+        verify(&path, |_, _| ControlFlow::Continue(())).unwrap()
+    };
+    let same = verified(&good);
+    assert_eq!((same.rows, same.difference), (2, None));
+    let end = good.trim_end().rfind(',').unwrap();
+    let wrong = verified(&format!("{},1\n", &good[..end]));
+    assert!(wrong.rows == 1 && wrong.difference.is_some(), "{wrong:?}");
 }

@@ -207,3 +207,90 @@ fn a_comparison_is_given_as_json() {
     let unwritable = ground.run(&["compare", "cusps", "--json", "-o", "no/where.csv"]);
     failed(&unwritable, &["there is no folder no"]);
 }
+
+/// A sweep of four runs over a number and a text.
+fn small_sweep(ground: &Ground) -> String {
+    let sweep = "$G sweep cusps --vary motion.steps=3,5 --vary motion.scheme=report,rk4 --measure z_m,path -o a.csv";
+    done(ground.shell(sweep));
+    ground.read("a.csv")
+}
+
+#[test]
+fn the_field_of_a_sweep_that_differs_is_told() {
+    let ground = Ground::new();
+    let good = small_sweep(&ground);
+    let told = |text: &str| {
+        ground.write("a.csv", text);
+        let output = ground.run(&["verify", "a.csv"]);
+        assert_eq!(code(&output), 1);
+        stdout(&output).to_owned()
+    };
+    let begin = good.find("\n5,report,").unwrap() + "\n5,report,".len();
+    let line = good[..begin].lines().count();
+    let row = &good[begin..];
+    let z_m = row.split(',').next().unwrap();
+    let with = |field: &str| format!("{}{field}{}", &good[..begin], &row[z_m.len()..]);
+    assert_eq!(
+        told(&with("7")),
+        format!(
+            "a.csv: differs: line {line}, the row of the point motion.steps = 5, motion.scheme = \"report\": z_m is 7, computed {z_m}\n"
+        )
+    );
+    let columns = told(&good.replace(",z_m,path\n", ",path,z_m\n"));
+    assert!(
+        columns.contains(
+            " is \"motion.steps,motion.scheme,path,z_m\", computed \"motion.steps,motion.scheme,z_m,path\""
+        ),
+        "{columns}"
+    );
+    // What would steer the terminal is shown as an escape, and cut short, wherever it stands.
+    let steering = format!("\u{1b}]0;title\u{7}{}", "x".repeat(100_000));
+    let last = good.trim_end().len();
+    for text in [
+        with(&steering),
+        with(&format!("1,2,3,{steering}")),
+        format!("{}\n{steering}\n", &good[..last]),
+    ] {
+        let told = told(&text);
+        assert!(
+            !told.contains(['\u{1b}', '\u{7}'])
+                && told.contains("\\u{1b}]0;title")
+                && told.len() < 500,
+            "{told:?}"
+        );
+    }
+}
+
+#[test]
+fn ends_of_lines_are_told_of_a_sweep_as_of_a_run() {
+    let ground = Ground::new();
+    let sweep = small_sweep(&ground);
+    done(ground.run(&["run", "cusps", "--steps", "4", "-o", "run.csv"]));
+    let run = ground.read("run.csv");
+    for good in [&run, &sweep] {
+        let told = |text: &str, code_wanted: i32| {
+            ground.write("a.csv", text);
+            let output = ground.run(&["verify", "a.csv"]);
+            assert_eq!(code(&output), code_wanted, "{}", stderr(&output));
+            stdout(&output).to_owned()
+        };
+        let dos = told(&good.replace('\n', "\r\n"), 1);
+        assert!(
+            dos.contains("every row is the same, but the lines end in CR LF from line 1 on"),
+            "{dos}"
+        );
+        let marked = format!("\u{feff}{good}");
+        assert!(told(&marked, 0).contains("the same: all "));
+        let cut = told(good.trim_end(), 1);
+        assert!(
+            cut.contains(", the last one, is cut off before its end"),
+            "{cut}"
+        );
+        let half = &good[..good.len() - 4];
+        assert!(told(half, 1).contains("the last one, is cut off before its end"));
+        let without = &good[..=good.trim_end().rfind('\n').unwrap()];
+        assert!(told(without, 1).contains("it is cut off"));
+        let longer = format!("{good}\n");
+        assert!(told(&longer, 1).contains("have come to their end"));
+    }
+}

@@ -205,11 +205,16 @@ impl Sweep {
 
     /// The sweep file in `# ` lines, and the line of the columns' names.
     pub fn header(&self) -> String {
+        self.file_lines() + &self.names()
+    }
+
+    /// The line of the columns' names, with its end.
+    pub fn names(&self) -> String {
         let keys = self.axes.iter().map(|axis| axis.key.as_str());
         let names: Vec<_> = keys
             .chain(self.measure.iter().map(|readout| readout.name))
             .collect();
-        self.file_lines() + &line(&names)
+        line(&names)
     }
 
     /// The values of the point behind the `row`-th row, from 0, one of each axis.

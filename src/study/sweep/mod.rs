@@ -14,7 +14,6 @@ mod grid;
 pub mod in_order;
 pub mod join;
 pub mod part;
-pub mod recompute;
 mod row;
 pub mod shard;
 pub mod shipped;

@@ -172,7 +172,7 @@ impl<R: Read> Held<R> {
     fn hold(&mut self) -> io::Result<()> {
         let is_first = self.lines.number == 0;
         let computed = without_mark(&self.computed, is_first);
-        let is_header = computed.starts_with(b"#");
+        let is_header = self.names.is_none() && computed.starts_with(b"#");
         let stands = self.lines.next(computed.len() as u64 + MOST_BEYOND)?;
         let (stands, end) = parted(without_mark(stands, is_first));
         let is_version = is_header && computed.starts_with(VERSION) && stands.starts_with(VERSION);
@@ -241,6 +241,17 @@ impl<R: Read> Write for Held<R> {
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
     }
+}
+
+/// The lines that begin with `#` at the beginning of `bytes`, each with the end that gyrolab writes.
+pub(super) fn comments(bytes: &[u8]) -> Vec<u8> {
+    let lines = without_mark(bytes, true).split_inclusive(|&byte| byte == b'\n');
+    let comments = lines.take_while(|line| line.starts_with(b"#"));
+    comments
+        .flat_map(|line| [parted(line).0, b"\n"])
+        .flatten()
+        .copied()
+        .collect()
 }
 
 /// How a line ends.

@@ -33,6 +33,10 @@ impl fmt::Display for Field {
             stands,
             computed,
         } = self;
+        let [stands, computed] = [stands, computed].map(|text| match text.is_empty() {
+            true => "empty",
+            false => text,
+        });
         write!(
             f,
             "the row of {row_name} {row}: {column} is {stands}, computed {computed}"
