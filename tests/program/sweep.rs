@@ -1,7 +1,7 @@
 //! `gyrolab sweep`: its CSV, how it goes on, what it refuses, and how shards become one file.
 
 use crate::support::dice::Dice;
-use crate::support::ground::{Ground, code};
+use crate::support::ground::{Ground, code, names};
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::process::{Command, Output, Stdio};
@@ -804,4 +804,44 @@ fn progress_is_shown_from_the_beginning() {
     assert!(!text.contains("left") && !text.contains("/s"), "{text}");
     terminal.press("\u{3}");
     assert_eq!(terminal.wait_for_end().exit_code(), 130);
+}
+
+#[test]
+fn steps_and_seconds_of_a_push_are_not_mixed() {
+    let ground = Ground::new();
+    let vary = |more: &[&str]| {
+        let args = [&["sweep", "wobble-push", "--measure=z_m"], more].concat();
+        sweep(&ground, &args, "out.csv")
+    };
+    for (args, words) in [
+        (
+            &["--time-step=0.01", "--vary=push.0.steps=20,200"][..],
+            "--vary push.0.steps=20,200: push.0.steps: the push counts in seconds (--time-step turns steps into seconds): vary push.0.for_s",
+        ),
+        (
+            &["--time-step=0.01", "--vary=push.0.first_step=20,200"],
+            "vary push.0.from_s",
+        ),
+        (
+            &["--vary=push.0.for_s=1,2"],
+            "push.0.for_s: the push counts in steps: vary push.0.steps",
+        ),
+        (
+            &["--vary=push.0.from_s=1,2"],
+            "push.0.from_s: the push counts in steps: vary push.0.first_step",
+        ),
+    ] {
+        refused(&vary(args), 1, &[words]);
+        assert_eq!(ground.files(), [""; 0]);
+    }
+    let told = made(&vary(&["--set=motion.steps=10", "--vary=push.0.steps=2,3"]));
+    assert!(!told.contains("without readouts"), "{told}");
+    fs::remove_file(ground.file("out.csv")).unwrap();
+    let args = [
+        "--time-step=0.1",
+        "--set=motion.steps=10",
+        "--vary=push.0.for_s=2,3",
+    ];
+    let told = made(&vary(&args));
+    assert!(!told.contains("without readouts"), "{told}");
 }

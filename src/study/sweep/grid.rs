@@ -11,7 +11,7 @@ use crate::export::comments::commented;
 use crate::run::Clock;
 use crate::run::resample::resampled;
 use crate::scenario::document::Document;
-use crate::scenario::dotted::{find, join};
+use crate::scenario::dotted::{find, join, number_of_push};
 use crate::scenario::file::ScenarioFile;
 use crate::scenario::rescale::{MOST_STEPS, accumulates};
 use crate::scenario::{Problem, Problems, Scenario};
@@ -21,6 +21,9 @@ use toml::Value;
 
 /// The key that, as it varies, leaves the seconds of a run as they are and not its steps.
 const TIME_STEP: &str = "motion.time_step_s";
+
+/// The keys of a push in steps, and those that say the same in seconds.
+const IN_STEPS_OR_SECONDS: [(&str, &str); 2] = [("first_step", "from_s"), ("steps", "for_s")];
 
 /// The most points of one sweep.
 const MOST_POINTS: u64 = 1_000_000_000;
@@ -158,9 +161,29 @@ impl Sweep {
                 let rule = format!("leads nowhere: the scenario has no {entry}");
                 return Err(Problem::at(axis.key.clone(), rule));
             }
+            if let Some(rule) = self.counts_otherwise(&axis.key) {
+                return Err(Problem::at(axis.key.clone(), rule));
+            }
             document.set_value(&axis.key, axis.values[0].clone())?;
         }
         Ok(())
+    }
+
+    /// What is wrong with `key` where it is in steps and its push in seconds, or the reverse.
+    fn counts_otherwise(&self, key: &str) -> Option<String> {
+        number_of_push(key)?;
+        let (entry, name) = key.rsplit_once('.')?;
+        let has = |name: &str| find(self.base.table(), &join(entry, name)).is_some();
+        let (in_steps, in_seconds) = (has("steps"), has("for_s"));
+        IN_STEPS_OR_SECONDS.into_iter().find_map(|(steps, seconds)| {
+            if name == steps && in_seconds {
+                return Some(format!(
+                    "the push counts in seconds (--time-step turns steps into seconds): vary {entry}.{seconds}"
+                ));
+            }
+            (name == seconds && in_steps)
+                .then(|| format!("the push counts in steps: vary {entry}.{steps}"))
+        })
     }
 
     /// What it is called.
