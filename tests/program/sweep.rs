@@ -845,3 +845,32 @@ fn steps_and_seconds_of_a_push_are_not_mixed() {
     let told = made(&vary(&args));
     assert!(!told.contains("without readouts"), "{told}");
 }
+
+#[test]
+fn a_value_may_be_an_empty_text() {
+    let ground = Ground::new();
+    let args = [
+        "sweep",
+        "cusps",
+        "--set=motion.steps=2",
+        "--vary",
+        "about=\"\",x,\"a,b\"",
+        "--measure=z_m",
+    ];
+    made(&sweep(&ground, &args, "out.csv"));
+    let told = made(&sweep(&ground, &args, "out.csv"));
+    assert!(told.contains("out.csv is whole, 3 rows"), "{told}");
+    let verified = ground.run(&["verify", "out.csv"]);
+    assert_eq!(code(&verified), 0, "{verified:?}");
+    for shard in ["1/2", "2/2"] {
+        let name = format!("{}.csv", &shard[..1]);
+        made(&sweep(
+            &ground,
+            &[&args[..], &["--shard", shard]].concat(),
+            &name,
+        ));
+    }
+    let join = ["sweep", "--join", "1.csv", "2.csv"];
+    made(&sweep(&ground, &join, "joined.csv"));
+    assert_eq!(ground.read("joined.csv"), ground.read("out.csv"));
+}

@@ -260,9 +260,11 @@ impl Sweep {
 
     /// The beginning of the `row`-th row, from 0: its varied values, up to the comma before the first readout.
     pub fn row_begins(&self, row: u64) -> String {
-        let mut begin = line(&self.labels(row));
-        begin.truncate(begin.trim_end_matches('\n').len());
-        begin + ","
+        const BEHIND: &str = "0";
+        // A line of one empty field alone would be quoted: a cell stands behind the values, as in the row.
+        let mut begin = line(&(self.labels(row), BEHIND));
+        begin.truncate(begin.len().saturating_sub(BEHIND.len() + 1));
+        begin
     }
 
     fn labels(&self, row: u64) -> Vec<String> {
