@@ -275,7 +275,7 @@ fn what_is_not_this_sweep_is_refused_and_left_alone() {
     let swapped = whole.replace("\n10.0,rk4", "\n11.0,rk4");
     for (text, word) in [
         ("mine\n", "no sweep file"),
-        ("# title = 'x'\nmine\n", "gyrolab is not given"),
+        ("# title = 'x'\nmine\n", "measure is not given"),
         (&longer, "more rows"),
         (shorter, "59 of the 60 rows"),
         (&swapped, "row 2"),
@@ -873,4 +873,65 @@ fn a_value_may_be_an_empty_text() {
     let join = ["sweep", "--join", "1.csv", "2.csv"];
     made(&sweep(&ground, &join, "joined.csv"));
     assert_eq!(ground.read("joined.csv"), ground.read("out.csv"));
+}
+
+/// What differs between two sweeps comes first, cut short, and the users' own words are left as they are.
+#[test]
+fn another_sweep_is_told_by_the_first_key_that_differs() {
+    let ground = Ground::new();
+    let about = |title: &str, shard: &str| {
+        let args = [
+            "sweep",
+            "cusps",
+            "--set=motion.steps=2",
+            &format!("--set=title={title}"),
+            "--vary=start.momentum_Js.2=10..400:4",
+            "--measure=z_m",
+            "--shard",
+            shard,
+        ];
+        made(&sweep(
+            &ground,
+            &args,
+            &format!("{}.csv", shard.replace('/', "-")),
+        ));
+    };
+    about("a top here and there", "1/2");
+    about("a top", "2/2");
+    let join = ["sweep", "--join", "1-2.csv", "2-2.csv"];
+    let output = sweep(&ground, &join, "joined.csv");
+    refused(
+        &output,
+        1,
+        &[
+            "gyrolab: 2-2.csv: is no shard of the sweep of 1-2.csv: scenario.title is \"a top\" in it, \"a top here and there\" in the other\n",
+        ],
+    );
+    let changed = ground.read("1-2.csv").replace("title = ", "title =  ");
+    ground.write("1-2.csv", &changed.replace("= 2\n", "= 0b10\n"));
+    let output = sweep(&ground, &join, "joined.csv");
+    refused(
+        &output,
+        1,
+        &["1-2.csv: its sweep file is not as this gyrolab writes it"],
+    );
+    // Long lists are told by the first of their entries that differs.
+    let all = ["sweep", "cusps", "--set=motion.steps=2"];
+    let vary = |values: &'static str| ["--vary", values];
+    let first = vary("start.momentum_Js.2=10,20,30");
+    made(&sweep(&ground, &[&all[..], &first].concat(), "all.csv"));
+    for (more, words) in [
+        (
+            &[first[0], first[1], "--measure=steps,z_m"][..],
+            "gyrolab: all.csv holds another sweep: measure.1 is \"time_step_s\" there, \"z_m\" here; --force replaces it\n",
+        ),
+        (
+            &vary("start.momentum_Js.2=10,21,30"),
+            "gyrolab: all.csv holds another sweep: vary.0.values.1 is 20 there, 21 here; --force replaces it\n",
+        ),
+    ] {
+        let output = sweep(&ground, &[&all[..], more].concat(), "all.csv");
+        refused(&output, 1, &[words]);
+        assert!(output.stderr.len() < 300, "{output:?}");
+    }
 }

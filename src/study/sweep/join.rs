@@ -127,9 +127,10 @@ fn of_one_sweep(parts: &[Part]) -> Result<Sweep, JoinError> {
         let differs = match part.sweep.shard().of() {
             count if count != of => format!("one is a shard of {of}, the other of {count}"),
             _ if other.header() == whole.header() => continue,
-            _ => of_headers(&other.file_lines(), &whole.file_lines())
-                .replace(" there", " in it")
-                .replace(" here", " in the other"),
+            _ => {
+                let words = ["in it", "in the other"];
+                of_headers(&other.file_lines(), &whole.file_lines(), words).to_string()
+            }
         };
         return Err(part.fails(format!(
             "is no shard of the sweep of {}: {differs}",
@@ -177,10 +178,7 @@ impl Part {
             true => Ok(part),
             false => {
                 let there = String::from_utf8_lossy(&there);
-                let differs = of_headers(&there, &header);
-                let differs = differs
-                    .replace(" there", " in it")
-                    .replace(" here", " by this program");
+                let differs = of_headers(&there, &header, ["in it", "by this program"]);
                 Err(part.fails(format!(
                     "its sweep file is not as this gyrolab writes it: {differs}"
                 )))

@@ -4,6 +4,7 @@
 //! beginning of the whole file, and perhaps a torn line at its end. The same command drops that line, sees how many rows
 //! there are, and goes on behind them. When all are there the file gets its name.
 
+use super::difference::Differs;
 use super::grid::Sweep;
 use super::row::RowsThere;
 use super::there::{There, look};
@@ -24,15 +25,12 @@ const SYNC: Duration = Duration::from_secs(2);
 #[derive(Debug, thiserror::Error)]
 pub enum PartError {
     /// There is something else under the file's name.
-    #[error(
-        "{} is there and is not this sweep: {differs}; --force replaces it",
-        Shown(path)
-    )]
+    #[error("{} {what}; --force replaces it", Shown(path))]
     Other {
         /// The file.
         path: PathBuf,
-        /// What differs.
-        differs: String,
+        /// What it holds, beginning with a verb.
+        what: String,
     },
     /// There are the rows of another sweep under the name that these have until they are whole.
     #[error(
@@ -43,7 +41,7 @@ pub enum PartError {
         /// The part file.
         path: PathBuf,
         /// What differs.
-        differs: String,
+        differs: Differs,
     },
     /// Behind rows of this sweep there is something else.
     #[error(
@@ -292,20 +290,27 @@ pub(super) fn whole_rows(
         Err(error) => return Err(refused(error)),
     };
     let length = file.metadata().map_err(refused)?.len();
-    let differs = match look(&file, sweep).map_err(refused)? {
+    let what = match look(&file, sweep).map_err(refused)? {
         There::Rows(rows, bytes) if rows.count() == sweep.rows() && bytes == length => {
             return Ok(Some(rows));
         }
-        There::Rows(rows, _) => format!("it has {} of the {} rows", rows.count(), sweep.rows()),
-        There::Damaged(rows) => format!("its row {} is no row of this sweep", rows + 1),
-        There::Nothing => "it is no sweep's CSV".to_owned(),
-        There::Other(differs) => differs,
+        There::Rows(rows, _) => {
+            let (rows, all) = (rows.count(), sweep.rows());
+            format!("is not the whole of this sweep: it has {rows} of the {all} rows")
+        }
+        There::Damaged(rows) => {
+            let row = rows + 1;
+            format!("is not this sweep: its row {row} is no row of it")
+        }
+        There::Nothing => "is no sweep's CSV".to_owned(),
+        There::Other(Differs::Sweep(key)) => format!("holds another sweep: {key}"),
+        There::Other(Differs::Form(form)) => format!("is not this sweep: {form}"),
     };
     match may_replace {
         true => Ok(None),
         false => Err(PartError::Other {
             path: path.to_owned(),
-            differs,
+            what,
         }),
     }
 }

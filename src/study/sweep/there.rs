@@ -1,6 +1,6 @@
 //! What stands in a file, held against the sweep whose rows it should have.
 
-use super::difference::of_headers;
+use super::difference::{Differs, of_headers};
 use super::grid::Sweep;
 use super::row::{KindOfRow, RowsThere};
 use std::fs::File;
@@ -15,7 +15,7 @@ pub(super) enum There {
     /// Nothing, or a beginning of the header.
     Nothing,
     /// Something else.
-    Other(String),
+    Other(Differs),
 }
 
 /// Holds what stands in `file` against `sweep`.
@@ -33,7 +33,8 @@ pub(super) fn look(file: &File, sweep: &Sweep) -> io::Result<There> {
             false => {
                 // The whole of the other header, as far as it is one.
                 reader.rewind()?;
-                There::Other(of_headers(&header_lines(&mut reader)?, &header))
+                let there = header_lines(&mut reader)?;
+                There::Other(of_headers(&there, &header, ["there", "here"]))
             }
         });
     }
@@ -46,7 +47,8 @@ pub(super) fn look(file: &File, sweep: &Sweep) -> io::Result<There> {
             return Ok(There::Rows(rows, bytes));
         }
         if rows.count() == sweep.rows() {
-            return Ok(There::Other("it has more rows than the sweep".to_owned()));
+            let what = "it has more rows than the sweep".to_owned();
+            return Ok(There::Other(Differs::Form(what)));
         }
         match kind_of_row(&line, sweep, rows.count()) {
             Some(kind) => rows.add(kind),
