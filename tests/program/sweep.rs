@@ -935,3 +935,46 @@ fn another_sweep_is_told_by_the_first_key_that_differs() {
         assert!(output.stderr.len() < 300, "{output:?}");
     }
 }
+
+#[test]
+fn a_symbolic_link_is_kept_and_the_file_behind_it_replaced() {
+    let ground = Ground::new();
+    let args = ["sweep", "cusps", "--measure=z_m", "--vary=motion.steps=2,3"];
+    fs::create_dir(ground.file("deep")).unwrap();
+    ground.write("deep/mine.csv", "mine\n");
+    symlink("deep/mine.csv", ground.file("link.csv")).unwrap();
+    refused(
+        &sweep(&ground, &args, "link.csv"),
+        1,
+        &["link.csv", "--force"],
+    );
+    let force = [&args[..], &["--force"]].concat();
+    let told = made(&sweep(&ground, &force, "link.csv"));
+    assert!(told.contains("gyrolab: 2 rows in link.csv\n"), "{told}");
+    assert!(ground.file("link.csv").is_symlink());
+    assert_eq!(rows(&ground.read("deep/mine.csv")).len(), 3);
+    assert_eq!(ground.files(), ["deep", "link.csv"]);
+    assert_eq!(names(&ground.file("deep")), ["mine.csv"]);
+}
+
+#[test]
+fn where_it_cannot_be_written_there_is_what_to_do() {
+    let ground = Ground::new();
+    let args = [
+        "sweep",
+        "cusps",
+        "--vary",
+        "motion.steps=1,2",
+        "--measure=z_m",
+    ];
+    let advice = "name a file in a folder that there is and takes files";
+    refused(&sweep(&ground, &args, "/proc/out.csv"), 1, &[advice]);
+    // Joining writes the whole at once.
+    made(&sweep(
+        &ground,
+        &[&args[..], &["--shard", "1/1"]].concat(),
+        "whole.csv",
+    ));
+    let join = ["sweep", "--join", "whole.csv"];
+    refused(&sweep(&ground, &join, "/proc/out.csv"), 1, &[advice]);
+}

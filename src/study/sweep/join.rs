@@ -11,6 +11,7 @@ use crate::scenario::Problems;
 use crate::scenario::document::Document;
 use crate::study::sweep::difference::of_headers;
 use crate::text::printable::Shown;
+use crate::text::unread;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
@@ -43,9 +44,9 @@ pub enum JoinError {
     /// The file cannot be written.
     #[error(transparent)]
     Destination(#[from] DestinationError),
-    /// A file cannot be read or written.
-    #[error("{}: {error}", Shown(path))]
-    Io {
+    /// A file cannot be read.
+    #[error("{}: {}", Shown(path), unread::why(error))]
+    Unread {
         /// The file.
         path: PathBuf,
         /// The system's error.
@@ -91,7 +92,7 @@ pub fn join(
         return Ok((whole, rows));
     }
     let mut output = BufWriter::new(Destination::open_file(path, may_replace)?);
-    let cannot_write = |error| JoinError::Io {
+    let cannot_write = |error| DestinationError::Refused {
         path: path.to_owned(),
         error,
     };
@@ -159,7 +160,7 @@ fn of_one_sweep(parts: &[Part]) -> Result<Sweep, JoinError> {
 
 impl Part {
     fn open(path: &Path) -> Result<Self, JoinError> {
-        let cannot_read = |error| JoinError::Io {
+        let cannot_read = |error| JoinError::Unread {
             path: path.to_owned(),
             error,
         };
@@ -196,7 +197,7 @@ impl Part {
     fn next(&mut self, row: u64, line: &mut Vec<u8>) -> Result<KindOfRow, JoinError> {
         line.clear();
         let read = self.rows.read_until(b'\n', line);
-        read.map_err(|error| JoinError::Io {
+        read.map_err(|error| JoinError::Unread {
             path: self.path.clone(),
             error,
         })?;
@@ -219,7 +220,7 @@ impl Part {
         match self.rows.fill_buf() {
             Ok([]) => Ok(()),
             Ok(_) => Err(self.fails("it has more rows than its shard".to_owned())),
-            Err(error) => Err(JoinError::Io {
+            Err(error) => Err(JoinError::Unread {
                 path: self.path.clone(),
                 error,
             }),

@@ -11,6 +11,7 @@ use super::there::{There, look};
 use crate::export::Destination;
 use crate::export::destination::is_workbook;
 use crate::text::printable::Shown;
+use crate::text::{unread, unwritten};
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Seek, SeekFrom, Write};
@@ -66,8 +67,16 @@ pub enum PartError {
         /// Why not.
         why: &'static str,
     },
-    /// The system reported an error.
-    #[error("cannot write {}: {error}", Shown(path))]
+    /// What is there cannot be read.
+    #[error("{}: {}", Shown(path), unread::why(error))]
+    Unread {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        error: io::Error,
+    },
+    /// The system reported an error in writing.
+    #[error("cannot write {}: {}", Shown(path), unwritten::why(error))]
     Refused {
         /// The file.
         path: PathBuf,
@@ -110,6 +119,12 @@ impl PartFile {
         if let Some(rows) = whole_rows(path, sweep, may_replace)? {
             return Ok(Opened::Whole(rows));
         }
+        // A symbolic link is kept: the file to which it leads is replaced.
+        let behind_link = match path.is_symlink() {
+            true => fs::canonicalize(path).map_err(|error| unread(path, error))?,
+            false => path.to_owned(),
+        };
+        let path = behind_link.as_path();
         let part = part_of(path);
         is_writable(&part)?;
         let refused = |error| PartError::Refused {
@@ -131,7 +146,7 @@ impl PartFile {
             found: RowsThere::default(),
             synced: Instant::now(),
         };
-        let there = look(&part.file, sweep).map_err(refused)?;
+        let there = look(&part.file, sweep).map_err(|error| unread(&part.path, error))?;
         match there {
             There::Rows(rows, bytes) => {
                 part.file.set_len(bytes).map_err(refused)?;
@@ -221,6 +236,13 @@ impl PartFile {
     }
 }
 
+fn unread(path: &Path, error: io::Error) -> PartError {
+    PartError::Unread {
+        path: path.to_owned(),
+        error,
+    }
+}
+
 /// The name that the rows for `path` have until they are whole.
 pub fn part_of(path: &Path) -> PathBuf {
     let mut name = OsString::from(path);
@@ -280,17 +302,14 @@ pub(super) fn whole_rows(
     sweep: &Sweep,
     may_replace: bool,
 ) -> Result<Option<RowsThere>, PartError> {
-    let refused = |error| PartError::Refused {
-        path: path.to_owned(),
-        error,
-    };
+    let unread = |error| unread(path, error);
     let file = match File::open(path) {
         Ok(file) => file,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(refused(error)),
+        Err(error) => return Err(unread(error)),
     };
-    let length = file.metadata().map_err(refused)?.len();
-    let what = match look(&file, sweep).map_err(refused)? {
+    let length = file.metadata().map_err(unread)?.len();
+    let what = match look(&file, sweep).map_err(unread)? {
         There::Rows(rows, bytes) if rows.count() == sweep.rows() && bytes == length => {
             return Ok(Some(rows));
         }
