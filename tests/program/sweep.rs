@@ -978,3 +978,36 @@ fn where_it_cannot_be_written_there_is_what_to_do() {
     let join = ["sweep", "--join", "whole.csv"];
     refused(&sweep(&ground, &join, "/proc/out.csv"), 1, &[advice]);
 }
+
+#[test]
+fn more_shards_than_files_may_be_open_are_joined() {
+    let ground = Ground::new();
+    let grid = "\"$G\" sweep cusps --set motion.steps=2 --vary start.momentum_Js.2=10..400:200 --measure z_m,x_m,y_m";
+    made(&ground.shell(&format!("{grid} -o whole.csv")));
+    let whole = ground.read("whole.csv");
+    let (header, all) = whole.split_at(whole.find("start.momentum_Js.2,z_m").unwrap());
+    let all: Vec<&str> = all.split_inclusive('\n').collect();
+    const OF: usize = 150;
+    made(&ground.shell(&format!("{grid} --shard 1/{OF} -o 1.csv")));
+    let first = ground.read("1.csv");
+    let of_first = &first[..first.find("start.momentum_Js.2,z_m").unwrap()];
+    assert_ne!(of_first, header);
+    for number in 1..=OF {
+        let header = of_first.replace(&format!("\"1/{OF}\""), &format!("\"{number}/{OF}\""));
+        let rows: String = all[1..]
+            .iter()
+            .skip(number - 1)
+            .step_by(OF)
+            .copied()
+            .collect();
+        ground.write(&format!("{number}.csv"), &(header + all[0] + &rows));
+    }
+    assert_eq!(ground.read("1.csv"), first);
+    let parts: Vec<String> = (1..=OF).map(|number| format!("{number}.csv")).collect();
+    let join = format!(
+        "ulimit -n 64; \"$G\" sweep --join {} -o joined.csv",
+        parts.join(" ")
+    );
+    made(&ground.shell(&join));
+    assert_eq!(ground.read("joined.csv"), whole);
+}

@@ -14,6 +14,7 @@ use crate::text::printable::Shown;
 use crate::text::unread;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
+use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 
 /// Why shards cannot be joined.
@@ -68,7 +69,22 @@ fn numbers(list: &[u64]) -> String {
 struct Part {
     path: PathBuf,
     sweep: Sweep,
-    rows: BufReader<File>,
+    rows: BufReader<Reopened>,
+}
+
+/// A file that is open only while bytes are read from it: a sweep may have more shards than files may be open at once.
+struct Reopened {
+    path: PathBuf,
+    /// How many bytes have been read.
+    at: u64,
+}
+
+impl Read for Reopened {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let count = File::open(&self.path)?.read_at(bytes, self.at)?;
+        self.at += count as u64;
+        Ok(count)
+    }
 }
 
 /// Writes to `path` the sweep whose shards are `parts`, in any order; the bytes are those of the sweep made at once. A file
@@ -166,7 +182,10 @@ impl Part {
         };
         let sweep = Sweep::open(&Document::read(path)?)?;
         let header = sweep.header();
-        let mut rows = BufReader::new(File::open(path).map_err(cannot_read)?);
+        let mut rows = BufReader::new(Reopened {
+            path: path.to_owned(),
+            at: 0,
+        });
         let mut there = Vec::new();
         let mut begin = (&mut rows).take(header.len() as u64);
         begin.read_to_end(&mut there).map_err(cannot_read)?;
