@@ -711,3 +711,23 @@ fn what_cannot_be_fitted_is_refused_with_the_remedy() {
         assert_eq!(refused(argument), rule);
     }
 }
+
+/// A setting of 0 that can be no less moves the data by what it moves them upwards.
+#[test]
+fn an_uncertain_setting_may_stand_at_the_edge_of_its_range() {
+    let document = Document::parse("top.toml", TOP).unwrap();
+    let fit = |friction: f64| {
+        let free = vec![Free::parse("start.spin_rpm", &document).unwrap()];
+        let text = format!(
+            "friction.spin_viscous_Nms,friction.spin_viscous_uncertainty_Nms,spin_rpm,spin_uncertainty_rpm\n\
+             {friction},1e-5,3000,1\n{friction},1e-5,3001,1\n"
+        );
+        let model = Model::new(&document, free, read("lab.csv", &text).unwrap()).unwrap();
+        fitted(&model)
+    };
+    let (edge, inside) = (fit(0.0), fit(1e-4));
+    assert!(edge.weights.count_settings && inside.weights.count_settings);
+    let [edge, inside] = [edge, inside].map(|fit| fit.weights.sigma[0]);
+    assert!(inside > 2.0, "{inside}");
+    is_near("sigma", edge / inside, 1.0, 0.05);
+}

@@ -86,6 +86,26 @@ fn uncertain_settings(model: &Model) -> impl Iterator<Item = usize> {
     uncertain.map(|(index, _)| index)
 }
 
+/// How far each datum moves with one uncertainty of the setting, which is changed up and down, or at the edge of its range
+/// only to the one side that is possible.
+fn moved_by(
+    setting: usize,
+    model: &Model,
+    p: &[f64],
+    go_on: &(dyn Fn() -> bool + Sync),
+) -> Result<Vec<f64>, Stop> {
+    let at = |by: f64| model.values_with(p, (setting, by), go_on);
+    let ((high, above), (low, below)) = match (at(PART), at(-PART)) {
+        (Ok(above), Err(Stop::Impossible(_))) => ((PART, above), (0.0, at(0.0)?)),
+        (Err(Stop::Impossible(_)), Ok(below)) => ((0.0, at(0.0)?), (-PART, below)),
+        (above, below) => ((PART, above?), (-PART, below?)),
+    };
+    let pairs = above.iter().zip(&below);
+    Ok(pairs
+        .map(|(above, below)| (above - below) / (high - low))
+        .collect())
+}
+
 impl Weights {
     /// The weights of the data of `model` at the values `p` of its free keys.
     ///
@@ -110,14 +130,7 @@ impl Weights {
         // How far each datum moves with one uncertainty of each setting.
         let mut moved = Vec::new();
         for setting in uncertain_settings(model) {
-            let [above, below] = [PART, -PART].map(|by| model.values_with(p, (setting, by), go_on));
-            let (above, below) = (above?, below?);
-            let pairs = above.iter().zip(&below);
-            moved.push(
-                pairs
-                    .map(|(a, b)| (a - b) / (2.0 * PART))
-                    .collect::<Vec<_>>(),
-            );
+            moved.push(moved_by(setting, model, p, go_on)?);
         }
         if !moved.is_empty() {
             weights.add(model, &moved);
