@@ -704,12 +704,40 @@ fn what_cannot_be_fitted_is_refused_with_the_remedy() {
             "--free start.spin_rpm=5..1: the bounds leave no room: 5 must be below 1",
         ),
         (
+            "friction.spin_viscous_Nms=-1..0",
+            "--free friction.spin_viscous_Nms=-1..0: the bounds leave no room: it is never below 0, and the upper bound must be above that",
+        ),
+        (
             "start.momentum_Js.2",
             "--free start.momentum_Js.2: has no value in the scenario, from which the search would begin: give it one by --set start.momentum_Js.2=...",
         ),
     ] {
         assert_eq!(refused(argument), rule);
     }
+}
+
+#[test]
+fn a_key_between_its_bound_and_what_is_possible_cannot_be_changed() {
+    let mut measured = open("heidelberg-body-cone").unwrap();
+    measured.keep_rows(|_| true);
+    // The third moment is the sum of the others: it can be no larger.
+    let set = [
+        "body.point.0.at_m.2=0",
+        "body.part.0.moments_kg_m2=[0.002, 0.002, 0.004]",
+    ];
+    let stuck = model(
+        "heidelberg",
+        &set,
+        &["body.part.0.moments_kg_m2.2=0.004..0.005"],
+        measured,
+    );
+    let told = found(&stuck).unwrap_err().to_string();
+    assert!(
+        told.contains(
+            "body.part.0.moments_kg_m2.2 can be changed neither up nor down from 0.004: "
+        ),
+        "{told}"
+    );
 }
 
 /// A setting of 0 that can be no less moves the data by what it moves them upwards.

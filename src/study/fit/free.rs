@@ -78,6 +78,12 @@ impl Free {
             least,
         } = one;
         let from = from.max(least);
+        if from >= to {
+            return Err(format!(
+                "the bounds leave no room: it is never below {}, and the upper bound must be above that",
+                shown(from)
+            ));
+        }
         if !(from..=to).contains(&start) {
             return Err(format!(
                 "begins at {}, the scenario's value, outside of {}..{}: give other bounds, or begin inside by --set {key}=...",

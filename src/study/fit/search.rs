@@ -326,19 +326,23 @@ impl Slopes<'_> {
             values.map(|values| (there[index], values))
         };
         let (high, low) = (at(p[index] + change), at(p[index] - change));
-        if let (Err(Stop::Impossible(why)), Err(Stop::Impossible(_))) = (&high, &low) {
-            return Err(Stop::Impossible(format!(
-                "{} can be changed neither up nor down from {}: {why}",
-                self.model.free[index].key,
-                significant(p[index], 6)
-            )));
-        }
+        let why = match (&high, &low) {
+            (Err(Stop::Impossible(why)), _) | (_, Err(Stop::Impossible(why))) => why.clone(),
+            _ => "the data depend on digits of it beyond its last one".to_owned(),
+        };
         let either = |side: Result<_, Stop>| match side {
             Err(Stop::Impossible(_)) => at(p[index]),
             side => side,
         };
         let ((high, above), (low, below)) = (either(high)?, either(low)?);
         let width = high - low;
+        if width == 0.0 {
+            return Err(Stop::Impossible(format!(
+                "{} can be changed neither up nor down from {}: {why}",
+                self.model.free[index].key,
+                significant(p[index], 6)
+            )));
+        }
         let pairs = above.iter().zip(&below);
         Ok((
             pairs
