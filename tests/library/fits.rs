@@ -300,7 +300,7 @@ fn heidelberg_the_joint_fit_is_said_to_be_poor() {
     assert_eq!(fit.quality.degrees_of_freedom, 15);
     assert_eq!(
         fit.sentence(&model),
-        "The model does not fit: chi^2 33.6 at 15 degrees of freedom, which chance gives once in 260 times; no row is more than 2.5 sigma off: all of them lean."
+        "The model does not fit: chi^2 33.6 at 15 degrees of freedom, which chance gives once in 260 times; no single row is more than 2.5 sigma off, but together they deviate more than chance explains."
     );
 }
 
@@ -714,6 +714,17 @@ fn what_cannot_be_fitted_is_refused_with_the_remedy() {
     ] {
         assert_eq!(refused(argument), rule);
     }
+}
+
+#[test]
+fn a_single_datum_that_is_off_is_told_by_its_row() {
+    let document = Document::parse("top.toml", TOP).unwrap();
+    // No datum depends on the key, so that the one datum is one more than there are fitted values.
+    let free = vec![Free::parse("start.turn_deg", &document).unwrap()];
+    let text = "t_s,spin_rpm,spin_uncertainty_rpm\n1,3028,10\n";
+    let model = Model::new(&document, free, read("lab.csv", text).unwrap()).unwrap();
+    let told = fitted(&model).sentence(&model);
+    assert!(told.contains("; row 1 is 2.8 sigma off."), "{told}");
 }
 
 #[test]

@@ -52,7 +52,7 @@ impl Fit {
                 format!(
                     "The model does not fit: {sum}, which chance gives {}; {}.{elsewhere}",
                     once_in(probability),
-                    self.far(model)
+                    self.far()
                 )
             }
             Some(probability) if probability > 1.0 - RARE => format!(
@@ -87,7 +87,7 @@ impl Fit {
     }
 
     /// The rows that are far off.
-    fn far(&self, model: &Model) -> String {
+    fn far(&self) -> String {
         let mut off: Vec<(f64, usize)> = self
             .residuals
             .iter()
@@ -101,15 +101,13 @@ impl Fit {
         rows.dedup();
         let more = rows.len().saturating_sub(MOST_NAMED);
         if rows.is_empty() {
-            let single = if model.data.len() == 1 {
-                "the row is"
-            } else {
-                "no row is"
+            let worst = significant(worst, 2);
+            return match &self.residuals[..] {
+                [only] => format!("row {} is {worst} sigma off", only.row + 1),
+                _ => format!(
+                    "no single row is more than {worst} sigma off, but together they deviate more than chance explains"
+                ),
             };
-            return format!(
-                "{single} more than {} sigma off: all of them lean",
-                significant(worst, 2)
-            );
         }
         let least = off.last().map_or(0.0, |(sigmas, _)| *sigmas);
         let names: Vec<String> = rows
