@@ -115,6 +115,11 @@ pub fn is_in(key: &str, table: &str) -> bool {
         .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
+/// Whether the dotted keys `one` and `other` write into the same value.
+pub fn overlap(one: &str, other: &str) -> bool {
+    is_in(one, other) || is_in(other, one)
+}
+
 /// The number, from 0, of the push that the dotted `key` belongs to.
 pub fn number_of_push(key: &str) -> Option<usize> {
     key.strip_prefix("push.")?.split('.').next()?.parse().ok()

@@ -206,8 +206,10 @@ pub(super) fn shown(bound: f64) -> String {
 pub fn are_apart(free: &[Free]) -> Result<(), Problems> {
     let keys: Vec<&String> = free.iter().flat_map(|free| &free.keys).collect();
     for (index, one) in keys.iter().enumerate() {
-        let is_same = |other: &&&String| dotted::is_in(one, other) || dotted::is_in(other, one);
-        if keys[..index].iter().any(|other| is_same(&other)) {
+        if keys[..index]
+            .iter()
+            .any(|other| dotted::overlap(one, other))
+        {
             let mut problem = Problem::at((*one).clone(), "is free twice: name it once");
             problem.place = Some("--free".to_owned());
             return Err(Problems::one("", problem));

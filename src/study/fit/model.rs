@@ -9,7 +9,7 @@ use crate::measured::{
     Data, Measured, Point, Quantity, Residual, Series, Table, at_times, residuals,
 };
 use crate::run::Clock;
-use crate::scenario::dotted::is_in;
+use crate::scenario::dotted::overlap;
 use crate::scenario::{Document, Problem, Problems, Scenario, ScenarioFile};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
@@ -292,8 +292,8 @@ fn checked(document: &Document) -> Result<Scenario, String> {
 /// Refuses a free key that a column sets.
 fn are_apart(free: &[Free], table: &Table) -> Result<(), Problems> {
     for key in free.iter().flat_map(|free| &free.keys) {
-        let is_same = |other: &str| is_in(key, other) || is_in(other, key);
-        if let Some(column) = table.settings.iter().find(|setting| is_same(&setting.key)) {
+        let mut settings = table.settings.iter();
+        if let Some(column) = settings.find(|setting| overlap(key, &setting.key)) {
             let rule = format!(
                 "is set by the column {} in every row: it cannot be free",
                 column.key

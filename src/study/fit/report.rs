@@ -6,7 +6,7 @@ use super::search::{Fit, Fitted};
 use crate::measured::Residual;
 use crate::text::number::{NONE, short, shortest, significant, uncertain};
 use crate::text::printable::{printable, printable_lines};
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde::ser::{Serialize, Serializer};
 use serde_json::{Value, json};
 use std::fmt;
 
@@ -228,13 +228,7 @@ impl fmt::Display for Report<'_> {
 
 impl Serialize for Report<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let json = self.json();
-        let fields = json.as_object();
-        let mut map = serializer.serialize_map(fields.map(serde_json::Map::len))?;
-        for (name, value) in fields.into_iter().flatten() {
-            map.serialize_entry(name, value)?;
-        }
-        map.end()
+        self.json().serialize(serializer)
     }
 }
 

@@ -194,12 +194,6 @@ fn listed(text: &str) -> Result<Vec<Value>, String> {
     parts.iter().map(value).collect()
 }
 
-/// Whether the dotted keys `one` and `other` write into the same value.
-pub(super) fn overlap(one: &str, other: &str) -> bool {
-    use crate::scenario::dotted::is_in;
-    is_in(one, other) || is_in(other, one)
-}
-
 /// A refusal of the `--vary` argument.
 pub fn refused(argument: &str, rule: String) -> Problems {
     let mut problem = Problem::at("", rule);

@@ -1,9 +1,10 @@
 //! What a sweep varies and measures, checked.
 
-use super::axis::{Axis, overlap};
+use super::axis::Axis;
 use super::file::VaryFile;
 use crate::analysis::readouts::{self, READOUTS, Readout, Source};
 use crate::scenario::Problem;
+use crate::scenario::dotted::overlap;
 use toml::Value;
 
 /// The axes that `files` ask for.
