@@ -571,7 +571,7 @@ fn lines_between_too_few_steps_of_a_nutation_are_told() {
         panic!("none")
     };
     assert!(
-        only.starts_with("fast-top has 4.15 time steps in a nutation of 0.0829 s: "),
+        only.starts_with("fast-top has 4.16 time steps in a nutation of 0.0831 s: "),
         "{only}"
     );
     assert!(
