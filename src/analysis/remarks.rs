@@ -303,12 +303,20 @@ pub fn lag_in_full(health: &Health) -> String {
     )
 }
 
+/// A small number with its sign; 0 without one.
+fn of_rounding(number: f64) -> String {
+    match number {
+        0.0 => "0".to_owned(),
+        number => signed_exponent(number, 1),
+    }
+}
+
 /// How far the constants of the motion are off, for a line of the summary; `None` where that is not known.
 pub fn constants_in_full(health: &Health) -> Option<String> {
     let off = health.deviation?;
     Some(format!(
         "L.axle is off by {} J s, L_z by {} J s",
-        signed_exponent(off.spin, 1),
-        signed_exponent(off.lz, 1)
+        of_rounding(off.spin),
+        of_rounding(off.lz)
     ))
 }

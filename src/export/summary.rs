@@ -135,9 +135,14 @@ impl Summary {
             Axis::Z => String::new(),
             axis => format!(" from {axis}"),
         };
+        // The extremes above are those of the whole run.
+        let since = match self.readouts.since {
+            0 | 1 => "",
+            _ => ", since the forces last changed",
+        };
         writeln!(
             f,
-            "  theory        {ceased}kappa {kappa}; path: {path}, tilt {low} to {high} degrees{from}"
+            "  theory        {ceased}kappa {kappa}; path: {path}, tilt {low} to {high} degrees{from}{since}"
         )?;
         if *axis == Axis::Momentum {
             let why = "without a load the axle goes round L, and no spin is too small to stand";

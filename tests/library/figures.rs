@@ -824,7 +824,8 @@ fn a_comparison_shows_its_slope() {
         .replace("40,n/a", "40,0");
     let told = of_table::warnings(&table(&none), &[]);
     assert!(
-        told.len() == 1 && told[0].starts_with("exact has no points of error_m: it is 0, which"),
+        told.len() == 1
+            && told[0].starts_with("4 of 4 time steps of exact have no point of error_m: it is 0"),
         "{told:?}"
     );
     let names = |text: &str| {

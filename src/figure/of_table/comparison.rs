@@ -76,30 +76,31 @@ pub(super) fn missing(table: &Table, columns: &[&str]) -> Vec<String> {
     let columns: Vec<_> = columns
         .filter_map(|name| Some((*name, table.numbers(name)?)))
         .collect();
-    let all = groups
-        .iter()
-        .flat_map(|group| columns.iter().map(move |column| (group, column)));
-    let missing = |((scheme, rows), (name, values)): (&(String, Vec<usize>), &(&str, Vec<f64>))| {
-        let count = |is: fn(f64) -> bool| rows.iter().filter(|row| is(values[**row])).count();
-        let (all, zeros, none) = (
-            rows.len(),
-            count(|it| it == 0.0),
-            count(|it| !it.is_finite()),
-        );
-        let zeros = match zeros {
-            0 => None,
-            zeros if zeros == all => Some(format!("{scheme} has no points of {name}: it is 0")),
-            zeros => Some(format!(
-                "{zeros} of {all} time steps of {scheme} have no point of {name}: it is 0"
-            )),
+    let of_scheme = |(scheme, rows): &(String, Vec<usize>)| -> Vec<String> {
+        let of_column = |(name, values): &(&str, Vec<f64>)| {
+            let values: Vec<f64> = rows.iter().map(|row| values[*row]).collect();
+            without_point(&format!("{scheme} have no point of {name}"), &values)
         };
-        let none = (none > 0).then(|| {
-            format!("{none} of {all} time steps of {scheme} have no point of {name}: there is no number for them, as where a run breaks down")
-        });
-        let zeros = zeros.map(|told| told + ", which a logarithmic axis does not show");
-        [zeros, none].into_iter().flatten()
+        columns.iter().flat_map(of_column).collect()
     };
-    all.flat_map(missing).collect()
+    groups.iter().flat_map(of_scheme).collect()
+}
+
+/// What is said of those of `values` that a logarithmic axis does not show, or that are no numbers; `words` say of what.
+fn without_point(words: &str, values: &[f64]) -> Vec<String> {
+    let told = |is: fn(&&f64) -> bool, why: &str| {
+        let (count, all) = (values.iter().filter(is).count(), values.len());
+        (count > 0).then(|| format!("{count} of {all} time steps of {words}: {why}"))
+    };
+    let zeros = told(
+        |value| **value == 0.0,
+        "it is 0, which a logarithmic axis does not show",
+    );
+    let none = told(
+        |value| !value.is_finite(),
+        "there is no number for them, as where a run breaks down",
+    );
+    zeros.into_iter().chain(none).collect()
 }
 
 /// The columns that are drawn where `columns` were asked for.
