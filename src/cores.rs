@@ -3,14 +3,15 @@
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder, current_thread_index};
 
-/// What `of` gives for each of `items`, in their order. Where the system gives no threads, this one computes all of it.
+/// Applies `of` to each of `items` on all cores; the results keep the order of the items. Where the system gives no threads,
+/// the thread that calls does all of it.
 pub fn map<T: Sync, R: Send, All: FromParallelIterator<R> + FromIterator<R> + Send>(
     items: &[T],
     of: impl Fn(&T) -> R + Sync + Send,
 ) -> All {
     let all = || items.par_iter().map(&of).collect();
     if current_thread_index().is_some() {
-        return all(); // it is part of work that is done so
+        return all(); // this is one of such threads already
     }
     match threads() {
         Some(threads) => threads.install(all),
@@ -18,9 +19,9 @@ pub fn map<T: Sync, R: Send, All: FromParallelIterator<R> + FromIterator<R> + Se
     }
 }
 
-/// As many threads as there are cores, for one piece of work; `None` where the system does not give them. Rayon's own, which
-/// all work would share, panic there; and one of them that waits for its part takes up any other work meanwhile, on top of its
-/// stack.
+/// New threads, as many as there are cores; `None` where the system does not give them. Those that rayon shares among all work
+/// are not used: rayon panics where it cannot have them, and one that waits for its part begins other work on top of its own
+/// stack, which can overflow.
 pub fn threads() -> Option<ThreadPool> {
     ThreadPoolBuilder::new().build().ok()
 }

@@ -112,7 +112,7 @@ impl<W: Write> CsvWriter<W> {
     }
 }
 
-/// Rows of numbers, and of texts that are fields already: nothing in them has to be looked at for what to quote.
+/// Writes rows of cells. Where a text needs quotes, it has them already.
 #[derive(Debug)]
 struct Rows<W: Write> {
     out: BufWriter<W>,
@@ -125,7 +125,7 @@ struct Rows<W: Write> {
 }
 
 impl<W: Write> Rows<W> {
-    /// Writes one row; its numbers are those that csv writes with serde.
+    /// Writes one row. Numbers have the digits that the csv crate gives them with serde.
     fn add<'a>(&mut self, cells: impl Iterator<Item = Cell<'a>>) -> io::Result<()> {
         let line = &mut self.line;
         line.clear();

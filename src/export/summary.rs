@@ -189,7 +189,7 @@ impl Summary {
     }
 }
 
-/// The first `steps` steps of `scenario` with their time steps: "2300 of 0.1 s", or "2300, 40 of them of 0.1 s, 2260 of
+/// The first `steps` steps of `scenario` with their time steps: "2300 of 0.1 s", or "2300: 40 of 0.1 s, then 2260 of
 /// 0.05 s" where edits have changed the time step.
 pub fn steps_in_words(scenario: &Scenario, steps: u64) -> String {
     let mut parts: Vec<(u64, f64)> = Vec::new();

@@ -21,9 +21,9 @@ pub struct Wanted {
     pub columns: Vec<Plotted>,
     /// Whether the path of the traced point is wanted.
     pub path: bool,
-    /// The stretch of time, s; `None`: to the end of the run.
+    /// The begin of the stretch of time, s.
     pub from_s: f64,
-    /// Its end, s.
+    /// Its end, s; `None`: the end of the run.
     pub to_s: Option<f64>,
 }
 

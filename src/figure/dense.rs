@@ -166,7 +166,7 @@ fn path_warning(places: &[Point], end_s: f64, request: &Request) -> Option<Dense
     ))
 }
 
-/// How many of the places with ink have ink all around, as far as `INSIDE`.
+/// How many places are the lower right corner of a square of ink with sides of more than `INSIDE` places.
 fn deep_inside(ink: &[bool], columns: usize) -> usize {
     let rows = ink.len() / columns.max(1);
     // Ink to the left without a gap, up to the place; the same to the top gives squares.

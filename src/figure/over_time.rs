@@ -118,11 +118,6 @@ impl OverTime {
         self.stretches = kept;
     }
 
-    /// Whether it has no point.
-    pub fn is_empty(&self) -> bool {
-        self.stretches.is_empty()
-    }
-
     /// The points, in the order of time: every extreme of the curve is among them.
     pub fn points(&self) -> Vec<[f64; 2]> {
         let mut points = Vec::with_capacity(4 * self.stretches.len());

@@ -47,7 +47,7 @@ struct Space {
     side_pt: f64,
 }
 
-/// The figure of paths in space, and whether one of them is solid black.
+/// The figure of paths in space; and of one that is solid black, what it is and which stretch of time is not.
 pub(super) fn scene(
     title: &str,
     runs: &[Run],
@@ -326,7 +326,7 @@ impl Space {
     }
 }
 
-fn round(width_pt: f64, color: Color) -> Pen {
+fn round_pen(width_pt: f64, color: Color) -> Pen {
     Pen {
         is_round: true,
         ..pen(width_pt, color)

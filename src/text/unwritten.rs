@@ -8,7 +8,7 @@ pub fn why(error: &Error) -> String {
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
             "name a file in a folder that you may write to"
         }
-        ErrorKind::NotFound => "name a file in a folder that there is and takes files",
+        ErrorKind::NotFound => "name a file in a folder that exists",
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
             "free some room, or name a file on another disk"
         }

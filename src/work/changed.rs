@@ -1,5 +1,5 @@
-//! The words of a scenario's file (`about`, `source`, `look_at`, `next`, `[[expected]]`) hold for the motion they were written for. What
-//! is said where a run moves otherwise: how it differs from that motion.
+//! How a run differs from the motion that the texts of its file (`about`, `source`, `look_at`, `next`, `[[expected]]`) were
+//! written for, and what is done with these texts then.
 
 use crate::scenario::file::ScenarioFile;
 use crate::scenario::presets::{PRESETS, Preset};
@@ -20,7 +20,7 @@ const CHANGED: &str = "; changed since";
 /// More changed values of one table than these are not listed.
 const MOST_VALUES: usize = 2;
 
-/// A longer name of a file is not repeated, letters.
+/// A file with a longer name than this, in characters, is called "what was opened".
 const LONGEST_NAME: usize = 30;
 
 /// The `look_at` line of the file of `scenario`: what the viewer should watch for.

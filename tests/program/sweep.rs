@@ -967,7 +967,7 @@ fn where_it_cannot_be_written_there_is_what_to_do() {
         "motion.steps=1,2",
         "--measure=z_m",
     ];
-    let advice = "name a file in a folder that there is and takes files";
+    let advice = "name a file in a folder that exists";
     refused(&sweep(&ground, &args, "/proc/out.csv"), 1, &[advice]);
     // Joining writes the whole at once.
     made(&sweep(

@@ -30,16 +30,6 @@ impl Scale {
         self.places.0 + share * (self.places.1 - self.places.0)
     }
 
-    /// The value at `place`, pt.
-    pub fn value(&self, place: f64) -> f64 {
-        let (low, high) = self.range;
-        let share = (place - self.places.0) / (self.places.1 - self.places.0);
-        match self.is_log {
-            true => low * libm::exp(share * libm::log(high / low)),
-            false => low + share * (high - low),
-        }
-    }
-
     fn length(&self) -> f64 {
         (self.places.1 - self.places.0).abs()
     }

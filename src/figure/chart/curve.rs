@@ -30,7 +30,7 @@ impl Placed {
             true => dots(places.filter(|place| clip.holds(*place))),
             false => clipped(places, &clip),
         };
-        put(&pieces, &series.style.pen(), Some(&self.frame), scene);
+        draw_curve(&pieces, &series.style.pen(), Some(&self.frame), scene);
     }
 
     /// Whether a part of one of `circles` is drawn in `frame`.
@@ -84,7 +84,7 @@ pub fn dots(places: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
 }
 
 /// Draws a line that is cut off outside of `clip`, in fewer pieces that look the same.
-pub fn put(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene: &mut Scene) {
+pub fn draw_curve(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene: &mut Scene) {
     let runs_right = pieces.iter().flatten().is_sorted_by(|a, b| b.x >= a.x);
     let is_dashed = !pen.dash_pt.is_empty();
     if runs_right {
@@ -94,7 +94,7 @@ pub fn put(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene: &mut S
         }
         return;
     }
-    put_in(
+    draw_plane_curve(
         &Ground::of(pieces.iter().map(|piece| piece.iter().copied())),
         pieces,
         pen,
@@ -104,7 +104,7 @@ pub fn put(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene: &mut S
 }
 
 /// The same of pieces of lines which may turn back; `ground` is that of all pieces of the line.
-pub fn put_in(
+pub fn draw_plane_curve(
     ground: &Ground,
     pieces: &[Vec<Point>],
     pen: &Pen,
@@ -112,7 +112,7 @@ pub fn put_in(
     scene: &mut Scene,
 ) {
     if pen.dash_pt.is_empty() {
-        return put_thinned(plane_curve(pieces, pen.width_pt), pen, clip, scene);
+        return draw_thinned(plane_curve(pieces, pen.width_pt), pen, clip, scene);
     }
     if !ground.is_covered
         && let Thinned::Lines(lines) = plane_curve(pieces, pen.width_pt)
@@ -125,10 +125,10 @@ pub fn put_in(
     // It would fill its own gaps.
     let strokes = ground.strokes(pieces, &pen.dash_pt);
     let strokes = plane_curve(&strokes, pen.width_pt);
-    put_thinned(strokes, &solid(pen), clip, scene);
+    draw_thinned(strokes, &solid(pen), clip, scene);
 }
 
-fn put_thinned(thinned: Thinned, pen: &Pen, clip: Option<&Frame>, scene: &mut Scene) {
+fn draw_thinned(thinned: Thinned, pen: &Pen, clip: Option<&Frame>, scene: &mut Scene) {
     match thinned {
         Thinned::Area(area) => scene.fill_in(area, pen.color, clip),
         Thinned::Lines(lines) => {
@@ -219,7 +219,7 @@ mod tests {
         let drawn = |apart: f64| {
             let mut scene = Scene::new(100.0, 100.0, "");
             let pen = Style::exact().pen();
-            put(&[zigzag(apart)], &pen, None, &mut scene);
+            draw_curve(&[zigzag(apart)], &pen, None, &mut scene);
             scene.items
         };
         let [area] = &drawn(0.01)[..] else {
@@ -239,7 +239,7 @@ mod tests {
             )
         };
         let mut scene = Scene::new(100.0, 100.0, "");
-        put(
+        draw_curve(
             &[(0..120).map(circle).collect()],
             &Style::exact().pen(),
             None,

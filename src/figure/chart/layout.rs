@@ -65,7 +65,7 @@ impl Layout {
         let mut height = panel_height(chart);
         let mut right = chart.width_pt - EDGE - 1.0;
         let mut left = EDGE;
-        // Which ticks there are depends on the room, and the room on their labels: the second time nothing changes.
+        // Which ticks there are depends on the room, and the room on their labels: three rounds settle both.
         for _ in 0..3 {
             let ticks = ticks_of(chart, &y_ranges, height);
             let widest = ticks.iter().map(widest).fold(0.0, f64::max);

@@ -125,12 +125,12 @@ impl Ticks {
     pub fn log(low: f64, high: f64, fits: impl Fn(&[Tick]) -> bool) -> Self {
         let (first, last) = (ceil(libm::log10(low)), floor(libm::log10(high)));
         if high / low < 32.0 {
-            let mut close = Self::of_rungs(low, high);
-            if close.major.len() >= 2 && fits(&close.major) {
-                return close;
-            }
-            close = Self::linear(low, high, fits);
-            return close;
+            let close = Self::of_rungs(low, high);
+            let are_enough = close.major.len() >= 2 && fits(&close.major);
+            return match are_enough {
+                true => close,
+                false => Self::linear(low, high, fits),
+            };
         }
         let all = |every: i64| -> Vec<Tick> {
             let powers = (first..=last).filter(|power| power.rem_euclid(every) == 0);

@@ -123,9 +123,9 @@ fn of_comparison(name: &str) -> Axis {
     }
 }
 
-/// The slope of a line of errors on logarithmic axes, and between how many pairs of points it was found: where the error falls
-/// evenly, from one slope to the next by a sixteenth of it at most, over three points or more; it is that from the first of them
-/// to the last. Of coarse steps it does not yet, and what no longer falls is rounding.
+/// The measured order of a scheme: the slope of its errors on logarithmic axes, with the number of pairs of points that it is
+/// from. It is taken from end to end of the longest stretch of at least three points in which neighbouring slopes differ by a
+/// sixteenth at most. Coarser steps do not show the order yet; of finer ones the error is rounding.
 fn slope(points: &[[f64; 2]]) -> Option<(usize, f64)> {
     const LEAST: f64 = 0.3;
     const EVEN: f64 = 1.0 / 16.0;

@@ -23,6 +23,9 @@ pub enum Format {
 
 impl Format {
     /// The form that the end of a file's name asks for; large and small letters are the same.
+    ///
+    /// # Errors
+    /// When it is none of these.
     pub fn of(file: &FilePath) -> Result<Self, Unwritable> {
         let ending = file.extension().map(|e| e.to_string_lossy().to_lowercase());
         match ending.as_deref() {
@@ -38,6 +41,9 @@ impl Format {
 ///
 /// The bytes of SVG and PDF, and the pixels of PNG, are the same on every machine. Places and widths are rounded to
 /// hundredths of a point first, the same for all forms.
+///
+/// # Errors
+/// When the page has no size, is too large for the form, or holds a place that is no number.
 pub fn write(scene: &Scene, format: Format) -> Result<Vec<u8>, Unwritable> {
     let scene = rounded(scene)?;
     match format {
@@ -48,6 +54,9 @@ pub fn write(scene: &Scene, format: Format) -> Result<Vec<u8>, Unwritable> {
 }
 
 /// The page in whole hundredths of a point, all of them numbers that a file can hold, without empty paths.
+///
+/// # Errors
+/// When the page has no size, is too large, or holds a place that is no number.
 pub fn rounded(scene: &Scene) -> Result<Scene, Unwritable> {
     let (width_pt, height_pt) = (scene.width_pt, scene.height_pt);
     let is_side = |pt: f64| hundredths(pt) > 0.0 && pt <= LARGEST_PT;

@@ -15,7 +15,7 @@ const PAGES: Ref = Ref::new(2);
 const PAGE: Ref = Ref::new(3);
 const CONTENT: Ref = Ref::new(4);
 const INFORMATION: Ref = Ref::new(5);
-/// The strongest of the levels from 0 to 10.
+/// The level of compression, from 0 to 10.
 const COMPRESSION: u8 = 9;
 
 /// A page whose places are whole hundredths of a point.

@@ -1,6 +1,6 @@
 //! The paths in the box: what is near is wide and dark.
 
-use super::{Space, TALL, round};
+use super::{Space, TALL, round_pen};
 use crate::cores;
 use crate::figure::chart::Style;
 use crate::figure::chart::axis::Scale;
@@ -43,7 +43,7 @@ impl Space {
             .zip(styles)
             .map(|(pieces, style)| Layer {
                 pieces: pieces.iter().map(|piece| places(piece).collect()).collect(),
-                pen: round(0.45, grey(198)),
+                pen: round_pen(0.45, grey(198)),
                 is_dots: style.is_dots,
                 ground: Ground::default(),
             });
@@ -105,7 +105,7 @@ fn layers(paths: &[&Pieces], styles: &[Style]) -> Vec<Layer> {
                 pieces: std::mem::take(&mut by_degree[nearness]),
                 pen: Pen {
                     dash_pt: style.dash_pt.to_vec(),
-                    ..round(width, color)
+                    ..round_pen(width, color)
                 },
                 is_dots: style.is_dots,
                 ground: *ground,
@@ -137,7 +137,7 @@ impl Layer {
             }
             false => &self.pieces,
         };
-        curve::put_in(&self.ground, pieces, &self.pen, None, &mut scene);
+        curve::draw_plane_curve(&self.ground, pieces, &self.pen, None, &mut scene);
         scene.items
     }
 }

@@ -15,7 +15,7 @@ pub struct Solution {
     /// The keys on which no datum depends.
     pub silent: Vec<usize>,
     /// The combinations of keys that change no datum: the keys by their places, and the change of each, relative to its
-    /// value, the largest of them 1; absolute where the value is 0.
+    /// value, the largest of them 1; relative to [`Free::scale`](super::free::Free::scale) where the value is 0.
     pub alike: Vec<Vec<(usize, f64)>>,
 }
 

@@ -34,7 +34,7 @@ pub struct SweepFile {
     pub scenario: Base,
 }
 
-/// `scenario`
+/// The scenario of a sweep, the key `scenario` of its file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Base {
@@ -46,7 +46,7 @@ pub enum Base {
     Checked(Box<ScenarioFile>),
 }
 
-/// `[[vary]]`
+/// A key that varies, a table `[[vary]]` of a sweep's file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct VaryFile {
     /// The dotted key.
@@ -54,13 +54,13 @@ pub struct VaryFile {
     /// Its values, one by one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub values: Option<Vec<Value>>,
-    /// Or else the first of them,
+    /// The first of evenly spaced values, where `values` has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from: Option<f64>,
-    /// the last,
+    /// The last of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub to: Option<f64>,
-    /// and how many there are, evenly spaced.
+    /// How many there are.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub count: Option<u64>,
 }

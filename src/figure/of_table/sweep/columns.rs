@@ -94,14 +94,14 @@ fn what<'a>(name: &'a str, names: &[&'a String]) -> &'a str {
     if Role::of(name) != Role::Theory {
         return own;
     }
-    let measured = names
+    let mut measured = names
         .iter()
         .filter_map(|other| other.strip_prefix(MEASURED));
     let is_case_of = |other: &&str| {
         let case = own.strip_suffix(other);
         case.is_some_and(|case| case.is_empty() || case.ends_with('_'))
     };
-    { measured }.find(is_case_of).unwrap_or(own)
+    measured.find(is_case_of).unwrap_or(own)
 }
 
 /// The column of the standard errors of `name`: measured_precession_uncertainty_rad_per_s of measured_precession_rad_per_s.

@@ -162,13 +162,7 @@ fn read_outline(data: &str) -> Option<Path> {
             'z' => Segment::Close,
             _ => return None,
         };
-        at = match segment {
-            Segment::Move(to)
-            | Segment::Line(to)
-            | Segment::Quadratic(_, to)
-            | Segment::Cubic(_, _, to) => to,
-            Segment::Close => start,
-        };
+        at = segment.end().unwrap_or(start);
         if let Segment::Move(to) = segment {
             start = to;
         }
