@@ -623,8 +623,9 @@ fn a_signal_ends_the_wait_of_a_comparison_for_the_reader_of_a_fifo() {
         .spawn()
         .unwrap();
     std::thread::sleep(std::time::Duration::from_millis(500)); // until it waits
+    // SIGTERM: what is started in the background of a shell may ignore SIGINT.
     let kill = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
+        .args(["-TERM", &child.id().to_string()])
         .status();
     assert!(kill.unwrap().success());
     assert!(!child.wait().unwrap().success());
