@@ -774,11 +774,11 @@ fn a_place_for_sessions_that_is_lost_is_told_of_and_found_again() {
     assert_eq!(resumed(&ground).step(), Some(31));
 }
 
-/// A lab that resumes at a far step is on its way for a while. If it ends on the way, it must still resume there.
+/// A lab that resumes at a far step is on its way for a second. If it ends on the way, it must still resume there.
 #[test]
 fn an_end_on_the_way_back_costs_nothing() {
     let ground = Ground::new();
-    let mut lab = paused_at(&ground, 3_000_000);
+    let mut lab = paused_at(&ground, 12_000_000);
     push(&mut lab);
     wait_until_kept(&lab, &ground);
     lab.quit();
@@ -789,7 +789,7 @@ fn an_end_on_the_way_back_costs_nothing() {
         lab.wait_for_end();
     }
     let lab = resumed(&ground);
-    assert_eq!(lab.step(), Some(3_000_000));
+    assert_eq!(lab.step(), Some(12_000_000));
 }
 
 /// On the way to a step that the user asked for, it resumes at the step that it had reached.
