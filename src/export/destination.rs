@@ -45,7 +45,7 @@ pub enum DestinationError {
     #[error("{} holds files; --force replaces those of the same names", Shown(.0))]
     FolderInUse(PathBuf),
     /// The path is a device, a FIFO or a socket, where only a regular file is allowed.
-    #[error("cannot write {}: it is a device, a pipe or a socket, which may block: name a regular file, or write to it with gyrolab run -o", Shown(.0))]
+    #[error("cannot write {}: it is not a regular file but a device, a pipe or a socket, which may block; gyrolab run -o writes to such", Shown(.0))]
     NotAFile(PathBuf),
     /// The file's folder does not exist.
     #[error("cannot write {}: there is no folder {}", Shown(path), Shown(folder))]
