@@ -191,7 +191,6 @@ impl fmt::Display for Table<'_> {
             write!(f, " {energy:>9} {spin:>9} {lz:>9}")?;
             writeln!(f, " {:>8}", fixed(row.ns_per_step, 0))?;
         }
-        let is_broken = |row: &ComparisonRow| row.error_m.is_none();
         let energy = match self.energy_unit {
             Some(unit) => format!("in units of {unit}"),
             None => format!("{NONE}: neither weight nor kinetic energy to measure it by"),
@@ -205,7 +204,7 @@ impl fmt::Display for Table<'_> {
             f,
             "energy  {energy}; L.axle and L_z in units of |L|: how far off each was at most."
         )?;
-        if self.rows.iter().any(is_broken) {
+        if self.rows.iter().any(|row| row.error_m.is_none()) {
             writeln!(
                 f,
                 "{NONE} of an error: the run broke down, after so many steps as are told: its numbers were no longer finite."

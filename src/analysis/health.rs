@@ -26,7 +26,7 @@ const SEARCH_STEPS: u64 = 2_000_000;
 /// Where a time step is not to be mended, the first of these is tried that can be true to the scenario's friction.
 const BETTER_SCHEMES: [&str; 2] = ["srkn11b", "strang"];
 /// A nutation that swings by less than this (degrees) is none.
-const LEAST_SWING_DEG: f64 = 1e-6;
+pub const LEAST_SWING_DEG: f64 = 1e-6;
 /// A nutation that has changed by less than this part is as it was.
 const LEAST_CHANGE: f64 = 0.05;
 

@@ -133,9 +133,8 @@ fn mend(health: &Health, advice: &Advice) -> Option<Remark> {
     })
 }
 
-/// A lag between these parts of the true one is right.
-const LAG_IS_RIGHT_FROM: f64 = 0.95;
-const LAG_IS_RIGHT_TO: f64 = 1.05;
+/// A lag of less than so many times the true one is right. The scheme's is never smaller than the true one.
+const LAG_IS_RIGHT: f64 = 1.05;
 
 /// How far the axle lags behind L, and what becomes of the nutation, which is the fault of the run where it is changed.
 fn swing_of(health: &Health, nutation: &Nutation) -> Vec<(bool, Remark)> {
@@ -143,19 +142,15 @@ fn swing_of(health: &Health, nutation: &Nutation) -> Vec<(bool, Remark)> {
     let is_right = changed.is_none() && health.is_believed() != Some(false);
     let lag = match nutation.lag_ratio {
         // A lag that is right is not said beside what is wrong.
-        Some(LAG_IS_RIGHT_FROM..LAG_IS_RIGHT_TO) => {
+        Some(..LAG_IS_RIGHT) => {
             is_right.then(|| Remark::new("axle lags L as far as it should".to_owned(), false))
         }
-        Some(ratio @ LAG_IS_RIGHT_TO..2.0) => {
+        Some(ratio @ LAG_IS_RIGHT..2.0) => {
             let text = format!("axle lags L {} % too far", short(100.0 * (ratio - 1.0)));
             Some(Remark::new(text, true))
         }
-        Some(ratio @ 2.0..) => {
-            let text = format!("axle lags L {} times too far", times(ratio));
-            Some(Remark::new(text, true))
-        }
         Some(ratio) => {
-            let text = format!("axle lags L {} of what it should", times(ratio));
+            let text = format!("axle lags L {} times too far", times(ratio));
             Some(Remark::new(text, true))
         }
         None => None,
@@ -291,13 +286,12 @@ pub fn lag_in_full(health: &Health) -> String {
     let Some(nutation) = health.nutation else {
         return now;
     };
-    let (Some(scheme), Some(truth)) = (nutation.scheme_lag_deg(), nutation.true_lag_deg) else {
+    let (Some(truth), Some(ratio)) = (nutation.true_lag_deg, nutation.lag_ratio) else {
         return now;
     };
-    let ratio = nutation.lag_ratio.unwrap_or(1.0);
     format!(
         "{now}; in steady precession {} by the scheme, {} times the true {}",
-        fixed(scheme, 4),
+        fixed(ratio * truth, 4),
         fixed(ratio, 1),
         fixed(truth, 4)
     )

@@ -15,7 +15,7 @@ use super::page::letters;
 use super::request::Drawn;
 pub use super::request::{Known, Request, Run};
 use super::space;
-use crate::analysis::health::BELIEVED_WITHIN;
+use crate::analysis::health::{BELIEVED_WITHIN, LEAST_SWING_DEG};
 use crate::run::Truth;
 use crate::scenario::Scenario;
 use crate::text::ladder;
@@ -279,8 +279,8 @@ fn not_believed(run: &Run, course: &Course, exact: bool) -> Option<String> {
 
 /// A nutation with fewer time steps than these is not seen in the lines from one to the next.
 const LEAST_A_SWING: f64 = 6.0;
-/// A nutation by less than this is none, rad.
-const LEAST_SWING_RAD: f64 = 2e-8;
+/// So many time steps in a nutation show it as a smooth curve.
+const A_SMOOTH_SWING: f64 = 20.0;
 
 /// What is said of `run` where it has too few time steps in a nutation for a curve over time.
 fn few_a_swing(run: &Run) -> Option<String> {
@@ -289,7 +289,8 @@ fn few_a_swing(run: &Run) -> Option<String> {
     let ((low, high), period_s) = (motion.tilt_range(), motion.nutation_period()?);
     let time_step_s = run.scenario.motion.time_step_s;
     let steps = period_s / time_step_s;
-    (high - low > LEAST_SWING_RAD && steps < LEAST_A_SWING).then(|| {
+    let is_there = (high - low).to_degrees() > LEAST_SWING_DEG;
+    (is_there && steps < LEAST_A_SWING).then(|| {
         format!(
             "{} has {} time steps in a nutation of {} s: the lines between them show slow swings that the motion does not have; a time step of {} s would show the nutation",
             run.named,
@@ -299,9 +300,6 @@ fn few_a_swing(run: &Run) -> Option<String> {
         )
     })
 }
-
-/// So many time steps in a nutation show it as a smooth curve.
-const A_SMOOTH_SWING: f64 = 20.0;
 
 /// What is said of more curves than there are kinds of line.
 fn look_alike(drawn: &[Drawn]) -> Option<String> {

@@ -327,6 +327,17 @@ mod tests {
     }
 
     #[test]
+    fn a_phase_that_goes_back_over_many_strokes_is_cut_in_its_order() {
+        let back = [at(12.0, 0.0), at(0.0, 0.0)];
+        let ends = |stroke: &Vec<Point>| (stroke[0].x, stroke[stroke.len() - 1].x);
+        let mut strokes = Strokes::new();
+        let pattern = Pattern::new(DASH.iter().copied());
+        cut(&back, &[12.0, 0.0], &pattern, &mut strokes);
+        let strokes: Vec<_> = strokes.iter().map(ends).collect();
+        assert_eq!(strokes, [(11.0, 8.0), (7.0, 4.0), (3.0, 0.0)]);
+    }
+
+    #[test]
     fn the_gaps_of_many_turns_lie_upon_each_other() {
         // Ten turns, each a little wider, forward and then back.
         let place = |i: i32| {
