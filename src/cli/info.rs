@@ -166,8 +166,8 @@ fn checked(document: &Document) -> Result<String, Problems> {
     if document.is_sweep() {
         return Sweep::open(document).map(|sweep| described_sweep(&sweep));
     }
-    let scenario = document.scenario()?;
-    let words = Original::of("", &Arc::new(scenario.clone())).difference(&scenario);
+    let scenario = Arc::new(document.scenario()?);
+    let words = Original::of("", &scenario).difference(&scenario);
     let words = words.map(|difference| {
         format!("\n  its look_at line, or its about, is of another motion: this one {difference}")
     });

@@ -235,6 +235,10 @@ impl Comparison {
             .as_ref()
             .map_or(Axis::Z, |theory| theory.axis);
         let about = about(&axis);
+        let about_z = match axis {
+            Axis::Z => "",
+            _ => " about +z",
+        };
         let theory = match self.predicted {
             Some(value) => format!("{} {unit} by theory{about}", fixed(value, 6)),
             None if readouts.health.slowing.is_some() => {
@@ -252,21 +256,18 @@ impl Comparison {
                 if self.is_strobed {
                     let shown = significant(value, 3);
                     return format!(
-                        "{theory}, strobed: the steps are too far apart to see it, and show {shown} {unit}"
+                        "{theory}, strobed: the steps are too far apart to see it, and show {shown} {unit}{about_z}"
                     );
                 }
                 let (value, uncertainty) = (fixed(value, 6), exponent(uncertainty, 1));
-                format!("{value} +- {uncertainty} {unit} measured")
+                format!("{value} +- {uncertainty} {unit} measured{about_z}")
             }
             _ if self.is_strobed => {
-                "none measured: strobed, the steps are too far apart to see it".to_owned()
+                format!("none measured{about_z}: strobed, the steps are too far apart to see it")
             }
-            _ => "none measured".to_owned(),
+            _ => format!("none measured{about_z}"),
         };
-        match axis {
-            Axis::Z => format!("{theory}, {measured}"),
-            _ => format!("{theory}, {measured} about +z"),
-        }
+        format!("{theory}, {measured}")
     }
 }
 

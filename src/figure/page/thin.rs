@@ -21,7 +21,8 @@ pub enum Thinned {
 /// A line with round corners and ends, `width_pt` wide, with fewer points. Where it runs over itself so often that the
 /// outline of its ink has fewer points than the line, it becomes that area.
 pub fn plane_curve(pieces: &[Vec<Point>], width_pt: f64) -> Thinned {
-    let lines = lines(pieces, width_pt);
+    let thin = |piece: &Vec<Point>| simplified(piece, TOLERANCE * width_pt);
+    let lines: Vec<Vec<Point>> = pieces.iter().map(thin).collect();
     let count: usize = lines.iter().map(Vec::len).sum();
     if count > MANY {
         let area = cover::area(&lines, width_pt);
@@ -31,12 +32,6 @@ pub fn plane_curve(pieces: &[Vec<Point>], width_pt: f64) -> Thinned {
         }
     }
     Thinned::Lines(lines)
-}
-
-/// `pieces` of a line `width_pt` wide with fewer points.
-fn lines(pieces: &[Vec<Point>], width_pt: f64) -> Vec<Vec<Point>> {
-    let thin = |piece: &Vec<Point>| simplified(piece, TOLERANCE * width_pt);
-    pieces.iter().map(thin).collect()
 }
 
 #[cfg(test)]

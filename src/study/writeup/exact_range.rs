@@ -35,6 +35,10 @@ impl ExactRange {
                 let form = truth.motion().closed_form();
                 apart_s = form.and_then(LagrangeTop::nutation_period)? / A_NUTATION;
             }
+            if time_s >= end_s {
+                // The last moment is nearer to the one before it: no parabola goes through it.
+                (tilts.before, heights.before) = (None, None);
+            }
             tilts.take(observables::tilt_deg(&state));
             let body = &scenario.body.mechanics;
             heights.take(observables::position(body, &state, scenario.trace).z);
@@ -50,9 +54,7 @@ impl ExactRange {
         }
         None
     }
-}
 
-impl ExactRange {
     /// The end of the range that the readout of that name has of a run's steps.
     pub fn of(&self, readout: &str) -> Option<f64> {
         match readout {
