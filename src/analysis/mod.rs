@@ -12,7 +12,6 @@ mod between;
 pub mod compare;
 pub mod cost;
 pub mod extremes;
-mod farthest;
 pub mod frozen;
 pub mod gauges;
 pub mod health;

@@ -25,35 +25,11 @@ pub struct Monitor {
 impl Monitor {
     /// A monitor for the run that begins at `step`.
     pub fn new(step: &Step) -> Self {
-        Self::of(Gauges::new(step), Beside::new(step.scenario()))
-    }
-
-    /// The monitor whose [parts](Self::parts) are these.
-    pub fn of(gauges: Gauges, beside: Beside) -> Self {
         Self {
-            gauges,
-            beside,
+            gauges: Gauges::new(step),
+            beside: Beside::new(step.scenario()),
             unheld: Vec::new(),
         }
-    }
-
-    /// What is measured on the steps, and how far they stray from the exact motion. Either may follow the run by itself,
-    /// as long as both are shown every step before anything else is asked of the monitor.
-    pub fn parts(&mut self) -> (&mut Gauges, &mut Beside) {
-        self.hold_rest();
-        (&mut self.gauges, &mut self.beside)
-    }
-
-    /// What is measured on the steps.
-    pub fn gauges(&self) -> &Gauges {
-        &self.gauges
-    }
-
-    /// A copy of how far the steps stray from the exact motion, all of them held against it.
-    pub fn beside(&self) -> Beside {
-        let mut beside = self.beside.clone();
-        beside.hold_all(&self.unheld);
-        beside
     }
 
     /// Goes on with a run of `scenario`, whose past is the same.
@@ -86,7 +62,9 @@ impl Monitor {
     }
 
     fn hold_rest(&mut self) {
-        self.beside.hold_all(&self.unheld);
+        for state in &self.unheld {
+            self.beside.hold(state);
+        }
         self.unheld.clear();
     }
 

@@ -72,13 +72,6 @@ impl Deviation {
     }
 }
 
-/// [`Deviation::distance_of`] within a few units of rounding of the arm, m, where that is had in less time.
-#[inline]
-pub(super) fn distance_near(seen: &State, truth: &Truth) -> Option<f64> {
-    let exact = truth.orientation_near(seen.time_s)?;
-    Some(distance_m(seen, &exact, truth.scenario()))
-}
-
 /// Distance of the traced point from where it is if the body stands as `exact`, m.
 #[inline]
 fn distance_m(seen: &State, exact: &Matrix3<f64>, scenario: &Scenario) -> f64 {

@@ -156,10 +156,10 @@ impl Cast {
             true => self.now + LONGEST,
             false => self.now,
         };
-        lab.advance(&mut clock, &mut || false);
+        lab.advance(&mut clock);
         while lab.files().is_exporting() && !interruption.has_come() {
             thread::sleep(LOOK);
-            lab.advance(&mut || self.now, &mut || false);
+            lab.advance(&mut || self.now);
         }
     }
 

@@ -184,18 +184,13 @@ impl Lab {
     }
 
     /// Advances everything that changes with time up to now. `clock` returns the time since the lab was opened; it is read
-    /// several times, so that the steps of a fast run end in time for the next frame. `is_called` says whether somebody waits
-    /// for an answer: a run on its way to a step then stays where it is until the next call.
-    pub fn advance(
-        &mut self,
-        clock: &mut dyn FnMut() -> Duration,
-        is_called: &mut dyn FnMut() -> bool,
-    ) {
+    /// several times, so that the steps of a fast run end in time for the next frame.
+    pub fn advance(&mut self, clock: &mut dyn FnMut() -> Duration) {
         let now = clock();
         let wall = now.saturating_sub(self.now);
         self.now = now;
         self.changed |= self.on_top.notice_mut().expire(now);
-        let (halt, is_new) = self.player.advance(now, wall, clock, is_called);
+        let (halt, is_new) = self.player.advance(now, wall, clock);
         self.changed |= is_new;
         if let Some(halt) = halt {
             self.halted(halt);

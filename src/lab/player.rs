@@ -110,10 +110,9 @@ impl Player {
         now: Duration,
         wall: Duration,
         clock: &mut dyn FnMut() -> Duration,
-        is_called: &mut dyn FnMut() -> bool,
     ) -> (Option<Halt>, bool) {
         let before = self.playback.step_number();
-        let halt = self.playback.advance(now, wall, clock, is_called);
+        let halt = self.playback.advance(now, wall, clock);
         let mut is_new = halt.is_some() || self.playback.step_number() != before;
         if self.run().overlay_is_behind() {
             self.playback.follow_exact(clock);

@@ -4,7 +4,6 @@
 //! steps on from there, with the same bits as the first time. The pictures of the steps that then lie ahead are stored
 //! separately.
 
-mod on_cores;
 mod pictures;
 
 use super::checkpoints::Checkpoints;
@@ -90,6 +89,17 @@ impl LiveRun {
         Ok(())
     }
 
+    /// Steps until the run stands at `step`.
+    ///
+    /// # Errors
+    /// When the numbers stop being finite; the run then stays at the step before.
+    pub fn step_to(&mut self, step: u64) -> Result<(), NotFinite> {
+        while self.simulation.step_number() < step {
+            self.step()?;
+        }
+        Ok(())
+    }
+
     /// The furthest step that the run has reached.
     pub fn furthest(&self) -> u64 {
         self.pictures.furthest()
@@ -120,7 +130,7 @@ impl LiveRun {
 
     /// A copy of the run at the last stored state that is at `step` or before, to step through what it has been through.
     pub(super) fn again_before(&self, step: u64) -> Simulation {
-        let stored = self.checkpoints.before(step);
+        let stored = &self.checkpoints.before(step).simulation;
         let here = self.simulation.step_number();
         if (stored.step_number()..=step).contains(&here) && !self.simulation.has_ended() {
             return self.simulation.clone();
@@ -136,12 +146,13 @@ impl LiveRun {
     /// at step `here`.
     fn stand_before(&mut self, latest: u64, here: u64) {
         let stored = self.checkpoints.before(latest);
-        if (stored.step_number()..=latest).contains(&here) && !self.simulation.has_ended() {
+        let stored_at = stored.simulation.step_number();
+        if (stored_at..=latest).contains(&here) && !self.simulation.has_ended() {
             return;
         }
         let scenario = Arc::clone(self.simulation.scenario());
-        self.simulation = stored.clone();
-        self.monitor = self.checkpoints.monitor_before(latest);
+        self.simulation = stored.simulation.clone();
+        self.monitor = stored.monitor.clone();
         self.simulation.keep_workings(self.keeps_workings);
         self.pictures.stand_at(self.simulation.now());
         self.adopt(&scenario);

@@ -13,10 +13,8 @@ use std::time::Duration;
 
 /// The longest time of stepping between two readings of the keyboard.
 const STEPPING: Duration = Duration::from_millis(12);
-/// The longest time of stepping of a run on its way to a step that was asked for: each time that it ends, its two threads
-/// wait for one another. It ends earlier where somebody waits for an answer, which is looked for so often.
-const HURRYING: Duration = Duration::from_millis(500);
-const LOOKING: Duration = Duration::from_millis(5);
+/// The same of a run on its way to a step that was asked for.
+const HURRYING: Duration = Duration::from_millis(40);
 /// Computing time for the exact motion in each round of the loop while the run steps flat out: a tenth of that time.
 const FOLLOWING_FLAT_OUT: Duration = Duration::from_micros(1200);
 /// The same otherwise: a tenth of a frame at 15 frames a second.
@@ -114,14 +112,12 @@ impl Playback {
     }
 
     /// Plays the simulated time that is due after `wall` of wall time, but steps no longer than 12 ms after `now`, as `clock`
-    /// tells it. On its way to a step that is 500 ms, or until `is_called` says that somebody waits for an answer. Returns
-    /// why the playback stopped, if it did.
+    /// tells it; on its way to a step, 40 ms. Returns why the playback stopped, if it did.
     pub fn advance(
         &mut self,
         now: Duration,
         wall: Duration,
         clock: &mut dyn FnMut() -> Duration,
-        is_called: &mut dyn FnMut() -> bool,
     ) -> Option<Halt> {
         let owed_s = if self.hurries {
             f64::INFINITY
@@ -131,19 +127,8 @@ impl Playback {
         if owed_s <= 0.0 {
             return None;
         }
-        if !self.hurries {
-            let deadline = now + STEPPING;
-            return self.play(owed_s, wall, || clock() >= deadline);
-        }
-        let (deadline, mut next_look) = (now + HURRYING, now + LOOKING);
-        self.play(owed_s, wall, || {
-            let here = clock();
-            let looks = here >= next_look;
-            if looks {
-                next_look = here + LOOKING;
-            }
-            here >= deadline || (looks && is_called())
-        })
+        let longest = if self.hurries { HURRYING } else { STEPPING };
+        self.play(owed_s, wall, || clock() >= now + longest)
     }
 
     /// Plays to the requested step, or until the condition holds, however long that takes. Returns why the playback
@@ -164,7 +149,11 @@ impl Playback {
     /// Plays `owed_s` of simulated time, or until `enough` returns true. Returns why the playback stopped, if it did.
     fn play(&mut self, owed_s: f64, wall: Duration, enough: impl FnMut() -> bool) -> Option<Halt> {
         let end = match self.hurries {
-            true => self.run.hurry_to(self.stop, enough),
+            true => {
+                self.run
+                    .play(f64::INFINITY, self.stop, enough, |_| false)
+                    .end
+            }
             false => {
                 let mut until = self.until.as_mut();
                 let is_fulfilled =

@@ -3,9 +3,8 @@
 //! [`Simulation`] alone takes a run forward in time; the command line, exports, tests and the screen all use it.
 //! [`step`] is what it publishes of each time step. [`clock`] says what time a step has, [`pushes`] which
 //! forces act on it, [`sample`] what of it leaves the program, [`energy`] what its drift is measured in. [`truth`] is the
-//! exact motion beside it, [`resample`] the same run at another time step, and [`batch`] hands steps over to another core.
+//! exact motion beside it, and [`resample`] the same run at another time step.
 
-pub mod batch;
 pub mod clock;
 pub mod energy;
 pub mod pushes;
@@ -15,7 +14,6 @@ pub mod simulation;
 pub mod step;
 pub mod truth;
 
-pub use batch::Batch;
 pub use clock::Clock;
 pub use energy::{EnergyScale, EnergyUnit};
 pub use sample::Sample;

@@ -1,6 +1,5 @@
 //! One time step of a run, whole: everything that shows, measures, explains or exports a step reads this.
 
-use super::batch::Work;
 use super::{EnergyScale, EnergyUnit, Sample};
 use crate::physics::observables::{self, Azimuth};
 use crate::physics::{Loads, State, Workings};
@@ -156,17 +155,6 @@ impl Step {
     /// What the energy drift is measured in; `None` where there is nothing to measure it by.
     pub fn energy_unit(&self) -> Option<EnergyUnit> {
         self.energy.scale.map(|scale| scale.unit)
-    }
-
-    /// Goes on to the next step, under the same forces: to the state `after` it and the `work` done by then.
-    #[inline]
-    pub(super) fn go_on(&mut self, after: &State, work: &Work) {
-        self.before = std::mem::replace(&mut self.after, *after);
-        (self.energy.work, self.energy.friction) = (work.outside, work.friction);
-        self.number += 1;
-        self.azimuth.follow(&after.axle());
-        self.workings = None;
-        self.derived = Derived::default();
     }
 
     /// Its numbers as they leave the program.

@@ -68,16 +68,6 @@ impl Truth {
         self.piece.orientation_at(time_s)
     }
 
-    /// The same within a few units of rounding, in half of that time; `None` where there is no such short way, or the forces
-    /// change before `time_s`.
-    #[inline]
-    pub fn orientation_near(&self, time_s: f64) -> Option<Matrix3<f64>> {
-        let is_here = self.piece.begin_s() <= time_s && time_s <= self.end_s;
-        is_here
-            .then(|| self.piece.orientation_near(time_s))
-            .flatten()
-    }
-
     /// Where the traced point is at `times` (s, in order), within a few units of rounding of its distance from the pivot: x, y
     /// and z, m, world frame. `None` where there is no such short way, or the forces change before the last of them.
     pub fn traced_near(&self, times: &[f64; AT_ONCE]) -> Option<[[f64; AT_ONCE]; 3]> {

@@ -43,7 +43,7 @@ pub fn run(lab: &mut Lab, class: &mut Class, session: Option<&Session>) -> io::R
         #[cfg(debug_assertions)]
         panic_if_asked(begin.elapsed());
         let was_on_its_way = lab.player().playback().steps_to_go().is_some();
-        lab.advance(&mut || begin.elapsed(), &mut || screen.has_events());
+        lab.advance(&mut || begin.elapsed());
         let has_arrived = was_on_its_way && lab.player().playback().steps_to_go().is_none();
         class.advance(begin.elapsed(), lab);
         if lab.has_changed() {

@@ -78,21 +78,6 @@ impl Keyboard {
         Ok(())
     }
 
-    /// Whether something has been typed that was not taken, the time has passed after which Esc is a key by itself, or the
-    /// terminal is closed.
-    pub fn has_something(&self) -> bool {
-        let stdin = io::stdin();
-        let mut terminal = [PollFd::new(&stdin, PollFlags::IN)];
-        let now = Timespec {
-            tv_sec: 0,
-            tv_nsec: 0,
-        };
-        let is_due = |due| Instant::now() >= due;
-        self.decoder.ready() > 0
-            || self.decoder.deadline().is_some_and(is_due)
-            || poll(&mut terminal, Some(&now)).is_ok_and(|ready| ready > 0)
-    }
-
     fn poll(&mut self, wait: Duration) -> io::Result<Came> {
         let stdin = io::stdin();
         let mut both = [

@@ -225,13 +225,6 @@ impl Screen {
         }
         Ok(events)
     }
-
-    /// Whether [`events`](Self::events) would return without waiting: something has been typed, a signal has come, or the
-    /// terminal is closed.
-    pub fn has_events(&self) -> bool {
-        let mut signals = [&RESIZED, &SUSPEND, &RESUMED].into_iter();
-        signals.any(|signal| signal.load(Ordering::Relaxed)) || self.keyboard.has_something()
-    }
 }
 
 impl Drop for Screen {

@@ -66,7 +66,7 @@ impl Desk {
     pub fn pass(&mut self, time: Duration) {
         self.now += time;
         let now = self.now;
-        self.lab.advance(&mut || now, &mut || false);
+        self.lab.advance(&mut || now);
     }
 
     /// Carries `command` out, and waits until the lab has finished the steps that it requests.

@@ -107,7 +107,7 @@ impl Stage {
                 now + Duration::from_micros(50) * (looks - 1)
             };
             // Somebody always waits for an answer here.
-            self.lab.advance(&mut clock, &mut || true);
+            self.lab.advance(&mut clock);
             self.class.advance(now, &mut self.lab);
             screen::refit(&mut self.lab, self.size);
             self.now += FRAME;

@@ -36,9 +36,9 @@ mod start;
 
 use super::part::{Part, Sums};
 use super::phases;
-use super::theta::{Harmonics, Lattice, Parity, SinCos, Zero};
+use super::theta::{Harmonics, Lattice, Parity, Zero};
 use super::turning::{Start, Turning};
-use crate::physics::trig::{round, sin_cos};
+use crate::physics::trig::round;
 use crate::physics::workings::{Listener, Nobody};
 use nalgebra::{Complex, Matrix3, Quaternion, UnitQuaternion, Vector3};
 use start::{InFrame, cayley_klein, frame_along, quaternion, start, up};
@@ -112,7 +112,7 @@ impl LagrangeTop {
 
     /// The same, with each phase told to `listener`.
     pub fn at_heard<L: Listener>(&self, t: f64, listener: &mut L) -> (Matrix3<f64>, Vector3<f64>) {
-        let sums = self.sums_at(t, libm::sincos);
+        let sums = self.sums_at(t);
         let (alpha, beta) = sums.parameters();
         let norm2 = alpha.norm_sqr() + beta.norm_sqr();
         listener.hear(|| phases::parameters(t, [alpha, beta], norm2));
@@ -127,17 +127,7 @@ impl LagrangeTop {
 
     /// The orientation of [`at`](Self::at) without L, which takes half of the time.
     pub fn orientation_at(&self, t: f64) -> Matrix3<f64> {
-        self.orientation_by(t, libm::sincos)
-    }
-
-    /// The same within a few units of rounding, in half of that time again: its sines are those of the stepping schemes.
-    pub fn orientation_near(&self, t: f64) -> Matrix3<f64> {
-        self.orientation_by(t, sin_cos)
-    }
-
-    #[inline(always)]
-    fn orientation_by(&self, t: f64, sin_cos: impl SinCos) -> Matrix3<f64> {
-        let (alpha, beta) = self.sums_at(t, sin_cos).parameters();
+        let (alpha, beta) = self.sums_at(t).parameters();
         let norm2 = alpha.norm_sqr() + beta.norm_sqr();
         self.turned_by(alpha, beta, norm2).1
     }
@@ -175,7 +165,7 @@ impl LagrangeTop {
 
     /// Both sums at `t` s after the start. Always inlined: what a caller does not use of them need not be stored.
     #[inline(always)]
-    fn sums_at(&self, t: f64, sin_cos: impl SinCos) -> Sums {
+    fn sums_at(&self, t: f64) -> Sums {
         let since = t + self.since_origin;
         let cells = round(since * self.lattice.per_period);
         // A motion without a period has one cell, and its length must not enter: 0 * infinity is no number.
@@ -184,10 +174,10 @@ impl LagrangeTop {
         } else {
             since - cells * self.lattice.period
         };
-        let (a, b) = self.ordered(self.lattice.harmonics(local, sin_cos));
+        let (a, b) = self.ordered(self.lattice.harmonics(local));
         let fraction = local * self.lattice.per_period;
         Sums {
-            turns: [&self.alpha, &self.beta].map(|part| part.turned(t, fraction, sin_cos)),
+            turns: [&self.alpha, &self.beta].map(|part| part.turned(t, fraction)),
             values: [self.alpha.wave.value(&a), self.beta.wave.value(&b)],
             harmonics: [a, b],
         }
@@ -221,7 +211,7 @@ impl LagrangeTop {
         let (alpha, beta) = cayley_klein(start, turn);
         let (low, one) = (self.starts_low, Complex::new(1.0, 0.0));
         (self.alpha.amplitude, self.beta.amplitude) = (one, one);
-        let sums = self.sums_at(0.0, libm::sincos);
+        let sums = self.sums_at(0.0);
         let ((sum_a, sum_b), bracket) = (sums.parameters(), self.bracket(&sums));
         let (odd, odd_sum, even, even_sum) = if low {
             (alpha, sum_a, beta, sum_b)

@@ -116,13 +116,6 @@ impl ExactMotion {
         }
     }
 
-    /// The same within a few units of rounding where that takes less time still; `None` where it does not.
-    #[inline]
-    pub fn orientation_near(&self, time_s: f64) -> Option<Matrix3<f64>> {
-        self.closed_form()
-            .map(|top| top.orientation_near(time_s - self.begin_s))
-    }
-
     /// Where the point `at` of the body (body frame, m) is at `times` (s), as [`LagrangeTop::positions_near`] has it.
     pub fn positions_near(
         &self,

@@ -1,6 +1,6 @@
 //! The two Cayley-Klein parameters of a top (see [`lagrange`](super::lagrange)) as functions of time.
 
-use super::theta::{Harmonics, SinCos, Wave};
+use super::theta::{Harmonics, Wave};
 use crate::physics::trig::round;
 use core::f64::consts::TAU;
 use nalgebra::Complex;
@@ -35,9 +35,9 @@ impl Part {
 
     /// Amplitude and rotation at `t` s after the start, `fraction` of a period from the nearest origin, with that sine and
     /// cosine.
-    pub fn turned(&self, t: f64, fraction: f64, sin_cos: impl SinCos) -> Complex<f64> {
+    pub fn turned(&self, t: f64, fraction: f64) -> Complex<f64> {
         let turns = self.turns_per_s * t;
-        let (sin, cos) = sin_cos(TAU * (turns - round(turns)) + self.wave.lag * fraction);
+        let (sin, cos) = libm::sincos(TAU * (turns - round(turns)) + self.wave.lag * fraction);
         self.amplitude * Complex::new(cos, sin)
     }
 }

@@ -25,10 +25,6 @@ const NO_RETURN: f64 = 1e-250;
 /// The same limit for the argument: a pulse this old has settled to far below rounding.
 const SETTLED: f64 = 300.0;
 
-/// Sine and cosine of an angle in radians: `libm`'s; or faster ones of which a last bit may be another.
-pub trait SinCos: Fn(f64) -> (f64, f64) + Copy {}
-impl<F: Fn(f64) -> (f64, f64) + Copy> SinCos for F {}
-
 /// Whether a theta function vanishes near the origin of its argument, or half a period away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parity {
@@ -133,11 +129,11 @@ impl Lattice {
     }
 
     /// Harmonics (odd, even) at `time` s from the nearest origin, with that sine and cosine.
-    pub fn harmonics(&self, time: f64, sin_cos: impl SinCos) -> (Harmonics, Harmonics) {
+    pub fn harmonics(&self, time: f64) -> (Harmonics, Harmonics) {
         if self.pulsed {
             self.hyperbolic(self.rate * time)
         } else {
-            let h = circular(self.rate * time, sin_cos);
+            let h = circular(self.rate * time);
             (h, h)
         }
     }
@@ -255,8 +251,8 @@ impl Lattice {
     }
 }
 
-fn circular(z: f64, sin_cos: impl SinCos) -> Harmonics {
-    let (sin, cos) = sin_cos(2.0 * z);
+fn circular(z: f64) -> Harmonics {
+    let (sin, cos) = libm::sincos(2.0 * z);
     harmonics_of(sin, cos)
 }
 
