@@ -126,23 +126,43 @@ impl Damping {
         Vector3::new(swing.x, swing.y, -about)
     }
 
+    /// The torque about the axle with which the free motion of a body that turns by `omega` (body frame, rad/s) changes ω3,
+    /// N m: what dry friction must hold against too. It is 0 of a body symmetric about its axle.
+    pub fn gyration(&self, omega: &Vector3<f64>) -> f64 {
+        let change = (self.inertia * omega).cross(omega);
+        self.along * (self.inverse_inertia * change).z
+    }
+
     /// What friction does during `time_s` to the body that turns by `omega`, while it stands as it is and another torque
     /// acts too, a constant one (N m); everything in the body frame. In closed form for a body symmetric about its axle, of any other
     /// to second order in the time: half the time about the axle, the whole across it, half about the axle.
-    pub fn act(&self, omega: &Vector3<f64>, torque: &Vector3<f64>, time_s: f64) -> Action {
+    ///
+    /// Friction about the axle meets the spin that there would be if the torque of `gyration` about the axle (N m) acted
+    /// too, and had acted for the time `lead_s` before.
+    pub fn act(
+        &self,
+        omega: &Vector3<f64>,
+        torque: &Vector3<f64>,
+        time_s: f64,
+        (gyration, lead_s): (f64, f64),
+    ) -> Action {
         let half = 0.5 * time_s;
+        let about = |spin: f64, since_s: f64| {
+            let met = spin + gyration * (lead_s + since_s) / self.along;
+            self.about(met, torque.z + gyration, half)
+        };
         let turned = |impulse: &Vector3<f64>| omega + self.inverse_inertia * impulse;
         let mut impulse = Vector3::zeros();
         let mut whole = Vector3::zeros();
-        let about = self.about(omega.z, torque.z, half);
-        impulse.z += about;
-        whole.z += about + torque.z * half;
+        let first = about(omega.z, 0.0);
+        impulse.z += first;
+        whole.z += first + torque.z * half;
         let swing = self.swing(&turned(&whole), torque, time_s);
         impulse += swing;
         whole += swing + Vector3::new(torque.x, torque.y, 0.0) * time_s;
-        let about = self.about(turned(&whole).z, torque.z, half);
-        impulse.z += about;
-        whole.z += about + torque.z * half;
+        let second = about(turned(&whole).z, half);
+        impulse.z += second;
+        whole.z += second + torque.z * half;
         let work = 0.5 * impulse.dot(&(omega + turned(&whole)));
         Action { impulse, work }
     }
