@@ -21,7 +21,7 @@ pub mod residual;
 pub mod shipped;
 
 pub use compared::Compared;
-pub use of_run::{Reader, at_times};
+pub use of_run::{Reader, at_times, is_within_reach};
 pub use places::{Place, places};
 pub use quantity::Quantity;
 pub use reading::{open, read, text};

@@ -125,6 +125,19 @@ pub fn at_times(
     Ok(Some(reader.values))
 }
 
+/// Whether the run of `scenario` comes to the last time of `series` in ten million steps, or parts of an integration.
+pub fn is_within_reach(series: &Series, scenario: &Scenario) -> bool {
+    const MOST: f64 = 1e7;
+    let last_s = series.times_s.last().copied().unwrap_or(0.0);
+    let steps = last_s / scenario.motion.time_step_s;
+    let parts = if needs_no_steps(series, scenario) {
+        steps / BLOCK as f64
+    } else {
+        steps
+    };
+    parts <= MOST
+}
+
 /// Whether the motion at a time does not depend on the steps that lead there.
 fn needs_no_steps(series: &Series, scenario: &Scenario) -> bool {
     let is_exact = scenario.motion.scheme.order.is_none();

@@ -770,3 +770,14 @@ fn an_uncertain_setting_may_stand_at_the_edge_of_its_range() {
     assert!(inside > 2.0, "{inside}");
     is_near("sigma", edge / inside, 1.0, 0.05);
 }
+
+#[test]
+fn data_that_no_run_comes_to_are_refused_with_the_limit() {
+    let document = Document::open("cusps").unwrap();
+    let free = vec![Free::parse("start.tilt_deg", &document).unwrap()];
+    let far = read("far.csv", "t_s,tilt_deg\n0,20\n1e300,20\n").unwrap();
+    let told = Model::new(&document, free, far).unwrap_err().to_string();
+    for word in ["far.csv:3: t_s", "10 000 000 steps"] {
+        assert!(told.contains(word), "{told}");
+    }
+}

@@ -6,11 +6,12 @@ use crate::analysis::at_end;
 use crate::analysis::readouts::{self, Readout};
 use crate::cores;
 use crate::measured::{
-    Data, Measured, Point, Quantity, Residual, Series, Table, at_times, residuals,
+    Data, Measured, Point, Quantity, Residual, Series, Table, at_times, is_within_reach, residuals,
 };
 use crate::run::Clock;
 use crate::scenario::dotted::overlap;
 use crate::scenario::{Document, Problem, Problems, Scenario, ScenarioFile};
+use crate::text::number::shortest;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -55,11 +56,15 @@ impl Model {
     /// The model that `scenario` is with these keys free, beside `measured`.
     ///
     /// # Errors
-    /// When the scenario is wrong, or a key is free that a column sets.
+    /// When the scenario is wrong, a key is free that a column sets, or the run would take too many steps to the last row.
     pub fn new(scenario: &Document, free: Vec<Free>, measured: Measured) -> Result<Self, Problems> {
         let checked = scenario.scenario()?;
-        if let Data::Table(table) = &measured.data {
-            are_apart(&free, table)?;
+        match &measured.data {
+            Data::Table(table) => are_apart(&free, table)?,
+            Data::Series(series) if !is_within_reach(series, &checked) => {
+                return Err(too_far(&measured, series, &checked));
+            }
+            Data::Series(_) => {}
         }
         let file = ScenarioFile {
             gyrolab: None,
@@ -287,6 +292,20 @@ fn write(document: &mut Document, key: &str, value: Value) -> Result<(), String>
 fn checked(document: &Document) -> Result<Scenario, String> {
     let scenario = document.scenario();
     scenario.map_err(|problems| problems.in_one_line())
+}
+
+/// Refuses data whose last row the run of `scenario` takes too many steps to come to.
+fn too_far(measured: &Measured, series: &Series, scenario: &Scenario) -> Problems {
+    let mut problem = Problem::at(
+        "t_s",
+        format!(
+            "{} s is too many time steps of {} s away: a run is followed for 10 000 000 steps (2^12 times as many where the scheme is exact); leave the row out, or give a longer motion.time_step_s",
+            shortest(series.times_s.last().copied().unwrap_or(0.0)),
+            shortest(scenario.motion.time_step_s)
+        ),
+    );
+    problem.place = series.lines.last().map(|line| format!("line {line}"));
+    Problems::one(measured.origin.clone(), problem)
 }
 
 /// Refuses a free key that a column sets.
