@@ -4,7 +4,7 @@
 use super::Lab;
 use super::answer::UnderWay;
 use super::command::{self, Command, Commands, Place, Placed};
-use crate::observe::playback::Halt;
+use crate::observe::playback::{Halt, MOST_UNTIL};
 use indicatif::HumanCount;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
@@ -277,6 +277,15 @@ impl Lab {
                 return;
             };
             let answer = self.carry_out(&next.command);
+            let to_go = self.player.playback.steps_to_go();
+            if to_go.is_some_and(|to_go| to_go > MOST_UNTIL) {
+                self.player.pause();
+                let most = HumanCount(MOST_UNTIL);
+                let reason = format!(
+                    "is more than {most} steps away: a longer time step leads there sooner"
+                );
+                return self.script_has_failed(&next, &reason);
+            }
             match &answer {
                 Ok(done) => self.script.under_way = done.under_way.map(|way| (next, way)),
                 Err(refusal) => return self.script_has_failed(&next, &refusal.to_string()),

@@ -19,8 +19,8 @@ const HURRYING: Duration = Duration::from_millis(40);
 const FOLLOWING_FLAT_OUT: Duration = Duration::from_micros(1200);
 /// The same otherwise: a tenth of a frame at 15 frames a second.
 const FOLLOWING: Duration = Duration::from_millis(6);
-/// The number of steps after which playing until a condition holds is given up.
-const MOST_UNTIL: u64 = 10_000_000;
+/// The number of steps after which playing until a condition holds is given up; commands of a file go no further at once.
+pub const MOST_UNTIL: u64 = 10_000_000;
 
 /// A condition on a run, until which it is played.
 pub type Condition = Box<dyn FnMut(&mut LiveRun) -> bool>;
@@ -94,7 +94,7 @@ impl Playback {
     /// Begins the run of another `scenario`. The speed, whether the run goes on, and whether the exact motion is shown stay
     /// as they are.
     pub fn begin(&mut self, scenario: Arc<Scenario>) {
-        let shows_exact = self.run.overlay().is_some();
+        let shows_exact = self.run.shows_exact();
         self.end_s = Clock::end_s(&scenario);
         self.run = LiveRun::new(scenario);
         self.run.set_overlay(shows_exact);

@@ -57,7 +57,7 @@ pub static COMMANDS: &[CommandRow] = &[
     row("push", "true, or { point = \"top\", force_N = [0, 0, -50], for_s = 2 }", "give the push to come, or one of one's own; force_N can be a size beside toward = \"down\"", push),
     row("next_push", "{ point = \"top\", force_N = 50, toward = \"down\", for_s = 2 }", "choose the push to come, or a part of it", next_push),
     row("step", "10", "take so many time steps, or go so many back", step),
-    row("go_to", "400, \"60 s\", \"start\" or \"end\"", "go to a step or a time and stop there", go_to),
+    row("go_to", "400, \"60 s\", \"start\" or \"end\"", "go to a step or a time at most 10000000 steps away and stop there", go_to),
     row("run_until", "\"t_s >= 60\"", "play at the speed that is set until this holds, and stop; given up after 10000000 steps", run_until),
     row("run", "true", "let the run go on", |value| if_true(value, Command::Run)),
     row("pause", "true", "stop the run", |value| if_true(value, Command::Pause)),
