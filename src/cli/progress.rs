@@ -2,7 +2,7 @@
 
 use super::INTERRUPTED;
 use crate::export::Destination;
-use crate::export::destination::DestinationError;
+use crate::export::destination::{self, DestinationError};
 use indicatif::{
     HumanCount, HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle,
 };
@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// What a signal to end does: the first one raises a flag, a later one ends the process on the spot, should it be stuck.
+/// What a signal to end does: it raises a flag, and ends the process where that has not been seen after a while.
 #[derive(Clone, Debug)]
 pub(super) struct Interruption {
     has_come: Arc<AtomicBool>,
@@ -47,22 +47,21 @@ impl Interruption {
     }
 }
 
-/// A signal that comes again within this time is the same one: `timeout` sends its own to the process and then to the
-/// process group. A user who has seen that nothing happens takes longer.
-const SAME: Duration = Duration::from_millis(200);
+/// How long after a signal the process may go on: a command that has not ended by then computes something that asks nobody.
+const PATIENCE: Duration = Duration::from_millis(1500);
 
 impl Interruption {
-    /// Waits for `signals`: the first raises the flag, and one that comes later ends the process.
+    /// Waits for the first of `signals`, raises the flag, and ends the process where it has not ended after a while.
     fn listen(&self, signals: &mut Signals) {
-        let mut first: Option<Instant> = None;
-        for _ in signals.forever() {
-            let is_second = first.is_some_and(|first| first.elapsed() > SAME);
-            if is_second || self.at_once.load(Ordering::SeqCst) {
-                signal_hook::low_level::exit(INTERRUPTED.into());
-            }
-            self.has_come.store(true, Ordering::SeqCst);
-            first.get_or_insert_with(Instant::now);
+        if signals.forever().next().is_none() {
+            return;
         }
+        self.has_come.store(true, Ordering::SeqCst);
+        if !self.at_once.load(Ordering::SeqCst) {
+            thread::sleep(PATIENCE);
+        }
+        destination::remove_temporary();
+        signal_hook::low_level::exit(INTERRUPTED.into());
     }
 
     /// The same in the handlers of `signals` themselves, where every second signal ends the process.
@@ -98,8 +97,7 @@ pub(super) fn open(
     Ok((open()?, interruption))
 }
 
-/// Has signals raise the flag: on a thread of its own, which tells a signal that is sent twice at once from a second one, or
-/// without it where the system gives no thread.
+/// Has signals raise the flag: on a thread of its own, or without it where the system gives no thread.
 ///
 /// A write past the limit on a file's size (`ulimit -f`) fails like one to a full disk: its signal, left to itself,
 /// would end the process with the temporary file still there.

@@ -6,7 +6,18 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use tempfile::NamedTempFile;
+
+/// The paths of the temporary files of this process, also of those that have got their names or are gone.
+static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Removes the temporary files of outputs that are not complete, for a process that ends on the spot.
+pub fn remove_temporary() {
+    for path in &*TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner) {
+        let _ = fs::remove_file(path); // there is nobody to tell
+    }
+}
 
 /// An output that is being written.
 #[derive(Debug)]
@@ -171,6 +182,9 @@ impl Destination {
             .permissions(new_permissions())
             .tempfile_in(folder_of(&path))
             .map_err(|error| plain(&error))?;
+        let mut known = TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner);
+        known.push(temporary.path().to_owned());
+        drop(known);
         if let Ok(there) = fs::metadata(&path) {
             copy_permissions(temporary.as_file(), &there)?;
         }

@@ -645,6 +645,18 @@ fn ctrl_c_ends_a_run_with_130_and_leaves_nothing() {
         ("method-2", &["-o", "new.csv"][..]),
         ("method-2", &["-o", "old.csv", "--force"]),
         ("big.toml", &["-o", "new.csv"]),
+        // Each step integrates for a good part of a second, and 4096 of them are taken without a look at the signal.
+        (
+            "wing-nut",
+            &[
+                "--scheme",
+                "exact",
+                "--set",
+                "motion.time_step_s=1e4",
+                "-o",
+                "new.csv",
+            ],
+        ),
     ] {
         // The signal comes as soon as there is a temporary file.
         let huge = [
