@@ -26,6 +26,11 @@ pub trait Scheme: Send {
         0.0
     }
 
+    /// Whether the step taken last is no number because it would have taken too long.
+    fn has_given_up(&self) -> bool {
+        false
+    }
+
     /// What there is to say of how the run was computed, beyond the scheme's name.
     fn remark(&self) -> Option<String> {
         None

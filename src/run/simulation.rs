@@ -41,12 +41,26 @@ pub struct Simulation {
 /// The numbers of a run are no longer finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "the numbers are no longer finite at step {step}: the run ends at step {}; a shorter time step or another scheme may mend it",
+    "{} at step {step}: the run ends at step {}; a shorter time step or another scheme may mend it",
+    self.fact(),
     step - 1
 )]
 pub struct NotFinite {
     /// The step that would have led to them.
     pub step: u64,
+    /// Whether that is because the exact motion turns too far in this step to be integrated.
+    pub is_too_far: bool,
+}
+
+impl NotFinite {
+    /// What has happened, without the step.
+    pub fn fact(&self) -> &'static str {
+        if self.is_too_far {
+            "the body turns too far for the exact motion to be integrated"
+        } else {
+            "the numbers are no longer finite"
+        }
+    }
 }
 
 impl Simulation {
@@ -147,6 +161,7 @@ impl Simulation {
         now.derived = Derived::default();
         let end = NotFinite {
             step: now.number + 1,
+            is_too_far: self.scheme.has_given_up(),
         };
         self.ended = Some(end);
         end

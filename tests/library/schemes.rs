@@ -1,7 +1,7 @@
 //! What every scheme of the table must do: converge with the order it claims, be worth its cost, keep what it keeps, and
 //! take a run over from any other.
 
-use crate::support::scenarios::{find_scheme, parse};
+use crate::support::scenarios::{find_scheme, parse, preset};
 use gyrolab::analysis::Trial;
 use gyrolab::export::{CsvWriter, stream};
 use gyrolab::physics::scheme::SCHEMES;
@@ -301,4 +301,15 @@ fn the_same_run_gives_the_same_bytes_and_so_does_a_clone_of_it() {
             assert_eq!(clone.state(), simulation.state(), "{name}");
         }
     }
+}
+
+#[test]
+fn the_scheme_exact_ends_where_it_would_integrate_too_long() {
+    let set = ["motion.scheme=exact", "motion.time_step_s=1e6"];
+    let mut run = Simulation::new(Arc::new(preset("wing-nut", &set)));
+    let told = run.step().unwrap_err().to_string();
+    assert!(
+        told.starts_with("the body turns too far for the exact motion to be integrated at step 1"),
+        "{told}"
+    );
 }

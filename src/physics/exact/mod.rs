@@ -140,6 +140,11 @@ impl ExactMotion {
         }
     }
 
+    /// Whether a time was asked for to which the integration would have taken too long: from there on it is no number.
+    pub fn has_given_up(&self) -> bool {
+        matches!(&self.solution, Solution::Integrated(motion) if motion.has_given_up())
+    }
+
     /// The work of friction from where it began to the time asked for last, J.
     pub fn friction_work(&self) -> f64 {
         match &self.solution {

@@ -107,6 +107,11 @@ impl Scheme for Exact {
         self.step_work
     }
 
+    fn has_given_up(&self) -> bool {
+        let motion = self.motion.as_ref();
+        motion.is_some_and(ExactMotion::has_given_up)
+    }
+
     fn remark(&self) -> Option<String> {
         if !self.loads.friction.is_none() {
             return Some(Kind::Rubbing.to_string());

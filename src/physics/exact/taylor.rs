@@ -23,6 +23,8 @@ use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 /// Size of the last term of a step against the whole: below rounding, so that rounding alone is left.
 const LAST_TERM: f64 = f64::EPSILON / 16.0;
+/// The most series on the way to one time: with 1 to 3 rad to a series less than a second's work, which nothing interrupts.
+const MOST_SERIES: u32 = 200_000;
 
 /// Motion of a rigid body about a fixed point under constant forces at body points, integrated to rounding.
 ///
@@ -40,6 +42,7 @@ pub struct AccurateMotion {
     /// What rounding has kept out of `momentum[0]`. A fast top turns an error of L into an angle that grows with time.
     carry: Vector3<f64>,
     friction: Option<Box<Rubbing>>,
+    gave_up: bool,
 }
 
 /// Friction, and where to go back to: what it has stopped cannot be followed backwards.
@@ -112,6 +115,7 @@ impl AccurateMotion {
             momentum: [Vector3::zeros(); ORDER + 1],
             carry: Vector3::zeros(),
             friction: damping.map(|damping| Box::new(Rubbing::new(damping, moment))),
+            gave_up: false,
         };
         motion.expand(*turn.as_ref(), momentum);
         Some(motion)
@@ -132,13 +136,17 @@ impl AccurateMotion {
     ///
     /// Asking for times in order costs one short polynomial each; going back integrates back, or where there is friction
     /// on from an earlier time. Not a number for a time that is not finite, or that is too far for the turning of the body
-    /// to be told apart by it, or with friction before the start.
+    /// to be told apart by it, or with friction before the start; nor from the first time on to which the body turns by more
+    /// than 2e5 to 6e5 rad from the time asked for before: then it [has given up](Self::has_given_up).
     pub fn advance(&mut self, t: f64) -> (Matrix3<f64>, Vector3<f64>) {
         if t < self.time || t - self.time > self.radius {
             self.go_to_centre(t);
         }
+        let mut left = MOST_SERIES;
         while (t - self.time).abs() > self.radius {
-            if !self.step_towards(t) {
+            self.gave_up |= left == 0;
+            left = left.saturating_sub(1);
+            if self.gave_up || !self.step_towards(t) {
                 return (Matrix3::repeat(f64::NAN), Vector3::repeat(f64::NAN));
             }
         }
@@ -150,6 +158,11 @@ impl AccurateMotion {
             rotation(turn.normalize()),
             self.momentum[0] + (change + self.carry),
         )
+    }
+
+    /// Whether a time was asked for to which the integration would have taken too long.
+    pub fn has_given_up(&self) -> bool {
+        self.gave_up
     }
 
     /// The time about which the series was expanded that gave the state asked for last, s.
