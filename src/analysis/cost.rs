@@ -1,31 +1,48 @@
 //! What the exact motion of a scenario costs: nothing in closed form, the turning of the body where it is integrated.
 
-use crate::physics::{Damping, SymmetricTop, observables};
+use crate::physics::{Damping, State, SymmetricTop, observables};
 use crate::run::Clock;
 use crate::scenario::{Edit, Scenario};
+use crate::text::number::shortest;
 
-/// Radians of rotation through which the exact motion may be integrated on the side: less than a second's work.
-pub const AFFORDABLE_RAD: f64 = 5e5;
+/// Radians of rotation through which the exact motion may be integrated on the side: less than half a second's work, and
+/// no more than an integration does in one time step.
+pub const AFFORDABLE_RAD: f64 = 2e5;
 
 /// Whether the exact motion of `scenario` can be had on the side: in closed form always, by integration for a while.
 pub fn is_affordable(scenario: &Scenario) -> bool {
     integration_rad(scenario) <= AFFORDABLE_RAD
 }
 
+/// Why the exact motion of `scenario` cannot be had on the side; `None` where it [can](is_affordable).
+pub fn objection(scenario: &Scenario) -> Option<String> {
+    (!is_affordable(scenario)).then(|| {
+        format!(
+            "its exact motion must be integrated, which would take too long for {} s",
+            shortest(Clock::end_s(scenario))
+        )
+    })
+}
+
 /// Radians of rotation through which the exact motion of `scenario` has to be integrated; 0 where it has a closed form.
 pub fn integration_rad(scenario: &Scenario) -> f64 {
+    integration_rad_per_s(scenario, &scenario.start) * Clock::end_s(scenario)
+}
+
+/// The same in a second from `state` on.
+pub fn integration_rad_per_s(scenario: &Scenario, state: &State) -> f64 {
     if has_closed_form(scenario) {
         return 0.0;
     }
     let body = &scenario.body.mechanics;
-    let spin = observables::angular_velocity(body, &scenario.start).norm();
+    let spin = observables::angular_velocity(body, state).norm();
     // A body at rest will swing and turn under its weight, at about this rate.
     let weight = scenario.motion.gravity.abs() * body.first_moment().norm();
     let swing = (weight * body.inverse_inertia().trace()).sqrt();
     // Strong friction makes the steps of the integration as short as fast turning does.
     let damping = Damping::new(body, &scenario.friction);
     let slowing = damping.map_or(0.0, |damping| damping.rate(spin));
-    (spin + swing + slowing) * Clock::end_s(scenario)
+    spin + swing + slowing
 }
 
 /// Whether there is no friction, the body is symmetric and every push, those of edits too, acts on its axle.

@@ -68,6 +68,11 @@ impl Monitor {
         self.unheld.clear();
     }
 
+    /// Whether the run is held against the exact motion.
+    pub fn has_exact(&self) -> bool {
+        self.beside.is_known()
+    }
+
     /// As [`follow`](Self::follow), without holding the step against the exact motion: for a reader of what is measured
     /// and of the extremes alone.
     #[inline]

@@ -6,7 +6,7 @@ use super::scenario::scenario_of;
 use super::values::positive;
 use super::{INTERRUPTED, one_on_stdout, print};
 use crate::analysis::compare::{ComparisonRow, Table, compare as table_of};
-use crate::analysis::cost::is_affordable;
+use crate::analysis::cost;
 use crate::export::Destination;
 use crate::export::comments::commented;
 use crate::physics::{SchemeInfo, scheme};
@@ -55,11 +55,10 @@ pub(super) struct CompareArgs {
 pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let on_stdout = one_on_stdout("compare", args.output.as_deref(), args.json);
     let scenario = scenario_of(&args.scenario, &args.length)?;
-    if !is_affordable(&scenario) {
+    if let Some(objection) = cost::objection(&scenario) {
         bail!(
-            "{}: its exact motion must be integrated, which would take too long for {} s: give a shorter --duration",
-            args.scenario.scenario,
-            shortest(duration_s(&scenario))
+            "{}: {objection}: give a shorter --duration",
+            args.scenario.scenario
         );
     }
     let schemes = schemes(args, &scenario)?;

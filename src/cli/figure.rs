@@ -6,7 +6,7 @@ use super::progress::{self, Interruption, Meter};
 use super::scenario::scenario_of;
 use super::values::positive;
 use super::{INTERRUPTED, complain, refuse, tell};
-use crate::analysis::cost::is_affordable;
+use crate::analysis::cost;
 use crate::export::Destination;
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Figure, Request, Run};
@@ -15,7 +15,6 @@ use crate::figure::{self, Format, PT_PER_MM, of_table};
 use crate::measured::{self, Measured};
 use crate::physics::scheme;
 use crate::scenario::Problems;
-use crate::text::number::shortest;
 use crate::text::printable::{Shown, printable};
 use anyhow::{Context, bail};
 use clap::Args;
@@ -202,11 +201,8 @@ fn runs(args: &FigureArgs) -> anyhow::Result<Vec<Run>> {
                 changes,
             };
             let scenario = scenario_of(&scenario, &args.length)?;
-            if args.exact && !is_affordable(&scenario) {
-                bail!(
-                    "{named}: its exact motion must be integrated, which would take too long for {} s: leave --exact out, or give a shorter --duration",
-                    shortest(crate::run::Clock::end_s(&scenario))
-                );
+            if let Some(objection) = cost::objection(&scenario).filter(|_| args.exact) {
+                bail!("{named}: {objection}: leave --exact out, or give a shorter --duration");
             }
             runs.push(Run {
                 scenario: Arc::new(scenario),

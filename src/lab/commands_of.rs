@@ -52,7 +52,7 @@ impl Lab {
                 None => one(Command::TakeAdvice),
             },
             Action::TogglePin => one(Command::Pin(!self.player.is_pinned())),
-            Action::ToggleExact => one(Command::Exact(self.player.run().overlay().is_none())),
+            Action::ToggleExact => one(Command::Exact(!self.player.run().shows_exact())),
             Action::ToggleResiduals => one(Command::Residuals(!self.view.residuals)),
             Action::ToggleHealth => one(Command::Hide(self.view.toggled(Part::Health))),
             Action::TogglePredicted => one(Command::Hide(self.view.toggled(Part::Predicted))),

@@ -4,6 +4,7 @@ use super::answer::{Answer, Done, UnderWay};
 use super::command::Place;
 use super::numbers::{self, Numbers};
 use super::player::Player;
+use crate::analysis::cost;
 use crate::observe::live::LiveRun;
 use crate::observe::pace::Speed;
 use crate::observe::playback::Halt;
@@ -140,12 +141,17 @@ impl Player {
     }
 
     pub(super) fn set_exact(&mut self, shown: bool) -> Done {
-        if shown != self.run().overlay().is_some() {
+        if shown != self.run().shows_exact() {
             self.playback.set_exact(shown);
         }
-        Done::saying(match shown {
-            true => "the exact motion of the same start is drawn in dashes; t takes it away",
-            false => "without the exact motion",
+        if !shown {
+            return Done::saying("without the exact motion");
+        }
+        Done::saying(match cost::objection(self.run().scenario()) {
+            Some(objection) => format!("{objection}: it is left out; a shorter run has it"),
+            None => {
+                "the exact motion of the same start is drawn in dashes; t takes it away".to_owned()
+            }
         })
     }
 
@@ -173,10 +179,7 @@ pub(super) fn halt_in_words(halt: Halt) -> Option<String> {
         Halt::EndOfRun => {
             Some("end of the scenario's run: space goes on, r begins again".to_owned())
         }
-        Halt::NotFinite(error) => Some(format!(
-            "the numbers are no longer finite at step {}",
-            error.step
-        )),
+        Halt::NotFinite(error) => Some(format!("{} at step {}", error.fact(), error.step)),
     }
 }
 

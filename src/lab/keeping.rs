@@ -219,7 +219,7 @@ impl Lab {
         KeptPlace {
             step: self.player.step_to_keep(),
             speed,
-            shows_exact: self.player.run().overlay().is_some(),
+            shows_exact: self.player.run().shows_exact(),
             window_s: self.view.window_s,
             detail_s: self.view.detail_s,
             focus: self.view.focus.id().to_owned(),

@@ -20,8 +20,6 @@ use std::time::Duration;
 
 /// Quantities that a recording holds beside the tilt: in the places of x, y and z.
 const IN_A_RECORDING: usize = Curve::OF_POINT.len();
-/// Steps between two looks at the clock.
-const BETWEEN_LOOKS: u64 = 32;
 
 /// Measured data, and the run's values for them so far.
 pub struct Beside {
@@ -160,7 +158,7 @@ impl Beside {
                 return;
             }
             self.record();
-            if self.simulation.step_number().is_multiple_of(BETWEEN_LOOKS) && enough() {
+            if enough() {
                 return;
             }
         }

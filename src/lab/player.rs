@@ -88,7 +88,7 @@ impl Player {
 
     /// Changes to the run of `scenario`, which was opened under another name. It is paused at step 0.
     pub(super) fn open(&mut self, scenario: Arc<Scenario>) {
-        let shows_exact = self.run().overlay().is_some();
+        let shows_exact = self.run().shows_exact();
         let exact = begins_with_exact(&scenario).unwrap_or(shows_exact);
         self.keep_pinned();
         (self.ghost, self.heading, self.replay) = (None, None, None);

@@ -10,16 +10,26 @@ use super::checkpoints::Checkpoints;
 use super::overlay::Overlay;
 use super::path::Path;
 use super::recording::{Moment, Recording};
+use crate::analysis::cost::{integration_rad_per_s, is_affordable};
 use crate::analysis::readouts::Source;
 use crate::analysis::{Health, Instruments, Monitor, Readouts, Theory};
 use crate::physics::{State, Workings};
 use crate::run::{NotFinite, Simulation};
 use crate::scenario::Scenario;
+use crate::work::restart::in_force;
 use pictures::Pictures;
 use std::sync::Arc;
 
 /// Steps between two readings of the clock for a body of one point; a body of n points takes 1/n of that.
 const STEPS_PER_LOOK: usize = 4096;
+
+/// Cost of a step besides its points, in points.
+const COST_OF_A_STEP: u64 = 60;
+/// Cost of an integration of the exact motion, in points per radian.
+const COST_OF_A_RADIAN: f64 = 1000.0;
+
+/// The greatest cost of integrations for the workings of a step: about half a second.
+const MOST_INTEGRATION: u64 = 250_000_000;
 
 /// A remaining time below this share of a time step is rounding.
 const ROUNDING: f64 = 1e-6;
@@ -30,6 +40,8 @@ pub struct LiveRun {
     monitor: Monitor,
     checkpoints: Checkpoints,
     pictures: Pictures,
+    /// Whether the exact motion is shown, where it can be had.
+    shows_exact: bool,
     overlay: Option<Overlay>,
     keeps_workings: bool,
     /// The workings that were asked for last without having been kept, and of which step they are.
@@ -71,6 +83,7 @@ impl LiveRun {
             pictures: Pictures::new(simulation.now(), reach),
             monitor,
             simulation,
+            shows_exact: false,
             overlay: None,
             keeps_workings: false,
             explained: None,
@@ -120,8 +133,8 @@ impl LiveRun {
         if step == here {
             return;
         }
-        if step < here && self.overlay.is_some() {
-            self.set_overlay(true);
+        if step < here {
+            self.set_overlay(self.shows_exact);
         }
         let latest = self.pictures.go_to(step, here);
         self.stand_before(latest, here);
@@ -186,9 +199,10 @@ impl LiveRun {
         }
         self.adopt(scenario);
         let now_s = self.now().time_s;
+        let can_be_had = is_affordable(scenario);
         match &mut self.overlay {
-            Some(overlay) if overlay.now().time_s <= now_s => overlay.go_on_in(scenario),
-            overlay => *overlay = overlay.is_some().then(|| Overlay::new(scenario)),
+            Some(overlay) if can_be_had && overlay.goes_on_at(now_s) => overlay.go_on_in(scenario),
+            _ => self.set_overlay(self.shows_exact),
         }
     }
 
@@ -239,12 +253,41 @@ impl LiveRun {
 
     /// Steps between two readings of the clock.
     fn steps_per_look(&self) -> usize {
+        if self.integration_cost() > 0 {
+            return 1;
+        }
         (STEPS_PER_LOOK / self.scenario().body.mechanics.points().len()).max(1)
     }
 
-    /// Shows the exact motion beside the run, or does not.
+    /// What a step costs, in points of a body: its points, a constant share, and the integration of the exact motion.
+    pub fn cost_of_a_step(&self) -> u64 {
+        let points = self.scenario().body.mechanics.points().len() as u64;
+        (points + COST_OF_A_STEP).saturating_add(self.integration_cost())
+    }
+
+    /// What of that goes to integrations of the exact motion: by the scheme, and beside the run.
+    pub(super) fn integration_cost(&self) -> u64 {
+        let (motion, _) = in_force(self.scenario(), self.simulation.step_number());
+        let state = self.simulation.state();
+        let is_exact = motion.scheme.order.is_none();
+        let integrations = f64::from(is_exact) + f64::from(self.monitor.has_exact());
+        if integrations == 0.0 {
+            return 0;
+        }
+        let rad = integration_rad_per_s(self.scenario(), state) * motion.time_step_s;
+        (integrations * rad * COST_OF_A_RADIAN).ceil() as u64
+    }
+
+    /// Shows the exact motion beside the run where that can be had, or does not.
     pub fn set_overlay(&mut self, shown: bool) {
-        self.overlay = shown.then(|| Overlay::new(self.simulation.scenario()));
+        let scenario = self.simulation.scenario();
+        self.overlay = (shown && is_affordable(scenario)).then(|| Overlay::new(scenario));
+        self.shows_exact = shown;
+    }
+
+    /// Whether the exact motion is shown, where it can be had.
+    pub fn shows_exact(&self) -> bool {
+        self.shows_exact
     }
 
     /// Advances the exact motion to the run's time, or until `enough` returns true.
@@ -255,22 +298,22 @@ impl LiveRun {
         }
     }
 
-    /// The exact motion, where it is shown.
+    /// The exact motion, where it is shown and can be had.
     pub fn overlay(&self) -> Option<&Overlay> {
         self.overlay.as_ref()
     }
 
     /// Where the exact motion stands, where it is shown and has come as far as the run.
     pub fn exact_now(&self) -> Option<&Moment> {
-        let overlay = self.overlay.as_ref()?;
-        (!self.overlay_is_behind()).then(|| overlay.now())
+        let now = self.overlay.as_ref()?.now();
+        (now.time_s >= self.now().time_s).then_some(now)
     }
 
     /// Whether the exact motion is shown and its time is earlier than the run's.
     pub fn overlay_is_behind(&self) -> bool {
-        self.overlay
-            .as_ref()
-            .is_some_and(|overlay| overlay.now().time_s < self.now().time_s)
+        let now_s = self.now().time_s;
+        let overlay = self.overlay.as_ref();
+        overlay.is_some_and(|overlay| overlay.is_before(now_s))
     }
 
     /// How reliable the run's numbers are at the present step.
@@ -306,7 +349,7 @@ impl LiveRun {
     }
 
     /// What the scheme computed in the step taken last; `None` at step 0. Where the workings were not kept, that step is
-    /// taken a second time, on a copy of the run that comes from the last checkpoint before it.
+    /// taken a second time, on a copy of the run that comes from the last checkpoint before it; `None` where that takes long.
     pub fn workings(&mut self) -> Option<Arc<Workings>> {
         let now = self.simulation.now();
         let before = now.number().checked_sub(1)?;
@@ -318,6 +361,10 @@ impl LiveRun {
             return Some(Arc::clone(workings));
         }
         let mut again = self.again_before(before);
+        let steps = before - again.step_number() + 1;
+        if steps.saturating_mul(self.integration_cost()) > MOST_INTEGRATION {
+            return None;
+        }
         again.step_to(before).ok()?;
         again.keep_workings(true);
         let workings = again.step().ok()?.workings()?;

@@ -6,6 +6,9 @@ use crate::run::{Sample, Simulation};
 /// The most time steps of a body of one point that are computed for an answer; a body of n points has 1/n of that.
 const MOST_STEPS: u64 = 4_000_000;
 
+/// What a point of a body costs in one of these steps, as an integration's cost is counted.
+const COST_OF_A_POINT: u64 = 30;
+
 /// Why a step cannot be looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Missing {
@@ -21,9 +24,7 @@ impl std::fmt::Display for Missing {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::NotReached => "the run has not been there",
-            Self::TooFar => {
-                "this body has so many points that its steps are only computed by going there"
-            }
+            Self::TooFar => "its steps take so long that they are only computed by going there",
             Self::NoTurn => "the tilt turns nowhere on that side",
         })
     }
@@ -87,7 +88,7 @@ impl Steps {
         let points = run.scenario().body.mechanics.points().len() as u64;
         Ok(Self {
             simulation: run.again_before(step),
-            left: MOST_STEPS / points.max(1),
+            left: MOST_STEPS / (points + run.integration_cost() / COST_OF_A_POINT),
             change: 0.0,
         })
     }

@@ -1,4 +1,4 @@
-//! The exact motion beside the run, computed up to the run's time and recorded like the run.
+//! The exact motion beside the run, computed up to the run's time and recorded like the run. It ends where it is no number.
 
 use super::path::Path;
 use super::recording::{Moment, Recording};
@@ -21,6 +21,7 @@ pub struct Overlay {
     now: Moment,
     recording: Recording,
     path: Path,
+    has_ended: bool,
 }
 
 impl Overlay {
@@ -36,6 +37,7 @@ impl Overlay {
             now,
             recording: Recording::default(),
             path: Path::new(traced.norm()),
+            has_ended: false,
         };
         overlay.record(now);
         overlay
@@ -50,7 +52,7 @@ impl Overlay {
     pub fn follow(&mut self, time_s: f64, mut enough: impl FnMut() -> bool) {
         let due = (time_s - self.now.time_s) / self.time_step_s;
         let spacing_s = self.time_step_s * (due / MOST_SAMPLES).ceil().max(1.0);
-        while self.now.time_s < time_s {
+        while self.is_before(time_s) {
             let next = self.now.time_s + spacing_s;
             // The last sample is at exactly the run's time, without the rounding of the summed spacings.
             let next = if next > time_s - 0.5 * self.time_step_s {
@@ -59,10 +61,14 @@ impl Overlay {
                 next
             };
             let state = self.truth.state_at(next);
-            self.record(Moment {
+            let moment = Moment {
                 time_s: next,
                 ..Moment::new(&state, &self.traced)
-            });
+            };
+            self.has_ended = !moment.is_finite();
+            if !self.has_ended {
+                self.record(moment);
+            }
             if enough() {
                 return;
             }
@@ -74,6 +80,16 @@ impl Overlay {
         self.path.follow(self.samples, &moment.position);
         self.samples += 1;
         self.now = moment;
+    }
+
+    /// Whether it can go on from a run that stands at `time_s` (s): it has not come further, nor ended.
+    pub fn goes_on_at(&self, time_s: f64) -> bool {
+        !self.has_ended && self.now.time_s <= time_s
+    }
+
+    /// Whether it has not come as far as `time_s` (s), and goes on.
+    pub fn is_before(&self, time_s: f64) -> bool {
+        !self.has_ended && self.now.time_s < time_s
     }
 
     /// Where the exact motion stands.

@@ -153,7 +153,7 @@ impl Stage<'_> {
 /// The commands that put back how the lab shows runs, where it is otherwise than at first.
 fn put_back(lab: &Lab) -> Vec<Command> {
     let view = lab.view();
-    let shows_exact = lab.player().run().overlay().is_some();
+    let shows_exact = lab.player().run().shows_exact();
     let all = [
         (view.filled, Command::Fill(None)),
         (view.bare, Command::Bare(false)),

@@ -373,3 +373,31 @@ fn the_exact_motion_is_marked_at_the_moment_that_is_shown() {
     }
     assert!(together > 10, "{together}");
 }
+
+#[test]
+fn an_exact_motion_that_would_take_too_long_is_left_out_and_said() {
+    let set = ["motion.time_step_s=1e6", "view.exact=true"];
+    let mut stage = Stage::open("wing-nut", &set, LARGE);
+    stage.commands("pause = true").shows("no exact motion");
+    assert!(stage.lab.player().run().overlay().is_none());
+    stage.press("tt").shows(
+        "its exact motion must be integrated, which would take too long for 4000000000 s: it is left out",
+    );
+    // It is drawn again where it can be.
+    stage.commands("set = { 'motion.time_step_s' = 0.01 }\nstep = 3");
+    stage.shows("dashed: exact motion");
+}
+
+#[test]
+fn the_exact_motion_ends_where_it_is_no_number() {
+    for set in [
+        "friction.spin_viscous_Nms=1e10",
+        "start.momentum_Js=[0,1e148,100]",
+    ] {
+        let mut stage = Stage::open("method-2", &[set, "view.exact=true"], LARGE);
+        stage.commands("step = 50");
+        stage.picture();
+        let run = stage.lab.player().run();
+        assert!(!run.overlay_is_behind(), "{set}");
+    }
+}

@@ -8,8 +8,6 @@ use std::sync::Arc;
 
 /// The greatest [cost](Playback::cost) of returning to a step within one frame; it takes about 0.2 s.
 const MOST_COST_PER_FRAME: u64 = 100_000_000;
-/// Cost of a step besides its points, in points.
-const COST_OF_A_STEP: u64 = 60;
 /// The greatest cost of steps that are taken before the next key is read, so that keys that arrive together act one by
 /// one; it takes a few milliseconds.
 const MOST_COST_PER_KEY: u64 = 1_000_000;
@@ -74,11 +72,8 @@ impl Playback {
     /// Takes `steps` time steps as fast as it can and stops. A few steps are taken before returning, many over the next
     /// frames.
     pub fn take_steps(&mut self, steps: u64) {
-        let at_once = match self.cost(steps) <= MOST_COST_PER_KEY {
-            true => steps,
-            false => 0,
-        };
-        self.take_in_parts(steps, at_once);
+        let is_short = steps == 1 || self.cost(steps) <= MOST_COST_PER_KEY;
+        self.take_in_parts(steps, if is_short { steps } else { 0 });
     }
 
     /// Plays on to `step` and stops there, after an edit or, with `is_again`, after one more nudge of the same value. As
@@ -117,9 +112,8 @@ impl Playback {
         self.hurries = self.run.destination().is_some();
     }
 
-    /// The cost of `steps`: their number times that of the body's points, and a constant share.
+    /// The cost of `steps`.
     fn cost(&self, steps: u64) -> u64 {
-        let points = self.run.scenario().body.mechanics.points().len() as u64;
-        steps.saturating_mul(points + COST_OF_A_STEP)
+        steps.saturating_mul(self.run.cost_of_a_step())
     }
 }

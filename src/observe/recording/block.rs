@@ -102,6 +102,11 @@ impl Moment {
         }
     }
 
+    /// Whether the traced point and the axle stand anywhere.
+    pub fn is_finite(&self) -> bool {
+        self.values().iter().all(|value| value.is_finite())
+    }
+
     /// What `curve` has, in its unit.
     pub fn value(&self, curve: Curve) -> f64 {
         curve.of_stored(self.values()[curve as usize])

@@ -116,6 +116,10 @@ impl StepPane<'_> {
                 "No time step has been taken yet.",
                 "Press . to take the first: it is then shown here phase by phase, each with its formula and its numbers.",
             ],
+            _ if !playback.is_busy() => [
+                "This time step would take too long to compute again.",
+                "Press . to take the next: it is then shown here phase by phase.",
+            ],
             _ => [
                 "The run goes on.",
                 "Press space to stop it: the time step taken last is then shown here phase by phase.",

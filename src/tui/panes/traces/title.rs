@@ -7,6 +7,11 @@ use crate::text::number::decimal;
 const BANDS: &str = "bands: lowest, mean (dotted) and highest of fast swings";
 /// What the title says of the exact motion, the run before and the pinned run: at length, in short and shorter.
 const EXACT: [&str; 3] = ["dashed: exact motion", "- - exact", "-- exact"];
+const NO_EXACT: [&str; 3] = [
+    "no exact motion: too long to integrate",
+    "no exact",
+    "no exact",
+];
 const OTHER: [&str; 3] = ["dotted: all of the other run", "··· other run", "··· other"];
 const PINNED: [&str; 3] = [
     "long and short: all of the pinned run",
@@ -23,8 +28,10 @@ impl Traces<'_> {
         }
         let named = self.run.scenario().file.trace.as_deref();
         let point = named.unwrap_or("axle top");
+        let has_exact = self.run.overlay().is_some();
         let beside = [
-            (self.run.overlay().is_some(), EXACT),
+            (has_exact, EXACT),
+            (self.run.shows_exact() && !has_exact, NO_EXACT),
             (self.ghost.is_some(), OTHER),
             (self.pinned.is_some(), PINNED),
         ];
@@ -38,7 +45,6 @@ impl Traces<'_> {
         let long = long.collect::<Vec<_>>().join(", ");
         let mut titles = vec![format!("{point} {long}")];
         let is_divided = self.detail.window_s < ALL * self.view.window_s;
-        let has_exact = self.run.overlay().is_some();
         if self.ghost.is_none() && self.pinned.is_none() && (is_divided || has_exact) {
             titles.insert(0, format!("{point} {long}; {BANDS}"));
         }
