@@ -116,7 +116,7 @@ impl Ticks {
                 .map(|count| step * (count as f64 / f64::from(parts)))
                 .collect(),
             power,
-            offset: is_offset.then(|| numbers.label(base, 0)),
+            offset: is_offset.then(|| numbers.offset(base, leading_power(largest))),
         }
     }
 
@@ -273,6 +273,14 @@ mod tests {
         assert_eq!(labels(&ticks), ["0", "100", "200", "300", "400"]);
         assert_eq!(ticks.power, -9);
         assert_eq!(ticks.offset.as_deref(), Some("30.0000001"));
+    }
+
+    #[test]
+    fn an_offset_of_many_digits_has_a_power_of_ten() {
+        let ticks = Ticks::linear(1e-300, 1e-300 + 1e-307, at_most(5));
+        assert_eq!(ticks.offset.as_deref(), Some("1.00·10^{−300}"));
+        let ticks = Ticks::linear(1e300, 1e300 + 1e293, at_most(5));
+        assert_eq!(ticks.offset.as_deref(), Some("1.00·10^{300}"));
     }
 
     #[test]

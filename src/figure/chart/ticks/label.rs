@@ -2,6 +2,8 @@
 
 /// The minus sign of a label.
 const MINUS: char = '\u{2212}';
+/// The longest row of zeros that an offset has.
+const MOST_ZEROS: i32 = 12;
 
 /// Ten to this power, as markup.
 pub fn power_of_ten(power: i32) -> String {
@@ -29,6 +31,14 @@ impl Numbers {
             self.decade
         );
         text.parse().unwrap_or_default()
+    }
+
+    /// The multiple in full; of the order of ten to a `power` beyond [`MOST_ZEROS`], as a multiple of that.
+    pub(super) fn offset(self, count: i64, power: i32) -> String {
+        if power.abs() <= MOST_ZEROS {
+            return self.label(count, 0);
+        }
+        format!("{}·{}", self.label(count, power), power_of_ten(power))
     }
 
     /// The multiple in units of ten to `power`, with all of its digits and no more.
