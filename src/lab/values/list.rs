@@ -1,15 +1,17 @@
 //! The list of the values that can be edited, with the selected one.
 
-use super::listed::ListedValue;
+use super::listed::{ListedValue, Match};
 
 /// The values, the selected one, and what is searched for: while there is something, only values that have it in their
-/// names are shown.
+/// names are shown: those of which a word begins with it, or where there are none, those that have it anywhere.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ValueList {
     values: Vec<ListedValue>,
     /// The number of the selected value among all, from 0.
     selected: usize,
     name: String,
+    /// How well the values that are shown answer the search.
+    shows: Option<Match>,
 }
 
 impl ValueList {
@@ -19,6 +21,7 @@ impl ValueList {
             .selected()
             .map(|value| (value.group().to_owned(), value.label().into_owned()));
         self.values = values;
+        self.search();
         let stays = was.is_some_and(|(group, label)| self.select(&group, &label));
         if !stays {
             self.selected = self.selected.min(self.values.len().saturating_sub(1));
@@ -30,6 +33,7 @@ impl ValueList {
     /// stays on its value, or moves to the first that is shown.
     pub fn filter(&mut self, name: String) {
         self.name = name;
+        self.search();
         self.keep_shown();
     }
 
@@ -58,7 +62,7 @@ impl ValueList {
     /// The selected value; `None` where no values are shown.
     pub fn selected(&self) -> Option<&ListedValue> {
         let value = self.values.get(self.selected)?;
-        value.has(&self.name).then_some(value)
+        self.is_shown(value).then_some(value)
     }
 
     /// The number of the selected value among all, from 0.
@@ -74,7 +78,18 @@ impl ValueList {
     /// The values that are shown, in order, each with its number among all.
     pub fn shown(&self) -> Vec<(usize, &ListedValue)> {
         let values = self.values.iter().enumerate();
-        values.filter(|(_, value)| value.has(&self.name)).collect()
+        values.filter(|(_, value)| self.is_shown(value)).collect()
+    }
+
+    fn is_shown(&self, value: &ListedValue) -> bool {
+        let answer = value.answers(&self.name);
+        answer.is_some() && answer == self.shows
+    }
+
+    /// Finds out how well the best of the values answer what is searched for.
+    fn search(&mut self) {
+        let answers = self.values.iter().map(|value| value.answers(&self.name));
+        self.shows = answers.flatten().min();
     }
 
     fn indices(&self) -> Vec<usize> {

@@ -79,11 +79,36 @@ impl ListedValue {
         }
     }
 
-    /// Whether each word of `name` is a part of its group, label or key. Capitals do not matter.
-    pub(super) fn has(&self, name: &str) -> bool {
+    /// How its group, label and key answer the search for `name`.
+    pub(super) fn answers(&self, name: &str) -> Option<Match> {
         let key = self.key().unwrap_or_default();
-        let names = format!("{} {} {key}", self.group(), self.label()).to_lowercase();
-        let name = name.to_lowercase();
-        name.split_whitespace().all(|word| names.contains(word))
+        Match::of(&format!("{} {} {key}", self.group(), self.label()), name)
+    }
+}
+
+/// How names answer a search; capitals do not matter. The best comes first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Match {
+    /// With each word that is searched for one of their words begins.
+    Word,
+    /// Each word that is searched for is a part of them.
+    Part,
+}
+
+impl Match {
+    /// How `names` answer the search for `name`; `None` where they do not.
+    pub fn of(names: &str, name: &str) -> Option<Self> {
+        let (names, name) = (names.to_lowercase(), name.to_lowercase());
+        let begins = |wanted: &str| {
+            let mut words = names.split(|c: char| !c.is_alphanumeric());
+            names.starts_with(wanted) || words.any(|word| word.starts_with(wanted))
+        };
+        let mut wanted = name.split_whitespace();
+        if wanted.clone().all(begins) {
+            return Some(Self::Word);
+        }
+        wanted
+            .all(|word| names.contains(word))
+            .then_some(Self::Part)
     }
 }

@@ -11,6 +11,7 @@ mod lines;
 use super::{PaneRow, Width, frame, shortened, write};
 use crate::lab::action::Action;
 use crate::lab::values::list::ValueList;
+use crate::lab::values::listed::Match;
 use crate::lab::view::{Pane, View};
 use crate::observe::reading::Reading;
 use crate::scenario::{Motion, Scenario};
@@ -135,7 +136,7 @@ impl Parameters<'_> {
         let (place, note) = above_last(area);
         let lines = fitting(lines, place.height as usize);
         self.draw(&lines, place, buf);
-        self.note("e, then f: all of them", note, buf);
+        self.note("all values: e, then f", note, buf);
     }
 
     /// The values to edit above, the key of the selected one, and the readouts to watch below.
@@ -203,17 +204,16 @@ impl Parameters<'_> {
         let mut lines = derived_lines(self.scenario);
         lines.extend(shown(self.view, now_lines(self.reading)));
         lines.extend(shown(self.view, further_lines(self.reading)));
-        let name = name.to_lowercase();
+        let answer = |line: &Line| Match::of(&line.label, name).filter(|_| !line.is_heading());
+        let best = lines.iter().filter_map(answer).min();
         let mut is_found = false;
         lines.retain(|line| {
-            let label = line.label.to_lowercase();
             let is_of_line_above = is_found && line.label == PREDICTED;
-            is_found = !line.is_heading()
-                && (is_of_line_above || name.split_whitespace().all(|word| label.contains(word)));
+            is_found = is_of_line_above || (best.is_some() && answer(line) == best);
             is_found
         });
         if !lines.is_empty() {
-            lines.insert(0, heading("not to be set"));
+            lines.insert(0, heading("read only:"));
         }
         lines.truncate(room);
         lines

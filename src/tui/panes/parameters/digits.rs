@@ -1,6 +1,18 @@
 //! A number in the room that there is for it.
 
+use crate::text::number::{shortest, significant};
 use std::borrow::Cow;
+
+/// Digits of a number in a pane. The key line below the values, the dialog and files have all of them.
+const DIGITS: usize = 7;
+
+/// `number` as a pane shows it.
+pub(super) fn in_pane(number: f64) -> String {
+    if number.fract() == 0.0 {
+        return shortest(number);
+    }
+    significant(number, DIGITS)
+}
 
 /// `text`, or with fewer decimals where it is a number that is wider than `room`.
 pub(super) fn fewer_digits(text: &str, room: usize) -> Cow<'_, str> {

@@ -2,6 +2,7 @@
 //! one.
 
 use super::ROW;
+use super::digits::in_pane;
 use super::lines::{COLUMN, Line, VALUE_END, heading};
 use crate::lab::values::list::ValueList;
 use crate::lab::values::listed::ListedValue;
@@ -50,11 +51,14 @@ fn edited_line(value: &ListedValue, is_selected: bool) -> Line {
     } else {
         Role::Text
     };
+    let text = on_one_line(&value.text());
+    let number = text.parse().ok().filter(|_| text.contains(['.', 'e']));
+    let text = number.map_or(text, in_pane);
     Line {
         rank: 0,
         label: on_one_line(&value.label()).into(),
         label_role: Role::Quiet,
-        value: on_one_line(&value.text()),
+        value: text,
         value_role,
         unit: value.unit().into(),
         is_selected,

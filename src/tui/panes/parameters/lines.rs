@@ -1,12 +1,12 @@
 //! The lines of the pane. Each number has as many decimals as there is room for.
 
-use super::digits::fewer_digits;
+use super::digits::{fewer_digits, in_pane};
 use crate::analysis::remarks::{short_no_drift, short_unit};
 use crate::analysis::theory::{Axis, Path};
 use crate::observe::reading::Reading;
 use crate::physics::{Body, Friction};
 use crate::scenario::{Motion, Scenario, Window};
-use crate::text::number::{NONE, exponent, fixed as decimals_of, shortest, without_minus_zero};
+use crate::text::number::{NONE, exponent, fixed as decimals_of, without_minus_zero};
 use crate::tui::theme::Role;
 use std::borrow::Cow;
 
@@ -89,7 +89,7 @@ fn given(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'stat
     let room = (VALUE_END as usize).saturating_sub(label.len() + 2);
     let text = match is_whole {
         true => usual,
-        false => fewer_digits(&shortest(number), room).into_owned(),
+        false => fewer_digits(&in_pane(number), room).into_owned(),
     };
     value(rank, label, text, unit)
 }
@@ -150,7 +150,7 @@ fn friction_line(friction: &Friction) -> Option<Line> {
         .collect();
     match acting[..] {
         [] => None,
-        [(size, unit)] => Some(value(2, "friction", shortest(size), unit)),
+        [(size, unit)] => Some(value(2, "friction", in_pane(size), unit)),
         ref all => Some(value(2, "friction", all.len().to_string(), "kinds")),
     }
 }
@@ -163,7 +163,7 @@ pub(super) fn motion_lines(scenario: &Scenario, motion: &Motion) -> Vec<Line> {
     };
     let mut lines = vec![
         heading("motion"),
-        value(0, "dt", shortest(motion.time_step_s), "s"),
+        value(0, "dt", in_pane(motion.time_step_s), "s"),
         value(3, "scheme", motion.scheme.name.to_owned(), ""),
         given(4, "gravity", motion.gravity, 3, "m/s2"),
         value(6, "steps", scenario.steps.to_string(), ""),
@@ -182,7 +182,7 @@ pub(super) fn motion_lines(scenario: &Scenario, motion: &Motion) -> Vec<Line> {
                 "step",
             ),
             Window::Time { from_s, for_s } => {
-                let (from, to) = (shortest(from_s), shortest(from_s + for_s));
+                let (from, to) = (in_pane(from_s), in_pane(from_s + for_s));
                 (format!("{from} to {to}"), "s")
             }
         };
