@@ -50,29 +50,29 @@ impl Chosen {
     /// when the lab is left.
     pub(super) fn tell(&self, lab: &mut Lab) {
         if let Some(problems) = &self.remembered.problems {
-            let first = first_line(problems);
-            lab.tell_first(&format!("{first}: not used; a choice mends it; "));
+            let all = in_one_line(problems);
+            lab.tell_first(&format!("{all}: not used; a choice mends it; "));
         }
         if let Some(problems) = &self.config.problems {
             tell(format_args!(
                 "gyrolab: {}\ngyrolab: what is wrong there is not used; gyrolab man lists the settings",
                 printable_lines(&problems.to_string())
             ));
-            let first = first_line(problems);
-            lab.tell_first(&format!("{first}: not used; mend it; "));
+            let all = in_one_line(problems);
+            lab.tell_first(&format!("{all}: not used; mend it; "));
         }
     }
 }
 
-/// The first of `problems` in one line, with the file's name and no folder.
-fn first_line(problems: &Problems) -> String {
+/// All `problems` in one line, each with the file's name and no folder.
+fn in_one_line(problems: &Problems) -> String {
     let name = Path::new(&problems.origin).file_name().unwrap_or_default();
     let named = Problems {
         origin: name.to_string_lossy().into_owned(),
         ..problems.clone()
     };
     let text = named.to_string();
-    text.lines().next().unwrap_or_default().to_owned()
+    text.lines().collect::<Vec<_>>().join("; ")
 }
 
 /// The remembered `settings` that this terminal can show: dots that were chosen on another terminal may need more, and

@@ -122,13 +122,17 @@ fn sifted(table: &Table) -> (Table, Vec<Problem>) {
     let mut good = Table::new();
     let mut problems = Vec::new();
     for (key, value) in table {
-        let Some((_, kind, _)) = KEYS.iter().find(|(known, ..)| known == key) else {
+        let name = match key.as_str() {
+            "color" if !table.contains_key("colour") => "colour",
+            other => other,
+        };
+        let Some((_, kind, _)) = KEYS.iter().find(|(known, ..)| *known == name) else {
             let near = nearest(key, KEYS.iter().map(|(known, ..)| *known));
             problems.push(Problem::at(key.clone(), format!("unknown key: {near}")));
             continue;
         };
         match kind.check(value) {
-            Ok(()) => drop(good.insert(key.clone(), value.clone())),
+            Ok(()) => drop(good.insert(name.to_owned(), value.clone())),
             Err(rule) => problems.push(Problem::with_value(key.clone(), value, rule)),
         }
     }
