@@ -20,7 +20,7 @@ pub(super) struct ScenarioArgs {
 /// What is changed in a scenario before it is run.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct Changes {
-    /// Change a value first, such as motion.time_step_s=0.05 or push.0.force_N=[0,0,-50]; may be repeated
+    /// Change a value first, such as start.tilt_deg=30 or push.0.force_N=[0,0,-50]; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pub(super) set: Vec<String>,
 

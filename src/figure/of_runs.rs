@@ -261,18 +261,22 @@ fn title(runs: &[Run]) -> String {
     titles.join("; ")
 }
 
+/// What draws the exact motion beside the runs, on the command line.
+pub const EXACT_BESIDE: &str = "--exact draws that beside it";
+
 /// What is said of `run` where its traced point was too far off the exact motion to be believed.
 fn not_believed(run: &Run, course: &Course, exact: bool) -> Option<String> {
     let (most_m, arm_m) = (course.most_off_m?, run.scenario.arm_m());
     (most_m > BELIEVED_WITHIN * arm_m).then(|| {
         format!(
-            "do not believe {} with the scheme {} at {} s: its traced point is up to {} m ({} % of its arm) off the exact motion{}",
+            "do not believe {} with the scheme {} at {} s: its traced point is up to {} m ({} % of its arm) off the exact motion{}{}",
             run.named,
             run.scenario.motion.scheme.name,
             shortest(run.scenario.motion.time_step_s),
             short(most_m),
             short(100.0 * most_m / arm_m),
-            if exact { "" } else { "; --exact draws that beside it" }
+            if exact { "" } else { "; " },
+            if exact { "" } else { EXACT_BESIDE },
         )
     })
 }

@@ -46,9 +46,13 @@ impl Player {
         };
         let end_s = self.playback.end_s();
         let scenario = mended(self.run().scenario(), time_step_s, scheme, end_s).ok()?;
+        let motion = self.motion();
+        let is_in_force = motion.time_step_s == time_step_s
+            && scheme.is_none_or(|name| motion.scheme.name == name);
         let scheme = scheme.map_or(String::new(), |scheme| format!("{scheme}, "));
+        let since = if is_in_force { " from the start" } else { "" };
         Some(Offer {
-            what: format!("{scheme}dt {} s", shortest(time_step_s)),
+            what: format!("{scheme}dt {} s{since}", shortest(time_step_s)),
             scenario: Arc::new(scenario),
         })
     }

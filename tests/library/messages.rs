@@ -165,6 +165,32 @@ fn advice_is_looked_for_where_the_lab_opens_paused() {
 }
 
 #[test]
+fn a_time_step_that_is_in_force_mends_from_the_start() {
+    let mut stage = Stage::open("wobble-push", &[], LARGE);
+    stage.commands("pause = true\ngo_to = 300\nset = { 'motion.time_step_s' = 0.01 }");
+    stage.lab.take_advice();
+    while stage.lab.player().is_seeking_advice() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    stage.wait(0.1).shows("dt 0.01 s from the start mends it");
+}
+
+#[test]
+fn a_figure_of_the_lab_speaks_of_its_keys() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut stage = Stage::open("wobble-push", &[], LARGE);
+    stage.lab.files_mut().work_in(folder.path());
+    stage.commands("pause = true\ngo_to = 900\nfigure = 'run.svg'");
+    while stage.lab.files().is_exporting() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        stage.wait(0.1);
+    }
+    stage
+        .shows("off the exact motion; t, then X draws")
+        .shows_no("--exact");
+}
+
+#[test]
 fn what_a_broken_scheme_leaves_is_not_shown_as_a_place() {
     let mut stage = Stage::open("wobble-push", &["motion.scheme=rk4"], LARGE);
     stage.commands("go_to = 20").wait(1.0);

@@ -3,7 +3,7 @@
 use super::{Exporting, Shared, Written, refused};
 use crate::export::destination::{Destination, DestinationError};
 use crate::figure::kind::Kind;
-use crate::figure::of_runs::{self, Request, Run};
+use crate::figure::of_runs::{self, EXACT_BESIDE, Request, Run};
 use crate::figure::{self, Format};
 use crate::measured::Measured;
 use crate::scenario::Scenario;
@@ -88,11 +88,14 @@ impl Drawing {
         let written = self.output.write_all(&bytes);
         written.map_err(|error| refused(&self.path, error).fact())?;
         self.output.keep().map_err(|error| error.fact())?;
+        let told = figure.broke.iter().cloned().chain(figure.told());
+        let in_the_lab =
+            |text: String| text.replace(EXACT_BESIDE, "t, then X draws that beside it");
         Ok(Written {
             path: self.path,
             rows: None,
             bytes: bytes.len() as u64,
-            warnings: figure.broke.iter().cloned().chain(figure.told()).collect(),
+            warnings: told.map(in_the_lab).collect(),
             not_finite: None,
         })
     }
