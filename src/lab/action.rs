@@ -89,22 +89,8 @@ pub enum Action {
     ZoomOut,
     /// Shows the whole of the round picture in focus.
     ZoomToWhole,
-    /// Changes to the next kind of dots.
-    NextMarker,
-    /// Turns the colours on or off.
-    ToggleColour,
-    /// Chooses the colours for a dark screen or those for a light one.
-    ToggleBackground,
-    /// Changes to the next number of frames a second.
-    NextFrameRate,
-    /// Hides the line about the numbers' health, or shows it.
-    ToggleHealth,
-    /// Hides the numbers that theory predicts, or shows them.
-    TogglePredicted,
-    /// Shows two panes and nothing else, or everything again.
-    ToggleBare,
-    /// Listens to the mouse, or leaves it to the terminal.
-    ToggleMouse,
+    /// Opens the dialog of the settings.
+    Settings,
     /// Opens the browser of presets and files.
     Browse,
     /// Turns to the values and begins to type a part of a name: only values with it in their names are listed.

@@ -105,7 +105,7 @@ impl Lab {
                 to_step: Some(*to_step),
                 force,
             }),
-            Question::Number => None, // the room above takes it
+            Question::Number | Question::Settings => None, // taken before
             Question::SavePresent(content) => {
                 return self.files.save("the scenario", content, &path, force);
             }

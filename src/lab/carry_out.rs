@@ -110,7 +110,7 @@ impl Lab {
             Command::Bare(bare) => {
                 self.view.bare = *bare;
                 Ok(match bare {
-                    true => Done::saying("a bare screen: B brings the rest back"),
+                    true => Done::saying("a bare screen: c brings the rest back"),
                     false => Done::SILENT,
                 })
             }

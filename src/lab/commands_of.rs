@@ -5,7 +5,7 @@ use super::action::{Action, Direction};
 use super::command::{Command, CursorTo, Place, PushChoice};
 use super::on_top::Mode;
 use super::values::listed::ListedValue;
-use super::view::{Pane, Part};
+use super::view::Pane;
 use crate::observe::camera::Zoom;
 
 /// The factor of the arrows with Shift.
@@ -54,9 +54,6 @@ impl Lab {
             Action::TogglePin => one(Command::Pin(!self.player.is_pinned())),
             Action::ToggleExact => one(Command::Exact(!self.player.run().shows_exact())),
             Action::ToggleResiduals => one(Command::Residuals(!self.view.residuals)),
-            Action::ToggleHealth => one(Command::Hide(self.view.toggled(Part::Health))),
-            Action::TogglePredicted => one(Command::Hide(self.view.toggled(Part::Predicted))),
-            Action::ToggleBare => one(Command::Bare(!self.view.bare)),
             Action::FillScreen => one(Command::Fill(
                 (!self.view.filled).then_some(self.view.focus),
             )),

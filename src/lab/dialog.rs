@@ -3,9 +3,11 @@
 use super::action::FieldEdit;
 use super::answer::Refusal;
 use super::form::{Field, Form};
+use super::settings::SETTINGS;
 use super::travel::WHERE;
 use super::values::Values;
 use super::values::listed::ListedValue;
+use super::view::View;
 use crate::scenario::Scenario;
 use crate::scenario::keys::Effect;
 use crate::storage::exporting::{self, Estimate};
@@ -20,6 +22,9 @@ use std::sync::Arc;
 const KEYS: &str = "Enter takes it, typing replaces it, Esc leaves it";
 /// The same in a dialog with several fields.
 const KEYS_OF_TWO: &str = "Enter writes it, Up and Down the other line, Esc leaves it";
+
+/// The same in the dialog of the settings.
+const KEYS_OF_SETTINGS: &str = "Up and Down choose, Left and Right or Enter change it, Esc closes";
 
 /// A form on top of the panes, and the question that it asks.
 #[derive(Clone, Debug)]
@@ -48,6 +53,8 @@ pub(super) enum Question {
     SavePresent(String),
     /// A number that a room above the lab asks for.
     Number,
+    /// Other values of the settings. Nothing is typed here.
+    Settings,
 }
 
 impl Dialog {
@@ -127,6 +134,19 @@ impl Dialog {
         Self::new(Question::Number, title, &fields, &[about])
     }
 
+    /// Lists the settings with the values that they have in `view`; the one of this number is selected.
+    pub(super) fn settings(view: &View, selected: usize) -> Self {
+        let info = "dots, colours, frames and mouse are remembered for the next time";
+        let mut dialog = Self::new(Question::Settings, "settings", &[], &[info]);
+        let fields = SETTINGS.iter();
+        dialog.form.fields = fields
+            .map(|setting| Field::choice(setting.label, &(setting.value)(view)))
+            .collect();
+        dialog.form.keys = KEYS_OF_SETTINGS;
+        dialog.form.selected = selected;
+        dialog
+    }
+
     /// A dialog with `fields`, each with its label and the text that it offers, and the lines `info` below them.
     fn new(question: Question, title: &str, fields: &[(&str, String)], info: &[&str]) -> Self {
         let keys = if fields.len() > 1 { KEYS_OF_TWO } else { KEYS };
@@ -141,6 +161,11 @@ impl Dialog {
             form,
             asked_to_replace: None,
         }
+    }
+
+    /// Whether it lists the settings.
+    pub fn is_of_settings(&self) -> bool {
+        matches!(self.question, Question::Settings)
     }
 
     /// The form to draw.
@@ -168,32 +193,36 @@ impl Dialog {
     }
 
     pub(super) fn type_char(&mut self, typed: char) {
-        self.form.type_char(typed);
-        self.show_estimate();
+        self.edit(|form| form.type_char(typed));
     }
 
     pub(super) fn paste(&mut self, text: &str) {
-        self.form.paste(text);
-        self.show_estimate();
+        self.edit(|form| form.paste(text));
     }
 
     pub(super) fn erase(&mut self) {
-        self.form.erase();
-        self.show_estimate();
+        self.edit(Form::erase);
+    }
+
+    /// Changes what is typed, where anything is.
+    fn edit(&mut self, change: impl FnOnce(&mut Form)) {
+        if !self.is_of_settings() {
+            change(&mut self.form);
+            self.show_estimate();
+        }
     }
 
     pub(super) fn edit_field(&mut self, edit: FieldEdit) {
         match edit {
-            FieldEdit::Delete => self.form.delete(),
-            FieldEdit::Clear => self.form.clear(),
-            FieldEdit::Left => self.form.left(),
-            FieldEdit::Right => self.form.right(),
-            FieldEdit::Home => self.form.home(),
-            FieldEdit::End => self.form.end(),
+            FieldEdit::Delete => self.edit(Form::delete),
+            FieldEdit::Clear => self.edit(Form::clear),
+            FieldEdit::Left => self.edit(Form::left),
+            FieldEdit::Right => self.edit(Form::right),
+            FieldEdit::Home => self.edit(Form::home),
+            FieldEdit::End => self.edit(Form::end),
             FieldEdit::Next => self.form.next_field(),
             FieldEdit::Previous => self.form.previous_field(),
         }
-        self.show_estimate();
     }
 
     /// Shows how many rows and bytes an export would write. Other dialogs stay as they are.

@@ -44,6 +44,15 @@ impl Field {
         }
     }
 
+    /// The field of `label` with a choice that is not typed: `text` is marked, and no cursor stands behind it.
+    pub fn choice(label: &str, text: &str) -> Self {
+        let field = Self::new(label, text);
+        Self {
+            input: field.input.with_cursor(0),
+            ..field
+        }
+    }
+
     /// Its text.
     pub fn text(&self) -> &str {
         self.input.value()

@@ -40,6 +40,7 @@ mod player;
 pub mod preview;
 mod rerun;
 mod script;
+mod settings;
 pub mod sheet;
 mod show_sheet;
 mod sorting;

@@ -8,7 +8,7 @@ use super::commands_of::{FAR, repeated};
 use super::dialog::Dialog;
 use super::on_top::{Cleared, Mode};
 use super::script::{GO_ON_WITH_IT, GO_ON_WITH_THEM};
-use super::view::{Pane, Part};
+use super::view::Pane;
 use super::{Lab, Request};
 
 /// Rows of a page in lists.
@@ -25,10 +25,7 @@ impl Lab {
             self.values.forget_nudge();
         }
         match self.commands_of(action, cleared.count) {
-            Ok(Some(commands)) => {
-                self.carry_out_all(&commands);
-                self.say_what_is_hidden(action);
-            }
+            Ok(Some(commands)) => self.carry_out_all(&commands),
             Ok(None) => {
                 let request = self.change_interface(action, cleared);
                 if request.is_some() {
@@ -42,24 +39,6 @@ impl Lab {
         None
     }
 
-    /// Says which part of the screen `action` has hidden, and the key that shows it again.
-    fn say_what_is_hidden(&mut self, action: Action) {
-        let (part, hidden, shown) = match action {
-            Action::ToggleHealth => (
-                Part::Health,
-                "the line about the numbers is hidden: H shows it again",
-                "the line about the numbers is shown",
-            ),
-            Action::TogglePredicted => (
-                Part::Predicted,
-                "what theory predicts is hidden: T shows it again",
-                "what theory predicts is shown",
-            ),
-            _ => return,
-        };
-        self.say(if self.view.hides(part) { hidden } else { shown });
-    }
-
     /// Carries out `command` as a key does: it removes the present message and shows that of the command.
     pub fn carry_out_now(&mut self, command: &Command) {
         self.on_top.clear();
@@ -71,6 +50,11 @@ impl Lab {
         self.on_top.clear();
         self.view.turn_to(pane);
         self.read_now();
+    }
+
+    /// Takes note that a key of the pane in focus was pressed: the footer names its keys from then on.
+    pub fn touch_pane(&mut self) {
+        self.view.is_touched = true;
     }
 
     /// Selects the entry of this number in the browser.
@@ -143,31 +127,7 @@ impl Lab {
             }
             Action::Move(direction) => self.shift(direction, times),
             Action::MoveFar(direction) => self.shift(direction, times.saturating_mul(FAR)),
-            Action::NextMarker => {
-                let text = self.view.next_marker();
-                self.say(text);
-                self.remember("marker", self.view.marker.name());
-            }
-            Action::ToggleColour => {
-                let text = self.view.toggle_colour();
-                self.say(text);
-                self.remember("colour", self.colour_choice());
-            }
-            Action::ToggleBackground => {
-                let text = self.view.toggle_background();
-                self.say(text);
-                self.remember("background", self.view.theme.background.name());
-            }
-            Action::NextFrameRate => {
-                let text = self.view.next_frame_rate();
-                self.say(text);
-                self.remember("fps", i64::from(self.view.fps));
-            }
-            Action::ToggleMouse => {
-                let text = self.view.toggle_mouse();
-                self.say(text);
-                self.remember("mouse", self.view.mouse);
-            }
+            Action::Settings => self.on_top.open_dialog(Dialog::settings(&self.view, 0)),
             Action::Browse => {
                 let files = &self.files;
                 let may_be_read = |path: &std::path::Path| files.admit(path).is_ok();
@@ -187,6 +147,12 @@ impl Lab {
             Action::InField(FieldEdit::Clear) if self.on_top.mode() == Mode::Find => {
                 self.values.forget_name();
             }
+            Action::InField(edit @ (FieldEdit::Left | FieldEdit::Right))
+                if self.shows_settings() =>
+            {
+                self.change_setting(edit == FieldEdit::Right);
+            }
+            Action::Accept if self.shows_settings() => self.change_setting(true),
             Action::InField(edit) => self.on_top.edit_field(edit),
             Action::Accept => return self.accept(),
             Action::Help => self.on_top.toggle_help(),
@@ -217,9 +183,6 @@ impl Lab {
             | Action::TogglePin
             | Action::TakeAdvice
             | Action::FillScreen
-            | Action::ToggleHealth
-            | Action::TogglePredicted
-            | Action::ToggleBare
             | Action::StepCursor(_)
             | Action::ToTurn(_)
             | Action::Pan(_)

@@ -208,10 +208,10 @@ impl Writer<'_> {
         let text = match (self.taken.is_under_way(), has_task, is_last) {
             (true, ..) => "The run is on its way; space pauses it.",
             (false, true, _) if !self.taken.shows_hints() => {
-                "D: a hint; R: the page again; n: next page."
+                "h: a hint; b: the page again; n: next page."
             }
-            (false, true, false) => "D shows how it is done; R: the page again; n: next page.",
-            (false, true, true) => "D shows how it is done; R: the page again; L: other lessons.",
+            (false, true, false) => "h shows how it is done; b: the page again; n: next page.",
+            (false, true, true) => "h shows how it is done; b: the page again; L: other lessons.",
             (false, false, false) => "n: next page.",
             (false, false, true) => "This is the end of the lesson. L: other lessons.",
         };

@@ -283,7 +283,7 @@ impl Taken {
         self.lesson = Arc::new(Lesson { name, ..lesson });
         self.reached.clear();
         self.stated = None;
-        lab.tell("the lesson was read again: R begins the page again");
+        lab.tell("the lesson was read again: b begins the page again");
     }
 
     /// Takes note of the checks of the page that hold now; returns whether one is new.

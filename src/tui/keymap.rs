@@ -47,6 +47,8 @@ pub struct Binding {
     pub footer: &'static str,
     /// What the help says.
     pub help: &'static str,
+    /// Further words by which the help finds it.
+    pub search: &'static str,
 }
 
 /// The keys that zoom a round picture while it has the focus.
@@ -71,6 +73,17 @@ pub const fn row(
         action,
         footer,
         help,
+        search: "",
+    }
+}
+
+impl Binding {
+    /// The row with further `words` by which the help finds it.
+    const fn found_by(self, words: &'static str) -> Self {
+        Self {
+            search: words,
+            ..self
+        }
     }
 }
 
@@ -79,60 +92,46 @@ pub const fn row(
 pub static BINDINGS: &[Binding] = &[
     row(&[Lab], &[Char(' ')], Action::TogglePause, "pause", "stop the run, or let it go on"),
     row(&[Lab], &[Char('.')], Action::Step, "step", "one time step on; 10. takes ten"),
+    row(&[Lab], &[Char('p')], Action::Push, "push", "give the push that is chosen, now").found_by("kick force hit"),
+    row(&[Lab], &[Char('t')], Action::ToggleExact, "exact", "the exact motion beside the run, and how far apart they are").found_by("compare truth true overlay"),
+    row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge").found_by("parameters dt time step scheme mass gravity friction change"),
+    row(&[Lab], &[Enter], Action::Edit, "", "type the value that is selected"),
+    row(&[Lab], &[Char('x')], Action::Export, "export", "write the run up to here as CSV"),
+    row(&[Lab], &[Char('f')], Action::FillScreen, "fill", "fill the screen with the pane, or show all panes again"),
+    row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file"),
     row(&[Lab], &[Char(',')], Action::StepBack, "back", "one time step back; 10, goes ten"),
-    row(&[Lab], &[Char('+'), Char('='), PageUp], Action::Faster, "faster", "play faster"),
-    row(&[Lab], &[Char('-'), PageDown], Action::Slower, "slower", "play slower; the time step stays as it is"),
+    row(&[Lab], &[Char('+'), Char('='), PageUp], Action::Faster, "faster", "play faster").found_by("speed"),
+    row(&[Lab], &[Char('-'), PageDown], Action::Slower, "slower", "play slower; the time step stays as it is").found_by("speed"),
     row(&[Lab], &[Char('g')], Action::GoTo, "go to", "go to a step or a time; 400g goes to step 400"),
     row(&[Lab], &[Char('r')], Action::Restart, "restart", "back to step 0; what was done stays"),
-    row(&[Lab], &[Char('e')], Action::Parameters, "edit", "to the values of the scenario: Up, Down choose, Left, Right nudge"),
-    row(&[Lab], &[Enter], Action::Edit, "", "type the value that is selected"),
-    row(&[Lab], &[Char('p')], Action::Push, "push", "give the push that is chosen, now"),
     row(&[Lab], &[Char('P')], Action::ChoosePush, "", "choose the push: point, force, direction, length"),
     row(&[Lab], &[Char('u')], Action::Undo, "undo", "take back what was done last"),
     row(&[Lab], &[Char('U'), Ctrl('r')], Action::Redo, "", "do it again"),
-    row(&[Lab], &[Char('t')], Action::ToggleExact, "exact", "the exact motion beside the run, and how far apart they are"),
-    row(&[Lab], &[Char('E')], Action::ToggleResiduals, "residuals", "residuals: measured data less the run, or both again; --measured FILE puts data beside a run"),
-    row(&[Lab], &[Char('i')], Action::TogglePin, "", "pin this run as the reference beside every other, or take it away"),
+    row(&[Lab], &[Char('m')], Action::ToggleResiduals, "residuals", "residuals: measured data less the run, or both again; --measured FILE puts data beside a run"),
+    row(&[Lab], &[Char('i')], Action::TogglePin, "", "pin this run as the reference beside every other, or take it away").found_by("compare keep"),
     row(&[Lab], &[Char('a')], Action::TakeAdvice, "", "take the advice about the numbers: the run from the start with what mends them"),
-    row(&[Lab], &[Char('x')], Action::Export, "export", "write the run up to here as CSV"),
-    row(&[Lab], &[Char('X')], Action::Figure, "", "figure of the run up to here (a plot, a graph): SVG, PDF or PNG"),
+    row(&[Lab], &[Char('X')], Action::Figure, "", "figure of the run up to here (a plot, a graph): SVG, PDF or PNG").found_by("screenshot picture image"),
     row(&[Lab], &[Char('s')], Action::SaveRun, "", "save the run file: scenario and all that was done"),
     row(&[Lab], &[Char('S')], Action::SavePresent, "", "save the present state as a scenario"),
-    row(&[Lab], &[Char('o')], Action::Browse, "open", "open a preset or a file"),
     row(&[Lab], &[Char('L')], Action::Lesson(LessonKey::List), "lessons", "the list of lessons; again: back to where one was"),
-    row(&[Lab], &[Char('n')], Action::Lesson(LessonKey::Next), "", "the next page of the lesson"),
-    row(&[Lab], &[Char('N')], Action::Lesson(LessonKey::Before), "", "the page before"),
-    row(&[Lab], &[Char('R')], Action::Lesson(LessonKey::Again), "", "back to where the lesson stands: the page's run from its beginning"),
-    row(&[Lab], &[Char('D')], Action::Lesson(LessonKey::ShowTask), "", "show how the task of the page is done"),
-    row(&[Lab], &[Char('C')], Action::Lesson(LessonKey::Notes), "", "for a class: notes, the next page and a clock that counts up, down, or shows the time"),
     row(&[Lab], &[Tab], Action::NextPane, "pane", "the next pane"),
     row(&[Lab], &[BackTab], Action::PreviousPane, "", "the pane before"),
-    row(&[Lab], &[Char('f')], Action::FillScreen, "fill", "fill the screen with the pane, or show all panes again"),
     row(&[Lab], &[Char('d')], Action::ThreeD, "3-D", "fill the screen with the 3-D view, or show all panes again"),
     row(&[Lab], &[Char('v')], Action::ToggleStep, "", "one time step, phase by phase, with its numbers; v takes it away again"),
+    row(&[Lab], &[Char('c')], Action::Settings, "settings", "settings: colours, dots, frames a second, the mouse, a bare screen, what is hidden").found_by("colors theme background markers braille ascii fps health"),
     row(&[Lab], &[Char('/')], Action::FindValue, "", "find a value of the scenario by a part of its name"),
-    row(&[Lab, Browser], &[Up, Char('k')], Action::Move(Direction::Up), "", "up: in lists and values; in 3-D the camera"),
-    row(&[Lab, Browser], &[Down, Char('j')], Action::Move(Direction::Down), "", "down"),
-    row(&[Lab], &[Left, Char('h')], Action::Move(Direction::Left), "", "values: nudge down; 3-D: turn the camera left"),
-    row(&[Lab], &[Right, Char('l')], Action::Move(Direction::Right), "", "values: nudge up; 3-D: turn the camera right"),
+    row(&[Lab, Browser, Filter, Find, Help], &[Up], Action::Move(Direction::Up), "", "up: in lists and values; in 3-D the camera"),
+    row(&[Lab, Browser, Filter, Find, Help], &[Down], Action::Move(Direction::Down), "", "down"),
+    row(&[Lab], &[Left], Action::Move(Direction::Left), "", "values: nudge down; 3-D: turn the camera left"),
+    row(&[Lab], &[Right], Action::Move(Direction::Right), "", "values: nudge up; 3-D: turn the camera right"),
     row(&[Lab], &[ShiftLeft], Action::MoveFar(Direction::Left), "", "the same ten times; a count does it too: 10 Left"),
     row(&[Lab], &[ShiftRight], Action::MoveFar(Direction::Right), "", "the same ten times"),
     row(&[Lab, Browser, Find, Help], &[ShiftUp], Action::MoveFar(Direction::Up), "", "ten lines up"),
     row(&[Lab, Browser, Find, Help], &[ShiftDown], Action::MoveFar(Direction::Down), "", "ten lines down"),
-    row(&[Filter, Find, Help], &[Up], Action::Move(Direction::Up), "", "up"),
-    row(&[Filter, Find, Help], &[Down], Action::Move(Direction::Down), "", "down"),
     row(&[Browser, Filter, Help], &[PageUp], Action::Move(Direction::PageUp), "", "a page up"),
     row(&[Browser, Filter, Help], &[PageDown], Action::Move(Direction::PageDown), "", "a page down"),
     row(&[Lab], &[Char('w')], Action::WiderWindow, "", "traces: show twice the time"),
     row(&[Lab], &[Char('W')], Action::NarrowerWindow, "", "traces: show half the time"),
-    row(&[Lab], &[Char('m')], Action::NextMarker, "", "dots: Braille, half blocks, points, ASCII"),
-    row(&[Lab], &[Char('c')], Action::ToggleColour, "", "with colour, or without"),
-    row(&[Lab], &[Char('b')], Action::ToggleBackground, "", "colours for a dark or a light screen"),
-    row(&[Lab], &[Char('F')], Action::NextFrameRate, "", "frames a second at most: fewer for a slow line, more for a smooth picture"),
-    row(&[Lab], &[Char('H')], Action::ToggleHealth, "", "hide the line about the numbers' health, or show it"),
-    row(&[Lab], &[Char('T')], Action::TogglePredicted, "", "hide the numbers that theory predicts, or show them"),
-    row(&[Lab], &[Char('B')], Action::ToggleBare, "", "a bare screen: two panes with title and time, or all again"),
-    row(&[Lab, Browser, Help], &[Char('M')], Action::ToggleMouse, "", "leave the mouse to the terminal, to select text, or take it again"),
     row(&[Browser, Filter], &[Enter], Action::Choose, "open", "open what is selected"),
     row(&[Browser], &[Char('/')], Action::Filter, "filter", "type a part of a name"),
     row(&[Find], &[Left], Action::Move(Direction::Left), "nudge", "nudge the value down"),
@@ -304,14 +303,7 @@ mod tests {
             A::ZoomIn,
             A::ZoomOut,
             A::ZoomToWhole,
-            A::NextMarker,
-            A::ToggleColour,
-            A::ToggleBackground,
-            A::NextFrameRate,
-            A::ToggleHealth,
-            A::TogglePredicted,
-            A::ToggleBare,
-            A::ToggleMouse,
+            A::Settings,
             A::Browse,
             A::Choose,
             A::FindValue,
@@ -374,14 +366,7 @@ mod tests {
                 | A::ZoomIn
                 | A::ZoomOut
                 | A::ZoomToWhole
-                | A::NextMarker
-                | A::ToggleColour
-                | A::ToggleBackground
-                | A::NextFrameRate
-                | A::ToggleHealth
-                | A::TogglePredicted
-                | A::ToggleBare
-                | A::ToggleMouse
+                | A::Settings
                 | A::Browse
                 | A::Choose
                 | A::FindValue

@@ -7,7 +7,12 @@ use crate::lab::{Lab, Request};
 
 /// Carries out the action of `key`, or shows a message that it has none.
 pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
-    match keymap::action_with(panes::keys_of(lab), lab.on_top().mode(), key) {
+    let mode = lab.on_top().mode();
+    let mut own = panes::keys(lab.view().focus).iter();
+    if own.any(|row| row.modes.contains(&mode) && row.keys.contains(&key)) {
+        lab.touch_pane();
+    }
+    match keymap::action_with(panes::keys_of(lab), mode, key) {
         Some(Action::DoEntry) => help::do_entry(lab),
         Some(action) => {
             let request = lab.update(action);
@@ -15,7 +20,7 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
             request
         }
         None => {
-            lab.refuse(keymap::refusal(lab.on_top().mode(), key));
+            lab.refuse(keymap::refusal(mode, key));
             None
         }
     }

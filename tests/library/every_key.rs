@@ -11,9 +11,6 @@ use std::time::Duration;
 
 /// A message has gone after as long as this.
 const SAID: Duration = Duration::from_secs(30);
-/// Keys that go through several choices, and how often they are pressed to be back at the first.
-const ROUNDS: [Key; 2] = [Key::Char('m'), Key::Char('F')];
-const ROUND: usize = 4;
 
 /// The screen as columns of rows.
 struct Picture {
@@ -149,31 +146,41 @@ fn footer_trouble(stage: &Stage, picture: &Picture) -> Option<String> {
         .get(stage.size.height as usize - 1)?
         .iter()
         .collect();
-    let known = |item: &str| {
-        let rows = BINDINGS
-            .iter()
-            .chain(panes::PANES.iter().flat_map(|pane| pane.keys));
-        let of_table = |row: &Binding| {
-            let otherwise = match row.footer {
-                "pause" => "go on",
-                "next phase" => "next step",
-                "why sideways" => "phases",
-                always => always,
-            };
-            let words = [row.footer, otherwise];
-            words
-                .iter()
-                .any(|word| item == format!("{} {word}", row.keys[0]))
-        };
-        item.starts_with("Esc ") || rows.into_iter().any(of_table)
+    let rows = || {
+        let of_panes = panes::PANES.iter().flat_map(|pane| pane.keys);
+        BINDINGS.iter().chain(of_panes)
     };
-    let mut items = last
-        .split("  ")
-        .map(str::trim)
-        .filter(|item| !item.is_empty());
-    items
-        .find(|item| !known(item))
-        .map(|item| format!("{item:?} in the line of keys"))
+    let words = |row: &Binding| {
+        let otherwise = match row.footer {
+            "pause" => "go on",
+            "next phase" => "next step",
+            "why sideways" => "phases",
+            "take it" => "change",
+            always => always,
+        };
+        let key = row.keys[0];
+        // Where there is little room a key stands without its word.
+        [
+            format!("{key} {}", row.footer),
+            format!("{key} {otherwise}"),
+            key.to_string(),
+        ]
+    };
+    let esc = ["Esc close", "Esc clear", "Esc to the page"].map(str::to_owned);
+    let mut items: Vec<_> = rows().flat_map(words).chain(esc).collect();
+    items.sort_by_key(|item| std::cmp::Reverse(item.len()));
+    let mut left = last.trim();
+    while !left.is_empty() {
+        let item = items.iter().find_map(|item| {
+            let rest = left.strip_prefix(item.as_str())?;
+            (rest.is_empty() || rest.starts_with(' ')).then_some(rest)
+        });
+        match item {
+            Some(rest) => left = rest.trim_start(),
+            None => return Some(format!("{left:?} in the line of keys")),
+        }
+    }
+    None
 }
 
 /// Where the message is neither shown whole nor cut off between dots.
@@ -280,8 +287,7 @@ fn press_everything(size: (u16, u16)) {
         let mut stage = stage(pane, size);
         check(&stage, pane.id());
         for key in keys(Mode::Lab, pane) {
-            let times = if ROUNDS.contains(&key) { ROUND } else { 2 };
-            for time in 1..=times {
+            for time in 1..=2 {
                 let done = format!("{key} for the {time}. time in {}", pane.id());
                 stage.key(key);
                 stage.wait(0.0);

@@ -182,7 +182,7 @@ fn numbers_that_are_read_off_are_found_too() {
     let mut stage = open(SMALL);
     stage.press("/prec").shows("no value to set has it");
     stage
-        .shows("not to be set")
+        .shows("read only:")
         .shows("precession")
         .shows("predicted");
     stage.shows_no("nutation");
@@ -234,7 +234,7 @@ fn a_value_shows_all_the_digits_it_has() {
         .shows("body.rim.height_m")
         .shows(&format!("={HEIGHT}"));
     let mut stage = open(Rect::new(0, 0, 160, 40));
-    stage.press("ef").shows(HEIGHT).shows("m  ");
+    stage.press("ef").shows("0.5656854").shows("m  ");
     // Beside the other panes too, a value is not rounded where there is room.
     let set = [
         "start.tilt_deg=0.000123456",
@@ -272,4 +272,22 @@ fn the_frame_of_l_stands_beside_it_and_is_kept() {
     Stage::open("method-1", &[], SMALL)
         .press("/lz")
         .shows("Lz world");
+}
+
+#[test]
+fn the_words_that_begin_with_what_is_searched_for_come_first() {
+    let mut stage = open(SMALL);
+    stage.press("/L");
+    let selected = stage.lab.values().list().selected().unwrap();
+    assert_eq!(selected.label(), "Lx body");
+    let mut stage = open(SMALL);
+    stage.press("/Lz").shows("read only:").shows("Lz body");
+}
+
+#[test]
+fn a_pane_shows_seven_digits_and_the_dialog_all() {
+    let set = ["body.rim.radius_m=0.8123456789012"];
+    let mut stage = Stage::open("method-2", &set, LARGE);
+    stage.press("ef").shows("0.8123457").shows_no("0.81234567");
+    stage.press("/rim radius\n").shows("0.8123456789012");
 }

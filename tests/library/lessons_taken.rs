@@ -146,7 +146,7 @@ fn play_is_free_and_one_key_leads_back() {
     stage.press("p..,,.....").arrive();
     assert_ne!(stage.step(), before);
     assert_eq!(stage.lab.work().journal().later_than(0), 2, "gravity, push");
-    stage.press("R").arrive();
+    stage.press("b").arrive();
     assert_eq!(stage.step(), before);
     assert_eq!(stage.lab.work().journal().later_than(0), 1, "gravity");
     assert_eq!(stage.lab.player().motion().gravity, 5.0);
@@ -157,7 +157,7 @@ fn a_task_is_done_by_hand_or_shown() {
     let (mut stage, _folder, _) = taken(3);
     stage.shows("[ ] not yet: be at 4 s").shows_no("Hint");
     stage
-        .press("D")
+        .press("h")
         .shows("Hint: g goes to a time.")
         .shows("[ ] not yet");
     stage.press("g3.95 s\n").arrive();
@@ -166,7 +166,7 @@ fn a_task_is_done_by_hand_or_shown() {
     let kept = &stage.class.taken().unwrap().place().kept;
     assert!((kept["mine"] - 3.95).abs() < 0.01, "{kept:?}");
     let (mut stage, _folder, _) = taken(3);
-    stage.press("DD").arrive().shows("[x] done");
+    stage.press("hh").arrive().shows("[x] done");
     stage.press("nn").shows("this is the last page");
     stage.press("NNNN").arrive().shows("this is the first page");
 }
@@ -276,7 +276,7 @@ x
 #[test]
 fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
     let mut stage = Stage::open("method-2", &[], SMALL);
-    stage.press("n").shows("no lesson is open: L lists them");
+    stage.press("n").shows("no key n here");
     let title = |index: usize| {
         let name = shipped::LESSONS[index].name;
         reading::open(name).unwrap().title
@@ -303,15 +303,15 @@ fn the_teacher_has_notes_the_next_page_and_a_clock() {
     stage.size = LARGE;
     stage.shows_no("defended");
     stage
-        .press("C")
+        .press("\u{e}")
         .wait(61.0)
         .shows("For the class: 1:01 since the beginning");
     stage
         .shows("| Let two answers be defended.")
         .shows("Next page: Compare");
-    stage.press("C").shows("left of 5 min");
-    stage.press("C").shows_no("left of").shows("defended");
-    stage.press("C").shows_no("defended");
+    stage.press("\u{e}").shows("left of 5 min");
+    stage.press("\u{e}").shows_no("left of").shows("defended");
+    stage.press("\u{e}").shows_no("defended");
 }
 
 #[test]
@@ -336,7 +336,7 @@ fn what_a_page_has_stated_stays_while_the_run_goes_on() {
     let (mut stage, _folder, _) = taken(1);
     stage.press("10.").arrive().shows("The time is 2.0 s");
     stage.press("g5 s\n").arrive().shows("The time is 2.0 s");
-    stage.press("R").arrive().shows("The time is 2.0 s");
+    stage.press("b").arrive().shows("The time is 2.0 s");
     let (mut open, _folder, _) = taken(2);
     open.shows("= It is 5.0.").press("g4 s\n").arrive();
     open.shows("= It is 5.0.").shows_no("tilt 30 to 36.69");

@@ -20,6 +20,7 @@ mod friction;
 mod health;
 mod journal;
 mod kept;
+mod keys;
 mod laws;
 mod lessons;
 mod lessons_taken;

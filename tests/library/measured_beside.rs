@@ -117,7 +117,7 @@ fn points_stand_on_strips_and_from_above_and_residuals_about_zero() {
         ));
         stage.wait(1.0);
         insta::assert_snapshot!(format!("points_{name}"), stage.picture());
-        stage.press("E").wait(6.0);
+        stage.press("m").wait(6.0);
         insta::assert_snapshot!(format!("residuals_{name}"), stage.picture());
     }
 }
@@ -147,7 +147,7 @@ fn on_a_small_screen_nothing_is_left_out_for_a_curve_shown_twice() {
 fn a_key_without_data_says_how_to_get_them() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     assert!(!stage.picture().contains("E residuals"));
-    stage.press("E");
+    stage.press("m");
     assert!(stage.picture().contains("gyrolab --measured FILE"));
     stage.commands("measured = 'heidelberg-spin-decay'");
     assert!(stage.picture().contains("× measured: heidelberg-"));

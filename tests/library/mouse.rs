@@ -204,9 +204,9 @@ fn a_mouse_outside_or_one_that_is_the_terminals_does_nothing() {
     }
     assert_eq!(desk.stage.picture(), before);
     desk.stage
-        .press("M")
-        .shows("the mouse is the terminal's")
-        .wait(6.0);
+        .press("c↑→")
+        .shows("selects the terminal's text")
+        .press("\u{1b}");
     let before = desk.stage.picture();
     for did in all {
         desk.does(did, (10, 10));
@@ -215,7 +215,7 @@ fn a_mouse_outside_or_one_that_is_the_terminals_does_nothing() {
     // Whatever lies on top, and however small the screen: nothing breaks.
     for size in [(1, 1), (9, 3), (40, 12), (80, 24), (200, 50)] {
         let mut desk = Desk::open("wobble-push", Rect::new(0, 0, size.0, size.1));
-        for keys in ["", "?", "\u{1b}o", "\u{1b}\u{1b}x", "\u{1b}e", "B"] {
+        for keys in ["", "?", "\u{1b}o", "\u{1b}\u{1b}x", "\u{1b}e", "c"] {
             desk.stage.press(keys);
             for did in all {
                 for x in (0..size.0).step_by(7) {
@@ -228,7 +228,7 @@ fn a_mouse_outside_or_one_that_is_the_terminals_does_nothing() {
 }
 
 #[test]
-fn health_predictions_and_all_but_two_panes_are_hidden_by_a_key_each() {
+fn health_predictions_and_all_but_two_panes_are_hidden_in_the_settings() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage
         .wait(3.0)
@@ -236,16 +236,16 @@ fn health_predictions_and_all_but_two_panes_are_hidden_by_a_key_each() {
         .shows("turns a step")
         .shows("predicted");
     stage
-        .press("H")
+        .press("c\n\u{1b}")
         .shows_no("turns a step")
-        .press("H")
+        .press("c\n\u{1b}")
         .shows("turns a step");
     stage
-        .press("T")
+        .press("c↓→\u{1b}")
         .shows_no("predicted")
-        .press("T")
+        .press("c↓←\u{1b}")
         .shows("predicted");
-    stage.press("B").wait(6.0);
+    stage.press("c↓↓\n\u{1b}").wait(6.0);
     stage
         .shows("from above")
         .shows("over time")
@@ -263,7 +263,10 @@ fn health_predictions_and_all_but_two_panes_are_hidden_by_a_key_each() {
     assert_eq!(stage.picture().lines().next().unwrap().trim_end(), {
         format!(" Method 2{:>70}", "t     60.0 s")
     });
-    stage.press("B").shows("parameters").shows("q quit");
+    stage
+        .press("c↓↓\n\u{1b}")
+        .shows("parameters")
+        .shows("q quit");
 }
 
 #[test]

@@ -572,7 +572,7 @@ fn the_parameters_are_an_editor_when_in_focus() {
     // Without the focus it is the plain list.
     let away = shown(&dt, (false, false), size);
     assert!(
-        away.contains("precession") && away.contains("f: all of them"),
+        away.contains("precession") && away.contains("all values: e, then f"),
         "{away}"
     );
 }

@@ -115,12 +115,6 @@ fn a_file_that_takes_long_to_read_does_not_hold_up_the_browser() {
 fn what_keys_do_without_a_picture_is_said() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.commands("pause = true\ngo_to = 100");
-    stage.press("H").shows("H shows it again");
-    stage
-        .press("H")
-        .shows("the line about the numbers is shown");
-    stage.press("T").shows("T shows it again");
-    stage.press("T").shows("what theory predicts is shown");
     // Arrows say what they do in the pane that has the focus.
     stage
         .press("↓")

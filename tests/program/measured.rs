@@ -9,8 +9,8 @@ fn one_key_shows_the_residuals() {
     ground.write("bench.csv", text);
     let mut lab = ground.open(&["--paused", "--at", "15", "--measured", "bench.csv"]);
     lab.wait_for("× measured: bench.csv (2 of 3 points)");
-    lab.ask("E", "× residuals: bench.csv");
-    lab.ask("E", "× measured: bench.csv");
+    lab.ask("m", "× residuals: bench.csv");
+    lab.ask("m", "× measured: bench.csv");
     lab.press("q");
 }
 

@@ -270,8 +270,9 @@ fn open(ground: &Ground) -> Terminal {
 fn colours_that_were_turned_off_and_on_again_are_no_choice() {
     let ground = Ground::new();
     let mut lab = open(&ground);
-    lab.ask("c", "without colours");
-    lab.ask("c", "with colours");
+    lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\r", "colours off");
+    lab.ask("\r", "colours on");
+    lab.ask("\x1b", "q quit");
     lab.quit();
     assert!(
         ground
@@ -282,7 +283,8 @@ fn colours_that_were_turned_off_and_on_again_are_no_choice() {
     lab.wait_for("q quit");
     assert!(!lab.sent_text().contains("\u{1b}[38;"));
     // What is remembered does not win over NO_COLOR either; the user's own file does.
-    lab.ask("c", "with colours");
+    lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[B\r", "colours on");
+    lab.ask("\x1b", "q quit");
     lab.quit();
     assert!(
         ground

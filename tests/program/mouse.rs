@@ -153,10 +153,11 @@ fn the_mouse_can_stay_with_the_terminal() {
     lab.wait_for("q quit");
     lab.ask(".", "step 1");
     assert!(!lab.sent_text().contains(ON));
-    lab.ask("M", "the mouse acts on the lab");
+    lab.ask("c\x1b[A\r", "mouse acts on the lab");
     lab.wait_until("the mouse", |lab| lab.sent_text().contains(ON));
-    lab.ask("M", "the mouse is the terminal's");
+    lab.ask("\r", "mouse selects the terminal's text");
     lab.wait_until("the mouse back", |lab| lab.sent_text().contains(OFF));
+    lab.ask("\x1b", "q quit");
     lab.quit();
     has_given_the_mouse_back(&lab);
 }

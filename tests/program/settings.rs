@@ -37,9 +37,10 @@ fn what_was_chosen_is_there_at_the_next_start() {
     let ground = Ground::new();
     let mut lab = open(&ground, &[]);
     assert!(!is_ascii(&lab) && has_colours(&lab));
-    lab.ask("mmm", "dots: ascii");
-    lab.ask("c", "without colours");
-    lab.ask("F", "30 frames a second at most");
+    lab.ask("c\x1b[B\x1b[B\x1b[B\x1b[D", "dots ascii");
+    lab.ask("\x1b[B\x1b[C", "colours off");
+    lab.ask("\x1b[B\x1b[B\r", "frames a second 30 at most");
+    lab.ask("\x1b", "q quit");
     lab.quit();
     let text = fs::read_to_string(remembered(&ground)).unwrap();
     for line in ["marker = \"ascii\"", "colour = \"never\"", "fps = 30"] {
@@ -71,7 +72,8 @@ fn the_users_own_file_wins_and_is_never_written() {
     configure(&ground, text);
     let mut lab = open(&ground, &[]);
     assert!(is_ascii(&lab) && !has_colours(&lab));
-    lab.ask("m", "dots: braille");
+    lab.ask("c\x1b[B\x1b[B\x1b[B\r", "dots braille");
+    lab.ask("\x1b", "q quit");
     lab.quit();
     assert!(
         fs::read_to_string(remembered(&ground))
@@ -90,9 +92,14 @@ fn the_users_own_file_wins_and_is_never_written() {
 #[test]
 fn broken_files_are_told_and_keep_nobody_out() {
     let ground = Ground::new();
-    configure(&ground, "marker = 'ascii'\nfbs = 5\n");
+    configure(
+        &ground,
+        "marker = 'ascii'\nfbs = 5\ncolor = 'never'\nmouse = 1\n",
+    );
     let mut lab = open(&ground, &[]);
-    lab.wait_for("config.toml:2: fbs: unknown key: did you mean fps?: not used; mend it");
+    lab.wait_for("config.toml:2: fbs: unknown key: did you mean fps?; config.toml:4: mouse");
+    lab.wait_for("not used; mend it");
+    assert!(!has_colours(&lab));
     assert!(is_ascii(&lab));
     lab.quit();
     assert!(lab.sent_text().contains("gyrolab/config.toml:2: fbs"));
@@ -105,7 +112,8 @@ fn broken_files_are_told_and_keep_nobody_out() {
         let mut lab = open(&ground, &[]);
         lab.wait_for("settings.toml:1: ");
         lab.wait_for("not used");
-        lab.ask("m", "dots: half-block");
+        lab.ask("c\x1b[B\x1b[B\x1b[B\r", "dots half-block");
+        lab.ask("\x1b", "q quit");
         lab.quit();
         let mut lab = open(&ground, &[]);
         assert!(!lab.words().contains("not used"), "{}", lab.screen());
@@ -121,7 +129,8 @@ fn a_confined_lab_remembers_in_its_folder_and_reads_no_other() {
     fs::create_dir(ground.file("inside")).unwrap();
     let mut lab = open(&ground, &["--folder", "inside"]);
     assert!(!is_ascii(&lab));
-    lab.ask("m", "dots: half-block");
+    lab.ask("c\x1b[B\x1b[B\x1b[B\r", "dots half-block");
+    lab.ask("\x1b", "q quit");
     lab.quit();
     let kept = ground.read("inside/.gyrolab/settings.toml");
     assert!(
@@ -134,7 +143,8 @@ fn a_confined_lab_remembers_in_its_folder_and_reads_no_other() {
 fn dots_that_this_terminal_cannot_show_are_not_taken_from_another() {
     let ground = Ground::new();
     let mut lab = open(&ground, &["--markers", "ascii"]);
-    lab.ask("m", "dots: braille");
+    lab.ask("c\x1b[B\x1b[B\x1b[B\r", "dots braille");
+    lab.ask("\x1b", "q quit");
     lab.quit();
     let mut lab = ground.open_with(&PLAIN, &[("TERM", "xterm"), ("LANG", "C")]);
     lab.wait_for("q quit");

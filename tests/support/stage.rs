@@ -90,6 +90,7 @@ impl Stage {
                 '↓' => Key::Down,
                 '←' => Key::Left,
                 '→' => Key::Right,
+                '\u{e}' => Key::Ctrl('n'),
                 c => Key::Char(c),
             };
             self.key(key);

@@ -78,7 +78,7 @@ impl Lab {
         }
         self.view.residuals = shown;
         Ok(Done::saying(match shown {
-            true => "measured less run, where something was measured; E shows both again",
+            true => "measured less run, where something was measured; m shows both again",
             false => "measured values and the run",
         }))
     }

@@ -7,6 +7,7 @@ impl View {
     pub fn fill(&mut self, pane: Option<Pane>) {
         self.filled = pane.is_some();
         self.focus = pane.unwrap_or(self.focus);
+        self.is_touched |= self.filled;
     }
 
     /// Whether `pane` fills the screen.
@@ -46,12 +47,13 @@ impl View {
             (None, _) => 0,
         };
         self.focus = panes.get(next).copied().unwrap_or(self.focus);
+        self.is_touched = true;
     }
 
     /// Moves the focus to `pane`, which fills the screen if it is not on it.
     pub fn turn_to(&mut self, pane: Pane) {
         self.filled = self.is_filled_by(pane) || !self.focusable().contains(&pane);
-        self.focus = pane;
+        (self.focus, self.is_touched) = (pane, true);
     }
 
     /// Moves the focus from the parameters to the first other pane that can have it; returns whether it did.
@@ -62,6 +64,7 @@ impl View {
             return false;
         };
         self.turn_to(other);
+        self.is_touched = false;
         true
     }
 
@@ -76,6 +79,7 @@ impl View {
     pub(super) fn keep_focus_among(&mut self, panes: &[Pane]) {
         if !panes.contains(&self.focus) {
             self.focus = panes.first().copied().unwrap_or(Pane::TRACES);
+            self.is_touched = false;
         }
     }
 
@@ -89,6 +93,7 @@ impl View {
             true => (first, false),
             false => (Pane::THREE_D, true),
         };
+        self.is_touched = self.filled;
     }
 }
 

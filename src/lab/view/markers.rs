@@ -14,18 +14,8 @@ pub enum Marker {
 }
 
 impl Marker {
-    /// Every marker, in the order in which a key goes through them.
+    /// Every marker, in the order in which the settings go through them.
     pub const ALL: [Self; 4] = [Self::Braille, Self::HalfBlock, Self::Dot, Self::Ascii];
-
-    /// The next one.
-    pub fn next(self) -> Self {
-        match self {
-            Self::Braille => Self::HalfBlock,
-            Self::HalfBlock => Self::Dot,
-            Self::Dot => Self::Ascii,
-            Self::Ascii => Self::Braille,
-        }
-    }
 
     /// Whether a terminal can show it that can show `other`: Braille needs most, then half blocks and points, then ASCII.
     pub fn needs_no_more_than(self, other: Self) -> bool {

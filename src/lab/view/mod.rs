@@ -20,15 +20,14 @@ use pane::EARLIER_IDS;
 pub use pane::{Pane, Part};
 use std::sync::Arc;
 use step::Page;
-use theme::{Background, Theme};
+use theme::Theme;
 
 /// The longest time that one sweep of the traces may take at first, seconds of wall time.
 const LONGEST_SWEEP_S: f64 = 120.0;
 /// The panes of a bare screen, where none are chosen.
 const BARE: [Pane; 2] = [Pane::TRACES, Pane::FROM_ABOVE];
-/// Frames a second at most, where nothing is chosen, and those that the key goes through.
+/// Frames a second at most, where nothing is chosen.
 pub const FPS: u32 = 15;
-const FRAME_RATES: [u32; 5] = [2, 5, 10, 15, 30];
 /// Degrees by which one press of an arrow turns the camera.
 const TURN_DEG: f64 = 10.0;
 
@@ -39,6 +38,8 @@ pub struct View {
     pub panes: &'static [Pane],
     /// The pane in focus.
     pub focus: Pane,
+    /// Whether the user turned to it, or pressed a key of its own: the footer then names those.
+    pub is_touched: bool,
     /// Whether it fills the screen.
     pub filled: bool,
     /// What dots are made of.
@@ -106,6 +107,7 @@ impl View {
         let mut view = Self {
             panes,
             focus: panes.first().copied().unwrap_or(Pane::TRACES),
+            is_touched: false,
             filled: false,
             marker,
             theme,
@@ -183,16 +185,6 @@ impl View {
         chosen.unwrap_or_else(|| first_window_s(scenario))
     }
 
-    /// What is hidden once `part` is hidden too, or shown again if it is hidden now.
-    pub(super) fn toggled(&self, part: Part) -> Vec<Part> {
-        let mut hidden = self.hidden.clone();
-        hidden.retain(|other| *other != part);
-        if hidden.len() == self.hidden.len() {
-            hidden.push(part);
-        }
-        hidden
-    }
-
     /// Whether `part` is hidden.
     pub fn hides(&self, part: Part) -> bool {
         self.hidden.contains(&part)
@@ -247,49 +239,6 @@ impl View {
         let mut camera = self.camera;
         camera.turn(yaw_deg, pitch_deg);
         camera
-    }
-
-    /// Changes to the next number of frames a second, the lowest after the highest; returns the message about it.
-    pub(super) fn next_frame_rate(&mut self) -> String {
-        let higher = FRAME_RATES.into_iter().find(|rate| *rate > self.fps);
-        self.fps = higher.unwrap_or(FRAME_RATES[0]);
-        format!("{} frames a second at most", self.fps)
-    }
-
-    /// Listens to the mouse, or leaves it to the terminal; returns the message about it.
-    pub(super) fn toggle_mouse(&mut self) -> &'static str {
-        self.mouse = !self.mouse;
-        match self.mouse {
-            true => "the mouse acts on the lab: M leaves it to the terminal",
-            false => "the mouse is the terminal's: it selects text; M takes it again",
-        }
-    }
-
-    /// Changes to the next kind of dots; returns the message about it.
-    pub(super) fn next_marker(&mut self) -> String {
-        self.marker = self.marker.next();
-        format!("dots: {}", self.marker.name())
-    }
-
-    /// Turns the colours on or off; returns the message about it.
-    pub(super) fn toggle_colour(&mut self) -> &'static str {
-        self.theme.colour = !self.theme.colour;
-        match self.theme.colour {
-            true => "with colours",
-            false => "without colours",
-        }
-    }
-
-    /// Chooses the colours for a dark screen, or those for a light one; returns the message about it.
-    pub(super) fn toggle_background(&mut self) -> String {
-        self.theme.background = match self.theme.background {
-            Background::Dark => Background::Light,
-            Background::Light => Background::Dark,
-        };
-        match self.theme.colour {
-            true => format!("colours for a {:?} screen", self.theme.background).to_lowercase(),
-            false => "there are no colours: c turns them on".to_owned(),
-        }
     }
 }
 

@@ -4,10 +4,10 @@ use super::{shortened, write};
 use crate::analysis::remarks::{Remark, remarks};
 use crate::lab::Lab;
 use crate::lab::action::{Action, LessonKey};
-use crate::lab::view::Part;
 use crate::lab::view::step::Page;
+use crate::lab::view::{Pane, Part};
 use crate::observe::reading::Reading;
-use crate::text::number::{fixed, shortest};
+use crate::text::number::{fixed, significant};
 use crate::tui::keymap::{BINDINGS, Binding, Key, Mode};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -27,7 +27,7 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
     let theme = &lab.view().theme;
     let motion = lab.player().motion();
-    let step = shortest(motion.time_step_s);
+    let step = significant(motion.time_step_s, 7);
     let clock = clock(
         lab.player().reading(),
         lab.player().run().scenario().least_time_step_s(),
@@ -145,15 +145,15 @@ pub fn warns(lab: &Lab) -> bool {
 /// The keys of the mode, as many as fit; help and quit always.
 pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    for (x, key, word) in placed(lab, area.width) {
+    for (x, item) in placed(lab, area.width) {
         let x = write(
             area,
             (x, 0),
-            &key.to_string(),
+            &item.key.to_string(),
             theme.style(Role::Focus),
             buf,
         );
-        write(area, (x + 1, 0), word, theme.style(Role::Quiet), buf);
+        write(area, (x + 1, 0), item.word, theme.style(Role::Quiet), buf);
     }
 }
 
@@ -161,27 +161,65 @@ pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
 pub fn key_at(lab: &Lab, area: Rect, x: u16) -> Option<Key> {
     let x = x.checked_sub(area.x)?;
     let mut placed = placed(lab, area.width).into_iter();
-    let found = placed.find(|(at, key, word)| (*at..at + length(*key, word)).contains(&x));
-    found.map(|(_, key, _)| key)
+    let found = placed.find(|(at, item)| (*at..at + item.length()).contains(&x));
+    found.map(|(_, item)| item.key)
 }
 
-/// Each key of the line with its column and its word.
-fn placed(lab: &Lab, width: u16) -> Vec<(u16, Key, &'static str)> {
+/// A key of the line of keys, with its word.
+#[derive(Clone, Copy)]
+struct Item {
+    key: Key,
+    word: &'static str,
+    worth: Worth,
+}
+
+impl Item {
+    /// Columns of the key and its word.
+    fn length(&self) -> u16 {
+        let word = match self.word {
+            "" => 0,
+            word => 1 + word.len(),
+        };
+        (self.key.to_string().len() + word) as u16
+    }
+}
+
+/// Each key of the line with its column.
+fn placed(lab: &Lab, width: u16) -> Vec<(u16, Item)> {
+    let (items, gap) = fitted(footer(lab), width);
     let mut x = 1;
-    let place = |(key, word)| {
+    let place = |item: Item| {
         let at = x;
-        x += length(key, word) + 2;
-        (at, key, word)
+        x += item.length() + gap;
+        (at, item)
     };
-    footer(lab, width as usize).into_iter().map(place).collect()
+    items.into_iter().map(place).collect()
 }
 
-/// Columns of a key and its word.
-fn length(key: Key, word: &str) -> u16 {
-    (key.to_string().len() + 1 + word.len()) as u16
+/// As many of `items` as `width` has room for, and the columns between two of them. The spare keys give way first, then
+/// every second blank, then the words of the keys that every pane has, and last keys; help and quit stay.
+fn fitted(mut items: Vec<Item>, width: u16) -> (Vec<Item>, u16) {
+    let mut gap = 2;
+    loop {
+        let whole: u16 = items.iter().map(|item| item.length() + gap).sum();
+        if 1 + whole.saturating_sub(gap) <= width || items.len() <= 2 {
+            return (items, gap);
+        }
+        let others = &items[..items.len() - 2]; // the last two are help and quit
+        let least = others.iter().map(|item| item.worth).min();
+        let last = |is_it: &dyn Fn(&Item) -> bool| others.iter().rposition(is_it);
+        let has_spare_word = |item: &Item| item.worth < Worth::Own && !item.word.is_empty();
+        if gap > 1 && least > Some(Worth::Spare) {
+            gap = 1;
+        } else if let Some(word) = last(&has_spare_word).filter(|_| least > Some(Worth::Spare)) {
+            items[word].word = "";
+        } else if let Some(key) = last(&|item| Some(item.worth) == least) {
+            items.remove(key);
+        }
+    }
 }
 
-fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
+fn footer(lab: &Lab) -> Vec<Item> {
     let (mode, is_running) = (lab.on_top().mode(), lab.player().playback().is_running());
     let is_why = lab.view().page == Page::Why;
     let sheet = lab.view().sheet.as_ref();
@@ -189,53 +227,52 @@ fn footer(lab: &Lab, width: usize) -> Vec<(Key, &'static str)> {
     let of_pane = super::keys_of(lab);
     let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
     let is_new = |row: &&Binding| of_mode.clone().all(|other| other.keys[0] != row.keys[0]);
-    let rows = of_pane
-        .chain(BINDINGS.iter().filter(is_new))
-        .filter(|row| row.modes.contains(&mode) && !row.footer.is_empty())
-        .filter(|row| row.action != Action::ToggleResiduals || lab.player().measured().is_some())
-        .filter(|row| row.action != Action::Lesson(LessonKey::Take) || !enter.is_empty())
-        .filter(|row| row.action != Action::Lesson(LessonKey::Next) || has_next)
-        .filter(|row| !is_why || !matches!(row.action, Action::Move(_)))
-        .filter(|row| !goes_on(row.action) || !lab.player().run().simulation().has_ended());
-    let mut words: Vec<_> = rows
-        .map(|row| {
-            let word = match row.action {
-                Action::TogglePause if !is_running => "go on",
-                Action::Lesson(LessonKey::Take) => enter,
-                Action::NextPhase if is_why => "next step",
-                Action::Why if is_why => "phases",
-                _ => row.footer,
-            };
-            (row.keys[0], word, worth(row.action, lab))
+    // The keys of a page and of a step mean something else than those of the run, touched or not.
+    let always = [Pane::LESSON, Pane::STEP].contains(&lab.view().focus);
+    let of_touched = of_pane.filter(|_| lab.view().is_touched || always);
+    let own = of_touched.map(|row| (row, Worth::Own));
+    let of_lab = BINDINGS
+        .iter()
+        .filter(is_new)
+        .map(|row| (row, worth(row.action)));
+    let rows = own
+        .chain(of_lab)
+        .filter(|(row, _)| row.modes.contains(&mode) && !row.footer.is_empty())
+        .filter(|(row, _)| {
+            row.action != Action::ToggleResiduals || lab.player().measured().is_some()
         })
-        .collect();
-    if mode != Mode::Lab {
-        let searches = match mode {
-            Mode::Help => !lab.on_top().help().text().is_empty(),
-            Mode::Filter | Mode::Find => true,
-            _ => false,
+        .filter(|(row, _)| row.action != Action::Lesson(LessonKey::Take) || !enter.is_empty())
+        .filter(|(row, _)| row.action != Action::Lesson(LessonKey::Next) || has_next)
+        .filter(|(row, _)| !is_why || !matches!(row.action, Action::Move(_)))
+        .filter(|(row, _)| !goes_on(row.action) || !lab.player().run().simulation().has_ended());
+    let items = rows.map(|(row, worth)| {
+        let word = match row.action {
+            Action::TogglePause if !is_running => "go on",
+            Action::Lesson(LessonKey::Take) => enter,
+            Action::NextPhase if is_why => "next step",
+            Action::Why if is_why => "phases",
+            Action::Accept if lab.shows_settings() => "change",
+            _ => row.footer,
         };
-        let word = if searches { "clear" } else { "close" };
-        words.insert(0, (Key::Esc, word, Worth::Kept));
-    } else if lab.view().filled && lab.view().sheet.is_some() {
-        words.insert(0, (Key::Esc, "to the page", Worth::Kept));
-    }
-    let whole = |words: &[(Key, &str, Worth)]| {
-        let lengths = words.iter().map(|(key, word, _)| length(*key, word) + 2);
-        lengths.sum::<u16>() as usize
+        Item {
+            key: row.keys[0],
+            word,
+            worth,
+        }
+    });
+    let esc = match mode {
+        Mode::Lab if lab.view().filled && sheet.is_some() => Some("to the page"),
+        Mode::Lab => None,
+        Mode::Help if lab.on_top().help().text().is_empty() => Some("close"),
+        Mode::Help | Mode::Filter | Mode::Find => Some("clear"),
+        Mode::Browser | Mode::Dialog => Some("close"),
     };
-    while words.len() > 2 && whole(&words) > width {
-        let others = &words[..words.len() - 2]; // the last two are help and quit
-        let least = others.iter().map(|(_, _, worth)| *worth).min();
-        let last = others
-            .iter()
-            .rposition(|(_, _, worth)| Some(*worth) == least);
-        words.remove(last.unwrap_or_default());
-    }
-    words
-        .into_iter()
-        .map(|(key, word, _)| (key, word))
-        .collect()
+    let esc = esc.map(|word| Item {
+        key: Key::Esc,
+        word,
+        worth: Worth::Own,
+    });
+    esc.into_iter().chain(items).collect()
 }
 
 /// Whether `action` plays the run on, which a run whose numbers are no longer finite cannot.
@@ -248,39 +285,20 @@ fn goes_on(action: Action) -> bool {
 enum Worth {
     Spare,
     Useful,
-    Open,
-    Look,
     Kept,
+    Own,
 }
 
-/// How long the footer names the key of `action` in `lab`.
-fn worth(action: Action, lab: &Lab) -> Worth {
+/// How long the footer names the key of `action`, which every pane has.
+fn worth(action: Action) -> Worth {
     use Action::{
-        Accept, Browse, Choose, Export, Help, Lesson, NarrowerWindow, NextPhase, Pan, Parameters,
-        PhaseBack, Push, Quit, Step, ToggleExact, TogglePause, ToggleResiduals, ToggleStep,
-        WholeView, Why, ZoomIn,
+        Accept, Browse, Choose, Export, FillScreen, Help, Lesson, Parameters, Push, Quit, Step,
+        ToggleExact, TogglePause, ToggleResiduals,
     };
     match action {
-        ToggleExact | Export => Worth::Useful,
-        Browse => Worth::Open,
-        NarrowerWindow | Pan(_) => Worth::Look,
-        ToggleResiduals => Worth::Kept,
-        Lesson(LessonKey::Take | LessonKey::Next)
-        | TogglePause
-        | Step
-        | NextPhase
-        | ToggleStep
-        | PhaseBack
-        | Why
-        | Parameters
-        | Push
-        | Choose
-        | Accept
-        | ZoomIn
-        | Help
-        | Quit => Worth::Kept,
-        // What takes zoom and pan back, as long as there is something to take back.
-        WholeView if !lab.shows_whole_view() => Worth::Look,
+        TogglePause | Step | ToggleResiduals | Choose | Accept | Help | Quit => Worth::Kept,
+        Push | ToggleExact | Parameters | Export | FillScreen | Browse => Worth::Useful,
+        Lesson(LessonKey::Next) => Worth::Kept,
         _ => Worth::Spare,
     }
 }

@@ -4,6 +4,7 @@ mod entries;
 mod glossary;
 
 use super::{frame_on_top, write};
+use crate::lab::view::Pane;
 use crate::lab::view::theme::Theme;
 use crate::lab::{Lab, Mode, Request};
 use crate::text::wrap::{columns, wrapped};
@@ -64,7 +65,9 @@ pub fn do_entry(lab: &mut Lab) -> Option<Request> {
     while lab.on_top().mode() == Mode::Help {
         lab.update(Action::Help);
     }
-    if let Some(pane) = entry.pane {
+    if let Some(pane) = entry.pane
+        && (pane != Pane::LESSON || lab.view().sheet.is_some())
+    {
         lab.turn_to(pane);
     }
     match binding.action {

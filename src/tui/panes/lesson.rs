@@ -24,14 +24,21 @@ pub const ROW: PaneRow = PaneRow {
     keys: KEYS,
 };
 
-/// The keys that mean something here while the pane has the focus.
+/// The keys that mean something while there is a lesson, whichever pane has the focus.
+#[rustfmt::skip]
+pub const EVERYWHERE: &[Binding] = KEYS.split_at(5).0;
+
+/// The keys that mean something while the pane has the focus; the first of them also elsewhere.
 #[rustfmt::skip]
 const KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Char('n')], Action::Lesson(LessonKey::Next), "next page", "the next page"),
-    row(&[Mode::Lab], &[Key::Enter], Action::Lesson(LessonKey::Take), "answer", "lock the selected answer, or type a number; in the list: open the lesson"),
     row(&[Mode::Lab], &[Key::Char('N')], Action::Lesson(LessonKey::Before), "", "the page before; its run begins again"),
-    row(&[Mode::Lab], &[Key::Up, Key::Char('k')], Action::Lesson(LessonKey::Move(Direction::Up)), "", "the answer above; without a question: scroll"),
-    row(&[Mode::Lab], &[Key::Down, Key::Char('j')], Action::Lesson(LessonKey::Move(Direction::Down)), "", "the answer below; without a question: scroll"),
+    row(&[Mode::Lab], &[Key::Char('b')], Action::Lesson(LessonKey::Again), "", "begin the page again: its run from where the page wants it"),
+    row(&[Mode::Lab], &[Key::Char('h')], Action::Lesson(LessonKey::ShowTask), "", "a hint for the task of the page; again: show how it is done"),
+    row(&[Mode::Lab], &[Key::Ctrl('n')], Action::Lesson(LessonKey::Notes), "", "for a class: notes, the next page and a clock that counts up, down, or shows the time"),
+    row(&[Mode::Lab], &[Key::Enter], Action::Lesson(LessonKey::Take), "answer", "lock the selected answer, or type a number; in the list: open the lesson"),
+    row(&[Mode::Lab], &[Key::Up], Action::Lesson(LessonKey::Move(Direction::Up)), "", "the answer above; without a question: scroll"),
+    row(&[Mode::Lab], &[Key::Down], Action::Lesson(LessonKey::Move(Direction::Down)), "", "the answer below; without a question: scroll"),
     row(&[Mode::Lab], &[Key::PageUp], Action::Lesson(LessonKey::Move(Direction::PageUp)), "", "scroll the page up"),
     row(&[Mode::Lab], &[Key::PageDown], Action::Lesson(LessonKey::Move(Direction::PageDown)), "", "scroll the page down"),
 ];

@@ -113,7 +113,8 @@ pub fn keys(pane: Pane) -> &'static [Binding] {
     row(pane).map_or(&[], |row| row.keys)
 }
 
-/// The keys of the pane in focus; where that is a lesson's page, those of a step pane beside it too.
+/// The keys of the pane in focus; where that is a lesson's page, those of a step pane beside it too; and where there is a
+/// lesson, the keys that turn its pages.
 pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
     let view = lab.view();
     let is_beside = view.focus == Pane::LESSON && view.side_by_side.contains(&Pane::STEP);
@@ -123,7 +124,13 @@ pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
         let mut keys = own.iter().flat_map(|own| own.keys);
         keys.all(|key| !row.keys.contains(key))
     };
-    own.iter().chain(beside.iter().filter(is_free))
+    let turns = if view.sheet.is_some() {
+        lesson::EVERYWHERE
+    } else {
+        &[]
+    };
+    let others = beside.iter().chain(turns);
+    own.iter().chain(others.filter(is_free))
 }
 
 /// Draws a frame with a title, marked where the pane has the focus; returns the area inside.

@@ -54,8 +54,8 @@ const KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Char(',')], Action::PhaseBack, "back", "the phase before; before the first, the time step before"),
     row(&[Mode::Lab], &[Key::Char('v')], Action::ToggleStep, "close", "the panes without the time step again"),
     row(&[Mode::Lab], &[Key::Char('y')], Action::Why, "why sideways", "why the axle goes sideways, not down; y shows the phases again"),
-    row(&[Mode::Lab], &[Key::Down, Key::Char('j')], Action::Move(Direction::Down), "add up", "add up the table point by point: one more"),
-    row(&[Mode::Lab], &[Key::Up, Key::Char('k')], Action::Move(Direction::Up), "", "one point fewer"),
+    row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down), "add up", "add up the table point by point: one more"),
+    row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up), "", "one point fewer"),
     row(&[Mode::Lab], &[Key::PageDown], Action::Move(Direction::PageDown), "", "ten points more"),
     row(&[Mode::Lab], &[Key::PageUp], Action::Move(Direction::PageUp), "", "ten points fewer"),
 ];

@@ -88,7 +88,11 @@ impl Entry {
         if short.starts_with(lower) {
             return Some(2);
         }
-        let all = format!("{} {short} {}", self.name(), self.text()).to_lowercase();
+        let further = match self.what {
+            What::Key(binding) => binding.search,
+            What::Word(_) => "",
+        };
+        let all = format!("{} {short} {} {further}", self.name(), self.text()).to_lowercase();
         let is_word = |wanted: &str| {
             let mut words = all.split(|c: char| !c.is_alphanumeric());
             words.any(|word| word.starts_with(wanted))

@@ -80,7 +80,7 @@ pub(super) const GLOSSARY: &[Word] = &[
     ),
     (
         "turn",
-        "one revolution of the wheel about its axle, as in \"5 turns a step\"; of the tilt: where it is least or greatest",
+        "one revolution of the body about its axle, as in \"5 turns a step\"; of the tilt: where it is least or greatest",
     ),
     (
         "strobed",

@@ -1,0 +1,271 @@
+//! The keys: the footer, the settings behind one key, the search of the help, and every key that a text names.
+
+use crate::support::stage::{LARGE, SMALL, Stage};
+use gyrolab::lab::Mode;
+use gyrolab::tui::keymap::{BINDINGS, Key};
+use gyrolab::tui::panes::PANES;
+use gyrolab::tui::panes::help::found;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn footer(stage: &Stage) -> String {
+    stage
+        .picture()
+        .lines()
+        .last()
+        .unwrap_or_default()
+        .to_owned()
+}
+
+#[test]
+fn the_footer_has_the_keys_of_a_pane_once_that_was_touched() {
+    const ALL: [&str; 10] = [
+        "space go on",
+        "p push",
+        ". step",
+        "t exact",
+        "e edit",
+        "x export",
+        "f fill",
+        "o open",
+        "? help",
+        "q quit",
+    ];
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.commands("pause = true");
+    let first = footer(&stage);
+    assert!(
+        first
+            .starts_with(" space go on . step p push t exact e edit x export f fill o open ? help"),
+        "{first}"
+    );
+    for word in ALL {
+        assert!(first.contains(word), "{word}: {first}");
+    }
+    stage.key(Key::Left);
+    stage.wait(6.0);
+    let touched = footer(&stage);
+    assert!(
+        touched.starts_with(" Left cursor W zoom [ pan"),
+        "{touched}"
+    );
+    assert!(
+        touched.contains(" space . p t e x f o ? help q quit"),
+        "{touched}"
+    );
+    // From the values, back to the run.
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.press("e");
+    assert!(footer(&stage).starts_with(" / find"), "{}", footer(&stage));
+    stage.key(Key::Esc);
+    assert!(
+        footer(&stage).starts_with(" space pause . step"),
+        "{}",
+        footer(&stage)
+    );
+}
+
+#[test]
+fn one_dialog_holds_the_settings_with_their_values() {
+    let mut stage = Stage::open("method-2", &[], SMALL);
+    stage.commands("pause = true").press("c");
+    for words in [
+        "line about the numbers",
+        "what theory predicts",
+        "screen",
+        "braille",
+        "dark",
+        "15 at most",
+        "acts on the lab",
+    ] {
+        stage.shows(words);
+    }
+    stage
+        .press("↓↓↓→")
+        .shows("half-block")
+        .press("x←←")
+        .shows("ascii")
+        .shows_no("half-block");
+    stage
+        .press("↓↓↓")
+        .press("\n")
+        .shows("30 at most")
+        .press("\n")
+        .shows("2 at most")
+        .press("←")
+        .shows("30 at most");
+    assert_eq!(stage.lab.view().fps, 30);
+    stage.lab.set_fps(12);
+    stage.press("→").shows("15 at most");
+    stage.lab.set_fps(12);
+    stage
+        .press("←")
+        .shows("10 at most")
+        .press("\u{1b}")
+        .shows_no("at most");
+}
+
+#[test]
+fn keys_of_lessons_are_where_a_lesson_is() {
+    for key in ["n", "N", "b", "h", "\u{e}"] {
+        Stage::open("method-2", &[], SMALL)
+            .press(key)
+            .shows("no key ");
+        let mut stage = Stage::open("method-2", &[], LARGE);
+        stage.lesson("is-the-wobble-real", 1);
+        stage.wait(20.0).press("e").press(key).shows_no("no key ");
+    }
+}
+
+/// A letter and its capital are two sides of one thing, or one of them is no key.
+#[test]
+fn no_capital_does_something_else_than_its_letter() {
+    const PAIRS: [char; 7] = ['n', 'p', 's', 'u', 'w', 'x', 'z'];
+    let keys = keys();
+    for letter in 'a'..='z' {
+        let both = [letter, letter.to_ascii_uppercase()];
+        let are_keys = both.iter().all(|key| keys.contains(&key.to_string()));
+        assert_eq!(are_keys, PAIRS.contains(&letter), "{letter}");
+    }
+}
+
+#[test]
+fn the_help_finds_keys_by_words_that_are_not_theirs() {
+    for (search, key) in [
+        ("speed", "+"),
+        ("dt", "e"),
+        ("mass", "e"),
+        ("color", "c"),
+        ("compare", "t"),
+        ("compare", "i"),
+        ("kick", "p"),
+        ("screenshot", "X"),
+    ] {
+        let found = found(search);
+        let names: Vec<_> = found.iter().map(|entry| entry.name()).collect();
+        assert!(
+            names.iter().any(|name| name.starts_with(key)),
+            "{search}: {names:?}"
+        );
+    }
+}
+
+/// The names of all keys there are in the lab.
+fn keys() -> Vec<String> {
+    let of_panes = PANES.iter().flat_map(|pane| pane.keys);
+    let rows = BINDINGS.iter().chain(of_panes);
+    let rows = rows.filter(|row| row.modes.contains(&Mode::Lab));
+    rows.flat_map(|row| row.keys)
+        .map(ToString::to_string)
+        .collect()
+}
+
+/// What follows the name of a key: "m shows both again".
+#[rustfmt::skip]
+const VERBS: [&str; 26] = [
+    "begins", "brings", "changes", "chooses", "counts", "does", "draws", "explains", "exports", "fills", "gives", "goes",
+    "hides", "leaves", "lists", "makes", "moves", "opens", "pauses", "plays", "returns", "saves", "searches", "shows",
+    "takes", "turns",
+];
+/// Letters of physics before such a verb.
+const SYMBOLS: [&str; 2] = ["the arrow F shows", "R turns every"];
+
+/// The keys that `text` names: in backticks or parentheses, before a verb or a colon, or in the first column of a list.
+fn named(text: &str) -> Vec<String> {
+    let text = SYMBOLS
+        .iter()
+        .fold(text.to_owned(), |text, symbol| text.replace(symbol, ""));
+    let is_letter = |word: &str| word.len() == 1 && word.chars().all(|c| c.is_ascii_alphabetic());
+    let words: Vec<_> = text.split_whitespace().collect();
+    let mut named = Vec::new();
+    for (at, word) in words.iter().enumerate() {
+        let whole = word
+            .trim_end_matches(['.', ',', ';', ':', ')'])
+            .trim_start_matches('(');
+        let bare = whole.trim_matches('`');
+        let next = words
+            .get(at + 1)
+            .map_or("", |next| next.trim_matches([',', '.', ';']));
+        let is_named = whole == format!("`{bare}`")
+            || word.trim_end_matches(['.', ',', ';', ':']) == format!("({bare})")
+            || word.ends_with(':')
+            || (*word == bare && VERBS.contains(&next));
+        if is_named && is_letter(bare) {
+            named.push(bare.to_owned());
+        }
+    }
+    let listed = text
+        .lines()
+        .filter_map(|line| line.trim_start().split_once("    "));
+    named.extend(
+        listed
+            .map(|(key, _)| key.to_owned())
+            .filter(|key| is_letter(key)),
+    );
+    named
+}
+
+fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
+    let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
+    let is_wanted = |path: &PathBuf| path.extension().is_some_and(|end| end == extension);
+    let below = folders
+        .iter()
+        .flat_map(|folder| self::files(folder, extension));
+    files.into_iter().filter(is_wanted).chain(below).collect()
+}
+
+/// The texts between quotation marks of `code`.
+fn literals(code: &str) -> Vec<String> {
+    let code = code.split("#[cfg(test)]").next().unwrap_or_default();
+    let lines = code
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"));
+    let code = lines.collect::<Vec<_>>().join("\n");
+    let code = code.replace("\\\"", "'").replace("'\"'", "");
+    code.split('"')
+        .skip(1)
+        .step_by(2)
+        .map(str::to_owned)
+        .collect()
+}
+
+#[test]
+fn every_key_that_a_text_names_is_a_key() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |path: &PathBuf| fs::read_to_string(path).unwrap();
+    let mut texts = vec![("README.md".to_owned(), read(&root.join("README.md")))];
+    let mut add = |folder: &str, extension: &str| {
+        for path in files(&root.join(folder), extension) {
+            let parts = if extension == "rs" {
+                literals(&read(&path))
+            } else {
+                vec![read(&path)]
+            };
+            texts.extend(
+                parts
+                    .into_iter()
+                    .map(|part| (path.display().to_string(), part)),
+            );
+        }
+    };
+    add("src/cli/topics", "txt");
+    add("presets", "md");
+    for room in ["analysis", "lab", "scenario", "teach", "tui"] {
+        add(&format!("src/{room}"), "rs");
+    }
+    let (keys, mut count) = (keys(), 0);
+    for (file, text) in &texts {
+        for key in named(text) {
+            assert!(keys.contains(&key), "{file} names the key {key}");
+            count += 1;
+        }
+    }
+    assert!(count > 200, "{count}");
+    assert_eq!(
+        named("H hides it, (M) too; `k`: no; B: no"),
+        ["H", "M", "k", "B"]
+    );
+}
