@@ -20,6 +20,8 @@ use std::f64::consts::PI;
 pub struct Frozen {
     /// |w*|, rad; `None` where it is not small enough to be told.
     lag: Option<f64>,
+    /// ln |A|.
+    growth: f64,
     /// Phases of the swing; `None` where it is too large to be told.
     swing: Option<Swing>,
 }
@@ -33,8 +35,7 @@ struct Swing {
     offset: [f64; 2],
     /// Tilt of L, rad.
     tilt: f64,
-    /// ln |A| and arg A.
-    growth: f64,
+    /// arg A.
     turn: f64,
     /// By how much more or less a step may turn it, for all that is left out, rad.
     slip: f64,
@@ -84,20 +85,22 @@ impl Frozen {
             |size: f64| 2.5 * psi * kick.abs() * size / size_2 + 1.5 * size / libm::tan(tilt).abs();
         Some(Self {
             lag: Some(lag_size).filter(|&size| off_by(size) <= WITHIN),
+            growth: 0.5 * libm::log1p(-2.0 * kappa * (1.0 - kappa) * (1.0 - cos)),
             swing: (off_by(lag_size.max(swing_size)) <= WITHIN).then_some(Swing {
                 lag,
                 offset,
                 tilt,
-                growth: 0.5 * libm::log1p(-2.0 * kappa * (1.0 - kappa) * (1.0 - cos)),
                 turn: libm::atan2(kappa * sin, 1.0 - kappa + kappa * cos),
                 slip: 2.0 * kick.abs() * (1.0 + 1.0 / libm::tan(tilt).abs()),
             }),
         })
     }
 
-    /// The angle by which the axle lags L in the mean, degrees.
-    pub fn lag_deg(&self) -> Option<f64> {
-        self.lag.map(f64::to_degrees)
+    /// The angle by which the axle lags L in the mean of the first `steps` steps, degrees; `None` too where the scheme feeds
+    /// the nutation meanwhile, until the axle swings about L and not about the lag.
+    pub fn lag_deg(&self, steps: u64) -> Option<f64> {
+        let is_fed = self.growth * steps as f64 > NEUTRAL;
+        self.lag.filter(|_| !is_fed).map(f64::to_degrees)
     }
 
     /// The greatest tilt less the least on the first `steps` steps, degrees; `None` where the scheme changes the nutation
@@ -105,11 +108,11 @@ impl Frozen {
     pub fn swing_deg(&self, steps: u64) -> Option<f64> {
         let swing = self
             .swing
-            .filter(|swing| (swing.growth * steps as f64).abs() <= NEUTRAL)?;
+            .filter(|_| (self.growth * steps as f64).abs() <= NEUTRAL)?;
         // Near a simple fraction of a turn the steps meet few phases of the swing, and drift through the others as slowly as
         // the precession, which is left out, turns them.
-        let seen = swing.seen(steps, 0.0);
-        let slipped = SLIPS.map(|part| swing.seen(steps, part * swing.slip));
+        let seen = swing.seen(steps, self.growth, 0.0);
+        let slipped = SLIPS.map(|part| swing.seen(steps, self.growth, part * swing.slip));
         let (least, most) = slipped.iter().fold((seen, seen), |(least, most), &seen| {
             (seen.min(least), seen.max(most))
         });
@@ -120,20 +123,21 @@ impl Frozen {
 }
 
 impl Swing {
-    /// The greatest tilt less the least on the first `steps` steps, rad, if each turned the swing by `slip` more.
-    fn seen(&self, steps: u64, slip: f64) -> f64 {
+    /// The greatest tilt less the least on the first `steps` steps, rad, if each turned the swing by `slip` more; its size grows by
+    /// `growth` a step.
+    fn seen(&self, steps: u64, growth: f64, slip: f64) -> f64 {
         let stride = (2.0 * PI / IN_A_TURN / self.turn.abs()).clamp(1.0, u32::MAX.into()) as u64;
         let phases = (steps / stride).min(PHASES);
-        let tilts = (0..=phases).map(|index| self.tilt((index * stride) as f64, slip));
+        let tilts = (0..=phases).map(|index| self.tilt((index * stride) as f64, growth, slip));
         let (low, high) = tilts.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), tilt| {
             (low.min(tilt), high.max(tilt))
         });
         high - low
     }
 
-    /// The tilt after `steps` steps, rad, if each turned the swing by `slip` more.
-    fn tilt(&self, steps: f64, slip: f64) -> f64 {
-        let size = libm::exp(self.growth * steps);
+    /// The tilt after `steps` steps, rad, if each turned the swing by `slip` more; likewise.
+    fn tilt(&self, steps: f64, growth: f64, slip: f64) -> f64 {
+        let size = libm::exp(growth * steps);
         let turned = (self.turn + slip) * steps;
         let (sin, cos) = (libm::sin(turned), libm::cos(turned));
         let down = self.lag[0] + size * (self.offset[0] * cos - self.offset[1] * sin);

@@ -98,6 +98,9 @@ fn it_speaks_of_the_reports_scheme_and_of_a_nutation_that_lasts() {
         "motion.steps=20000",
     ];
     assert_eq!(null("fast-top", &damped), (false, true));
+    // kappa 1.4: each step feeds it, until the axle lies across L.
+    let fed = ["body.rim.height_m=0.3", "motion.time_step_s=0.003"];
+    assert_eq!(null("method-2", &fed), (true, true));
     let sideways = "push.0={point='top',force_N=[5,0,0],from_s=0,for_s=1e3}";
     assert_eq!(null("method-2", &[sideways]), (true, true));
     let few = ["motion.scheme=exact", "motion.steps=3"];

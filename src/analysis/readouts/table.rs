@@ -198,7 +198,7 @@ readouts! {
     "nutation_multiplier", "", Scheme, "the report's scheme alone: its factor on a nutation's size each step; the truth is 1", |r| r.health.nutation.map(|nutation| nutation.multiplier);
     "lag_deg", "deg", State, "angle between axle and L", |r| r.health.lag_deg;
     "steady_lag_deg", "deg", Scheme, "the report's scheme alone: its angle between axle and L in slow steady precession at this tilt and spin, the true one times kappa psi/|1 - A|", |r| r.health.nutation.and_then(|nutation| nutation.scheme_lag_deg());
-    "predicted_lag_deg", "deg", Scheme, "the report's scheme alone: the mean angle between axle and L, |tau| dt/(|L| |1 - A|), at the last change of the forces; null where that linear theory is off by more than about a tenth", |r| r.frozen.and_then(|frozen| frozen.lag_deg());
+    "predicted_lag_deg", "deg", Scheme, "the report's scheme alone: the mean angle between axle and L, |tau| dt/(|L| |1 - A|), at the last change of the forces; null where that linear theory is off by more than about a tenth, and where the scheme feeds the nutation in the run (kappa above 1)", |r| r.frozen.and_then(|frozen| frozen.lag_deg(r.sample.step.saturating_sub(r.since)));
     "predicted_tilt_swing_deg", "deg", Scheme, "the report's scheme alone: the swing of the tilt about that lag, by the same theory; null too where the scheme damps or feeds the nutation in the run", |r| r.frozen.and_then(|frozen| frozen.swing_deg(r.sample.step.saturating_sub(r.since)));
     "measured_tilt_swing_deg", "deg", Measured, "greatest tilt less least tilt, as the steps show it", |r| value(r.tilt_swing);
     "measured_tilt_swing_uncertainty_deg", "deg", Measured, "how much more the tilt swings between the steps", |r| uncertainty(r.tilt_swing);
