@@ -5,6 +5,9 @@ use crate::run::Step;
 use crate::text::number::short;
 use std::fmt;
 
+/// A spin of less than this part of |L| is none but for rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// Friction on a run at one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slowing {
@@ -12,7 +15,7 @@ pub struct Slowing {
     pub work: f64,
     /// The time in which viscous friction alone takes the spin to 1/e, I3/k1, s; of a rotor by its own moment.
     pub spin_decay_s: Option<f64>,
-    /// The time in which dry friction alone would stop the present spin, L3/k0, s.
+    /// The time in which dry friction alone would stop the present spin, L3/k0, s; 0 where it has, but for rounding.
     pub spin_stop_s: Option<f64>,
     /// The time in which friction on the swing takes a fast top's nutation to 1/e, I1/k4, s.
     pub swing_decay_s: Option<f64>,
@@ -37,7 +40,9 @@ impl Slowing {
         } = friction;
         let along = top.map(|top| rotor.unwrap_or(top.along));
         let time = |moment: Option<f64>, rate: f64| Some(moment? / rate).filter(|s| s.is_finite());
+        let least = ROUNDING * state.momentum.norm();
         let spin = top.map(|_| state.axle().dot(&state.momentum).abs());
+        let spin = spin.map(|spin| if spin > least { spin } else { 0.0 });
         Some(Self {
             work: step.friction_work(),
             spin_decay_s: time(along, spin_viscous),
@@ -58,7 +63,9 @@ impl fmt::Display for Slowing {
                 short(seconds)
             )?;
         }
-        if let Some(seconds) = self.spin_stop_s {
+        if self.spin_stop_s == Some(0.0) {
+            f.write_str("; dry: it has stopped the spin")?;
+        } else if let Some(seconds) = self.spin_stop_s {
             write!(
                 f,
                 "; dry: alone it would stop the spin in {} s",

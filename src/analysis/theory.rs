@@ -116,6 +116,9 @@ const SAME_DEG: f64 = 1e-6;
 /// Two directions nearer to each other than this (rad) are one but for rounding.
 const SAME_DIRECTION: f64 = 1e-9;
 
+/// An axle whose height is less than this part of its length is level: rounding and a scheme's error are more than that.
+const LEVEL: f64 = 1e-6;
+
 /// A spin below this part of the momenta that the motion is made of is rounding.
 const SAME_PART: f64 = 1e-12;
 
@@ -141,8 +144,9 @@ impl Theory {
         let (low, high) = motion.tilt_range();
         let is_through_vertical = low <= PASSES_RAD || high >= PI - PASSES_RAD;
         let tilt_range_deg = (low.to_degrees(), high.to_degrees());
+        let cosine = Some(axle.dot(&up)).filter(|cosine| cosine.abs() > LEVEL);
         let (slow, fast) = match spins {
-            true => steady_precession(top.across * axle.dot(&up), spin, size),
+            true => steady_precession(top.across * cosine.unwrap_or(0.0), spin, size),
             false => (None, None),
         };
         let cusp_cosine = state.momentum.dot(&up) / spin;

@@ -73,7 +73,11 @@ impl Rk4 {
         listener.hear(|| {
             k1.phase(
                 "slope 1: at the beginning",
-                "Ω₁ = Q I₀⁻¹ Qᵀ L, Q₁′ = [Ω₁]× Q, L₁′ = τ(Q)",
+                if self.damping.is_some() {
+                    "Ω₁ = Q I₀⁻¹ Qᵀ L, Q₁′ = [Ω₁]× Q, L₁′ = τ(Q) + friction's torque at Ω₁"
+                } else {
+                    "Ω₁ = Q I₀⁻¹ Qᵀ L, Q₁′ = [Ω₁]× Q, L₁′ = τ(Q)"
+                },
             )
         });
         let k2 = self.slope_after(state, &k1, 0.5 * dt);

@@ -663,6 +663,13 @@ fn theory_under_friction_is_of_the_moment_and_predicts_no_motion() {
     let slowing = rubbed.health.slowing.unwrap();
     assert!((slowing.swing_decay_s.unwrap() - 3.3).abs() < 1e-9);
     assert_eq!((slowing.spin_decay_s, slowing.spin_stop_s), (None, None));
+    // A spin that is rounding has been stopped.
+    let stopped = readouts("first-dip", &["friction.spin_dry_Nm=100"], 3000);
+    let told = stopped.health.slowing.unwrap().to_string();
+    assert!(
+        told.contains("; dry: it has stopped the spin; on"),
+        "{told}"
+    );
 }
 
 /// The wheel's bearing and the air take the spin of the wheel alone: its moment counts, and not that of all that turns.

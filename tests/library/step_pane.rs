@@ -427,6 +427,7 @@ fn why_speaks_of_the_forces_that_act() {
     for (preset, set, words) in [
         ("cusps", "motion.scheme='report'", "The forces pull down"),
         ("torque-free", "motion.scheme='report'", "No torque acts"),
+        ("first-dip", "motion.scheme='rk4'", "which is not along τ"),
         ("wobble-push", "push.0.force_N=[50, 0, 0]", "X × F square"),
         (
             "wobble-push",
@@ -437,6 +438,16 @@ fn why_speaks_of_the_forces_that_act() {
         let mut stage = Stage::open(preset, &[set], SMALL);
         stage.commands("pause = true\nstep = 5\nshow = ['step', '3d']\nphase = 'why'");
         stage.shows(words);
+    }
+}
+
+#[test]
+fn the_slope_of_the_momentum_names_friction_where_it_is_in_its_number() {
+    for (preset, is_rubbed) in [("first-dip", true), ("cusps", false)] {
+        let mut stage = Stage::open(preset, &["motion.scheme='rk4'"], LARGE);
+        stage.commands("pause = true\nstep = 5\nfill = 'step'\nphase = 1");
+        stage.shows("L₁′ = τ(Q)");
+        assert_eq!(stage.picture().contains("friction's torque"), is_rubbed);
     }
 }
 

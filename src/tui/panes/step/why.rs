@@ -7,6 +7,7 @@ use crate::lab::Lab;
 use crate::lab::explained::Explained;
 use crate::lab::view::View;
 use crate::observe::dip::Dip;
+use crate::physics::loads::torque;
 use crate::physics::workings::{Quantity, Value};
 use crate::text::ladder::at_or_below;
 use crate::text::number::shortest;
@@ -21,6 +22,8 @@ const DOWN: &str = "The forces pull down, but their torque τ = X × F is level:
                         dL, along τ, to L; and the axle goes with L: sideways.";
 const ANY: &str = "Each force makes a torque τ = X × F square to it. In the time dt it adds dL, along τ, to L; and the axle goes with L, \
                    not with the force.";
+const RUBBED: &str = "The forces make a torque τ = X × F, and friction makes one too. In the time dt both add dL to L, which is not along τ; \
+                      and the axle goes with L.";
 const NONE: &str = "No torque acts: L stays as it is, and the axle circles about it.";
 /// The fewest lines of a picture.
 const LEAST_PICTURE: u16 = 6;
@@ -80,6 +83,7 @@ fn reason(explained: &Explained) -> &'static str {
     let (before, after) = &explained.states;
     match () {
         () if before.momentum == after.momentum => NONE,
+        () if !loads.friction.is_none() => RUBBED,
         () if loads.gravity >= 0.0 && loads.pushes.iter().all(|push| is_down(&push.force)) => DOWN,
         () => ANY,
     }
@@ -231,19 +235,30 @@ fn from_above(explained: &Explained, view: &View, area: Rect, buf: &mut Buffer) 
         return;
     }
     let length = tip.norm().max(LEAST_SEEN * arm);
-    // Where the scheme gives no torque: the change of L in the step.
     let changed = after.momentum - explained.states.0.momentum;
-    let torque = match last(explained, &["τ", "dL", "ΔL"]).map(|quantity| &quantity.value) {
-        Some(Value::Vector(torque)) => *torque,
-        _ => changed,
+    let rubbing = explained.workings.parts.last();
+    let rubbing = rubbing.filter(|part| !part.loads.friction.is_none());
+    // Of a scheme that gives no torque the change of L in the step. Under friction that is not along the torque.
+    let (torque, change) = match (
+        rubbing,
+        last(explained, &["τ", "dL", "ΔL"]).map(|quantity| &quantity.value),
+    ) {
+        (Some(part), _) => {
+            let moment = part.loads.moment(&explained.scenario.body.mechanics);
+            (torque(&after.orientation, &moment), changed)
+        }
+        (None, Some(Value::Vector(torque))) => (*torque, *torque),
+        (None, _) => (changed, changed),
     };
-    let torque = torque.xy().try_normalize(f64::MIN_POSITIVE);
+    let [torque, change] = [torque, change].map(|of| of.xy().try_normalize(f64::MIN_POSITIVE));
     // The corners of all that is drawn.
     let momentum_tip = along * (BEYOND * length);
     let mut corners = vec![Vector2::zeros(), tip, momentum_tip];
     if let Some(torque) = torque {
         corners.push(tip + torque * (TORQUE * length));
-        corners.push(momentum_tip + torque * (CHANGE * length));
+    }
+    if let Some(change) = change {
+        corners.push(momentum_tip + change * (CHANGE * length));
     }
     let least = corners.iter().fold(tip, |least, at| least.inf(at));
     let most = corners.iter().fold(tip, |most, at| most.sup(at));
@@ -254,7 +269,9 @@ fn from_above(explained: &Explained, view: &View, area: Rect, buf: &mut Buffer) 
     plan.line(Vector2::zeros(), tip, Ink::Strong(Role::Text));
     if let Some(torque) = torque {
         plan.arrow(tip, torque * (TORQUE * length), "τ", Role::X);
-        plan.arrow(momentum_tip, torque * (CHANGE * length), "dL", Role::X);
+    }
+    if let Some(change) = change {
+        plan.arrow(momentum_tip, change * (CHANGE * length), "dL", Role::X);
     }
     plan.sign(Vector2::zeros(), "+", Role::Quiet);
     plan.sign(tip, "o", Role::Focus);
