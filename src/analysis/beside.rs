@@ -1,10 +1,11 @@
-//! How far a run strays from the exact motion beside it, over every step.
+//! How far a run strays from the exact motion beside it, over every step, and how the tilts of both swing.
 //!
 //! The exact motion to the last bit costs as much as a step. Eight steps together are looked at within rounding, for a quarter
 //! of that; the farthest of all is computed to the last bit when it is asked for.
 
 use super::cost::is_affordable;
-use super::trial::Deviation;
+use super::swings::{Swing, Swings, height};
+use super::trial::{Deviation, distance_m};
 use crate::physics::State;
 use crate::physics::exact::AT_ONCE;
 use crate::run::Truth;
@@ -23,6 +24,7 @@ pub struct Beside {
     farthest: Option<State>,
     /// The distance of the farthest step, m.
     most_m: f64,
+    swings: Swings,
 }
 
 impl Beside {
@@ -34,6 +36,7 @@ impl Beside {
             waiting: Vec::new(),
             farthest: None,
             most_m: 0.0,
+            swings: Swings::new(&scenario.start),
         }
     }
 
@@ -73,7 +76,9 @@ impl Beside {
     fn look(&mut self) {
         let states = std::mem::take(&mut self.waiting);
         let near = self.truth.as_ref().zip(states.as_array());
-        if let Some(distances_m) = near.and_then(|(truth, states)| distances_near(states, truth)) {
+        let near = near.and_then(|(truth, states)| Some((states, near_exact(states, truth)?)));
+        if let Some((states, (distances_m, heights))) = near {
+            self.swings.follow(states, &heights);
             for (state, distance_m) in states.iter().zip(distances_m) {
                 if distance_m > self.most_m {
                     (self.farthest, self.most_m) = (Some(*state), distance_m);
@@ -82,8 +87,12 @@ impl Beside {
         } else {
             for state in &states {
                 self.settle_farthest(); // the forces may change here, and it stood under those before
-                let truth = self.truth.as_mut();
-                let distance_m = truth.map_or(0.0, |truth| Deviation::distance_of(state, truth));
+                let Some(truth) = &mut self.truth else {
+                    break;
+                };
+                let exact = truth.orientation_at(state.time_s);
+                self.swings.follow(&[*state], &[height(exact.m33)]);
+                let distance_m = distance_m(state, &exact, truth.scenario());
                 self.take_in(distance_m);
             }
         }
@@ -128,22 +137,37 @@ impl Beside {
     pub fn most_distance_m(&self) -> f64 {
         self.most_m
     }
+
+    /// How the tilt has swung up to then beside the exact motion's, where they differ most; `None` where it is not held
+    /// against that.
+    pub fn swing(&self) -> Option<Swing> {
+        self.truth.as_ref().and_then(|_| self.swings.worst())
+    }
 }
 
 /// Distance of the traced point of each of `states`, which follow one another, from where it should be, within a few units
-/// of rounding of the arm, m; `None` where that is not had in less time, or is no number.
-fn distances_near(states: &[State; AT_ONCE], truth: &Truth) -> Option<[f64; AT_ONCE]> {
+/// of rounding of the arm, m, and the [height] of the exact motion's axle; `None` where that is not had in less time, or is
+/// no number.
+fn near_exact(
+    states: &[State; AT_ONCE],
+    truth: &Truth,
+) -> Option<([f64; AT_ONCE], [f64; AT_ONCE])> {
     let scenario = truth.scenario();
     let at = &scenario.body.mechanics.points()[scenario.trace].at;
-    let [x, y, z] = truth.traced_near(&states.each_ref().map(|state| state.time_s))?;
-    let distances_m = std::array::from_fn(|place| {
+    let times_s = states.each_ref().map(|state| state.time_s);
+    let [x, y, z] = truth.positions_near(at, &times_s)?;
+    let distances_m: [f64; AT_ONCE] = std::array::from_fn(|place| {
         let exact = Vector3::new(x[place], y[place], z[place]);
         (states[place].orientation * at - exact).norm()
     });
-    distances_m
-        .iter()
-        .all(|m| m.is_finite())
-        .then_some(distances_m)
+    // Mostly the traced point is one of the axle.
+    let cosines = if at.x == 0.0 && at.y == 0.0 && at.z != 0.0 {
+        z.map(|z| z / at.z)
+    } else {
+        truth.positions_near(&Vector3::z(), &times_s)?[2]
+    };
+    let are_numbers = distances_m.iter().all(|m| m.is_finite());
+    are_numbers.then(|| (distances_m, cosines.map(height)))
 }
 
 #[cfg(test)]

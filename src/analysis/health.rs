@@ -4,18 +4,19 @@
 //! A = 1 − κ + κ e^{iψ} each step, where the truth is e^{iκψ}; a torque that turns L by δ = |τ|dt/|L| a step makes the
 //! axle lag by δ/|1 − A|, where the truth is δ/(κψ).
 
+use super::Beside;
 use super::cost::{AFFORDABLE_RAD, integration_rad, is_affordable};
 use super::slowing::Slowing;
-use super::trial::{Deviation, Trial};
+use super::swings::Swing;
+use super::trial::Deviation;
 use crate::physics::loads::torque;
 use crate::physics::{SchemeInfo, SymmetricTop, observables};
 use crate::run::resample::resampled;
-use crate::run::{Clock, EnergyUnit, Step};
+use crate::run::{Clock, EnergyUnit, Simulation, Step};
 use crate::scenario::{Edit, Motion, Scenario, rescale};
 use crate::work::restart::in_force;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// A run is believed while its traced point keeps within this part of its arm (its distance from the pivot) of the
@@ -25,9 +26,12 @@ pub const BELIEVED_WITHIN: f64 = 0.01;
 const SEARCH_STEPS: u64 = 2_000_000;
 /// Where a time step is not to be mended, the first of these is tried that can be true to the scenario's friction.
 const BETTER_SCHEMES: [&str; 2] = ["srkn11b", "strang"];
+/// At about so many steps of a trial, evenly spread, it is seen whether it goes on; and so often at least.
+const LOOKS: u64 = 1000;
+const MOST_TOGETHER: u64 = 4096;
 /// A nutation that swings by less than this (degrees) is none.
 pub const LEAST_SWING_DEG: f64 = 1e-6;
-/// A nutation that has changed by less than this part is as it was.
+/// A nutation that the scheme has changed by less than this part is as it was.
 const LEAST_CHANGE: f64 = 0.05;
 
 /// How a run stands at one step.
@@ -41,8 +45,8 @@ pub struct Health {
     pub picture: Picture,
     /// The report's scheme alone: what it does to nutation and lag.
     pub nutation: Option<Nutation>,
-    /// By how much the tilt swings in the exact motion's nutation, degrees; `None` where theory does not say.
-    pub swing_deg: Option<f64>,
+    /// How the tilt has swung beside the exact motion's; `None` where the exact motion would take too long.
+    pub swing: Option<Swing>,
     /// Whether the body's orientation is a rotation, as a scheme that breaks down does not leave it.
     pub is_a_rotation: bool,
     /// Angle between axle and L now, degrees.
@@ -116,15 +120,10 @@ pub enum Advice {
 }
 
 impl Health {
-    /// Of a run at `step`; `deviation` and `most_distance_m` from the exact motion, whose nutation swings by
-    /// `swing_deg`.
-    pub fn new(
-        step: &Step,
-        deviation: Option<Deviation>,
-        most_distance_m: Option<f64>,
-        swing_deg: Option<f64>,
-    ) -> Self {
+    /// Of the run at `step`, which `beside` has been shown up to there.
+    pub fn new(step: &Step, beside: &mut Beside) -> Self {
         let scenario = step.scenario();
+        let deviation = beside.deviation(step.after());
         // What is edited at this step is said at once: it is true of the step to come.
         let (motion, _) = in_force(scenario, step.number());
         let state = step.after();
@@ -141,7 +140,7 @@ impl Health {
                 scenario.file.body.rim.as_ref().map_or(1, |rim| rim.points),
             ),
             nutation: Nutation::of(step, &motion, psi),
-            swing_deg,
+            swing: beside.swing(),
             is_a_rotation: state.is_a_rotation(),
             lag_deg: if lag.is_finite() {
                 lag.to_degrees()
@@ -152,54 +151,46 @@ impl Health {
             energy_unit: step.energy_unit(),
             slowing: Slowing::new(step),
             deviation,
-            most_distance_m,
+            most_distance_m: deviation.map(|_| beside.most_distance_m()),
             arm_m: scenario.arm_m(),
             steps: step.number(),
             can_be_rescaled: rescale::can_be_rescaled(&scenario.file),
         }
     }
 
+    /// Whether the run is believed: the traced point has kept near enough to the exact motion, and the tilt swings as it
+    /// does. `None` where that is not known, or the traced point is the pivot.
+    pub fn is_believed(&self) -> Option<bool> {
+        Some(self.point_holds()? && self.swing?.is_right())
+    }
+
     /// Whether the traced point has kept near enough to the exact motion; `None` where that is not known, or the traced
     /// point is the pivot.
-    pub fn is_believed(&self) -> Option<bool> {
+    pub fn point_holds(&self) -> Option<bool> {
         self.most_distance_m
             .filter(|_| self.arm_m > 0.0)
             .map(|most| most <= BELIEVED_WITHIN * self.arm_m)
     }
 
-    /// How many times its size the scheme has made of a nutation since the start; the truth is 1.
-    pub fn nutation_left(&self) -> Option<f64> {
-        let nutation = self.nutation?;
-        Some(libm::pow(nutation.multiplier, self.steps as f64))
-    }
-
-    /// What the scheme has made of the nutation, where it has changed one that there is in truth by more than a
-    /// twentieth: how many times its size is left. `None` too where it is not known whether there is one.
+    /// What the scheme has made of the nutation, where the tilt does not swing as it should and the scheme has changed a
+    /// nutation by more than a twentieth since the start: how many times its size is left.
     pub fn changed_nutation(&self) -> Option<f64> {
-        let is_there = self.swing_deg? > LEAST_SWING_DEG;
-        self.nutation_left()
-            .filter(|left| is_there && (left - 1.0).abs() > LEAST_CHANGE)
-    }
-
-    /// How many times as far as it should the axle lags behind L, where that shifts the swing of its nutation by more than a
-    /// twentieth of it: the axle swings about the lag. `None` too where it is not known whether there is a nutation.
-    pub fn shifted_swing(&self) -> Option<f64> {
-        let (nutation, swing_deg) = (self.nutation?, self.swing_deg?);
-        let ratio = nutation.lag_ratio?;
-        let shift_deg = 2.0 * nutation.true_lag_deg? * (ratio - 1.0).abs();
-        (swing_deg > LEAST_SWING_DEG && shift_deg > LEAST_CHANGE * swing_deg).then_some(ratio)
+        let left = libm::pow(self.nutation?.multiplier, self.steps as f64);
+        let is_wrong = self
+            .swing
+            .is_some_and(|swing| !swing.is_right() && swing.is_there());
+        (is_wrong && (left - 1.0).abs() > LEAST_CHANGE).then_some(left)
     }
 
     /// Whether what the scheme has made of the nutation is large enough to be what puts the traced point off.
     pub(super) fn nutation_is_the_cause(&self) -> bool {
-        let (Some(left), Some(swing), Some(most)) = (
-            self.changed_nutation(),
-            self.swing_deg,
-            self.most_distance_m,
-        ) else {
+        let (Some(left), Some(swing), Some(most)) =
+            (self.changed_nutation(), self.swing, self.most_distance_m)
+        else {
             return false;
         };
-        swing.to_radians() * self.arm_m * (left - 1.0).abs() > most / 2.0
+        let (low, high) = swing.exact_deg;
+        (high - low).to_radians() * self.arm_m * (left - 1.0).abs() > most / 2.0
     }
 }
 
@@ -258,21 +249,37 @@ pub fn advise_while(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Option
     is_wanted().then_some(advice)
 }
 
+/// Plays `scenario` beside the exact motion: the most turns of the body in one time step, where the run is to be believed;
+/// `None` where it is not, or `is_wanted` returned false.
+fn turns_if_believed(scenario: &Arc<Scenario>, is_wanted: &dyn Fn() -> bool) -> Option<f64> {
+    let mut simulation = Simulation::new(Arc::clone(scenario));
+    let mut beside = Beside::new(scenario);
+    let together = (scenario.steps / LOOKS).clamp(1, MOST_TOGETHER);
+    let mut most_turns = 0.0_f64;
+    loop {
+        let end = scenario.steps.min(simulation.step_number() + together);
+        while simulation.step_number() < end {
+            beside.hold(simulation.step().ok()?.after());
+        }
+        let health = Health::new(simulation.now(), &mut beside);
+        most_turns = most_turns.max(health.turns_per_step);
+        if health.point_holds() != Some(true) || !is_wanted() {
+            return None;
+        }
+        if end == scenario.steps {
+            return health.is_believed()?.then_some(most_turns);
+        }
+    }
+}
+
 /// What trials of `scenario` lead to; each ends as one that does not hold when `is_wanted` returns false.
 fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
     let (own, scheme) = (scenario.motion.time_step_s, scenario.motion.scheme);
     let trial = |step: f64, scheme| {
         let other = Arc::new(resampled(scenario, step, scheme));
-        Trial::within(
-            &other,
-            BELIEVED_WITHIN * scenario.arm_m(),
-            |_| match is_wanted() {
-                true => ControlFlow::Continue(()),
-                false => ControlFlow::Break(()),
-            },
-        )
+        turns_if_believed(&other, is_wanted)
     };
-    let holds = |step: f64, scheme| trial(step, scheme).is_some_and(|trial| trial.most_turns < 0.5);
+    let holds = |step: f64, scheme| trial(step, scheme).is_some_and(|most_turns| most_turns < 0.5);
     if !is_affordable(scenario) || duration_s(scenario) / own > most_steps(scenario) {
         return Advice::Nothing;
     }

@@ -6,6 +6,7 @@ use super::frozen::Frozen;
 use super::gauges::Gauges;
 use super::health::Health;
 use super::measure::{Instruments, Measured};
+use super::swings::Swing;
 use super::theory::Theory;
 use super::trial::Deviation;
 use crate::physics::{LagrangeTop, State, SymmetricTop};
@@ -82,16 +83,14 @@ impl Monitor {
 
     /// Holds `step` against the exact motion, and says how the run is there.
     pub fn health(&mut self, step: &Step) -> Health {
-        let deviation = self.deviation(step);
-        let theory = self.theory(step.time_s());
-        Health::new(
-            step,
-            deviation,
-            deviation.map(|_| self.most_distance_m()),
-            theory
-                .filter(|theory| !theory.is_of_a_moment)
-                .map(|theory| theory.tilt_range_deg.1 - theory.tilt_range_deg.0),
-        )
+        self.catch_up();
+        Health::new(step, &mut self.beside)
+    }
+
+    /// How the tilt has swung up to the last [`deviation`](Self::deviation) beside the exact motion's, where they differ most;
+    /// `None` where it is not held against that.
+    pub fn swing(&self) -> Option<Swing> {
+        self.beside.swing()
     }
 
     /// How far off the exact motion the run is at `step`; `None` where that would take too long.

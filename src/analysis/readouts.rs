@@ -119,6 +119,7 @@ impl Readouts {
                 let deviation = monitor.deviation(simulation.now());
                 self.health.deviation = deviation;
                 self.health.most_distance_m = deviation.map(|_| monitor.most_distance_m());
+                self.health.swing = monitor.swing();
             }
             Source::Scenario | Source::State | Source::Scheme | Source::Theory | Source::Clock => {
                 let health = monitor.health(simulation.now());

@@ -66,6 +66,7 @@ pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
         true => vec![turns(health), distance(health)],
         false => vec![broken_down(health)],
     };
+    remarks.extend(wrong_swing(health));
     if health.is_believed() == Some(false) {
         remarks.extend(advice.and_then(|advice| mend(health, advice)));
     }
@@ -80,7 +81,7 @@ pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
     remarks.push(energy(health));
     remarks.extend(health.slowing.map(|slowing| taken(&slowing)));
     remarks.extend(others.into_iter().map(|(_, remark)| remark));
-    if health.picture == Picture::Strobed {
+    if health.picture == Picture::Strobed && health.is_believed() != Some(false) {
         // Of the picture alone: it changes no number, so it is said last.
         remarks.push(Remark::new(
             "the wheel's picture is strobed, the motion is not".to_owned(),
@@ -201,8 +202,18 @@ fn distance(health: &Health) -> Remark {
     Remark {
         long: format!("{metres} off the exact motion"),
         short: format!("{metres} off exact"),
-        warns: health.is_believed() == Some(false),
+        warns: health.point_holds() == Some(false),
     }
+}
+
+/// How the tilt swings, where it does not as it should although the traced point is right.
+fn wrong_swing(health: &Health) -> Option<Remark> {
+    let swing = health.swing.filter(|swing| !swing.is_right())?;
+    (health.point_holds() == Some(true)).then(|| Remark {
+        long: swing.to_string(),
+        short: swing.in_short(),
+        warns: true,
+    })
 }
 
 fn energy(health: &Health) -> Remark {

@@ -74,7 +74,7 @@ impl Deviation {
 
 /// Distance of the traced point from where it is if the body stands as `exact`, m.
 #[inline]
-fn distance_m(seen: &State, exact: &Matrix3<f64>, scenario: &Scenario) -> f64 {
+pub(super) fn distance_m(seen: &State, exact: &Matrix3<f64>, scenario: &Scenario) -> f64 {
     let at = &scenario.body.mechanics.points()[scenario.trace].at;
     ((seen.orientation - exact) * at).norm()
 }
@@ -84,25 +84,6 @@ impl Trial {
     /// said no.
     pub fn run(
         scenario: &Arc<Scenario>,
-        watch: impl FnMut(u64) -> ControlFlow<()>,
-    ) -> Option<Self> {
-        Self::play(scenario, f64::INFINITY, watch)
-    }
-
-    /// Plays `scenario` to its end; `None` where the traced point leaves the exact motion by more than `limit_m`, or the
-    /// numbers stop being finite, or `watch` said no.
-    pub fn within(
-        scenario: &Arc<Scenario>,
-        limit_m: f64,
-        watch: impl FnMut(u64) -> ControlFlow<()>,
-    ) -> Option<Self> {
-        Self::play(scenario, limit_m, watch)
-            .filter(|trial| trial.broke.is_none() && trial.most_distance_m <= limit_m)
-    }
-
-    fn play(
-        scenario: &Arc<Scenario>,
-        limit_m: f64,
         mut watch: impl FnMut(u64) -> ControlFlow<()>,
     ) -> Option<Self> {
         let mut simulation = Simulation::new(Arc::clone(scenario));
@@ -139,7 +120,7 @@ impl Trial {
             if next == next_look || trial.broke.is_some() {
                 trial.read_off(simulation.now());
             }
-            if trial.most_distance_m > limit_m || watch(simulation.step_number()).is_break() {
+            if watch(simulation.step_number()).is_break() {
                 return None;
             }
         }

@@ -2,7 +2,7 @@
 
 use super::kind::Plotted;
 use super::over_time::OverTime;
-use crate::analysis::Beside;
+use crate::analysis::{Beside, Health};
 use crate::export::stream::{self, Ended};
 use crate::physics::State;
 use crate::physics::exact::LagrangeTop;
@@ -40,8 +40,8 @@ pub struct Course {
     pub is_empty: bool,
     /// Where its numbers stopped being finite, if they did.
     pub broke: Option<NotFinite>,
-    /// How far its traced point has been off the exact motion at most, m; `None` where it was not held against that.
-    pub most_off_m: Option<f64>,
+    /// How it stands beside the exact motion at its last step; `None` where it was not held against that.
+    pub health: Option<Health>,
 }
 
 /// So many points of a path are kept, all of them. Of a longer one, those that reach places of its picture where it has not
@@ -136,7 +136,7 @@ impl Recorder {
                 end_s: self.end_s,
                 is_empty: self.is_empty,
                 broke,
-                most_off_m: None,
+                health: None,
             },
             wanted: self.wanted,
         }
@@ -173,7 +173,7 @@ impl Recorded {
             end_s: self.course.end_s.min(end_s),
             is_empty: self.course.is_empty,
             broke: self.course.broke,
-            most_off_m: self.course.most_off_m,
+            health: self.course.health,
         })
     }
 }
@@ -240,9 +240,8 @@ pub fn play(
         Ok((Ended::NotFinite(error), _)) => Some(error),
         Ok((Ended::Done, _)) | Err(_) => None, // nothing is written that could fail
     };
-    beside.settle();
     Some(Course {
-        most_off_m: beside.is_known().then(|| beside.most_distance_m()),
+        health: Some(Health::new(simulation.now(), &mut beside)),
         ..recorder.end(broke).course
     })
 }

@@ -15,7 +15,7 @@ use super::page::letters;
 use super::request::Drawn;
 pub use super::request::{Known, Request, Run};
 use super::space;
-use crate::analysis::health::{BELIEVED_WITHIN, LEAST_SWING_DEG};
+use crate::analysis::health::LEAST_SWING_DEG;
 use crate::run::Truth;
 use crate::scenario::Scenario;
 use crate::text::ladder;
@@ -264,20 +264,32 @@ fn title(runs: &[Run]) -> String {
 /// What draws the exact motion beside the runs, on the command line.
 pub const EXACT_BESIDE: &str = "--exact draws that beside it";
 
-/// What is said of `run` where its traced point was too far off the exact motion to be believed.
+/// What is said of `run` where it is not to be believed.
 fn not_believed(run: &Run, course: &Course, exact: bool) -> Option<String> {
-    let (most_m, arm_m) = (course.most_off_m?, run.scenario.arm_m());
-    (most_m > BELIEVED_WITHIN * arm_m).then(|| {
-        format!(
-            "do not believe {} with the scheme {} at {} s: its traced point is up to {} m ({} % of its arm) off the exact motion{}{}",
-            run.named,
-            run.scenario.motion.scheme.name,
-            shortest(run.scenario.motion.time_step_s),
+    let health = course
+        .health
+        .filter(|health| health.is_believed() == Some(false))?;
+    let (most_m, swing) = (health.most_distance_m?, health.swing?);
+    let of = format!(
+        "{} with the scheme {} at {} s",
+        run.named,
+        run.scenario.motion.scheme.name,
+        shortest(run.scenario.motion.time_step_s),
+    );
+    let beside = if exact {
+        String::new()
+    } else {
+        format!("; {EXACT_BESIDE}")
+    };
+    Some(match health.point_holds() {
+        Some(true) => {
+            format!("do not believe the nutation of {of}: {swing}, as in the exact motion{beside}")
+        }
+        _ => format!(
+            "do not believe {of}: its traced point is up to {} m ({} % of its arm) off the exact motion{beside}",
             short(most_m),
-            short(100.0 * most_m / arm_m),
-            if exact { "" } else { "; " },
-            if exact { "" } else { EXACT_BESIDE },
-        )
+            short(100.0 * most_m / health.arm_m),
+        ),
     })
 }
 

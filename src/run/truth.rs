@@ -8,7 +8,7 @@ use super::pushes::{self, Counting, Stretch};
 use crate::physics::exact::{AT_ONCE, Kind};
 use crate::physics::{ExactMotion, Loads, State};
 use crate::scenario::{Edit, Pushes, Scenario};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
 /// The exact motion of one scenario, at any time.
@@ -68,11 +68,15 @@ impl Truth {
         self.piece.orientation_at(time_s)
     }
 
-    /// Where the traced point is at `times` (s, in order), within a few units of rounding of its distance from the pivot: x, y
-    /// and z, m, world frame. `None` where there is no such short way, or the forces change before the last of them.
-    pub fn traced_near(&self, times: &[f64; AT_ONCE]) -> Option<[[f64; AT_ONCE]; 3]> {
+    /// Where the point `at` of the body (body frame, m) is at `times` (s, in order), within a few units of rounding of its
+    /// distance from the pivot: x, y and z, m, world frame. `None` where there is no such short way, or the forces change
+    /// before the last of them.
+    pub fn positions_near(
+        &self,
+        at: &Vector3<f64>,
+        times: &[f64; AT_ONCE],
+    ) -> Option<[[f64; AT_ONCE]; 3]> {
         let is_here = self.piece.begin_s() <= times[0] && times[AT_ONCE - 1] <= self.end_s;
-        let at = &self.scenario.body.mechanics.points()[self.scenario.trace].at;
         is_here
             .then(|| self.piece.positions_near(at, times))
             .flatten()

@@ -329,7 +329,7 @@ fn the_line_about_the_numbers_is_right_as_soon_as_an_edit_is_made() {
         ("undo = 1", "4.97 times a step"),
         (
             "go_to = 'start'\nset = { 'motion.time_step_s' = 0.05 }",
-            "2.49 times a step",
+            "2.49 turns a step",
         ),
         ("undo = 1\ngo_to = '40 s'", "4.97 times a step"),
     ] {

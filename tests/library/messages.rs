@@ -89,10 +89,10 @@ fn one_word_stands_for_what_a_long_time_step_shows() {
 /// From a tenth of a turn a step on the wheel's ten points are taken for one another: that is no fault of the run.
 #[test]
 fn a_wheel_that_is_strobed_is_no_fault_of_the_run() {
-    let good = health("method-2", &["motion.time_step_s=0.003"]);
+    let good = health("method-2", &["motion.time_step_s=0.0022"]);
     assert_eq!(good.is_believed(), Some(true));
     let remarks = remarks(&good, None);
-    assert_eq!(remarks[0].short, "0.149 turns a step");
+    assert_eq!(remarks[0].short, "0.109 turns a step");
     assert!(remarks.iter().all(|remark| !remark.warns), "{remarks:?}");
     let last = remarks.last().map(|remark| remark.long.as_str());
     assert_eq!(
@@ -100,7 +100,7 @@ fn a_wheel_that_is_strobed_is_no_fault_of_the_run() {
         Some("the wheel's picture is strobed, the motion is not")
     );
     for size in [SMALL, LARGE] {
-        Stage::open("method-2", &["motion.time_step_s=0.003"], size).shows_no(": strobed");
+        Stage::open("method-2", &["motion.time_step_s=0.0022"], size).shows_no(": strobed");
     }
 }
 
@@ -124,7 +124,7 @@ fn numbers_that_are_no_longer_finite_are_told_with_what_helps() {
         stage.commands("go_to = 20").wait(1.0);
         stage.lab.notice().unwrap_or_default()
     };
-    let mends = "a: dt 0.005 s mends it";
+    let mends = "a: srkn11b, dt 0.01 s mends it";
     let back = ", u takes the last edit back";
     let edit = "set = { 'motion.gravity_m_per_s2' = 9 }";
     assert_eq!(end("", true), format!("{begin}{mends}"));
@@ -147,7 +147,7 @@ fn what_mends_a_run_that_broke_down_is_told_as_soon_as_it_is_found() {
     }
     stage
         .wait(0.1)
-        .shows("no longer finite at step 3: a: dt 0.005 s mends it");
+        .shows("no longer finite at step 3: a: srkn11b, dt 0.01 s mends it");
 }
 
 /// A run that stands still is not read again by itself: the search has to begin as soon as it may.
@@ -161,7 +161,7 @@ fn advice_is_looked_for_where_the_lab_opens_paused() {
     while stage.lab.player().is_seeking_advice() {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
-    stage.wait(0.1).shows("a: dt 0.01 s mends it");
+    stage.wait(0.1).shows("a: dt 0.002 s mends it");
 }
 
 #[test]

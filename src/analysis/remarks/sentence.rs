@@ -1,6 +1,6 @@
 //! The health of a run in one sentence.
 
-use super::{NO_ROTATION, change};
+use super::{LAG_IS_RIGHT, NO_ROTATION, change};
 use crate::analysis::Health;
 use crate::analysis::health::{Advice, Picture};
 use crate::text::number::{short, shortest};
@@ -28,54 +28,60 @@ fn sentence(health: &Health, advice: Option<&Advice>) -> String {
         short(most),
         short(100.0 * most / health.arm_m)
     );
-    if health.is_believed() == Some(true) {
-        let picture = match health.picture {
-            Picture::Right => String::new(),
-            Picture::Unknown => {
-                format!(" (in a step the wheel turns {})", health.picture)
-            }
-            _ => format!(
-                "; only a picture of the turning wheel would mislead, which turns {} times a step: {}",
-                short(health.turns_per_step),
-                health.picture
-            ),
-        };
-        return match lost_nutation(health) {
-            None if is_exact => {
-                format!("The numbers hold: the run is the exact motion itself{picture}.")
-            }
-            None => format!(
-                "The numbers hold: the traced point has kept within {far} of the exact motion{picture}."
-            ),
-            Some(lost) => format!(
-                "The traced point holds, and the nutation does not: the point has kept within {far} of the exact motion{picture}, but {lost}."
-            ),
-        };
-    }
     let mend = advice.map_or(String::new(), |advice| how_to_mend(health, advice));
-    format!(
-        "Do not believe this run: {}, and the traced point is up to {far} off the exact motion{mend}.",
-        cause(health)
-    )
+    if health.point_holds() == Some(false) {
+        return format!(
+            "Do not believe this run: {}, and the traced point is up to {far} off the exact motion{mend}.",
+            cause(health)
+        );
+    }
+    if let Some(swing) = health.swing.filter(|swing| !swing.is_right()) {
+        return format!(
+            "The traced point holds, and the nutation does not: the point has kept within {far} of the exact motion, but {swing}{}{mend}.",
+            cause_of_swing(health)
+        );
+    }
+    let picture = match health.picture {
+        Picture::Right => String::new(),
+        Picture::Unknown => {
+            format!(" (in a step the wheel turns {})", health.picture)
+        }
+        _ => format!(
+            "; only a picture of the turning wheel would mislead, which turns {} times a step: {}",
+            short(health.turns_per_step),
+            health.picture
+        ),
+    };
+    if is_exact {
+        format!("The numbers hold: the run is the exact motion itself{picture}.")
+    } else {
+        format!(
+            "The numbers hold: the traced point has kept within {far} of the exact motion{picture}."
+        )
+    }
 }
 
-/// What is not the run's although its traced point holds: a nutation too small to show there, which the scheme has changed.
-fn lost_nutation(health: &Health) -> Option<String> {
-    let (nutation, swing) = (health.nutation?, short(health.swing_deg?));
-    let Some(left) = health.changed_nutation() else {
-        let ratio = short(health.shifted_swing()?);
-        return Some(format!(
-            "the nutation, a swing of {swing} degrees, is not the body's: at this time step the scheme's axle lags behind L {ratio} times as far as it should and swings about that, which a shorter time step mends"
-        ));
-    };
-    let now = match left {
-        left if left < 1e-3 => "is gone".to_owned(),
-        left => format!("has {} times its size", short(left)),
-    };
-    let (verb, percent) = change(&nutation);
-    Some(format!(
-        "the nutation, a swing of {swing} degrees that should last, is not the body's: the scheme {verb} it by {percent} % a step, so that it {now}"
-    ))
+/// Why the tilt does not swing as it should, where that is known.
+fn cause_of_swing(health: &Health) -> String {
+    let lag_ratio = health.nutation.and_then(|nutation| nutation.lag_ratio);
+    if let (Some(nutation), Some(left)) = (health.nutation, health.changed_nutation()) {
+        let now = match left {
+            left if left < 1e-3 => "is gone".to_owned(),
+            left => format!("has {} times its size", short(left)),
+        };
+        let (verb, percent) = change(&nutation);
+        format!(": the scheme {verb} the nutation by {percent} % a step, so that it {now}")
+    } else if let Some(ratio) = lag_ratio.filter(|ratio| *ratio > LAG_IS_RIGHT) {
+        let ratio = short(ratio);
+        format!(
+            ": at this time step the scheme's axle lags behind L {ratio} times as far as it should and swings about that"
+        )
+    } else if TAU * health.turns_per_step >= TOO_FAR_RAD {
+        let turns = short(health.turns_per_step);
+        format!(": the body turns {turns} times in a time step")
+    } else {
+        String::new()
+    }
 }
 
 fn cause(health: &Health) -> String {
@@ -130,7 +136,7 @@ fn how_to_mend(health: &Health, advice: &Advice) -> String {
                 true => format!(" (--time-step {step})"),
                 false => String::new(),
             };
-            format!("; a time step of {step} s{option}{throughout} keeps it within 1 %")
+            format!("; a time step of {step} s{option}{throughout} mends it")
         }
         Advice::Scheme {
             name,
