@@ -1,4 +1,4 @@
-//! The colour of each role, from the 16 colours that every terminal has.
+//! The colour of each role, from the 16 colours that every terminal has, and two of the 256 for a light screen.
 //!
 //! People with any kind of colour vision can tell x, y and z apart: cyan, yellow and magenta differ in brightness as well as
 //! in hue, and so do blue, red and dark cyan on a light screen. No meaning depends on colour alone: each curve has its
@@ -6,6 +6,10 @@
 
 use crate::lab::view::theme::{Background, Theme};
 use ratatui::style::{Color, Modifier, Style};
+
+/// #008787 and #008700 of the 256 colours.
+const DARK_CYAN: u8 = 30;
+const DARK_GREEN: u8 = 28;
 
 /// The role of a piece of the screen, which decides its style.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,11 +87,12 @@ fn colour(role: Role, background: Background) -> Color {
     match role {
         Role::X => choose(Color::Cyan, Color::Blue),
         Role::Y => choose(Color::Yellow, Color::Red),
-        Role::Z => choose(Color::Magenta, Color::Cyan),
+        // Cyan and green are too pale on a light screen, and the 16 colours have no darker ones.
+        Role::Z => choose(Color::Magenta, Color::Indexed(DARK_CYAN)),
         // No curve, push or warning has the colour of the exact motion.
         Role::Exact => choose(Color::LightRed, Color::Magenta),
         Role::Warning => choose(Color::LightYellow, Color::Red),
-        Role::Push => Color::Green,
+        Role::Push => choose(Color::Green, Color::Indexed(DARK_GREEN)),
         Role::Focus | Role::Track | Role::OldTrack => choose(Color::LightBlue, Color::Blue),
         _ => Color::Reset,
     }
@@ -114,6 +119,42 @@ mod tests {
                     "{role:?} on {background:?}"
                 );
             }
+        }
+    }
+
+    #[test]
+    fn every_colour_is_seen_on_white() {
+        /// What xterm has for the colours that are used, and the two that every terminal has.
+        fn rgb(colour: Color) -> Option<[u8; 3]> {
+            match colour {
+                Color::Reset => None,
+                Color::Red => Some([205, 0, 0]),
+                Color::Green => Some([0, 205, 0]),
+                Color::Blue => Some([0, 0, 238]),
+                Color::Magenta => Some([205, 0, 205]),
+                Color::Cyan => Some([0, 205, 205]),
+                Color::Indexed(DARK_CYAN) => Some([0, 135, 135]),
+                Color::Indexed(DARK_GREEN) => Some([0, 135, 0]),
+                other => panic!("{other:?} is not known here"),
+            }
+        }
+        // Contrast as WCAG 2 defines it, from the luminance of sRGB.
+        let contrast = |rgb: [u8; 3]| {
+            let linear = rgb.map(|part| {
+                let part = f64::from(part) / 255.0;
+                if part <= 0.04045 {
+                    part / 12.92
+                } else {
+                    ((part + 0.055) / 1.055).powf(2.4)
+                }
+            });
+            1.05 / (0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2] + 0.05)
+        };
+        use Role::{Exact, Focus, OldTrack, Push, Track, Warning, X, Y, Z};
+        for role in [X, Y, Z, Exact, Warning, Push, Focus, Track, OldTrack] {
+            let colour = colour(role, Background::Light);
+            let contrast = rgb(colour).map_or(21.0, contrast);
+            assert!(contrast >= 3.0, "{role:?}: {contrast}");
         }
     }
 }
