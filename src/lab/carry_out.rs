@@ -115,6 +115,13 @@ impl Lab {
                 })
             }
             Command::Detail(detail_s) => self.set_detail(*detail_s),
+            Command::DetailOf(curve) => {
+                self.view.detail_of = *curve;
+                Ok(Done::saying(match curve {
+                    Some(curve) => format!("the upper strip shows {}", curve.name()),
+                    None => "the upper strip shows what swings: the tilt, or x".to_owned(),
+                }))
+            }
             Command::Since(since_s) => self.set_since(*since_s),
             Command::Magnify(times) => self.magnify(*times),
             Command::Cursor(to) => self.set_cursor(*to),

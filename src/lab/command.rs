@@ -17,6 +17,7 @@ use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, Part};
 use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
+use crate::observe::recording::Curve;
 use crate::scenario::problem::{Found, nearest};
 use crate::scenario::{Document, Problem, Problems};
 use crate::work::expression::Expression;
@@ -112,6 +113,8 @@ pub enum Command {
     Window(f64),
     /// Length of time that the strip of the fast motion shows, s.
     Detail(f64),
+    /// What that strip shows; `None`: the motion tells.
+    DetailOf(Option<Curve>),
     /// Time at the left edge of the traces, s; `None`: they follow the run.
     Since(Option<f64>),
     /// How many times the values of the traces are magnified.

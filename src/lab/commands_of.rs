@@ -128,10 +128,7 @@ impl Lab {
             {
                 Ok(Some(vec![self.moved_cursor(signed(direction, times))]))
             }
-            (Mode::Lab, Pane::TRACES) => Err(
-                "Left and Right move the cursor here, z and Z magnify the values; Tab: other panes"
-                    .to_owned(),
-            ),
+            (Mode::Lab, Pane::TRACES) => Ok(Some(vec![self.other_detail(direction, times)])),
             (Mode::Lab, _) => Err(
                 "z and Z zoom here; arrows turn the 3-D view (d) and choose values (e)".to_owned(),
             ),

@@ -78,6 +78,9 @@ struct KeptPlace {
     /// The time that the strip of the fast motion shows; `None` where the motion or `[view]` of the scenario tells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     detail_s: Option<f64>,
+    /// What that strip shows; `None` where the motion or `[view]` of the scenario tells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    detail_of: Option<String>,
     /// The id of the pane in focus.
     focus: String,
     filled: bool,
@@ -222,6 +225,7 @@ impl Lab {
             shows_exact: self.player.run().shows_exact(),
             window_s: self.view.window_s,
             detail_s: self.view.detail_s,
+            detail_of: self.view.detail_of.map(|curve| curve.name().to_owned()),
             focus: self.view.focus.id().to_owned(),
             filled: self.view.filled,
             exporting: self.files.exported_to().map(|path| Shown(path).to_string()),

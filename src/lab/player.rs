@@ -144,7 +144,8 @@ impl Player {
         self.read_off(view.cursor);
         let of_this_run = self.has_detail.then_some(self.detail.curve);
         self.choose_detail(now, view);
-        let is_other = of_this_run.is_some_and(|before| before != self.detail.curve);
+        let is_other = view.detail_of.is_none()
+            && of_this_run.is_some_and(|before| before != self.detail.curve);
         self.explain(view);
         // Not while the user waits for a step to be reached: the search would take a processor from the stepping.
         if self.is_advised
@@ -193,6 +194,7 @@ impl Player {
         }
         let wanted = Wanted {
             window_s: view.detail_s,
+            curve: view.detail_of,
             long_s: view.window_s,
             place: match self.cursor() {
                 Some(cursor) => Placement::About(cursor.time_s),

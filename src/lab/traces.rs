@@ -6,7 +6,9 @@ use super::answer::{Answer, Done};
 use super::command::{Command, CursorTo, MOST_MAGNIFIED, Place};
 use crate::observe::live::LiveRun;
 use crate::observe::lookup;
+use crate::observe::recording::Curve;
 use crate::observe::strip::Strip;
+use crate::scenario::screen::{AUTO, DETAILS};
 
 /// The share of the window by which a key moves the cursor, and by which it moves the window.
 const CURSOR_SHARE: f64 = 0.02;
@@ -39,6 +41,18 @@ impl Lab {
         self.view.detail_s = Some(detail_s);
         let text = format!("the strip of the fast motion shows {detail_s} s");
         Ok(Done::saying(text))
+    }
+
+    /// The command that shows another curve in the strip of the fast motion, in the order of [`DETAILS`].
+    pub(super) fn other_detail(&self, direction: Direction, times: i32) -> Command {
+        let now = self.view.detail_of.map_or(AUTO, Curve::name);
+        let now = DETAILS.iter().position(|name| *name == now).unwrap_or(0) as i32;
+        let by = match direction {
+            Direction::Up | Direction::PageUp => -times,
+            _ => times,
+        };
+        let next = (now + by).rem_euclid(DETAILS.len() as i32) as usize;
+        Command::DetailOf(Curve::of_name(DETAILS[next]))
     }
 
     pub(super) fn set_since(&mut self, since_s: Option<f64>) -> Answer {

@@ -6,6 +6,7 @@
 
 use super::live::LiveRun;
 use super::recording::{Curve, Recording};
+use super::strip::{LEAST_SWING_DEG, Strip};
 use crate::analysis::Readouts;
 use crate::text::ladder;
 
@@ -18,18 +19,23 @@ const PAGE: f64 = 0.25;
 /// x is shown once it turns `BECOMES_X` times as often as the tilt, until it turns less than `STAYS_X` times as often.
 const BECOMES_X: f64 = 3.0;
 const STAYS_X: f64 = 1.5;
+/// The fewest columns of dots in which a swing is seen as one: of small dots, and of dots as wide as a cell.
+const COLUMNS_OF_SMALL: f64 = 5.0;
+const COLUMNS_OF_LARGE: f64 = 8.0;
 /// The shortest window, in time steps.
 const LEAST_STEPS: f64 = 10.0;
 
 /// A window of time, and the curve that it shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detail {
-    /// The tilt, or x where the tilt does not swing and x does.
+    /// What was chosen, or else the tilt, or x where the tilt does not swing and x does.
     pub curve: Curve,
     /// Time at its left edge, s.
     pub begin_s: f64,
     /// Its length, s.
     pub window_s: f64,
+    /// The period of the swings that its length was chosen by, s; `None` where it was chosen by hand or nothing swings.
+    pub swing_s: Option<f64>,
     /// Whether it stands still for a while, because the run is too fast for anyone to follow it.
     pub is_snapshot: bool,
 }
@@ -39,6 +45,8 @@ pub struct Detail {
 pub struct Wanted {
     /// Its length, s, where it was chosen by hand.
     pub window_s: Option<f64>,
+    /// The curve, where it was chosen by hand.
+    pub curve: Option<Curve>,
     /// Length of the long window, s: the longest that it may have.
     pub long_s: f64,
     /// Which time it shows.
@@ -63,6 +71,7 @@ impl Wanted {
     pub fn following(long_s: f64) -> Self {
         Self {
             window_s: None,
+            curve: None,
             long_s,
             place: Placement::Following,
         }
@@ -74,10 +83,13 @@ impl Detail {
     pub fn new(run: &LiveRun, readouts: &Readouts, wanted: &Wanted, before: Option<&Self>) -> Self {
         let swing_s = readouts.swing_s();
         let was_x = before.is_some_and(|before| before.curve == Curve::X);
-        let (curve, swing_s) = match of_x(run.recording(), wanted.long_s, was_x) {
+        let (chosen, swing_s) = match of_x(run.recording(), wanted.long_s, was_x) {
             Some(of_x) if was_x || swing_s.is_none() => (Curve::X, Some(of_x)),
             _ => (Curve::Tilt, swing_s),
         };
+        let swing_s = swing_s.or_else(|| of_tilt(run.recording(), wanted.long_s));
+        let curve = wanted.curve.unwrap_or(chosen);
+        let chosen_by_s = swing_s.filter(|_| wanted.window_s.is_none());
         let least_s = LEAST_STEPS * readouts.time_step_s;
         let window_s = wanted.window_s.unwrap_or_else(|| {
             let before_s = before.map(|before| before.window_s);
@@ -101,23 +113,53 @@ impl Detail {
             curve,
             begin_s: begin_s.max(0.0),
             window_s,
+            swing_s: chosen_by_s,
             is_snapshot: wanted.place == Placement::Latest,
         }
+    }
+
+    /// The window on `columns` of dots, `is_small` if a cell has two of them: where it has no room for all swings of
+    /// the window, a part of it that has `at_s` (s).
+    pub fn strip(&self, columns: usize, is_small: bool, at_s: f64) -> Strip {
+        let least = if is_small {
+            COLUMNS_OF_SMALL
+        } else {
+            COLUMNS_OF_LARGE
+        };
+        let swings = self.swing_s.map_or(1.0, |swing_s| self.window_s / swing_s);
+        let parts = (swings * least / columns.max(1) as f64).ceil();
+        let parts = parts.min(swings.floor()).max(1.0);
+        let part_s = self.window_s / parts;
+        let at_s = if self.is_snapshot { self.begin_s } else { at_s };
+        let part = Strip::following((at_s - self.begin_s).min(self.window_s), part_s, columns);
+        Strip::new(self.begin_s + part.begin_s, part_s, columns)
     }
 }
 
 /// The period of x, s, where x swings while the tilt hardly does, in a time short beside `long_s` (s); with `was_x` it has
 /// done so before, and the tilt must swing more often to be taken instead.
 fn of_x(recording: &Recording, long_s: f64, was_x: bool) -> Option<f64> {
-    let whole = recording.whole()?;
-    let since_s = (whole.end_s - long_s).max(0.0);
+    let (time_s, [x, tilt]) = turns(recording, long_s)?;
+    let swing_s = 2.0 * time_s / x;
+    let more_often = if was_x { STAYS_X } else { BECOMES_X };
+    (x > 2.0 && x > more_often * tilt && MOST_SWINGS * swing_s < long_s).then_some(swing_s)
+}
+
+/// The period of the tilt, s, as it was recorded in the last `long_s` (s); `None` where it changes by rounding alone.
+fn of_tilt(recording: &Recording, long_s: f64) -> Option<f64> {
+    let (time_s, [_, tilt]) = turns(recording, long_s)?;
+    let extent = recording.whole()?.extent(Curve::Tilt);
+    (tilt > 2.0 && extent.max - extent.min > LEAST_SWING_DEG).then_some(2.0 * time_s / tilt)
+}
+
+/// The recorded part of the last `long_s`, s, and how often x and the tilt turned in it.
+fn turns(recording: &Recording, long_s: f64) -> Option<(f64, [f64; 2])> {
+    let end_s = recording.whole()?.end_s;
+    let since_s = (end_s - long_s).max(0.0);
     let turns = recording.since(since_s).fold([0, 0], |[x, tilt], block| {
         [x + block.turns(Curve::X), tilt + block.turns(Curve::Tilt)]
     });
-    let [x, tilt] = turns.map(f64::from);
-    let swing_s = 2.0 * (whole.end_s - since_s) / x;
-    let more_often = if was_x { STAYS_X } else { BECOMES_X };
-    (x > 2.0 && x > more_often * tilt && MOST_SWINGS * swing_s < long_s).then_some(swing_s)
+    Some((end_s - since_s, turns.map(f64::from)))
 }
 
 /// A length of 1, 2 or 5 times a power of ten for swings of `swing_s`; `before_s` as long as that is right (all s).
@@ -247,10 +289,26 @@ mod tests {
         let (run, readouts) = at("torque-free", 20_000);
         let detail = Detail::new(&run, &readouts, &Wanted::following(20.0), None);
         assert_eq!(detail.curve, Curve::X);
-        let strip = super::super::strip::Strip::new(detail.begin_s, detail.window_s, 100);
+        let strip = Strip::new(detail.begin_s, detail.window_s, 100);
         let columns = strip.columns(run.recording(), Curve::X, &[]);
         assert!(columns.iter().flatten().all(|column| column.band.is_none()));
         assert!(detail.window_s < 10.0, "{}", detail.window_s);
+    }
+
+    #[test]
+    fn a_swing_is_at_least_five_small_dots_wide_or_eight_cells() {
+        for (preset, steps) in [("method-1", 900), ("wobble-push", 900), ("poinsot", 5000)] {
+            let (run, readouts) = at(preset, steps);
+            let detail = Detail::new(&run, &readouts, &Wanted::following(15.0), None);
+            let now_s = run.now().time_s;
+            for (columns, is_small, least) in [(50, true, 5.0), (25, false, 8.0)] {
+                let strip = detail.strip(columns, is_small, now_s);
+                let swing_s = detail.swing_s.unwrap();
+                let width = columns as f64 * swing_s / strip.window_s;
+                assert!(width >= least, "{preset}: {width} columns a swing");
+                assert!(strip.column(now_s).is_some(), "{preset}: {strip:?}");
+            }
+        }
     }
 
     #[test]

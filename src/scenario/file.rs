@@ -208,6 +208,7 @@ pub struct ViewFile {
     pub window_s: Option<f64>,
     /// Length of time that the strip of the fast motion shows, s.
     pub detail_s: Option<f64>,
+    pub detail_of: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exact: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -7,7 +7,7 @@ mod check;
 
 pub use super::kind::{Kind, Range, ZOOM};
 use super::problem::nearest;
-use super::screen::{ALL_ROWS, FILLING, HIDEABLE, PANES, PHASES};
+use super::screen::{ALL_ROWS, DETAILS, FILLING, HIDEABLE, PANES, PHASES};
 use super::solids;
 use crate::physics::scheme;
 pub use check::check;
@@ -227,6 +227,7 @@ pub static KEYS: &[Key] = &[
     may("view.next", Line, "one line: what to try after the run (default, for a preset: its own)"),
     may("view.window_s", Number(Positive), "length of time that the traces show, s (default: the run, or what is played of it in two minutes)"),
     may("view.detail_s", Number(Positive), "length of time that the strip of the fast motion shows, s (default: about ten swings of the axle)"),
+    may("view.detail_of", OneOf(&DETAILS), "what that strip shows (default: auto, the tilt, or x where the tilt does not swing)"),
     may("view.exact", Flag, "whether the exact motion is drawn beside the run (default: false)"),
     may("view.show", Words(&PANES), "the panes that share the screen, where it has room for them; empty: as many as there is room for, without step (default)"),
     may("view.hide", Words(&HIDEABLE), "what is not shown: panes, the line about the numbers' health, theory's predicted numbers, the line look_at (default: empty)"),

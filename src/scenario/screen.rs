@@ -19,6 +19,11 @@ pub const HIDEABLE: [&str; PANES.len() + 3] = joined(&PANES, &["health", "predic
 /// What can fill the screen.
 pub const FILLING: [&str; PANES.len() + 1] = joined(&PANES, &["none"]);
 
+/// What the strip of the fast motion can show; auto: the tilt, or x where the tilt does not swing.
+pub const DETAILS: [&str; 5] = [AUTO, "x", "y", "z", "tilt"];
+/// Chosen by the motion.
+pub const AUTO: &str = "auto";
+
 /// The page of the step pane after those of the phases.
 pub const WHY: &str = "why";
 /// The last phase of a step, whatever it is called.

@@ -14,10 +14,30 @@ use toml::{Table, Value};
 
 /// The keys of `lab` and `task`, in the order in which they are carried out. Between `push` and `go_to` stands how the run
 /// is shown.
-const ORDER: [&str; 22] = [
-    "open", "set", "push", "speed", "look_at", "next", "window_s", "detail_s", "since_s",
-    "magnify", "exact", "show", "hide", "bare", "camera", "zoom", "fill", "phase", "sum_to",
-    "point_at", "wait_s", "go_to",
+const ORDER: [&str; 23] = [
+    "open",
+    "set",
+    "push",
+    "speed",
+    "look_at",
+    "next",
+    "window_s",
+    "detail_s",
+    "detail_of",
+    "since_s",
+    "magnify",
+    "exact",
+    "show",
+    "hide",
+    "bare",
+    "camera",
+    "zoom",
+    "fill",
+    "phase",
+    "sum_to",
+    "point_at",
+    "wait_s",
+    "go_to",
 ];
 const RUN_UNTIL: &str = "run_until";
 const KEEP: &str = "keep";

@@ -9,7 +9,7 @@ use ratatui::layout::Rect;
 /// The layer of a dot. Layers differ not in colour alone: see [`Marker::strong`] and [`Marker::faint`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
-    /// The run's own motion. It hides the layers under it, except for the exact motion.
+    /// The run's own motion. It hides the layers under it; the dashes of the exact motion hide it.
     Strong(Role),
     /// The exact motion, axes, and the previous sweep.
     Faint(Role),
@@ -144,34 +144,17 @@ impl Dots {
         }
     }
 
-    /// The bits of a filled cell; 0 for kinds of dots with at most two in a cell, whose cells never count as filled.
-    fn patch(&self) -> u8 {
-        let (across, down) = self.marker.dots();
-        if across * down <= 2 {
-            return 0;
-        }
-        let places = (0..across).flat_map(|x| (0..down).map(move |y| (x, y)));
-        places.fold(0, |bits, (x, y)| bits | self.marker.bit(x, y))
-    }
-
     /// Draws the dots on the screen; cells without dots are left as they are.
     pub fn render(&self, theme: &Theme, buf: &mut Buffer) {
-        let full = self.patch();
         for (cell, position) in self.cells.iter().zip(self.area.positions()) {
             let (symbol, role) = match (cell.strong, cell.faint, cell.under, cell.ghost) {
                 (0, 0, 0, 0) => continue,
                 (0, 0, 0, ghost) => (self.marker.ghost(ghost), Role::Ghost),
                 (0, 0, under, _) => (self.marker.faint(under), cell.under_role),
                 (0, faint, ..) => (self.marker.faint(faint), cell.faint_role),
-                // A motion too fast to be drawn as a line fills the cell; the exact motion is then drawn over it.
-                (strong, faint, ..)
-                    if strong == full && faint != 0 && cell.faint_role == Role::Exact =>
-                {
+                // The exact motion is dashed: where it coincides with the run, the run is seen between its dashes.
+                (_, faint, ..) if faint != 0 && cell.faint_role == Role::Exact => {
                     (self.marker.faint(faint), cell.faint_role)
-                }
-                // Between the swings of the run the exact motion stays visible as dots beside its own.
-                (strong, faint, ..) if cell.faint_role == Role::Exact => {
-                    (self.marker.strong(strong | faint), cell.strong_role)
                 }
                 (strong, ..) => (self.marker.strong(strong), cell.strong_role),
             };

@@ -7,7 +7,7 @@ use gyrolab::lab::values::listed::ListedValue;
 use gyrolab::lab::view::markers::Marker;
 use gyrolab::lab::view::theme::{Background, Theme};
 use gyrolab::lab::view::{Pane, View};
-use gyrolab::observe::detail::Detail;
+use gyrolab::observe::detail::{Detail, Wanted};
 use gyrolab::observe::ghost::Ghost;
 use gyrolab::observe::live::LiveRun;
 use gyrolab::observe::pace::Pace;
@@ -88,6 +88,7 @@ fn undivided(run: &LiveRun, view: &View) -> Detail {
         curve: Curve::Tilt,
         begin_s: long.begin_s,
         window_s: long.window_s,
+        swing_s: None,
         is_snapshot: false,
     }
 }
@@ -262,6 +263,7 @@ fn fast_and_slow_motion_are_both_seen() {
         curve: Curve::Tilt,
         begin_s: 20.0,
         window_s: 20.0,
+        swing_s: None,
         is_snapshot: false,
     };
     let panes = |size| {
@@ -299,8 +301,58 @@ fn the_edges_of_a_band_are_the_extremes_of_the_steps() {
         let band = column.band.unwrap();
         assert!(band.min <= min && max <= band.max);
         assert_eq!((column.extent.min, column.extent.max), (min, max));
-        assert!(band.min < column.mean && column.mean < band.max);
     }
+}
+
+/// The traces of `now` on the pane of an 80x24 screen, with the fast motion above.
+fn divided(now: &LiveRun, buf: &mut Buffer) {
+    let view = &view(now, Marker::Braille);
+    let wanted = Wanted::following(view.window_s);
+    let readouts = LiveRun::new(Arc::clone(now.scenario())).readouts();
+    let detail = &Detail::new(now, &readouts, &wanted, None);
+    let pane = Traces {
+        run: now,
+        ghost: None,
+        pinned: None,
+        measured: None,
+        view,
+        detail,
+        cursor: None,
+    };
+    pane.render(buf.area, buf);
+}
+
+#[test]
+fn the_dashes_of_the_exact_motion_are_seen_over_the_run() {
+    let mut now = run("wobble-push", &[], "", 900);
+    now.set_overlay(true);
+    now.follow_exact(|| false);
+    let mut buf = Buffer::empty(Rect::new(0, 0, 27, 19));
+    divided(&now, &mut buf);
+    let exact = view(&now, Marker::Braille).theme.style(Role::Exact).fg;
+    let is_dash = |cell: &&Cell| Some(cell.fg) == exact && cell.symbol() != " ";
+    let dashes = buf.content.iter().filter(is_dash).count();
+    assert!(dashes >= 15, "{dashes} cells\n{}", text(&buf));
+}
+
+#[test]
+fn a_band_is_named_even_and_its_swings_are_found_below() {
+    let now = run("method-1", &[], "", 2000);
+    let mut buf = Buffer::empty(Rect::new(0, 0, 27, 19));
+    divided(&now, &mut buf);
+    let picture = text(&buf);
+    assert!(picture.contains("z 1.04 .. 1.14 m swings"), "{picture}");
+    assert!(
+        picture.lines().last().unwrap().contains("zoom"),
+        "{picture}"
+    );
+    // Nothing in the band follows the swings that the columns cut at different places.
+    let band: Vec<_> = picture.lines().rev().nth(2).unwrap().chars().collect();
+    let inside = &band[1..band.len() - 1];
+    assert!(
+        inside.windows(3).all(|cells| cells[0] == cells[2]),
+        "{picture}"
+    );
 }
 
 #[test]
@@ -691,7 +743,7 @@ proptest! {
         let read = Reading::new(&mut now, &Pace::new(1.0, false));
         let (run, view, ghost, reading) = (&now, &view, Some(&ghost), Some(&read));
         let window = share * window_s;
-        let detail = &Detail { curve: Curve::Tilt, begin_s, window_s: window, is_snapshot: false };
+        let detail = &Detail { curve: Curve::Tilt, begin_s, window_s: window, swing_s: None, is_snapshot: false };
         for pane in 0..3 {
             let mut buf = Buffer::filled(around, Cell::new("#"));
             match pane {

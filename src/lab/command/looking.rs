@@ -8,6 +8,7 @@ use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, Part};
 use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
+use crate::observe::recording::Curve;
 use crate::scenario::file::Choice;
 use crate::scenario::keys::{Kind, Range};
 use toml::Value;
@@ -43,6 +44,11 @@ pub(super) fn window(value: &Value) -> Read {
 
 pub(super) fn detail(value: &Value) -> Read {
     Ok(Command::Detail(number_in(of_view("detail_s", value)?)))
+}
+
+pub(super) fn detail_of(value: &Value) -> Read {
+    let name = text_in(of_view("detail_of", value)?);
+    Ok(Command::DetailOf(Curve::of_name(name)))
 }
 
 pub(super) fn since(value: &Value) -> Read {

@@ -3,8 +3,8 @@
 use super::Command;
 use super::exporting::{export, figure};
 use super::looking::{
-    bare, camera, cursor, detail, exact, fill, hide, look_at, magnify, measured, next, phase, pin,
-    point_at, residuals, show, since, speed, sum_to, window, zoom,
+    bare, camera, cursor, detail, detail_of, exact, fill, hide, look_at, magnify, measured, next,
+    phase, pin, point_at, residuals, show, since, speed, sum_to, window, zoom,
 };
 use super::reading::{
     Read, chapter, count, go_to, if_true, next_push, nudge, open, push, run_until, save, set, step,
@@ -73,6 +73,7 @@ pub static COMMANDS: &[CommandRow] = &[
     row("next", "\"one line\"", "what the lab says at the end of the run of what to try next", next),
     row("window_s", "60", "length of time that the traces show, s", window),
     row("detail_s", "0.5", "length of time that the strip of the fast motion shows, s", detail),
+    row("detail_of", "\"z\"", "what that strip shows: x, y, z, tilt or auto, the tilt, or x where the tilt does not swing", detail_of),
     row("since_s", "12.5, or \"none\"", "time at the left edge of the traces, s; none: they follow the run", since),
     row("magnify", "4", "how many times the values of the traces are magnified, 1 to 1000000", magnify),
     row("cursor", "400, \"60 s\", \"next turn\", \"turn before\" or \"none\"", "the step at which the traces are read off; turns are those of the tilt", cursor),

@@ -3,8 +3,9 @@
 use super::{Command, CursorTo, Force, NEXT_TURN, NONE, Place, PushChoice, TURN_BEFORE};
 use crate::lab::view::Pane;
 use crate::observe::pace::Speed;
+use crate::observe::recording::Curve;
 use crate::scenario::file::Choice;
-use crate::scenario::screen::{ALL_ROWS, TRACES};
+use crate::scenario::screen::{ALL_ROWS, AUTO, TRACES};
 use toml::{Table, Value};
 
 /// Name and value of `command`.
@@ -72,6 +73,7 @@ pub(super) fn written(command: &Command) -> (&'static str, Value) {
         Command::Next(text) => ("next", text.clone().into()),
         Command::Bare(bare) => ("bare", (*bare).into()),
         Command::Detail(detail_s) => ("detail_s", (*detail_s).into()),
+        Command::DetailOf(curve) => ("detail_of", curve.map_or(AUTO, Curve::name).into()),
         Command::Since(Some(since_s)) => ("since_s", (*since_s).into()),
         Command::Since(None) => ("since_s", NONE.into()),
         Command::Magnify(times) => ("magnify", (*times).into()),

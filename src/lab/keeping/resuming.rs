@@ -8,6 +8,7 @@ use crate::lab::view::{Part, View};
 use crate::lab::{Lab, Script, Work, opening};
 use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
+use crate::observe::recording::Curve;
 use crate::scenario::{Document, Problems, Scenario};
 use crate::storage::confined::Confined;
 use crate::storage::session::Content;
@@ -146,6 +147,8 @@ impl KeptPlace {
         }
         let is_time = |time_s: &f64| time_s.is_finite() && *time_s > 0.0;
         view.detail_s = self.detail_s.filter(is_time).or(view.detail_s);
+        let detail_of = self.detail_of.as_deref().and_then(Curve::of_name);
+        view.detail_of = detail_of.or(view.detail_of);
         Ok(())
     }
 }

@@ -13,6 +13,7 @@ pub mod theme;
 use super::action::Direction;
 use super::sheet::Sheet;
 use crate::observe::camera::{Camera, Zoom};
+use crate::observe::recording::Curve;
 use crate::run::Clock;
 use crate::scenario::{Scenario, keys};
 use markers::Marker;
@@ -50,6 +51,8 @@ pub struct View {
     pub window_s: f64,
     /// Length of time that the strip of the fast motion shows, s; `None`: about ten swings.
     pub detail_s: Option<f64>,
+    /// What that strip shows; `None`: the tilt, or x where the tilt does not swing.
+    pub detail_of: Option<Curve>,
     /// Time at the left edge of the traces, s; `None`: they follow the run.
     pub since_s: Option<f64>,
     /// How many times the values of the traces are magnified: about the value at the cursor, or else about the run's
@@ -113,6 +116,7 @@ impl View {
             theme,
             window_s: first_window_s(scenario),
             detail_s: None,
+            detail_of: None,
             since_s: None,
             magnified: 1.0,
             cursor: None,
@@ -146,6 +150,7 @@ impl View {
         let file = scenario.file.view.clone().unwrap_or_default();
         self.window_s = self.usual_window_s(scenario);
         self.detail_s = file.detail_s;
+        self.detail_of = file.detail_of.as_deref().and_then(Curve::of_name);
         (self.since_s, self.magnified, self.cursor) = (None, 1.0, None);
         let panes = file.show.iter().flatten();
         let panes: Vec<_> = panes.filter_map(|id| Pane::named(id)).collect();

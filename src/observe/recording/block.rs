@@ -24,6 +24,11 @@ impl Curve {
     /// The curves of the traced point.
     pub const OF_POINT: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
+    /// The curve of this [name](Self::name).
+    pub fn of_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|curve| curve.name() == name)
+    }
+
     /// The name of its numbers in a CSV and among the readouts.
     pub fn column(self) -> &'static str {
         match self {
@@ -191,8 +196,6 @@ pub struct Block {
     moments: u64,
     /// Extremes of the stored value of each curve.
     pub(super) extents: [Extent; 4],
-    /// Sum of the stored values of each curve over the moments.
-    sums: [f64; 4],
     /// How often each curve has turned: gone up after it had gone down, or down after it had gone up.
     turns: [u32; 4],
     /// The traced point at its last moment, world frame, m.
@@ -208,12 +211,6 @@ impl Block {
     /// The extremes of the stored value of `curve`: of many blocks only what is drawn in the end is worth an arc cosine.
     pub(in crate::observe) fn stored(&self, curve: Curve) -> Extent {
         self.extents[curve as usize]
-    }
-
-    /// The mean of `curve` over its moments, in the curve's unit. That of the tilt is the tilt of the mean height of the
-    /// axle.
-    pub fn mean(&self, curve: Curve) -> f64 {
-        curve.of_stored(self.sums[curve as usize] / self.moments as f64)
     }
 
     /// How many moments it has.
@@ -235,7 +232,6 @@ impl Block {
             end_s: moment.time_s,
             moments: 1,
             extents: moment.values.map(Extent::of),
-            sums: moment.values,
             turns: moment.turned,
             end: Vector3::new(x, y, z),
         }
@@ -246,8 +242,7 @@ impl Block {
     pub(super) fn of_all<'a>(mut moments: impl Iterator<Item = &'a Recorded>) -> Option<Self> {
         let first = moments.next()?;
         let (mut least, mut greatest) = (first.values, first.values);
-        let (mut sums, mut turns) = (first.values, first.turned);
-        let (mut count, mut last) = (1, first);
+        let (mut turns, mut count, mut last) = (first.turned, 1, first);
         for moment in moments {
             for curve in 0..4 {
                 let value = moment.values[curve];
@@ -261,7 +256,6 @@ impl Block {
                 } else {
                     greatest[curve]
                 };
-                sums[curve] += value;
                 turns[curve] += moment.turned[curve];
             }
             (count, last) = (count + 1, moment);
@@ -273,7 +267,6 @@ impl Block {
                 min: least[curve],
                 max: greatest[curve],
             }),
-            sums,
             turns,
             ..Self::of(last)
         })
@@ -287,7 +280,6 @@ impl Block {
             end_s: later.end_s,
             moments: self.moments + later.moments,
             extents: std::array::from_fn(|curve| self.extents[curve].with(later.extents[curve])),
-            sums: std::array::from_fn(|curve| self.sums[curve] + later.sums[curve]),
             turns: std::array::from_fn(|curve| self.turns[curve] + later.turns[curve]),
             end: later.end,
         }

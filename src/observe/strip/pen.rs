@@ -1,23 +1,17 @@
 //! A curve drawn block by block into the columns of a strip: as a line, or as a band where its swings are too fast to be
 //! drawn one by one.
 
-use super::Column;
+use super::{Column, LEAST_SWING_DEG};
 use crate::observe::recording::{Block, Curve, Extent};
 
 /// Columns on either side over which the turns of a curve are counted to tell whether its swings can be drawn one by one.
 const NEIGHBOURS: usize = 6;
-
-/// Turns on either side over which the mean of a band is taken, so that parts of a swing do not show in it.
-const MEAN_TURNS: f64 = 4.0;
 
 /// From so many turns in a column on, swings cannot be drawn one by one: a swing has two turns, and needs five columns.
 const MOST_TURNS: f64 = 0.4;
 
 /// The part of a band's width by which slow motion may carry the curve in two swings.
 const MOST_CARRIED: f64 = 0.5;
-
-/// A tilt that changes by less than this, degrees, does not swing: it has no more than rounding.
-const LEAST_SWING_DEG: f64 = 0.01;
 
 /// What has been drawn in one column.
 #[derive(Clone, Copy, Debug, Default)]
@@ -26,9 +20,6 @@ struct Drawn {
     extent: Option<Extent>,
     /// The extremes of blocks, as they are stored.
     stored: Option<Extent>,
-    /// Sum of the means of blocks, each multiplied by the number of its moments in this column.
-    sum: f64,
-    moments: f64,
     turns: f64,
     /// How often the tilt turns, which swings with every nutation; the curve itself does not turn where slow motion is
     /// faster than its swings.
@@ -72,15 +63,11 @@ impl<'a> Pen<'a> {
             join(&mut self.columns, (column, from), (first, to));
         }
         let share = 1.0 / (last + 1 - first) as f64;
-        let moments = block.moments() as f64 * share;
-        let sum = block.mean(self.curve) * moments;
         let turns = f64::from(block.turns(self.curve)) * share;
         let turns_of_tilt = f64::from(block.turns(Curve::Tilt)) * share;
         let tilt = block.stored(Curve::Tilt);
         for drawn in self.columns.iter_mut().take(last + 1).skip(first) {
             include(&mut drawn.stored, stored);
-            drawn.sum += sum;
-            drawn.moments += moments;
             drawn.turns += turns;
             drawn.turns_of_tilt += turns_of_tilt;
             include(&mut drawn.tilt, tilt);
@@ -94,13 +81,12 @@ impl<'a> Pen<'a> {
         self.cuts.get(next).is_some_and(|&cut| cut < to_s)
     }
 
-    /// The columns that have something, up to `reach` columns from the column `index`, and how far away they are.
+    /// The columns that have something, up to `reach` columns from the column `index`.
     fn about(&self, index: usize, reach: usize) -> impl Iterator<Item = (usize, &Drawn)> {
         let first = index.saturating_sub(reach);
         let columns = self.columns.iter().enumerate();
         let columns = columns.take(index + reach + 1).skip(first);
-        let columns = columns.filter(|(_, drawn)| drawn.extent.is_some());
-        columns.map(move |(column, drawn)| (column.abs_diff(index), drawn))
+        columns.filter(|(_, drawn)| drawn.extent.is_some())
     }
 
     /// How often the curve turns in a column about the column `index`; where slow motion carries it along, how often the
@@ -119,18 +105,6 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// The mean of the steps about the column `index`, those further away than `reach` left out and those near to it
-    /// counted more: the whole swings and the parts of swings that are within reach then weigh about the same on both sides.
-    fn mean(&self, index: usize, reach: usize) -> Option<f64> {
-        let weigh = |(away, drawn): (usize, &Drawn)| {
-            let weight = (reach + 1 - away) as f64;
-            (weight * drawn.sum, weight * drawn.moments)
-        };
-        let sums = self.about(index, reach).map(weigh);
-        let (sum, moments) = sums.fold((0.0, 0.0), |all, one| (all.0 + one.0, all.1 + one.1));
-        (moments > 0.0).then(|| sum / moments)
-    }
-
     /// The curve in each column; `None` where nothing was drawn.
     pub fn finish(mut self) -> Vec<Option<Column>> {
         for drawn in &mut self.columns {
@@ -141,55 +115,88 @@ impl<'a> Pen<'a> {
         let is_drawn = |drawn: &Drawn| drawn.extent.is_some();
         let first = self.columns.iter().position(is_drawn).unwrap_or(0);
         let last = self.columns.iter().rposition(is_drawn).unwrap_or(0);
+        // Near an end of the curve there are turns on one side only: what holds further inside is taken to hold there.
+        let inside = |index: usize, away: usize| {
+            index
+                .max((first + away).min(last))
+                .min(last.saturating_sub(away).max(first))
+        };
+        let all = 0..self.columns.len();
+        let turns: Vec<_> = all
+            .clone()
+            .map(|index| self.turns(inside(index, NEIGHBOURS)))
+            .collect();
+        // A swing has two turns: half of one on either side.
+        let reach = |index: usize| ((1.0 / turns[index]).ceil() as usize).min(NEIGHBOURS);
+        let swings: Vec<_> = all
+            .clone()
+            .map(|index| self.extent_about(index, reach(index)))
+            .collect();
+        let middle = |index: usize| {
+            let swing: Option<Extent> = swings[index];
+            swing.map_or(0.0, |swing| 0.5 * (swing.min + swing.max))
+        };
+        let is_fast = |index: usize| {
+            if turns[index] <= MOST_TURNS {
+                return false;
+            }
+            // Where slow motion carries the curve further in two swings than it swings, before and after, it is drawn as
+            // it is.
+            let away = (4.0 / turns[index]).ceil() as usize;
+            let here = inside(index, 2 * away);
+            let carried = [
+                here.saturating_sub(away).max(first),
+                (here + away).min(last),
+            ]
+            .map(|other| (middle(other) - middle(here)).abs());
+            swings[index].is_some_and(|swing| {
+                carried.into_iter().fold(f64::INFINITY, f64::min)
+                    < MOST_CARRIED * (swing.max - swing.min)
+            })
+        };
+        let fast: Vec<_> = all.map(is_fast).collect();
         let column = |(index, drawn): (usize, &Drawn)| {
             let extent = drawn.extent?;
-            // Near an end of the curve there are turns on one side only: what holds further inside is taken to hold there.
-            let inside = index.max((first + NEIGHBOURS).min(last));
-            let turns = self.turns(inside.min(last.saturating_sub(NEIGHBOURS).max(first)));
-            if turns <= MOST_TURNS {
-                let mean = self.mean(index, 0).unwrap_or(extent.min);
-                return Some(Column {
-                    extent,
-                    mean: mean.clamp(extent.min, extent.max),
-                    band: None,
-                });
-            }
-            // A swing has two turns: half of one on either side.
-            let reach = if turns < 2.0 {
-                (1.0 / turns).ceil() as usize
-            } else {
-                0
-            };
-            let extents = self
-                .about(index, reach)
-                .filter_map(|(_, drawn)| drawn.extent);
-            let band = extents.fold(extent, Extent::and);
-            let mean = |index: usize| {
-                let mean = self.mean(index, (MEAN_TURNS / turns) as usize);
-                mean.unwrap_or(extent.min)
-            };
-            // Where slow motion carries the curve further in two swings than it swings, it is drawn as it is.
-            let away = (4.0 / turns).ceil() as usize;
-            // So are the means.
-            let middle = index
-                .min(last.saturating_sub(2 * away))
-                .max((first + 2 * away).min(last));
-            let carried = [middle.saturating_sub(away), (middle + away).min(last)]
-                .map(|other| mean(other) - mean(middle));
-            let is_band = carried.map(f64::abs).into_iter().fold(0.0, f64::max)
-                < MOST_CARRIED * (band.max - band.min);
+            // As most of the columns about it are, lest line and band take turns.
+            let about = self.about(inside(index, NEIGHBOURS), NEIGHBOURS);
+            let (count, bands) = about.fold((0, 0), |(count, bands), (column, _)| {
+                (count + 1, bands + usize::from(fast[column]))
+            });
+            // The mean of the extremes of all swings that have the column in them: it goes straight from one swing to the
+            // next where they grow or shrink.
+            let band = mean(&swings, index, reach(index)).filter(|_| 2 * bands > count);
             Some(Column {
                 extent,
-                mean: if is_band {
-                    mean(index).clamp(band.min, band.max)
-                } else {
-                    mean(index).clamp(extent.min, extent.max)
-                },
-                band: is_band.then_some(band),
+                band: band.map(|band| band.and(extent)),
             })
         };
         self.columns.iter().enumerate().map(column).collect()
     }
+
+    /// The extremes of the columns up to `reach` from the column `index`.
+    fn extent_about(&self, index: usize, reach: usize) -> Option<Extent> {
+        let extents = self
+            .about(index, reach)
+            .filter_map(|(_, drawn)| drawn.extent);
+        extents.reduce(Extent::and)
+    }
+}
+
+/// The mean of the lowest and that of the highest values of `extents` up to `reach` from `index`.
+fn mean(extents: &[Option<Extent>], index: usize, reach: usize) -> Option<Extent> {
+    let about = extents
+        .iter()
+        .take(index + reach + 1)
+        .skip(index.saturating_sub(reach));
+    let (min, max, count) = about
+        .flatten()
+        .fold((0.0, 0.0, 0.0), |(min, max, count), extent| {
+            (min + extent.min, max + extent.max, count + 1.0)
+        });
+    (count > 0.0).then_some(Extent {
+        min: min / count,
+        max: max / count,
+    })
 }
 
 /// Draws the straight line from one block to the next: over the columns between them, and half a column in each of the

@@ -42,6 +42,9 @@ const STRIP: u16 = 2;
 const ALL: f64 = 0.999;
 /// What marks the strip that shows less time than the others.
 const ZOOM: &str = "zoom";
+/// What is said of a strip with bands, on a line above it and beside it: the longest that fits.
+const BAND: [&str; 2] = ["fast swings", "swings"];
+const BAND_BESIDE: [&str; 2] = ["fast", "band"];
 /// What it says while that strip is drawn anew once a second only, because its time would pass before anyone had seen it:
 /// the longest that fits.
 const HELD: [&str; 3] = ["zoom, held for a second each", "zoom, held", "held"];
@@ -79,6 +82,8 @@ const KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Char(']')], Action::Pan(Direction::Right), "", "show later times"),
     row(&[Mode::Lab], &[Key::Char('z')], Action::Magnify(true), "values", "magnify the values"),
     row(&[Mode::Lab], &[Key::Char('Z')], Action::Magnify(false), "", "magnify them less"),
+    row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up), "", "another curve in the strip zoom: tilt, z, y, x, or what swings"),
+    row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down), "", "the same, the other way round"),
     row(&[Mode::Lab], &[Key::Home], Action::WholeView, "whole", "show the run again as at first: no cursor, no zoom"),
 ];
 
@@ -136,7 +141,9 @@ impl Widget for Traces<'_> {
                 y: area.bottom() - 1,
                 height: 1,
             };
-            self.pushes(&marks, &last.strip, border, buf);
+            let zoomed = groups.iter().find(|group| self.is_detail(&group.strip));
+            let zoomed = zoomed.map(|group| &group.strip);
+            self.below(&marks, zoomed, &last.strip, border, buf);
         }
     }
 }
@@ -175,13 +182,20 @@ impl Traces<'_> {
             true => self.residual_scale(content),
             false => self.scale(content, is_detail.then_some(&group.strip)),
         };
-        let sheet = match group.beside > 0 {
-            true => self.beside_strip(content, group, &scale, area, buf),
-            false => self.above_strip(content, group, &scale, area, buf),
+        let mut run = self.columns_of_run(content, columns, &marks.edits);
+        if is_detail {
+            without_bands(&mut run);
+        }
+        let has_band = run.iter().flatten().any(|column| column.band.is_some());
+        let sheet = if group.beside > 0 {
+            self.beside_strip(content, group, &scale, has_band, area, buf)
+        } else {
+            self.above_strip(content, group, &scale, has_band, area, buf)
         };
-        match is_residual {
-            true => self.draw_zero(&scale, sheet, buf),
-            false => self.curves(content, columns, &scale, marks, sheet, buf),
+        if is_residual {
+            self.draw_zero(&scale, sheet, buf);
+        } else {
+            self.curves(content, &run, columns, &scale, sheet, buf);
         }
         self.draw_points(content, &group.strip, &scale, is_residual, sheet, buf);
         self.cursor(content, group, sheet, buf);
@@ -202,6 +216,7 @@ impl Traces<'_> {
         content: Content,
         group: &Group,
         scale: &Scale,
+        has_band: bool,
         area: Rect,
         buf: &mut Buffer,
     ) -> Rect {
@@ -212,6 +227,7 @@ impl Traces<'_> {
             (true, true) => [unit, ZOOM, HELD[2]],
             (true, false) => [unit, ZOOM, ""],
             (false, _) if self.is_residual(content, is_detail) => [unit, "less", "run"],
+            (false, _) if has_band => [unit, BAND_BESIDE[0], BAND_BESIDE[1]],
             (false, _) => [unit, "", ""],
         };
         for (text, y) in further.into_iter().zip(1..area.height) {
@@ -235,6 +251,7 @@ impl Traces<'_> {
         content: Content,
         group: &Group,
         scale: &Scale,
+        has_band: bool,
         area: Rect,
         buf: &mut Buffer,
     ) -> Rect {
@@ -261,14 +278,15 @@ impl Traces<'_> {
                 let rest = room.saturating_sub(unit.len() + 2);
                 let range = scale.in_words_within(rest).unwrap_or_default();
                 let range = format!(" {range} {unit}");
-                let zoom = match (is_detail, self.detail.is_snapshot) {
-                    (false, _) => [""; 3],
-                    (true, false) => [ZOOM; 3],
-                    (true, true) => HELD,
+                let words: &[&str] = match (is_detail, self.detail.is_snapshot) {
+                    (false, _) if has_band => &BAND,
+                    (false, _) => &[],
+                    (true, false) => &[ZOOM],
+                    (true, true) => &HELD,
                 };
-                let fits = |zoom: &&str| range.chars().count() + zoom.len() < room;
-                let zoom = zoom.into_iter().find(fits).unwrap_or_default();
-                (format!("{range} {zoom}"), quiet)
+                let fits = |word: &&&str| range.chars().count() + word.len() < room;
+                let word = words.iter().find(fits).copied().unwrap_or_default();
+                (format!("{range} {word}"), quiet)
             }
         };
         write(area, (after, 0), &text, style, buf);
@@ -282,19 +300,17 @@ impl Traces<'_> {
     fn curves<'s>(
         &'s self,
         content: Content,
+        run: &[Option<Column>],
         shared: &mut Shared<'s>,
         scale: &Scale,
-        marks: &Marks,
         area: Rect,
         buf: &mut Buffer,
     ) {
         let mut dots = Dots::new(area, self.view.marker);
-        // Where swings are shown one by one, few columns are no reason for a band.
         let is_detail = self.is_detail(shared.strip);
         let without_bands = |mut columns: Vec<Option<Column>>| {
             if is_detail {
-                let columns = columns.iter_mut().flatten();
-                columns.for_each(|column| column.band = None);
+                without_bands(&mut columns);
             }
             columns
         };
@@ -315,9 +331,14 @@ impl Traces<'_> {
             let ink = Ink::Faint(Role::Exact);
             draw(&mut dots, &exact, scale, Stroke::Dashed, ink);
         }
-        let run = without_bands(self.columns_of_run(content, shared, &marks.edits));
         let ink = Ink::Strong(Self::role(content));
-        draw(&mut dots, &run, scale, Stroke::Full, ink);
+        draw(&mut dots, run, scale, Stroke::Full, ink);
         dots.render(&self.view.theme, buf);
     }
+}
+
+/// Makes bands of `columns` lines: where swings are shown one by one, few columns are no reason for a band.
+fn without_bands(columns: &mut [Option<Column>]) {
+    let columns = columns.iter_mut().flatten();
+    columns.for_each(|column| column.band = None);
 }

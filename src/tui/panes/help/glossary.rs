@@ -128,7 +128,7 @@ pub(super) const GLOSSARY: &[Word] = &[
     ),
     (
         "band",
-        "a column of a trace that holds several swings: from the least value to the greatest",
+        "swings too fast to be drawn one by one: a hatched band from the lowest values to the highest",
     ),
     (
         "phase",
@@ -168,7 +168,7 @@ pub(super) const GLOSSARY: &[Word] = &[
     ),
     (
         "dotted",
-        "the run before the last edit; in a band the mean; from above the path before the last swings",
+        "the run before the last edit; from above the path before the last swings",
     ),
     (
         "dashes",
@@ -184,7 +184,7 @@ pub(super) const GLOSSARY: &[Word] = &[
     ),
     (
         "zoom",
-        "the upper strip of the traces: the tilt over about ten swings, enlarged; the others show a longer time",
+        "the upper strip of the traces: some swings of the tilt, enlarged (Up and Down: of x, y or z); a bar with this word marks their time under the others",
     ),
     (
         "held",

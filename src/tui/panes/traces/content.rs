@@ -136,7 +136,7 @@ impl Traces<'_> {
     fn value_at(&self, content: Content, time_s: f64) -> Option<f64> {
         let (recording, curve) = self.recorded(content)?;
         let block = recording.between(time_s, time_s).last()?;
-        Some(block.mean(curve)).filter(|_| block.moments() == 1)
+        (block.moments() == 1).then(|| block.extent(curve).max)
     }
 
     /// What `content` has at the cursor, with its unit; `None` where there is no cursor, or that is not known.

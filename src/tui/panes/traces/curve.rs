@@ -1,5 +1,4 @@
-//! A curve of a strip as dots: a line, or the edges and the mean of a band where its swings are too fast to be drawn one
-//! by one.
+//! A curve of a strip as dots: a line, or a band where its swings are too fast to be drawn one by one.
 
 use crate::observe::scale::Scale;
 use crate::observe::strip::Column;
@@ -7,8 +6,6 @@ use crate::tui::dots::{Dots, Ink};
 
 /// A band whose edges are nearer to one another than this, in dots, has no room for a gap: it is drawn as a thick line.
 const THINNEST_BAND: usize = 2;
-/// A mean nearer to an edge than this, in dots, is not drawn.
-const CLEAR_OF_EDGE: usize = 2;
 
 /// A value this part of a dot above the edge between two dots counts as below it: a value on the edge, such as a constant
 /// in the middle of its strip, would else go up and down with its rounding.
@@ -20,7 +17,7 @@ const LONG_AND_SHORT: usize = 6;
 /// Which dots of a curve are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stroke {
-    /// All of them, and the mean of a band.
+    /// All of them, and a band is filled with a few.
     Full,
     /// Those in every other cell: the exact motion.
     Dashed,
@@ -34,9 +31,20 @@ pub enum Stroke {
 pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: Stroke, ink: Ink) {
     let (across, down) = dots.in_a_cell();
     let height = dots.height();
+    // Large dots would hide the edges.
+    let fill = match ink {
+        Ink::Strong(role) if across * down <= 2 => Ink::Under(role),
+        _ => ink,
+    };
     if height == 0 {
         return;
     }
+    // `None` above and below the strip.
+    let inside = |value: f64| {
+        let row = scale.from_top(value) * height as f64 + ROUNDING;
+        let bottom = height as f64;
+        (row >= 0.0 && row < bottom + 2.0 * ROUNDING).then(|| row.min(bottom - 1.0) as usize)
+    };
     let row = |value: f64| {
         let row = scale.from_top(value) * height as f64 + ROUNDING;
         row.clamp(0.0, height as f64 - 1.0) as usize
@@ -55,12 +63,13 @@ pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: 
     };
     let mut before: Option<(usize, usize)> = None;
     for (x, column) in columns.iter().enumerate() {
-        let Some(column) = column.filter(|column| scale.meets(column.extent)) else {
+        let extent = |column: &Column| column.band.unwrap_or(column.extent);
+        let Some(column) = column.filter(|column| scale.meets(extent(column))) else {
             before = None;
             continue;
         };
-        let extent = column.band.unwrap_or(column.extent);
-        let (top, bottom) = (row(extent.max), row(extent.min));
+        let band = extent(&column);
+        let (top, bottom) = (row(band.max), row(band.min));
         let mut set = |from: usize, to: usize| {
             for y in (from..=to).step_by(apart).filter(|_| keeps(x)) {
                 dots.set(x as f64, y as f64, ink);
@@ -71,18 +80,28 @@ pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: 
             before = None;
             continue;
         }
+        // An edge beyond the strip is not drawn: the band goes on there.
         let (top_before, bottom_before) = before.unwrap_or((top, bottom));
-        let (from, to) = toward(top, top_before);
-        set(from, to);
-        let (from, to) = toward(bottom, bottom_before);
-        set(from, to);
-        let mean = row(column.mean);
-        let is_clear = mean >= top + CLEAR_OF_EDGE && mean + CLEAR_OF_EDGE <= bottom;
-        if stroke == Stroke::Full && is_clear && x.is_multiple_of(across.max(2)) {
-            set(mean, mean);
+        if inside(band.max).is_some() {
+            let (from, to) = toward(top, top_before);
+            set(from, to);
+        }
+        if inside(band.min).is_some() {
+            let (from, to) = toward(bottom, bottom_before);
+            set(from, to);
+        }
+        if stroke == Stroke::Full {
+            for y in (top..=bottom).filter(|y| is_filled(x, *y)) {
+                dots.set(x as f64, y as f64, fill);
+            }
         }
         before = Some((top, bottom));
     }
+}
+
+/// Whether a dot between the edges of a band is drawn: one of four, on slanting lines that are seen to be no curves.
+fn is_filled(x: usize, y: usize) -> bool {
+    (x + 2 * y).is_multiple_of(4)
 }
 
 /// The rows from `row` to the one next to `before`, so that an edge has no gap.
@@ -104,9 +123,23 @@ mod tests {
     use ratatui::buffer::Buffer;
     use ratatui::layout::Rect;
 
+    /// The two rows of cells that `columns` are drawn on.
+    fn drawn(columns: &[Option<Column>], scale: &Scale) -> [String; 2] {
+        let area = Rect::new(0, 0, 20, 2);
+        let mut dots = Dots::new(area, Marker::Braille);
+        let ink = Ink::Strong(Role::Text);
+        draw(&mut dots, columns, scale, Stroke::Full, ink);
+        let mut buf = Buffer::empty(area);
+        let theme = Theme {
+            colour: false,
+            background: Background::Dark,
+        };
+        dots.render(&theme, &mut buf);
+        [0, 1].map(|y| (0..20).map(|x| buf[(x, y)].symbol()).collect())
+    }
+
     #[test]
     fn a_constant_in_the_middle_of_its_strip_is_one_line_whatever_its_rounding() {
-        let area = Rect::new(0, 0, 20, 2);
         let scale = Scale {
             low: 29.99,
             high: 30.01,
@@ -115,21 +148,31 @@ mod tests {
             let value = 30.0 + 1e-13 * (x % 3) as f64 - 1e-13;
             Some(Column {
                 extent: Extent::of(value),
-                mean: value,
                 band: None,
             })
         };
         let columns: Vec<_> = (0..40).map(column).collect();
-        let mut dots = Dots::new(area, Marker::Braille);
-        let ink = Ink::Strong(Role::Text);
-        draw(&mut dots, &columns, &scale, Stroke::Full, ink);
-        let mut buf = Buffer::empty(area);
-        let theme = Theme {
-            colour: false,
-            background: Background::Dark,
+        assert_eq!(drawn(&columns, &scale), [" ".repeat(20), "⠉".repeat(20)]);
+    }
+
+    #[test]
+    fn a_band_that_goes_on_beyond_its_strip_has_no_edge_there() {
+        let extent = Extent {
+            min: -1.0,
+            max: 9.0,
         };
-        dots.render(&theme, &mut buf);
-        let row = |y| -> String { (0..20).map(|x| buf[(x, y)].symbol()).collect() };
-        assert_eq!([row(0), row(1)], [" ".repeat(20), "⠉".repeat(20)]);
+        let columns = [Some(Column {
+            extent,
+            band: Some(extent),
+        }); 40];
+        let [above, below] = drawn(
+            &columns,
+            &Scale {
+                low: 0.0,
+                high: 8.0,
+            },
+        );
+        assert_eq!(above, below);
+        assert!(!above.contains('⠉'), "{above}");
     }
 }

@@ -53,7 +53,10 @@ impl Traces<'_> {
             Some(since_s) => Strip::new(since_s, self.view.window_s, columns),
             None => Strip::following(self.run.now().time_s, self.view.window_s, columns),
         };
-        let detail = Strip::new(self.detail.begin_s, self.detail.window_s, columns);
+        let at_s = self
+            .cursor
+            .map_or(self.run.now().time_s, |cursor| cursor.time_s);
+        let detail = self.detail.strip(columns, across > 1, at_s);
         let is_magnified = self.is_detail(&detail);
         let least = |content: Content| match (self.points(content), beside > 0) {
             (Some(_), _) => STRIP_WITH_POINTS,

@@ -1,6 +1,7 @@
-//! Where pushes act on a run: a bar under the time axis, with a word at it.
+//! Bars under the time axis, with a word at each: where pushes act on a run, and the time that the upper strip shows.
 
-use super::{Traces, write};
+use super::content::Content;
+use super::{Traces, ZOOM, write};
 use crate::observe::ghost::Ghost;
 use crate::observe::marks::Marks;
 use crate::observe::strip::Strip;
@@ -12,10 +13,20 @@ use ratatui::layout::Rect;
 const BAR: &str = "═";
 /// The word at it.
 const WORD: &str = "push";
+/// The mark of the time that the strip of the fast motion shows.
+const ZOOM_BAR: &str = "━";
 
 impl Traces<'_> {
-    /// Where pushes act: on the border below the strips, with the word beside it where there is room.
-    pub(super) fn pushes(&self, marks: &Marks, strip: &Strip, border: Rect, buf: &mut Buffer) {
+    /// Where pushes act, and the time of the strip `zoomed`, on the border below the strips, with the words beside them
+    /// where there is room.
+    pub(super) fn below(
+        &self,
+        marks: &Marks,
+        zoomed: Option<&Strip>,
+        strip: &Strip,
+        border: Rect,
+        buf: &mut Buffer,
+    ) {
         let across = self.view.marker.dots().0;
         let mut pushed = vec![false; border.width as usize];
         let shown =
@@ -31,6 +42,23 @@ impl Traces<'_> {
         }
         for x in words(&pushed) {
             write(border, (x as u16, 0), WORD, style, buf);
+            let end = (x + WORD.len()).min(pushed.len());
+            pushed[x..end].fill(true);
+        }
+        let zoomed = zoomed.map(|zoomed| strip.shown(zoomed.begin_s, zoomed.end_s()));
+        let Some(zoomed) = zoomed.filter(|zoomed| !zoomed.is_empty()) else {
+            return;
+        };
+        let (begin, end) = (zoomed.start / across, (zoomed.end - 1) / across + 1);
+        let style = self
+            .view
+            .theme
+            .style(Self::role(Content::Curve(self.detail.curve)));
+        for x in begin..end {
+            write(border, (x as u16, 0), ZOOM_BAR, style, buf);
+        }
+        if let Some(x) = word(&pushed, (begin, end), 0) {
+            write(border, (x as u16, 0), ZOOM, style, buf);
         }
     }
 

@@ -32,11 +32,14 @@ impl Traces<'_> {
         scale.zoomed(self.view.magnified, about)
     }
 
-    /// The same without magnification: x and y share one about 0, the others have their own.
+    /// The same without magnification: x and y of the whole run share one about 0, the others have their own.
     fn whole_scale(&self, content: Content, strip: Option<&Strip>) -> Scale {
         let extent = |curve| self.extent(Content::Curve(curve), strip);
         let arm_m = self.run.scenario().arm_m();
         match content {
+            Content::Curve(curve @ (Curve::X | Curve::Y)) if strip.is_some() => {
+                Scale::around(extent(curve), PLANE_LEAST * arm_m)
+            }
             Content::Curve(Curve::X | Curve::Y) => {
                 let both = extent(Curve::X).and(extent(Curve::Y));
                 Scale::about_zero(both.max.max(-both.min).max(PLANE_LEAST * arm_m))

@@ -3,8 +3,11 @@
 use super::{ALL, ROW, Traces};
 use crate::text::number::decimal;
 
-/// What the title says of bands where there is room.
-const BANDS: &str = "bands: lowest, mean (dotted) and highest of fast swings";
+/// What the title says of bands: at length, and in short.
+const BANDS: [&str; 2] = [
+    "hatched band: from lowest to highest of fast swings",
+    "band: lowest to highest of swings",
+];
 /// What the title says of the exact motion, the run before and the pinned run: at length, in short and shorter.
 const EXACT: [&str; 3] = ["dashed: exact motion", "- - exact", "-- exact"];
 const NO_EXACT: [&str; 3] = [
@@ -46,7 +49,10 @@ impl Traces<'_> {
         let mut titles = vec![format!("{point} {long}")];
         let is_divided = self.detail.window_s < ALL * self.view.window_s;
         if self.ghost.is_none() && self.pinned.is_none() && (is_divided || has_exact) {
-            titles.insert(0, format!("{point} {long}; {BANDS}"));
+            titles.insert(0, format!("{point} {long}; {}", BANDS[0]));
+            if !has_exact {
+                titles.insert(1, format!("{point}; {}", BANDS[1]));
+            }
         }
         let shortest = match legend(2, " ") {
             none if none.is_empty() => ROW.title.to_owned(),
