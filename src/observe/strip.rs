@@ -254,19 +254,16 @@ mod tests {
 
     #[test]
     fn line_and_band_do_not_take_turns() {
-        // Two swings of nearly the same size, so that their sum grows and shrinks, about as fast as can be drawn.
-        for period in [48.0, 50.0, 52.0] {
-            let swing = |step: u32| {
-                let phase = f64::from(step) * std::f64::consts::TAU;
-                libm::sin(phase / period) + 0.6 * libm::sin(phase / (1.7 * period))
-            };
+        // As fast as can be drawn: of 13 columns some have five turns and some have six.
+        for period in [50.0, 52.0] {
+            let swing = |step: u32| libm::sin(f64::from(step) / period * std::f64::consts::TAU);
             let values: Vec<f64> = (0..1000).map(swing).collect();
             let drawn = x(Strip::new(0.0, 1000.0, 100), &recorded(&values, 1.0));
             let is_band = |column: &Option<Column>| column.is_some_and(|c| c.band.is_some());
             let pairs = drawn.windows(2);
             let changes = pairs.filter(|pair| is_band(&pair[0]) != is_band(&pair[1]));
             let changes = changes.count();
-            assert!(changes <= 4, "{period}: {changes}");
+            assert!(changes <= 2, "{period}: {changes}");
         }
     }
 

@@ -237,6 +237,7 @@ fn every_row_of_the_table_is_written_under_its_name() {
         next = 'raise the tilt'
         window_s = 60
         detail_s = 0.5
+        detail_of = 'z'
         since_s = 12.5
         magnify = 4
         cursor = 'next turn'

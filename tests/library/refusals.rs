@@ -195,6 +195,7 @@ const TABLE: &[(usize, &str, usize, &str, &str)] = &[
     (30, "speed = 0", 30, "view.speed (0) must be greater than zero", ""),
     (30, "window_s = -1", 30, "view.window_s (-1) must be greater than zero", ""),
     (30, "detail_s = 0", 30, "view.detail_s (0) must be greater than zero", ""),
+    (30, "detail_of = \"w\"", 30, "view.detail_of (\"w\") must be one of", "tilt"),
     (30, "measured = 1", 30, "view.measured (1) must be text", ""),
     (30, "residuals = \"yes\"", 30, "view.residuals (\"yes\") must be true or false", ""),
     (30, "exact = 3", 30, "view.exact (3) must be true or false", "not a number"),

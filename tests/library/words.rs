@@ -115,10 +115,8 @@ fn a_file_that_takes_long_to_read_does_not_hold_up_the_browser() {
 fn what_keys_do_without_a_picture_is_said() {
     let mut stage = Stage::open("method-2", &[], LARGE);
     stage.commands("pause = true\ngo_to = 100");
-    // Arrows say what they do in the pane that has the focus.
-    stage
-        .press("↓")
-        .shows("Left and Right move the cursor here");
+    // Arrows act on the pane that has the focus, or say what does.
+    stage.press("↓").shows("the upper strip shows x");
     stage.press("\t↓").shows("z and Z zoom here");
     // A step beyond the end is said to be one; on the way to it as well as there.
     stage.press("g2400\n").wait(2.0);

@@ -471,7 +471,7 @@ fn a_notice_goes_with_time_and_at_the_next_key() {
     stage
         .shows_no("the traces show")
         .press("f↑")
-        .shows("move the cursor here");
+        .shows("the upper strip shows tilt");
     stage
         .press("o")
         .shows_no("move the cursor here")

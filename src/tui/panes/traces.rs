@@ -29,7 +29,7 @@ use crate::tui::dots::{Dots, Ink};
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
 use content::Content;
-use curve::{Stroke, draw};
+use curve::{Stroke, THINNEST_BAND, draw};
 use groups::Group;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -186,7 +186,11 @@ impl Traces<'_> {
         if is_detail {
             without_bands(&mut run);
         }
-        let has_band = run.iter().flatten().any(|column| column.band.is_some());
+        let rows = f64::from(area.height) * self.view.marker.dots().1 as f64;
+        let has_band = run.iter().flatten().filter_map(|column| column.band);
+        let has_band = has_band
+            .map(|band| scale.from_top(band.min) - scale.from_top(band.max))
+            .any(|share| share * rows >= THINNEST_BAND as f64);
         let sheet = if group.beside > 0 {
             self.beside_strip(content, group, &scale, has_band, area, buf)
         } else {

@@ -184,7 +184,7 @@ pub(super) const GLOSSARY: &[Word] = &[
     ),
     (
         "zoom",
-        "the upper strip of the traces: some swings of the tilt, enlarged (Up and Down: of x, y or z); a bar with this word marks their time under the others",
+        "the upper strip of the traces: some swings, enlarged (Up, Down: of another curve); a bar with this word marks their time below",
     ),
     (
         "held",

@@ -5,7 +5,7 @@ use crate::observe::strip::Column;
 use crate::tui::dots::{Dots, Ink};
 
 /// A band whose edges are nearer to one another than this, in dots, has no room for a gap: it is drawn as a thick line.
-const THINNEST_BAND: usize = 2;
+pub const THINNEST_BAND: usize = 2;
 
 /// A value this part of a dot above the edge between two dots counts as below it: a value on the edge, such as a constant
 /// in the middle of its strip, would else go up and down with its rounding.

@@ -14,7 +14,7 @@ const BAR: &str = "═";
 /// The word at it.
 const WORD: &str = "push";
 /// The mark of the time that the strip of the fast motion shows.
-const ZOOM_BAR: &str = "━";
+const ZOOM_BAR: &str = "▀";
 
 impl Traces<'_> {
     /// Where pushes act, and the time of the strip `zoomed`, on the border below the strips, with the words beside them
