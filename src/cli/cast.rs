@@ -8,16 +8,14 @@ use super::new_lab::{DEFAULT, lab};
 use super::progress::{self, Interruption};
 use super::values::size;
 use super::{INTERRUPTED, tell};
-use crate::export::Destination;
 use crate::lab::Lab;
 use crate::lab::command;
 use crate::lab::view::theme::{Background, Theme};
 use crate::text::printable::{Shown, printable};
 use crate::tui::recorder::Recorder;
-use anyhow::{Context, bail, ensure};
+use anyhow::{bail, ensure};
 use clap::Args;
 use serde_json::{Value, json};
-use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::thread;
@@ -84,8 +82,7 @@ pub(super) fn cast(args: &CastArgs) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::from(INTERRUPTED));
     }
     let (length, markers) = (cast.now.as_secs_f64(), cast.markers);
-    cast.write(output)
-        .with_context(|| format!("cannot write {}", Shown(&args.output)))?;
+    output.write_and_keep(cast.text.as_bytes())?;
     if interruption.may_act_at_once() {
         return Ok(ExitCode::from(INTERRUPTED));
     }
@@ -186,11 +183,5 @@ impl Cast {
             since % 1000,
             Value::from(data)
         );
-    }
-
-    fn write(&self, mut output: Destination) -> anyhow::Result<()> {
-        output.write_all(self.text.as_bytes())?;
-        output.keep()?;
-        Ok(())
     }
 }

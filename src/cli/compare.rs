@@ -14,11 +14,10 @@ use crate::run::{Clock, EnergyScale, Truth};
 use crate::scenario::Scenario;
 use crate::scenario::rescale::MOST_STEPS;
 use crate::text::number::{short, shortest};
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::collections::HashSet;
-use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -77,7 +76,7 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::from(INTERRUPTED));
     };
     if let Some(output) = output {
-        write_csv(output, &scenario, &rows).context("cannot write the table")?;
+        write_csv(output, &scenario, &rows)?;
     }
     if on_stdout {
         return Ok(ExitCode::SUCCESS);
@@ -169,16 +168,12 @@ fn kind_of_truth(scenario: &Scenario, duration_s: f64) -> String {
 
 /// The table below the run file of the scenario, so that a file tells what was compared.
 fn write_csv(
-    mut output: Destination,
+    output: Destination,
     scenario: &Scenario,
     rows: &[ComparisonRow],
 ) -> anyhow::Result<()> {
-    output.write_all(commented(&scenario.to_toml()).as_bytes())?;
-    let mut writer = csv::Writer::from_writer(output);
+    let mut writer = csv::Writer::from_writer(commented(&scenario.to_toml()).into_bytes());
     rows.iter().try_for_each(|row| writer.serialize(row))?;
-    writer
-        .into_inner()
-        .map_err(csv::IntoInnerError::into_error)?
-        .keep()?;
+    output.write_and_keep(&writer.into_inner()?)?;
     Ok(())
 }

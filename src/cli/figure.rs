@@ -7,7 +7,6 @@ use super::scenario::scenario_of;
 use super::values::positive;
 use super::{INTERRUPTED, complain, refuse, tell};
 use crate::analysis::cost;
-use crate::export::Destination;
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Figure, Request, Run};
 use crate::figure::table::Table;
@@ -16,11 +15,10 @@ use crate::measured::{self, Measured};
 use crate::physics::scheme;
 use crate::scenario::Problems;
 use crate::text::printable::{Shown, printable};
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -106,8 +104,8 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     let Some(figure) = drawn(&subject, args, &interruption)? else {
         return Ok(ExitCode::from(INTERRUPTED));
     };
-    write(output, &figure, format)
-        .with_context(|| format!("cannot write {}", Shown(&args.output)))?;
+    let bytes = figure::write(&figure.scene, format)?;
+    output.write_and_keep(&bytes)?;
     if interruption.may_act_at_once() {
         return Ok(ExitCode::from(INTERRUPTED));
     }
@@ -259,11 +257,4 @@ fn drawn(
     });
     meter.clear();
     figure.map_err(anyhow::Error::msg)
-}
-
-fn write(mut output: Destination, figure: &Figure, format: Format) -> anyhow::Result<()> {
-    let bytes = figure::write(&figure.scene, format)?;
-    output.write_all(&bytes)?;
-    output.keep()?;
-    Ok(())
 }

@@ -31,6 +31,7 @@ mod workbench;
 mod writeup;
 
 use crate::export::destination::Destination;
+use crate::export::destination::DestinationError;
 use crate::scenario::presets;
 use crate::text::printable::{is_steering, printable, printable_lines};
 use anyhow::Context;
@@ -298,6 +299,9 @@ fn complain(error: &anyhow::Error) {
 fn is_closed_pipe(error: &anyhow::Error) -> bool {
     error
         .chain()
-        .filter_map(|cause| cause.downcast_ref::<io::Error>())
+        .filter_map(|cause| match cause.downcast_ref() {
+            Some(DestinationError::Refused { error, .. }) => Some(error),
+            _ => cause.downcast_ref::<io::Error>(),
+        })
         .any(|cause| cause.kind() == io::ErrorKind::BrokenPipe)
 }

@@ -9,7 +9,6 @@ use crate::lab::Lab;
 use crate::lab::view::theme::{Background, Theme};
 use crate::scenario::{Problem, Problems};
 use crate::teach::{Lesson, play};
-use std::io::Write;
 use std::process::ExitCode;
 
 /// A new lab, of which nothing but the pictures will be seen.
@@ -51,9 +50,8 @@ pub(super) fn write(
     }
     match output {
         None | Some(Destination::Stdout(_)) => print(&text?),
-        Some(mut output) => {
-            output.write_all(text?.as_bytes())?;
-            output.keep()?;
+        Some(output) => {
+            output.write_and_keep(text?.as_bytes())?;
             Ok(ExitCode::SUCCESS)
         }
     }

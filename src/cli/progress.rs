@@ -2,7 +2,8 @@
 
 use super::INTERRUPTED;
 use crate::export::Destination;
-use crate::export::destination::{self, DestinationError};
+use crate::export::destination::DestinationError;
+use crate::export::temporary;
 use indicatif::{
     HumanCount, HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle,
 };
@@ -60,7 +61,7 @@ impl Interruption {
         if !self.at_once.load(Ordering::SeqCst) {
             thread::sleep(PATIENCE);
         }
-        destination::remove_temporary();
+        temporary::remove_own();
         signal_hook::low_level::exit(INTERRUPTED.into());
     }
 

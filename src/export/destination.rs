@@ -1,23 +1,13 @@
 //! The output of an export: a file that appears only once it is complete, or a stream.
 
+use super::temporary;
 use crate::text::printable::Shown;
 use crate::text::unwritten;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
 use tempfile::NamedTempFile;
-
-/// The paths of the temporary files of this process, also of those that have got their names or are gone.
-static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
-
-/// Removes the temporary files of outputs that are not complete, for a process that ends on the spot.
-pub fn remove_temporary() {
-    for path in &*TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner) {
-        let _ = fs::remove_file(path); // there is nobody to tell
-    }
-}
 
 /// An output that is being written.
 #[derive(Debug)]
@@ -25,7 +15,7 @@ pub enum Destination {
     /// Standard output.
     Stdout(io::Stdout),
     /// A device, FIFO or socket, which is written to directly.
-    Stream(File),
+    Stream(File, PathBuf),
     /// A regular file, which has a temporary name in the same folder until it is complete.
     File {
         /// The temporary file.
@@ -122,12 +112,13 @@ impl Destination {
             return Self::open_file(path, replace);
         }
         let opened = options.write(true).open(path);
-        opened
-            .map(Self::Stream)
-            .map_err(|error| DestinationError::Refused {
+        match opened {
+            Ok(file) => Ok(Self::Stream(file, path.to_owned())),
+            Err(error) => Err(DestinationError::Refused {
                 path: path.to_owned(),
                 error,
-            })
+            }),
+        }
     }
 
     /// As [`open`](Self::open), but for regular files only: for a caller that must neither wait for a reader nor write to
@@ -176,15 +167,7 @@ impl Destination {
     }
 
     fn file(path: PathBuf, replace: bool) -> io::Result<Self> {
-        let temporary = tempfile::Builder::new()
-            .prefix(".gyrolab-")
-            .suffix(".part")
-            .permissions(new_permissions())
-            .tempfile_in(folder_of(&path))
-            .map_err(|error| plain(&error))?;
-        let mut known = TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner);
-        known.push(temporary.path().to_owned());
-        drop(known);
+        let temporary = temporary::file_in(folder_of(&path), new_permissions())?;
         if let Ok(there) = fs::metadata(&path) {
             copy_permissions(temporary.as_file(), &there)?;
         }
@@ -202,7 +185,28 @@ impl Destination {
     pub fn bytes(&self) -> io::Result<u64> {
         match self {
             Self::File { temporary, .. } => Ok(temporary.as_file().metadata()?.len()),
-            Self::Stdout(_) | Self::Stream(_) => Ok(0),
+            Self::Stdout(_) | Self::Stream(..) => Ok(0),
+        }
+    }
+
+    /// Writes `bytes`, all that there is to write, and [`keep`](Self::keep)s them.
+    ///
+    /// # Errors
+    /// As of `keep`.
+    pub fn write_and_keep(mut self, bytes: &[u8]) -> Result<(), DestinationError> {
+        let written = self.write_all(bytes);
+        written.map_err(|error| self.refused(error))?;
+        self.keep()
+    }
+
+    fn refused(&self, error: io::Error) -> DestinationError {
+        let path = match self {
+            Self::File { path, .. } | Self::Stream(_, path) => path,
+            Self::Stdout(_) => Path::new("stdout"),
+        };
+        DestinationError::Refused {
+            path: path.to_owned(),
+            error,
         }
     }
 
@@ -212,39 +216,26 @@ impl Destination {
     /// When the system reports an error, or when a file of that name has been created meanwhile and may not be replaced.
     pub fn keep(mut self) -> Result<(), DestinationError> {
         let flushed = self.flush();
-        match self {
-            Self::File {
-                temporary,
-                path,
-                replace,
-            } => {
-                let refused = |error| DestinationError::Refused {
-                    path: path.clone(),
-                    error,
-                };
-                flushed.map_err(refused)?;
-                let kept = if replace {
-                    temporary.persist(&path)
-                } else {
-                    temporary.persist_noclobber(&path)
-                };
-                match kept {
-                    Ok(_) => Ok(()),
-                    Err(failed) if failed.error.kind() == io::ErrorKind::AlreadyExists => {
-                        Err(DestinationError::Exists(path))
-                    }
-                    Err(failed) => Err(DestinationError::Refused {
-                        path,
-                        error: failed.error,
-                    }),
-                }
+        flushed.map_err(|error| self.refused(error))?;
+        let Self::File {
+            temporary,
+            path,
+            replace,
+        } = self
+        else {
+            return Ok(());
+        };
+        let kept = if replace {
+            temporary.persist(&path)
+        } else {
+            temporary.persist_noclobber(&path)
+        };
+        match kept.map_err(|failed| failed.error) {
+            Ok(_) => Ok(()),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                Err(DestinationError::Exists(path))
             }
-            Self::Stdout(_) | Self::Stream(_) => {
-                flushed.map_err(|error| DestinationError::Refused {
-                    path: PathBuf::from("the output"),
-                    error,
-                })
-            }
+            Err(error) => Err(DestinationError::Refused { path, error }),
         }
     }
 }
@@ -299,18 +290,11 @@ fn new_permissions() -> fs::Permissions {
     fs::Permissions::from_mode(0o666)
 }
 
-/// The system's error without the temporary file name, which means nothing to the user.
-fn plain(error: &io::Error) -> io::Error {
-    let text = error.to_string();
-    let words = text.split(" at path ").next().unwrap_or(&text);
-    io::Error::new(error.kind(), words.to_owned())
-}
-
 impl Write for Destination {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
             Self::Stdout(out) => out.write(bytes),
-            Self::Stream(out) => out.write(bytes),
+            Self::Stream(out, _) => out.write(bytes),
             Self::File { temporary, .. } => temporary.as_file_mut().write(bytes),
         }
     }
@@ -318,7 +302,7 @@ impl Write for Destination {
     fn flush(&mut self) -> io::Result<()> {
         match self {
             Self::Stdout(out) => out.flush(),
-            Self::Stream(out) => out.flush(),
+            Self::Stream(out, _) => out.flush(),
             Self::File { temporary, .. } => temporary.as_file_mut().flush(),
         }
     }

@@ -1,8 +1,9 @@
 //! A folder of output that appears only once all its files are complete.
 
 use super::destination::{DestinationError, folder_of};
+use super::temporary;
 use std::ffi::OsString;
-use std::fs;
+use std::fs::{self, File};
 use std::io;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -14,6 +15,7 @@ pub struct Folder {
     temporary: TempDir,
     path: PathBuf,
     replace: bool,
+    _lock: File,
 }
 
 impl Folder {
@@ -34,15 +36,13 @@ impl Folder {
             });
         }
         may_be_written(&path, replace)?;
-        let temporary = tempfile::Builder::new()
-            .prefix(".gyrolab-")
-            .permissions(fs::Permissions::from_mode(0o777)) // before the umask
-            .tempdir_in(in_folder)
-            .map_err(|error| refused(of_the_system(error)))?;
+        let permissions = fs::Permissions::from_mode(0o777); // before the umask
+        let (temporary, lock) = temporary::folder_in(in_folder, permissions).map_err(refused)?;
         Ok(Self {
             temporary,
             path,
             replace,
+            _lock: lock,
         })
     }
 
@@ -99,14 +99,6 @@ fn may_be_written(path: &Path, replace: bool) -> Result<(), DestinationError> {
         Some(_) if !replace => Err(DestinationError::FolderInUse(path.to_owned())),
         _ => Ok(()),
     }
-}
-
-/// The system's own error, without the temporary name that `error` speaks of.
-fn of_the_system(error: io::Error) -> io::Error {
-    let inner = error.get_ref().and_then(|inner| inner.source());
-    let inner = inner.and_then(|inner| inner.downcast_ref::<io::Error>());
-    let code = inner.and_then(io::Error::raw_os_error);
-    code.map_or(error, io::Error::from_raw_os_error)
 }
 
 fn refused(path: &Path, error: io::Error) -> DestinationError {

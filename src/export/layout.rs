@@ -85,7 +85,7 @@ impl LayoutFile {
         self.every = self.every.map(|every| every.min(most));
         for (key, bound) in [("from_s", self.from_s), ("to_s", self.to_s)] {
             if let Some(seconds) = bound.filter(|seconds| !seconds.is_finite() || *seconds < 0.0) {
-                let rule = format!("{seconds} must be a time in seconds, 0 or more");
+                let rule = format!("{seconds:?} must be a time in seconds, 0 or more");
                 return Err(LayoutError { key, rule });
             }
         }

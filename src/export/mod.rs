@@ -12,6 +12,7 @@ pub mod layout;
 pub mod points;
 pub mod stream;
 pub mod summary;
+pub mod temporary;
 
 pub use columns::{COLUMNS, Column};
 pub use csv::CsvWriter;

@@ -236,15 +236,17 @@ fn wanted(request: &Request, kinds: &[&Kind]) -> Wanted {
 fn check_range(runs: &[Run], request: &Request) -> Result<(), String> {
     let from_s = request.from_s;
     if let Some(to_s) = request.to_s.filter(|to_s| *to_s <= from_s) {
-        return Err(format!("--from {from_s} is not before --to {to_s}"));
+        let (from, to) = (shortest(from_s), shortest(to_s));
+        return Err(format!("--from {from} is not before --to {to}"));
     }
     let ends = runs
         .iter()
         .map(|run| crate::run::Clock::end_s(&run.scenario));
     let end_s = ends.fold(0.0, f64::max);
     if from_s >= end_s {
+        let (from, end) = (shortest(from_s), shortest(end_s));
         return Err(format!(
-            "--from {from_s} is not before the end of the run, {end_s} s"
+            "--from {from} is not before the end of the run, {end} s"
         ));
     }
     Ok(())

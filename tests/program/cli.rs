@@ -1017,3 +1017,20 @@ fn the_measured_extremes_are_those_of_the_csv_and_theory_has_its_own_names() {
         assert!(stdout(&listed).lines().any(begins), "{name}");
     }
 }
+
+#[test]
+fn the_next_export_removes_what_a_killed_one_has_left() {
+    let ground = Ground::new();
+    let args = ["run", "method-2", "--steps", "1000000000", "-o", "long.csv"];
+    let mut child = ground.command(&args).stderr(Stdio::null()).spawn().unwrap();
+    while ground.files().is_empty() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let run = ["run", "cusps", "--steps", "2", "-o"];
+    ground.run(&[&run[..], &["1.csv"]].concat());
+    assert_eq!(ground.files().len(), 2, "one is being written");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    ground.run(&[&run[..], &["2.csv"]].concat());
+    assert_eq!(ground.files(), ["1.csv", "2.csv"]);
+}

@@ -78,6 +78,10 @@ fn what_cannot_be_drawn_is_refused_and_nothing_is_written() {
         &["--from 300", "230 s"],
     );
     failed(
+        &figure(&["method-2", "--from", "1e300", "-o", "a.svg"]),
+        &["--from 1e300 is not before the end of the run, 230 s"],
+    );
+    failed(
         &figure(&["method-2", "--from", "9", "--to", "3", "-o", "a.svg"]),
         &["--from 9", "--to 3"],
     );

@@ -42,6 +42,15 @@ fn exit_codes() {
 }
 
 #[test]
+fn a_full_disk_is_told_with_the_file() {
+    let output = ground().run(&["lesson", "my.md", "--handout", "-o", "/dev/full"]);
+    failed(
+        &output,
+        &["cannot write /dev/full: No space left on device"],
+    );
+}
+
+#[test]
 fn without_a_name_there_is_a_line_for_each_lesson_and_nothing_else() {
     let listed = done(Ground::new().run(&["lesson"]));
     let listed: Vec<_> = stdout(&listed).lines().map(str::to_owned).collect();

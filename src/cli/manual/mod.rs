@@ -81,11 +81,8 @@ fn write_all(gyrolab: &Command, folder: &Path, replace: bool) -> anyhow::Result<
     }
     let count = pages.len();
     for (name, page) in pages {
-        let path = folder.join(name);
-        let mut output = Destination::open_file(&path, replace)?;
-        let written = output.write_all(page.as_bytes());
-        written.with_context(|| format!("cannot write {}", Shown(&path)))?;
-        output.keep()?;
+        let output = Destination::open_file(&folder.join(name), replace)?;
+        output.write_and_keep(page.as_bytes())?;
     }
     tell(format_args!("gyrolab: {count} pages in {}", Shown(folder)));
     Ok(ExitCode::SUCCESS)
