@@ -128,13 +128,14 @@ fn follow(
     line: &ProgressBar,
     interruption: &Interruption,
 ) -> io::Result<()> {
-    let mut seen = SystemTime::UNIX_EPOCH;
+    let mut seen = None;
     let mut open: Option<(Lesson, Place)> = None;
     while !interruption.has_come() {
-        let saved = session::saved_at(folder, name);
+        let session = session::look_at(folder, name);
+        let saved = session.as_ref().map(|session| session.written);
         if saved != seen {
             seen = saved;
-            let now = session::look_at(folder, name).and_then(|session| open_in(&session));
+            let now = session.as_ref().and_then(open_in);
             let now = now.and_then(|(name, place)| Some((reading::open(&name).ok()?, place)));
             let page = |open: &(Lesson, Place)| (open.0.name.clone(), open.1.page);
             if let Some((lesson, place)) = &now
@@ -145,7 +146,7 @@ fn follow(
             open = now;
         }
         line.set_message(match &open {
-            Some(_) if !session::is_in_use(folder, name) => {
+            Some(_) if !session.is_some_and(|session| session.is_in_use) => {
                 "the lab was left; Ctrl-C ends this".to_owned()
             }
             Some((lesson, place)) => times(lesson, place),

@@ -122,9 +122,6 @@ fn open_at(
         lab.play_on();
     }
     lab.set_trouble(session.as_ref().err().cloned());
-    if let Ok(session) = &session {
-        session.check_with(Lab::check);
-    }
     lab.take_advice();
     if let Some(commands) = commands {
         lab.take_commands(commands);

@@ -16,16 +16,10 @@ use crate::work::journal::Journal;
 use crate::work::next_push::NextPush;
 use serde::{Deserialize, Serialize};
 
-/// The version of this format, and the versions that can be read. Version 1 had other journals; in version 2 the place
-/// had neither panes nor what is hidden, nor camera, zoom, line and script.
-const FORM: u32 = 3;
-const FORMS: std::ops::RangeInclusive<u32> = 1..=FORM;
-
 /// The text of the work.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct KeptWork {
-    form: u32,
     history: History,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pinned: Option<KeptPinned>,
@@ -169,16 +163,6 @@ impl Lab {
         }
     }
 
-    /// Checks that `content` can be read and would be written in the same way again.
-    ///
-    /// # Errors
-    /// In words, where that is not so.
-    pub fn check(content: &Content) -> Result<(), String> {
-        let work = reads_back::<KeptWork>("the run", &content.work);
-        let place = reads_back::<KeptPlace>("the place in it", &content.place);
-        work.and(place).map_err(|error| error.to_string())
-    }
-
     /// What a list of sessions shows of `content`.
     ///
     /// # Errors
@@ -284,24 +268,11 @@ pub(super) fn written(history: &History, reference: Option<&Reference>) -> Text 
     let (history, reference) = (history.clone(), reference.cloned());
     Text::later(move || {
         let work = KeptWork {
-            form: FORM,
             history,
             pinned: reference.as_ref().map(KeptPinned::of),
         };
         toml::to_string(&work).unwrap_or_default()
     })
-}
-
-/// Checks that `text` can be read as a `T` and would be written in the same way again.
-fn reads_back<T: Serialize + for<'a> Deserialize<'a>>(
-    what: &str,
-    text: &str,
-) -> Result<(), Unreadable> {
-    let value: T = read(what, text)?;
-    match toml::to_string(&value).is_ok_and(|again| again == text) {
-        true => Ok(()),
-        false => Err(Unreadable(format!("{what} is read as something else"))),
-    }
 }
 
 fn read<'a, T: Deserialize<'a>>(what: &str, text: &'a str) -> Result<T, Unreadable> {

@@ -9,17 +9,12 @@
 //! The content is two texts, which this module does not interpret: the work, which changes seldom and may be long, and the
 //! place in it, which changes all the time.
 
-mod content;
-mod files;
-mod format;
 mod lock;
 pub(super) mod own;
 mod slot;
 mod text;
 mod writer;
 
-pub use content::{Check, Content};
-pub(super) use files::make_folder;
 pub(super) use lock::lock_folder;
 pub use slot::KeptAside;
 pub use text::Text;
@@ -27,8 +22,10 @@ pub use text::Text;
 use super::at_exit::{self, Registered, Release};
 use crate::text::printable::Shown;
 use etcetera::{BaseStrategy, base_strategy::Xdg};
-use slot::Slot;
+use slot::{Slot, Unread};
+use std::fs::DirBuilder;
 use std::io;
+use std::os::unix::fs::DirBuilderExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
@@ -40,13 +37,31 @@ const PATIENCE: Duration = Duration::from_millis(400);
 /// How long it may hold up the end of the process.
 const LAST_PATIENCE: Duration = Duration::from_secs(4);
 
+/// The content of a session, as two texts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Content {
+    /// What changes seldom, such as the runs and their journals.
+    pub work: Text,
+    /// What changes all the time, such as the step at which the lab stands. It is short.
+    pub place: String,
+}
+
+/// What is left of a session that has ended.
+#[derive(Debug)]
+pub struct Closed {
+    /// The content that was saved last; `None` if none was.
+    pub kept: Option<Content>,
+    /// Why that is not the content that was noted last.
+    pub trouble: Option<String>,
+}
+
 /// The session of this process. No other process can take it while this value lives; dropping it saves the session and
 /// frees it.
 pub struct Session {
     name: String,
     shared: Arc<Shared>,
-    /// The saving thread. It returns the slot, or `None` if it never saved anything.
-    writer: Option<JoinHandle<Option<Slot>>>,
+    /// The saving thread.
+    writer: Option<JoinHandle<()>>,
     _at_end: Registered,
 }
 
@@ -57,7 +72,7 @@ pub struct Found<T> {
     pub resumed: Option<Resumed<T>>,
     /// Newer files that could not be read; they have been renamed.
     pub kept_aside: Vec<KeptAside>,
-    /// Newer files that belong to another user or cannot be opened; they are unchanged.
+    /// Newer files of another user or another version, and those that cannot be opened; they are unchanged.
     pub left_alone: Vec<KeptAside>,
     /// Process numbers of the processes that use newer sessions, as far as they are known.
     pub in_use_by: Vec<u32>,
@@ -154,81 +169,90 @@ fn resume_one_of<T>(
         in_use_by: Vec::new(),
     };
     for id in ids {
-        let taken = files::check_own(folder, id).and_then(|()| Slot::take(folder, id));
-        let mut slot = match taken {
+        let alone = |reason| KeptAside {
+            path: slot::file_of(folder, id),
+            reason,
+        };
+        let slot = match Slot::take(folder, id) {
             Ok(Some(slot)) => slot,
             Ok(None) => {
-                found.in_use_by.extend(files::owner(folder, id));
+                found.in_use_by.extend(slot::owner(folder, id));
                 continue;
             }
             Err(error) => {
-                let path = folder.join(format!("{id}.work"));
-                let reason = error.to_string();
-                found.left_alone.push(KeptAside { path, reason });
+                found.left_alone.push(alone(error.to_string()));
                 continue;
             }
         };
-        let what = slot.load().and_then(|(content, aside)| {
-            found.kept_aside.extend(aside);
-            read(&content)
-        });
-        match what {
+        let content = match slot::stored(folder, id) {
+            Ok(content) => content,
+            Err(Unread::Foreign(reason)) => {
+                found.left_alone.push(alone(reason));
+                continue;
+            }
+            Err(damaged) => {
+                found.kept_aside.push(slot.put_aside(damaged.reason()));
+                continue;
+            }
+        };
+        match read(&content) {
             Ok(what) => {
-                let session = Session::start(slot)?;
+                let session = Session::start(slot, Some(content))?;
                 found.resumed = Some(Resumed { session, what });
                 break;
             }
-            Err(reason) => found.kept_aside.push(slot.put_all_aside(reason)),
+            Err(reason) => found.kept_aside.push(slot.put_aside(reason)),
         }
     }
     Ok(found)
 }
 
-/// Lists the user's own sessions in `folder`, the one saved last first. It changes nothing.
+/// Lists the sessions in `folder`, the one saved last first. It changes nothing.
 ///
 /// # Errors
 /// When `folder` cannot be listed. A `folder` that does not exist yet is no error.
 pub fn list(folder: &Path) -> io::Result<Vec<Listed>> {
-    let mut ids = earlier(folder)?;
-    ids.retain(|id| files::check_own(folder, id).is_ok());
+    let ids = earlier(folder)?;
     let _lock = (!ids.is_empty()).then(|| lock_folder(folder));
     let listed = ids.into_iter().map(|name| listed(folder, name));
     Ok(listed.collect())
 }
 
-/// The user's own session called `name` in `folder`, as [`list`] has it; `None` if there is none.
+/// The session called `name` in `folder`, as [`list`] has it; `None` if there is none.
 pub fn look_at(folder: &Path, name: &str) -> Option<Listed> {
     let mut ids = earlier(folder).ok()?.into_iter();
     let id = ids.find(|id| id == name)?;
-    files::check_own(folder, &id).ok()?;
     let _lock = lock_folder(folder);
     Some(listed(folder, id))
 }
 
-/// Whether a running process holds the session called `name` in `folder`.
-pub fn is_in_use(folder: &Path, name: &str) -> bool {
-    files::is_in_use(folder, name)
-}
-
-/// When the session called `name` in `folder` was saved last; the beginning of 1970 if there is none.
-pub fn saved_at(folder: &Path, name: &str) -> SystemTime {
-    files::written_at(folder, name)
-}
-
 fn listed(folder: &Path, name: String) -> Listed {
-    let is_in_use = files::is_in_use(folder, &name);
+    let is_in_use = slot::is_in_use(folder, &name);
     Listed {
-        written: files::written_at(folder, &name),
+        written: slot::written_at(folder, &name),
         is_in_use,
-        owner: files::owner(folder, &name).filter(|_| is_in_use),
-        content: content::stored(folder, &name).map(|stored| stored.content),
+        owner: slot::owner(folder, &name).filter(|_| is_in_use),
+        content: slot::stored(folder, &name).map_err(Unread::reason),
         name,
     }
 }
 
+/// Creates the folder if it does not exist, accessible to the user alone.
+pub(super) fn make_folder(folder: &Path) -> io::Result<()> {
+    let mut builder = DirBuilder::new();
+    let made = builder.recursive(true).mode(0o700).create(folder);
+    made.map_err(|error| not_kept(folder, &error))
+}
+
+/// Says that sessions cannot be kept in `folder`, because of `error`.
+fn not_kept(folder: &Path, error: &io::Error) -> io::Error {
+    let text = format!("sessions cannot be kept in {}: {error}", Shown(folder));
+    io::Error::new(error.kind(), text)
+}
+
 /// The IDs of all sessions in `folder`, the one saved last first; none where there is no such folder.
 fn earlier(folder: &Path) -> io::Result<Vec<String>> {
-    match files::sessions(folder) {
+    match slot::sessions(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
         Err(error) => {
             let text = format!("cannot look for sessions in {}: {error}", Shown(folder));
@@ -248,14 +272,14 @@ impl Session {
         make_folder(folder)?;
         let _lock = lock_folder(folder);
         slot::prune(folder);
-        let slot = Slot::new(folder).map_err(|error| files::not_kept(folder, &error))?;
-        Self::start(slot)
+        let slot = Slot::new(folder).map_err(|error| not_kept(folder, &error))?;
+        Self::start(slot, None)
     }
 
-    /// The session of `slot`: starts its saving thread and registers its hook.
-    fn start(slot: Slot) -> io::Result<Self> {
+    /// The session of `slot`, of which the disk holds `kept`: starts its saving thread and registers its hook.
+    fn start(slot: Slot, kept: Option<Content>) -> io::Result<Self> {
         let name = slot.id().to_owned();
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(Shared::of(kept));
         let (ours, at_end) = (Arc::clone(&shared), Arc::clone(&shared));
         let writer = thread::Builder::new()
             .name("session".to_owned())
@@ -284,11 +308,6 @@ impl Session {
         &self.name
     }
 
-    /// From now on a changed work is saved only if `check` accepts it. A [`flush`](Self::flush) saves without checking.
-    pub fn check_with(&self, check: Check) {
-        self.shared.state().check = Some(check);
-    }
-
     /// Saves at once, and gives up after 0.4 s so that a signal handler's thread and a panic may call it. Returns whether
     /// saving was attempted in that time; [`trouble`](Self::trouble) tells whether it failed.
     pub fn flush(&self) -> bool {
@@ -300,36 +319,34 @@ impl Session {
         self.shared.state().trouble.clone()
     }
 
-    /// Saves and ends the session, and returns its content as read back from the disk. It waits at most `patience` for the
-    /// disk to save.
-    ///
-    /// # Errors
-    /// Why the disk does not hold the content that was noted last.
-    pub fn close(mut self, patience: Duration) -> Result<Content, String> {
-        if !self.shared.flush(patience) {
-            return Err("the session is not kept: the disk takes too long".to_owned());
-        }
-        if let Some(trouble) = self.trouble() {
-            return Err(trouble);
-        }
-        let slot = self
-            .end()
-            .ok_or("the session is not kept: there is nothing in it")?;
-        let content = slot
-            .read_back()
-            .map_err(|reason| format!("the session was not kept: {reason}"))?;
-        if self.shared.state().noted.as_ref() == Some(&content) {
-            Ok(content)
+    /// Saves and ends the session. It waits at most `patience` for the disk.
+    pub fn close(mut self, patience: Duration) -> Closed {
+        let is_in_time = self.shared.flush(patience);
+        if is_in_time {
+            self.end();
         } else {
-            Err("the session was not kept: the disk holds an earlier one".to_owned())
+            self.leave();
+        }
+        let state = self.shared.state();
+        let slow = || "the session cannot be kept: the disk takes too long".to_owned();
+        Closed {
+            kept: state.kept.clone(),
+            trouble: state.trouble.clone().or_else(|| (!is_in_time).then(slow)),
         }
     }
 
-    /// Ends the thread and waits for it; returns its slot, or `None` if nothing was ever saved.
-    fn end(&mut self) -> Option<Slot> {
+    /// Ends the thread and waits for it.
+    fn end(&mut self) {
+        self.leave();
+        if let Some(writer) = self.writer.take() {
+            let _ = writer.join();
+        }
+    }
+
+    /// Tells the thread to end, without waiting for one that hangs in a write to a dead disk.
+    fn leave(&self) {
         self.shared.state().is_closing = true;
         self.shared.changed.notify_all();
-        self.writer.take()?.join().ok()?
     }
 }
 
@@ -338,10 +355,10 @@ impl Drop for Session {
         if self.writer.is_none() {
             return;
         }
-        match self.shared.flush(PATIENCE) {
-            true => drop(self.end()),
-            // Do not wait for a thread that hangs in a write to a dead disk.
-            false => self.shared.state().is_closing = true,
+        if self.shared.flush(PATIENCE) {
+            self.end();
+        } else {
+            self.leave();
         }
     }
 }

@@ -10,6 +10,7 @@ use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
 use crate::text::printable::Shown;
 use etcetera::{BaseStrategy, base_strategy::Xdg};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::{self, JoinHandle};
@@ -152,7 +153,7 @@ pub fn read_config(path: &Path) -> Read {
     match std::fs::metadata(path) {
         Ok(there) if there.is_file() => Read::of(Document::read(path)),
         Ok(_) => Read::broken(path.display().to_string(), "is not a file".to_owned()),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Read::default(),
+        Err(error) if error.kind() == ErrorKind::NotFound => Read::default(),
         Err(error) => Read::broken(
             path.display().to_string(),
             format!("cannot be read: {error}"),
@@ -163,13 +164,13 @@ pub fn read_config(path: &Path) -> Read {
 /// Reads the file that the program has written in `folder`, if it is the user's own; no symbolic link is followed.
 pub fn read(folder: &Path) -> Read {
     let path = folder.join(FILE);
-    if !own::exists(&path) {
-        return Read::default();
-    }
     let origin = path.display().to_string();
     match own::read(&path) {
-        Ok(text) => Read::of(Document::parse(&origin, &text)),
-        Err(reason) => Read::broken(origin, reason),
+        Ok(bytes) => Read::of(Document::read_from(&origin, &*bytes)),
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            Read::default()
+        }
+        Err(error) => Read::broken(origin, format!("cannot be read: {error}")),
     }
 }
 
@@ -186,12 +187,12 @@ fn write(folder: &Path, chosen: &Table) -> Result<(), String> {
     };
     make_folder(folder).map_err(|error| cannot(error.to_string()))?;
     let _lock = lock_folder(folder);
-    let mut table = Table::new();
-    if own::exists(&path) {
-        let text = own::read(&path).map_err(cannot)?;
-        let there = text.parse().unwrap_or_default(); // text that is no TOML was reported when the lab was opened
-        table = sifted(&there).0;
-    }
+    let mut table = match own::read(&path) {
+        // What is no TOML was reported when the lab was opened.
+        Ok(bytes) => sifted(&toml::from_slice(&bytes).unwrap_or_default()).0,
+        Err(error) if error.kind() == ErrorKind::NotFound => Table::new(),
+        Err(error) => return Err(cannot(error.to_string())),
+    };
     table.extend(chosen.clone());
     let text = table.to_string();
     own::replace(&path, &[HEAD, &text]).map_err(|error| cannot(error.to_string()))

@@ -176,7 +176,6 @@ fn the_session_keeps_page_and_predictions() {
     let (mut stage, _folder, _) = taken(1);
     stage.press("↓\n").press("nn").arrive();
     let content = stage.lab.content();
-    Lab::check(&content).unwrap();
     let view = |scenario: &_| crate::support::scenarios::view(scenario, Marker::Braille, false);
     let mut lab = Lab::resumed(&content, view).unwrap();
     let (class, taken) = Class::resumed(&mut lab);

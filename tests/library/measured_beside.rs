@@ -189,7 +189,6 @@ fn a_session_keeps_them_by_name() {
         path.display()
     ));
     let content = desk.lab.content();
-    Lab::check(&content).unwrap();
     let resumed = || Lab::resumed(&content, |scenario| view(scenario, Marker::Braille, false));
     let mut again = Desk::of(resumed().unwrap());
     again.wait(3);

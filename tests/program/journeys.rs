@@ -450,10 +450,7 @@ fn ended(lab: &mut Terminal, by: &str) {
 /// The content of all session files.
 fn kept(ground: &Ground) -> String {
     let folder = ground.state().join("gyrolab");
-    let names = ground
-        .kept(".work")
-        .into_iter()
-        .chain(ground.kept(".place"));
+    let names = ground.kept(".session").into_iter();
     names
         .filter_map(|name| fs::read_to_string(folder.join(name)).ok())
         .collect()
@@ -719,7 +716,7 @@ fn a_damaged_session_is_named_and_kept_aside() {
     let mut lab = paused_at(&ground, 30);
     push(&mut lab);
     lab.quit();
-    let [name] = &ground.kept(".work")[..] else {
+    let [name] = &ground.kept(".session")[..] else {
         panic!("{:?}", ground.kept(""))
     };
     let path = ground.state().join("gyrolab").join(name);
@@ -728,7 +725,7 @@ fn a_damaged_session_is_named_and_kept_aside() {
     let mut lab = ground.open(&["--resume"]);
     lab.wait_for("a damaged session is put aside as");
     lab.wait_for("Method 2");
-    let aside = ground.kept(".work.damaged");
+    let aside = ground.kept(".session.damaged");
     assert_eq!(aside, [format!("{name}.damaged")]);
     lab.press(" ");
     lab.quit();

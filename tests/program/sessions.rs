@@ -52,6 +52,44 @@ fn on_a_full_disk_the_trouble_stays_and_nothing_is_promised() {
     assert!(!lab.words().contains("comes back to"), "{}", lab.words());
 }
 
+/// Nothing can be written any more, and what was kept before is still there.
+#[test]
+fn on_a_full_disk_the_end_names_the_step_that_the_disk_has() {
+    let ground = Ground::new();
+    let mut lab = ground.open(&["--paused", "--at", "30"]);
+    lab.wait_for("q quit");
+    lab.quit();
+    let mut lab = ground.open_shell();
+    lab.wait_for("shell>");
+    let program = env!("CARGO_BIN_EXE_gyrolab");
+    lab.press(&format!("ulimit -f 0; {program} --resume\r"));
+    lab.wait_for(AS_LEFT);
+    lab.press(".");
+    lab.wait_for_step(31);
+    lab.wait_for("the session cannot be kept");
+    lab.press("q");
+    lab.wait_for("what was done last is lost: the session cannot be kept");
+    lab.wait_for("--resume comes back to step 30 of Method 2");
+}
+
+#[test]
+fn a_session_of_another_version_is_named_and_left_alone() {
+    let ground = Ground::new();
+    let folder = ground.state().join("gyrolab");
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join("1.work"), "gyrolab session 2\nrevision 1\n").unwrap();
+    fs::write(folder.join("2.session"), "gyrolab session 4\nx\n").unwrap();
+    let mut lab = ground.open(&["--resume"]);
+    for name in ["1.work", "2.session"] {
+        lab.wait_for(&format!(
+            "{name} is left alone (another version of gyrolab wrote it)"
+        ));
+    }
+    lab.quit();
+    assert!(folder.join("1.work").exists() && folder.join("2.session").exists());
+    assert_eq!(ground.kept(".damaged"), [""; 0]);
+}
+
 #[test]
 fn a_command_behind_its_options_is_told_where_it_belongs() {
     let output = Ground::new().run(&["--folder", ".", "run", "cusps"]);
@@ -136,7 +174,7 @@ fn a_confined_lab_writes_in_its_folder_alone() {
             ("up/new.toml", "leads out of it"),
             ("out.toml", "leads out of it"),
             ("own/../../new.toml", "stays in its folder"),
-            (".gyrolab/1.work", "begin with a dot"),
+            (".gyrolab/1.session", "begin with a dot"),
             ("/dev/tty", "stays in its folder"),
             ("pipe.csv", "regular files alone"),
             ("-", "no name for a file"),
@@ -168,7 +206,7 @@ fn a_confined_lab_writes_in_its_folder_alone() {
             ".gyrolab", "new.toml", "out.toml", "own.toml", "pipe.csv", "up"
         ]
     );
-    assert!(names("inside/.gyrolab").contains(&"1.work".to_owned()));
+    assert!(names("inside/.gyrolab").contains(&"1.session".to_owned()));
 }
 
 #[test]

@@ -58,7 +58,9 @@ fn written(session: &Session) {
 /// Closes the session, and returns its content as saved.
 #[track_caller]
 fn closed(session: Session) -> Content {
-    session.close(PATIENCE).unwrap()
+    let closed = session.close(PATIENCE);
+    assert_eq!(closed.trouble, None);
+    closed.kept.unwrap()
 }
 
 fn names(folder: &Path, end: &str) -> Vec<PathBuf> {
@@ -79,7 +81,7 @@ fn only(folder: &Path, end: &str) -> PathBuf {
 
 /// The file of the session that ends with that text: its place, then its work.
 fn file_of(folder: &Path, text: &str) -> PathBuf {
-    let mut names = names(folder, ".work").into_iter();
+    let mut names = names(folder, ".session").into_iter();
     names
         .find(|path| {
             fs::read_to_string(path)
@@ -89,15 +91,11 @@ fn file_of(folder: &Path, text: &str) -> PathBuf {
         .unwrap()
 }
 
-/// Sets the modification time of the session with the work file `path` so many `seconds` into the past. A session that was
-/// saved before it was flushed has a place file too.
+/// Sets the modification time of the file `path` so many `seconds` into the past.
 fn age(path: &Path, seconds: u64) {
+    let file = fs::File::options().append(true).open(path).unwrap();
     let time = SystemTime::now() - Duration::from_secs(seconds);
-    for path in [path, &path.with_extension("place")] {
-        if let Ok(file) = fs::File::options().append(true).open(path) {
-            file.set_modified(time).unwrap();
-        }
-    }
+    file.set_modified(time).unwrap();
 }
 
 #[track_caller]
@@ -141,7 +139,7 @@ fn the_last_content_is_resumed_and_the_session_continues() {
     found.session.note(content("another run", "step 6"));
     closed(found.session);
     assert_eq!(newest(&folder), Some(content("another run", "step 6")));
-    assert_eq!(names(&folder, ".work").len(), 1, "it is one session");
+    assert_eq!(names(&folder, ".session").len(), 1, "it is one session");
 }
 
 #[test]
@@ -154,7 +152,7 @@ fn only_the_user_may_read_it() {
     }
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
     assert_eq!(mode(&folder), 0o700);
-    for end in [".work", ".place", ".lock"] {
+    for end in [".session", ".lock"] {
         assert_eq!(mode(&only(&folder, end)), 0o600, "{end}");
     }
 }
@@ -163,17 +161,13 @@ fn only_the_user_may_read_it() {
 fn it_is_written_without_a_flush() {
     let (_outer, folder) = folder();
     let session = Session::begin(&folder).unwrap();
-    session.note(content("run", "one"));
-    wait_until(|| names(&folder, ".work").len() == 1);
-    session.note(content("run", "two"));
-    wait_until(|| names(&folder, ".place").len() == 1);
-    let work = fs::read_to_string(only(&folder, ".work")).unwrap();
-    let place = fs::read_to_string(only(&folder, ".place")).unwrap();
-    assert!(
-        work.contains("one") && !work.contains("two"),
-        "the work is left alone"
-    );
-    assert!(place.contains("two"));
+    for place in ["one", "two"] {
+        session.note(content("run", place));
+        wait_until(|| {
+            let text = names(&folder, ".session").first().map(fs::read_to_string);
+            text.is_some_and(|text| text.is_ok_and(|text| text.ends_with(&format!("{place}run"))))
+        });
+    }
 }
 
 #[test]
@@ -184,34 +178,16 @@ fn a_flush_writes_at_once() {
         let place = format!("step {step}.");
         session.note(content("run", &place));
         written(&session);
-        let end = if step == 0 { ".work" } else { ".place" };
-        let text = fs::read_to_string(only(&folder, end)).unwrap();
-        assert!(text.ends_with(&format!("{place}{}", if step == 0 { "run" } else { "" })));
+        let text = fs::read_to_string(only(&folder, ".session")).unwrap();
+        assert!(text.ends_with(&format!("{place}run")));
     }
-}
-
-#[test]
-fn a_place_is_never_taken_with_another_work() {
-    let (_outer, folder) = folder();
-    let session = Session::begin(&folder).unwrap();
-    for (work, place) in [("first", "a"), ("first", "b")] {
-        session.note(content(work, place));
-        written(&session);
-    }
-    let of_the_first = fs::read_to_string(only(&folder, ".place")).unwrap();
-    assert!(of_the_first.ends_with('b'));
-    session.note(content("second", "c"));
-    closed(session);
-    // This is the state after a process died between writing the work and the place.
-    fs::write(only(&folder, ".place"), of_the_first).unwrap();
-    assert_eq!(newest(&folder), Some(content("second", "c")));
 }
 
 #[test]
 fn the_newest_that_is_not_in_use_is_taken() {
     let (_outer, folder) = folder();
     kept(&folder, "old", "");
-    age(&only(&folder, ".work"), 100);
+    age(&only(&folder, ".session"), 100);
     let middle = Session::begin(&folder).unwrap();
     middle.note(content("middle", "1"));
     written(&middle);
@@ -257,36 +233,19 @@ fn processes_that_resume_at_the_same_time_get_different_sessions() {
 #[test]
 fn what_is_damaged_is_put_aside_and_told_of() {
     type Damage = fn(&Path);
-    let damages: [(Damage, &str); 6] = [
+    let damages: [(Damage, &str); 4] = [
         (|path| cut(path, 3), "cut off"),
         (|path| cut(path, 1000), "cut off"),
         (|path| fs::write(path, [0; 100]).unwrap(), "cut off"),
-        (|path| fs::write(path, [0xff, 0xfe]).unwrap(), "UTF-8"),
-        (
-            |path| {
-                fs::write(
-                    path,
-                    "gyrolab session 1\nrevision 1\nplace 99999999999999999999\nwork 1\n",
-                )
-                .unwrap();
-            },
-            "changed",
-        ),
-        (
-            |path| {
-                fs::remove_file(path).unwrap();
-                fs::create_dir(path).unwrap();
-            },
-            "not a file",
-        ),
+        (|path| fs::write(path, [0xff, 0xfe]).unwrap(), "cut off"),
     ];
     for (damage, words) in damages {
         let (_outer, folder) = folder();
         kept(&folder, "the one before", "");
-        age(&only(&folder, ".work"), 100);
-        let before = only(&folder, ".work");
+        age(&only(&folder, ".session"), 100);
+        let before = only(&folder, ".session");
         kept(&folder, "the newest", "here");
-        let newest = names(&folder, ".work")
+        let newest = names(&folder, ".session")
             .into_iter()
             .find(|path| *path != before);
         damage(&newest.unwrap());
@@ -299,7 +258,7 @@ fn what_is_damaged_is_put_aside_and_told_of() {
             panic!("{:?}", found.kept_aside);
         };
         assert!(aside.reason.contains(words), "{}", aside.reason);
-        assert!(aside.path.exists() && aside.path.to_str().unwrap().ends_with(".work.damaged"));
+        assert!(aside.path.exists() && aside.path.to_str().unwrap().ends_with(".session.damaged"));
         assert!(any(&folder).kept_aside.is_empty(), "it is told of once");
     }
 }
@@ -314,7 +273,7 @@ fn cut(path: &Path, bytes: u64) {
 fn what_the_reader_refuses_is_put_aside_too_and_none_is_lost() {
     let (_outer, folder) = folder();
     kept(&folder, "good", "");
-    age(&only(&folder, ".work"), 100);
+    age(&only(&folder, ".session"), 100);
     kept(&folder, "bad", "");
     let found = resume(&folder, |content| match &*content.work {
         "bad" => Err("line 3: no such key".to_owned()),
@@ -331,39 +290,18 @@ fn what_the_reader_refuses_is_put_aside_too_and_none_is_lost() {
 }
 
 #[test]
-fn a_damaged_place_costs_the_place_alone() {
-    let (_outer, folder) = folder();
-    let session = Session::begin(&folder).unwrap();
-    for place in ["one", "two"] {
-        session.note(content("run", place));
-        written(&session);
-    }
-    closed(session);
-    cut(&only(&folder, ".place"), 1);
-    let found = any(&folder);
-    assert_eq!(found.resumed.unwrap().what, content("run", "one"));
-    assert!(
-        found.kept_aside[0]
-            .path
-            .to_str()
-            .unwrap()
-            .ends_with(".place.damaged")
-    );
-}
-
-#[test]
 fn the_oldest_are_cleared_away_but_none_in_use() {
     let (_outer, folder) = folder();
     let in_use = Session::begin(&folder).unwrap();
     in_use.note(content("in use", ""));
     written(&in_use);
-    age(&only(&folder, ".work"), 100_000);
+    age(&only(&folder, ".session"), 100_000);
     for n in 0..30 {
         kept(&folder, &n.to_string(), "");
         age(&file_of(&folder, &n.to_string()), 1000 - n);
     }
     drop(Session::begin(&folder).unwrap());
-    assert_eq!(names(&folder, ".work").len(), 21);
+    assert_eq!(names(&folder, ".session").len(), 21);
     assert_eq!(names(&folder, ".lock").len(), 21);
     closed(in_use);
     let mut found = Vec::new();
@@ -401,9 +339,13 @@ fn trouble_is_told_as_long_as_it_lasts_and_it_is_tried_again() {
     session.note(content("run", "one"));
     written(&session);
     assert_eq!(session.trouble(), None);
-    // A folder with the name of the temporary file makes writing fail, as a full disk does.
-    let in_the_way = only(&folder, ".work").with_extension("place.new");
-    fs::create_dir(&in_the_way).unwrap();
+    // A folder in its place cannot be replaced: writing fails, as on a full disk.
+    let path = only(&folder, ".session");
+    let in_the_way = || {
+        fs::remove_file(&path).unwrap();
+        fs::create_dir(&path).unwrap();
+    };
+    in_the_way();
     session.note(content("run", "two"));
     written(&session);
     for place in ["three", "four"] {
@@ -411,56 +353,23 @@ fn trouble_is_told_as_long_as_it_lasts_and_it_is_tried_again() {
         session.note(content("run", place));
         written(&session);
     }
-    fs::remove_dir(&in_the_way).unwrap();
+    fs::remove_dir(&path).unwrap();
     wait_until(|| session.trouble().is_none());
-    assert_eq!(names(&folder, ".place").len(), 1);
-    fs::create_dir(&in_the_way).unwrap();
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 3, "two locks");
+    in_the_way();
     session.note(content("run", "five"));
     written(&session);
     assert!(session.trouble().is_some(), "it is new again");
+    let closed = session.close(PATIENCE);
+    assert!(closed.trouble.is_some());
+    assert_eq!(closed.kept, Some(content("run", "four")));
 }
 
 #[test]
-fn the_end_promises_only_what_the_disk_has() {
+fn a_session_without_content_keeps_nothing() {
     let (_outer, folder) = folder();
-    let session = Session::begin(&folder).unwrap();
-    fs::create_dir(folder.join("1.work.new")).unwrap();
-    session.note(content("run", "one"));
-    let reason = session.close(PATIENCE).unwrap_err();
-    assert!(reason.contains("cannot be kept"), "{reason}");
-    assert_eq!(names(&folder, ".work"), [] as [PathBuf; 0]);
-
-    let session = Session::begin(&folder).unwrap();
-    session.note(content("run", "two"));
-    written(&session);
-    fs::write(only(&folder, ".work"), "something else").unwrap();
-    session.note(content("run", "three"));
-    assert!(session.close(PATIENCE).is_err());
-
-    let session = Session::begin(&folder).unwrap();
-    assert!(session.close(PATIENCE).is_err(), "there is nothing in it");
-
-    let session = Session::begin(&folder).unwrap();
-    session.note(content("run", "four"));
-    session.note(content("run", "five"));
-    assert_eq!(closed(session), content("run", "five"));
-}
-
-#[test]
-fn a_work_that_cannot_be_read_back_does_not_take_the_place_of_one_that_can() {
-    let (_outer, folder) = folder();
-    let session = Session::begin(&folder).unwrap();
-    session.check_with(|content| match &*content.work {
-        "bad" => Err("the run is too deep".to_owned()),
-        _ => Ok(()),
-    });
-    session.note(content("good", ""));
-    wait_until(|| names(&folder, ".work").len() == 1);
-    session.note(content("bad", ""));
-    wait_until(|| session.trouble().is_some());
-    assert!(session.trouble().unwrap().contains("too deep"));
-    let text = fs::read_to_string(only(&folder, ".work")).unwrap();
-    assert!(text.ends_with("good"), "{text}");
+    let closed = Session::begin(&folder).unwrap().close(PATIENCE);
+    assert!(closed.kept.is_none() && closed.trouble.is_none());
 }
 
 #[test]
@@ -494,7 +403,7 @@ fn sessions_have_short_names_that_stay() {
     let found = resume_named(&folder, "2", |_| Ok(())).unwrap();
     assert!(found.resumed.is_none());
     assert_eq!(found.in_use_by, [own]);
-    for name in ["4", "", "lock", "../1", "1.work"] {
+    for name in ["4", "", "lock", "../1", "1.session"] {
         assert!(resume_named(&folder, name, |_| Ok(())).is_err(), "{name}");
     }
 }
@@ -628,7 +537,7 @@ fn killed_at_any_moment_it_leaves_a_whole_session() {
 fn the_processes_that_use_newer_sessions_are_reported() {
     let (_outer, folder) = folder();
     kept(&folder, "old", "");
-    age(&only(&folder, ".work"), 100);
+    age(&only(&folder, ".session"), 100);
     let newer = Session::begin(&folder).unwrap();
     newer.note(content("newer", ""));
     written(&newer);

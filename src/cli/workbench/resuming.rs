@@ -15,33 +15,39 @@ use anyhow::Context;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Says on the shell's screen what can be come back to, as the disk has it; or that nothing can, and why.
+/// Says on the shell's screen what can be come back to, as the disk has it; and what was not kept, and why.
 pub(super) fn tell_of_session(
     session: Result<Session, String>,
     folder: Option<&Path>,
 ) -> anyhow::Result<()> {
-    let kept = session.and_then(|session| {
-        let name = session.name().to_owned();
-        let content = session.close(PATIENCE)?;
-        Lab::check(&content)?;
-        let summary = Lab::summary(&content).map_err(told)?;
-        Ok((name, summary))
-    });
-    match kept {
-        Ok((name, Summary { title, step, .. })) => writeln!(
-            io::stdout(),
-            "gyrolab{} --resume comes back to step {step} of {} (session {name})",
-            folder.map_or(String::new(), |folder| format!(
-                " --folder {}",
-                Shown(folder)
-            )),
-            printable(&title)
-        )?,
-        Err(reason) => tell(format_args!(
+    let name = session.as_ref().map_or("", Session::name).to_owned();
+    let closed = session.map(|session| session.close(PATIENCE));
+    let (kept, trouble) = match closed {
+        Ok(closed) => (closed.kept, closed.trouble),
+        Err(trouble) => (None, Some(trouble)),
+    };
+    let trouble = trouble.as_deref().map(printable);
+    let Some(summary) = kept.and_then(|content| Lab::summary(&content).ok()) else {
+        tell(format_args!(
             "gyrolab: there is no session to come back to: {}",
-            printable(&reason)
-        )),
+            trouble.unwrap_or_else(|| "nothing was kept".into())
+        ));
+        return Ok(());
+    };
+    if let Some(trouble) = trouble {
+        tell(format_args!(
+            "gyrolab: what was done last is lost: {trouble}"
+        ));
     }
+    let folder = folder.map_or(String::new(), |folder| {
+        format!(" --folder {}", Shown(folder))
+    });
+    let Summary { title, step, .. } = summary;
+    writeln!(
+        io::stdout(),
+        "gyrolab{folder} --resume comes back to step {step} of {} (session {name})",
+        printable(&title)
+    )?;
     Ok(())
 }
 

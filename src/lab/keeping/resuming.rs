@@ -1,6 +1,6 @@
 //! The lab as a session left it.
 
-use super::{FORMS, KeptCamera, KeptPinned, KeptPlace, KeptScript, KeptWork, Unreadable, read};
+use super::{KeptCamera, KeptPinned, KeptPlace, KeptScript, KeptWork, Unreadable, read};
 use crate::lab::command::{self, Commands};
 use crate::lab::script::{GO_ON_WITH_IT, GO_ON_WITH_THEM};
 use crate::lab::view::step::Page;
@@ -38,11 +38,6 @@ impl Lab {
         view: impl FnOnce(&Scenario) -> View,
     ) -> Result<Self, Unreadable> {
         let mut work: KeptWork = read("the run", &content.work)?;
-        if !FORMS.contains(&work.form) {
-            return Err(Unreadable(
-                "it was kept by another version of gyrolab".to_owned(),
-            ));
-        }
         let place: KeptPlace = read("the place in it", &content.place)?;
         let unreadable = |problems: Problems| Unreadable(problems.in_one_line());
         work.history.check().map_err(unreadable)?;

@@ -17,7 +17,6 @@ use crate::observe::recording::Curve;
 use crate::run::Clock;
 use crate::scenario::{Scenario, keys};
 use markers::Marker;
-use pane::EARLIER_IDS;
 pub use pane::{Pane, Part};
 use std::sync::Arc;
 use step::Page;
@@ -214,10 +213,8 @@ impl View {
         panes.filter(|pane| self.may_show(*pane)).collect()
     }
 
-    /// The pane with this id in a session; ids of earlier versions are known too.
+    /// The pane with this id in a session.
     pub fn kept_as(&self, id: &str) -> Option<Pane> {
-        let earlier = EARLIER_IDS.iter().find(|(earlier, _)| *earlier == id);
-        let id = earlier.map_or(id, |(_, present)| present);
         self.panes.iter().copied().find(|pane| pane.id() == id)
     }
 

@@ -7,9 +7,6 @@ use crate::scenario::screen::{self, PANES};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pane(&'static str);
 
-/// Ids of panes in sessions of earlier versions, and the present ids.
-pub(super) const EARLIER_IDS: [(&str, &str); 2] = [("from-above", "above"), ("three-d", "3d")];
-
 /// A part of the screen that can be hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {

@@ -1,36 +1,43 @@
 //! The files of one session, and the lock by which this process holds it.
 //!
 //! ```text
-//! ID.lock    locked by the process that holds the session; kill -9 unlocks it
-//! ID.work    revision n, the work, and the place as it was then
-//! ID.place   revision n, the place: it belongs to the work of that revision and to no other
-//! ID.work.damaged, ID.place.damaged     files that could not be read
-//! lock       locked for a moment while a process chooses or removes sessions
+//! ID.lock               locked by the process that holds the session; kill -9 unlocks it
+//! ID.session            the place and the work
+//! ID.session.damaged    a file that could not be read
+//! lock                  locked for a moment while a process chooses or removes sessions
 //! ```
 //!
-//! A file is written under a temporary name and then renamed, so that it is always complete. Nothing is synced to the disk:
-//! sessions must survive the death of the process, not of the machine, and the system keeps what a dead process has
-//! written. The ID of a new session is one more than the largest number in the folder; older versions had longer IDs with
-//! hyphens.
+//! A session begins with three lines, and the two texts follow:
+//!
+//! ```text
+//! gyrolab session 3
+//! sum 8d4f1d92          CRC-32 of all that follows this line
+//! place 204             bytes of the place
+//! ```
+//!
+//! The number in the first line is raised when the format or what the texts hold changes; sessions of other numbers, and
+//! of the versions that wrote ID.work, are left alone. Nothing is synced to the disk: sessions must survive the death of
+//! the process, not of the machine. The ID of a new session is one more than the largest number in the folder.
 
-use super::content::{Check, Content, stored};
-use super::files::{check_own, file, make_folder, names, sessions};
 use super::lock::{self, Lock};
-use super::{format, own};
-use std::fs;
+use super::{Content, make_folder, own};
+use crate::storage::session::Text;
+use std::fs::{self, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// The most unused sessions that are kept.
 const MOST_KEPT: usize = 20;
+
+const FORMAT: &str = "gyrolab session 3";
+const OTHER_VERSION: &str = "another version of gyrolab wrote it";
+
 /// The files of one session, locked by this process as long as this value lives.
 pub(super) struct Slot {
     folder: PathBuf,
     id: String,
     lock: Lock,
-    /// Revision of the work on the disk.
-    revision: u64,
-    written: Option<Content>,
 }
 
 /// A file that could not be read.
@@ -42,16 +49,134 @@ pub struct KeptAside {
     pub reason: String,
 }
 
-/// Removes all but the newest unused sessions, and lock files of sessions without a work file. What cannot be removed
-/// stays.
+/// Why a session cannot be read.
+pub(super) enum Unread {
+    /// It is not this program's to judge: another user's, no regular file, or another version's.
+    Foreign(String),
+    /// It was cut off or changed.
+    Damaged,
+}
+
+impl Unread {
+    pub(super) fn reason(self) -> String {
+        match self {
+            Self::Foreign(reason) => reason,
+            Self::Damaged => "it has been cut off or changed".to_owned(),
+        }
+    }
+}
+
+/// The file of the session `id` whose name ends in `kind`.
+fn file(folder: &Path, id: &str, kind: &str) -> PathBuf {
+    folder.join(format!("{id}.{kind}"))
+}
+
+/// The file that holds the session `id`.
+pub(super) fn file_of(folder: &Path, id: &str) -> PathBuf {
+    let present = file(folder, id, "session");
+    let earlier = file(folder, id, "work");
+    if !exists(&present) && exists(&earlier) {
+        earlier
+    } else {
+        present
+    }
+}
+
+/// Whether there is anything at `path`; a symbolic link to nothing counts too.
+fn exists(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok()
+}
+
+/// The names of all files in `folder`.
+fn names(folder: &Path) -> io::Result<Vec<String>> {
+    let names =
+        fs::read_dir(folder)?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    Ok(names.collect())
+}
+
+/// The sessions in `folder`, the one written last first.
+pub(super) fn sessions(folder: &Path) -> io::Result<Vec<String>> {
+    let mut found: Vec<_> = names(folder)?
+        .iter()
+        .filter_map(|name| {
+            name.strip_suffix(".session")
+                .or_else(|| name.strip_suffix(".work"))
+        })
+        .map(|id| (written_at(folder, id), id.to_owned()))
+        .collect();
+    found.sort_unstable();
+    Ok(found.into_iter().rev().map(|(_, id)| id).collect())
+}
+
+/// When the session `id` was written last; the beginning of 1970 if there is none.
+pub(super) fn written_at(folder: &Path, id: &str) -> SystemTime {
+    let there = fs::symlink_metadata(file_of(folder, id));
+    there
+        .and_then(|there| there.modified())
+        .unwrap_or(UNIX_EPOCH)
+}
+
+/// Whether a running process holds the session `id`.
+pub(super) fn is_in_use(folder: &Path, id: &str) -> bool {
+    let lock = own::open(&file(folder, id, "lock"), OpenOptions::new().read(true));
+    lock.is_ok_and(|lock| matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)))
+}
+
+/// The number of the process that holds, or last held, the session `id`; `None` where its lock file does not tell.
+pub(super) fn owner(folder: &Path, id: &str) -> Option<u32> {
+    let bytes = own::read(&file(folder, id, "lock")).ok()?;
+    str::from_utf8(&bytes).ok()?.parse().ok()
+}
+
+/// Reads the session `id`, whether or not a process holds it.
+pub(super) fn stored(folder: &Path, id: &str) -> Result<Content, Unread> {
+    let bytes = own::read(&file_of(folder, id));
+    let bytes = bytes.map_err(|error| Unread::Foreign(error.to_string()))?;
+    let text = String::from_utf8(bytes).map_err(|_| Unread::Damaged)?;
+    match text.split_once('\n') {
+        Some((FORMAT, rest)) => content(rest).ok_or(Unread::Damaged),
+        Some((other, _)) if other.starts_with("gyrolab session ") => {
+            Err(Unread::Foreign(OTHER_VERSION.to_owned()))
+        }
+        _ => Err(Unread::Damaged),
+    }
+}
+
+/// The content from the text of a session behind its first line; `None` if it is incomplete or changed.
+fn content(text: &str) -> Option<Content> {
+    let (sum, summed) = text.split_once('\n')?;
+    if sum != sum_line(&[summed]) {
+        return None;
+    }
+    let (length, texts) = summed.split_once('\n')?;
+    let length = length.strip_prefix("place ")?.parse().ok()?;
+    let (place, work) = texts.split_at_checked(length)?;
+    Some(Content {
+        work: Text::from(work),
+        place: place.to_owned(),
+    })
+}
+
+fn sum_line(parts: &[&str]) -> String {
+    let mut sum = crc32fast::Hasher::new();
+    for part in parts {
+        sum.update(part.as_bytes());
+    }
+    format!("sum {:08x}", sum.finalize())
+}
+
+/// Removes all but the newest unused sessions, and lock files without a session. What cannot be removed stays.
 pub(super) fn prune(folder: &Path) {
-    let old = sessions(folder).unwrap_or_default();
-    let own = old.iter().filter(|id| check_own(folder, id).is_ok());
-    let free = own.filter_map(|id| Slot::take(folder, id).ok()?);
+    let mut old = sessions(folder).unwrap_or_default();
+    old.retain(|id| {
+        let path = file(folder, id, "session");
+        own::open(&path, OpenOptions::new().read(true)).is_ok()
+    });
+    let free = old.iter().filter_map(|id| Slot::take(folder, id).ok()?);
     free.skip(MOST_KEPT).for_each(Slot::remove);
     for name in names(folder).unwrap_or_default() {
         if let Some(id) = name.strip_suffix(".lock")
-            && !own::exists(&file(folder, id, "work"))
+            && !exists(&file_of(folder, id))
             && let Ok(Some(slot)) = Slot::take(folder, id)
         {
             slot.remove();
@@ -68,10 +193,10 @@ impl Slot {
         loop {
             number = number.wrapping_add(1);
             let id = number.to_string();
-            let is_new = || !own::exists(&file(folder, &id, "work"));
+            let is_new = || !exists(&file_of(folder, &id));
             // Another process may have begun, or even ended, a session of this ID between two of these calls.
             if is_new()
-                && !own::exists(&file(folder, &id, "lock"))
+                && !exists(&file(folder, &id, "lock"))
                 && let Some(slot) = Self::take(folder, &id)?
                 && is_new()
             {
@@ -87,8 +212,6 @@ impl Slot {
             folder: folder.to_owned(),
             id: id.to_owned(),
             lock,
-            revision: 0,
-            written: None,
         }))
     }
 
@@ -101,118 +224,76 @@ impl Slot {
         &self.id
     }
 
-    /// Writes the work or the place, whichever has changed; a work only if `check` accepts the content. If writing fails,
-    /// the old files are unchanged.
-    pub(super) fn save(&mut self, content: &Content, check: Option<Check>) -> io::Result<()> {
-        match self.save_changes(content, check) {
+    /// Writes `content`. If writing fails, the old file is unchanged.
+    pub(super) fn save(&mut self, content: &Content) -> io::Result<()> {
+        let length = format!("place {}\n", content.place.len());
+        let parts = [&*length, &content.place, &content.work];
+        let head = format!("{FORMAT}\n{}\n", sum_line(&parts));
+        let [length, place, work] = parts;
+        let write = |path: &Path| own::replace(path, &[&head, length, place, work]);
+        match write(&self.file("session")) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                self.create_again()?;
-                self.save_changes(content, check)?;
+                // Somebody has removed the folder.
+                make_folder(&self.folder)?;
+                if let Some(lock) = lock::take(&self.file("lock"))? {
+                    self.lock = lock;
+                }
+                write(&self.file("session"))
             }
-            saved => saved?,
+            saved => saved,
         }
-        self.written = Some(content.clone());
-        Ok(())
     }
 
-    fn save_changes(&mut self, content: &Content, check: Option<Check>) -> io::Result<()> {
-        match &self.written {
-            Some(written) if written.work == content.work => self.save_place(&content.place),
-            _ => {
-                check.map_or(Ok(()), |check| check(content).map_err(io::Error::other))?;
-                self.save_work(content)
+    /// Renames the session's file, so that it is neither read again nor lost, and gives the session up.
+    pub(super) fn put_aside(self, reason: String) -> KeptAside {
+        let (from, to) = (self.file("session"), self.file("session.damaged"));
+        match fs::rename(&from, &to) {
+            Ok(()) => {
+                self.remove();
+                KeptAside { path: to, reason }
             }
-        }
-    }
-
-    /// Creates the folder and the lock again after somebody has removed the folder; everything is then written anew.
-    fn create_again(&mut self) -> io::Result<()> {
-        make_folder(&self.folder)?;
-        if let Some(lock) = lock::take(&self.file("lock"))? {
-            self.lock = lock;
-        }
-        self.written = None;
-        Ok(())
-    }
-
-    fn save_work(&mut self, content: &Content) -> io::Result<()> {
-        let (place, work) = (&content.place, &content.work);
-        let revision = self.revision + 1;
-        let head = format::head_of_work(revision, place, work);
-        own::replace(&self.file("work"), &[&head, place, work])?;
-        self.revision = revision;
-        Ok(())
-    }
-
-    fn save_place(&mut self, place: &str) -> io::Result<()> {
-        let head = format::head_of_place(self.revision, place);
-        own::replace(&self.file("place"), &[&head, place])
-    }
-
-    /// Reads the session. A place file that cannot be read is renamed and returned too.
-    ///
-    /// # Errors
-    /// Why the work file cannot be read.
-    pub(super) fn load(&mut self) -> Result<(Content, Option<KeptAside>), String> {
-        let stored = stored(&self.folder, &self.id)?;
-        let aside = stored.damage.map(|reason| self.put_aside("place", reason));
-        self.revision = stored.revision;
-        self.written = Some(stored.content.clone());
-        Ok((stored.content, aside))
-    }
-
-    /// Reads the content from the disk, without renaming anything.
-    ///
-    /// # Errors
-    /// Why the work or the place cannot be read.
-    pub(super) fn read_back(&self) -> Result<Content, String> {
-        let stored = stored(&self.folder, &self.id)?;
-        stored.damage.map_or(Ok(stored.content), Err)
-    }
-
-    /// Renames the session's files, so that they are neither read again nor lost, and removes the rest of the session.
-    pub(super) fn put_all_aside(self, reason: String) -> KeptAside {
-        if own::exists(&self.file("place")) {
-            let _ = self.put_aside("place", String::new());
-        }
-        let aside = self.put_aside("work", reason);
-        if !own::exists(&self.file("work")) {
-            self.remove();
-        }
-        aside
-    }
-
-    /// Renames one file of the session; the new name ends in `.damaged` or `.damaged-N`.
-    fn put_aside(&self, kind: &str, reason: String) -> KeptAside {
-        let from = self.file(kind);
-        let free = (1_u32..)
-            .map(|n| match n {
-                1 => self.file(&format!("{kind}.damaged")),
-                n => self.file(&format!("{kind}.damaged-{n}")),
-            })
-            .find(|path| !own::exists(path));
-        match free.map(|to| fs::rename(&from, &to).map(|()| to)) {
-            Some(Ok(path)) => KeptAside { path, reason },
-            Some(Err(error)) => KeptAside {
+            Err(error) => KeptAside {
                 path: from,
                 reason: format!("{reason}; nor can it be renamed: {error}"),
             },
-            None => KeptAside { path: from, reason },
         }
     }
 
     /// Removes the session's files, the lock file last: until then no other process can take the session.
     pub(super) fn remove(self) {
-        ["work.new", "place.new", "place", "work", "lock"]
-            .into_iter()
-            .for_each(|kind| {
-                let _ = fs::remove_file(self.file(kind));
-            });
-        drop(self.lock);
+        for kind in ["session", "lock"] {
+            let _ = fs::remove_file(self.file(kind));
+        }
     }
+}
 
-    /// Whether the session has never been saved.
-    pub(super) fn is_empty(&self) -> bool {
-        self.written.is_none() && self.revision == 0
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_changed_byte_is_detected() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut slot = Slot::new(folder.path()).unwrap();
+        let wanted = Content {
+            work: Text::from("title = \"Größe\"\nform = 2\n"),
+            place: "step = 12\n".to_owned(),
+        };
+        slot.save(&wanted).unwrap();
+        let path = slot.file("session");
+        let bytes = fs::read(&path).unwrap();
+        let read = |bytes: &[u8]| {
+            fs::write(&path, bytes).unwrap();
+            stored(folder.path(), slot.id()).ok()
+        };
+        assert_eq!(read(&bytes), Some(wanted));
+        for bit in 0..8 * bytes.len() {
+            let mut changed = bytes.clone();
+            changed[bit / 8] ^= 1 << (bit % 8);
+            assert_eq!(read(&changed), None, "bit {bit}");
+        }
+        for end in 0..bytes.len() {
+            assert_eq!(read(&bytes[..end]), None, "cut at {end}");
+        }
     }
 }

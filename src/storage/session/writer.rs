@@ -1,6 +1,6 @@
 //! The state that a session's loop, its saving thread and its flush share.
 
-use super::content::{Check, Content};
+use super::Content;
 use super::slot::Slot;
 use std::io;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
@@ -20,20 +20,28 @@ pub(super) struct Shared {
 /// The content to save, and what has been saved.
 #[derive(Default)]
 pub(super) struct State {
-    pub(super) noted: Option<Content>,
+    noted: Option<Content>,
     /// How many contents have been noted; it numbers the notes.
     notes: u64,
     /// The number of the note that is on the disk.
     written: u64,
+    /// What is on the disk.
+    pub(super) kept: Option<Content>,
     /// The number of the note for which a flush is waiting.
     hurry: Option<u64>,
     pub(super) is_closing: bool,
     /// Why the last attempt to save failed.
     pub(super) trouble: Option<String>,
-    pub(super) check: Option<Check>,
 }
 
 impl Shared {
+    /// The state of a session of which the disk holds `kept`.
+    pub(super) fn of(kept: Option<Content>) -> Self {
+        let shared = Self::default();
+        shared.state().kept = kept;
+        shared
+    }
+
     pub(super) fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -90,24 +98,23 @@ impl Shared {
         woken.unwrap_or_else(PoisonError::into_inner).0
     }
 
-    /// The body of the saving thread. It returns when the session is closed, with the slot if anything was ever saved.
-    pub(super) fn keep_writing(&self, mut slot: Slot) -> Option<Slot> {
+    /// The body of the saving thread. It returns when the session is closed; one of which the disk holds nothing leaves
+    /// nothing.
+    pub(super) fn keep_writing(&self, mut slot: Slot) {
         let mut not_before = Instant::now();
-        while let Some(due) = self.next(not_before) {
-            let result = slot.save(&due.content, due.check);
-            self.record(due.note, result);
+        while let Some((note, content)) = self.next(not_before) {
+            let result = slot.save(&content);
+            self.record(note, content, result);
             not_before = Instant::now() + PERIOD;
         }
-        if slot.is_empty() {
+        if self.state().kept.is_none() {
             slot.remove();
-            return None;
         }
-        Some(slot)
     }
 
-    /// Waits until there is something to save and `not_before` has passed, or a flush is waiting. `None` when the session
-    /// is closed.
-    fn next(&self, not_before: Instant) -> Option<Due> {
+    /// Waits until there is something to save and `not_before` has passed, or a flush is waiting. The number of the note
+    /// and its content; `None` when the session is closed.
+    fn next(&self, not_before: Instant) -> Option<(u64, Content)> {
         const FOR_EVER: Duration = Duration::from_secs(3600);
         let mut state = self.state();
         while !state.is_closing {
@@ -116,11 +123,7 @@ impl Shared {
             let is_due = state.written < state.notes || state.hurry.is_some();
             match state.noted.as_ref().filter(|_| is_due) {
                 Some(content) if state.hurry.is_some() || to_go.is_zero() => {
-                    return Some(Due {
-                        content: content.clone(),
-                        note: state.notes,
-                        check: state.check.filter(|_| state.hurry.is_none()),
-                    });
+                    return Some((state.notes, content.clone()));
                 }
                 Some(_) => state = self.wait(state, to_go),
                 None => {
@@ -134,13 +137,14 @@ impl Shared {
         None
     }
 
-    /// Records the `result` of saving the note of that number, and wakes the flush that waited for it.
-    fn record(&self, note: u64, result: io::Result<()>) {
+    /// Records the `result` of saving `content`, the note of that number, and wakes the flush that waited for it.
+    fn record(&self, note: u64, content: Content, result: io::Result<()>) {
         let mut state = self.state();
         let is_enough = state.hurry.is_some_and(|wanted| note >= wanted);
         match result {
             Ok(()) => {
                 state.written = note;
+                state.kept = Some(content);
                 state.trouble = None;
             }
             Err(error) => state.trouble = Some(format!("the session cannot be kept: {error}")),
@@ -150,11 +154,4 @@ impl Shared {
             self.changed.notify_all();
         }
     }
-}
-
-/// A content to save now.
-struct Due {
-    content: Content,
-    note: u64,
-    check: Option<Check>,
 }

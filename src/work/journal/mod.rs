@@ -9,14 +9,12 @@
 
 //!
 //! `entry` is one act; `run_file` decides which entries are in force and makes the run file of them; `known` checks
-//! that file, as far as it has changed; `next_run` begins another run from it; `stored` reads a journal from a session
-//! file.
+//! that file, as far as it has changed; `next_run` begins another run from it.
 
 mod entry;
 mod known;
 mod next_run;
 mod run_file;
-mod stored;
 
 pub use crate::scenario::dotted::number_of_push;
 pub use entry::{Act, Entry};
@@ -30,15 +28,15 @@ use toml::{Table, Value};
 
 /// A scenario and what the user did to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "stored::Stored")]
+#[serde(deny_unknown_fields)]
 pub struct Journal {
     /// The scenario before the first act.
     base: Arc<ScenarioFile>,
     /// All acts in the order in which the user did them, dropped ones included.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     log: Vec<Arc<Entry>>,
     /// Undone entries, the one undone last at the end: redo takes it first.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     undone: Vec<Arc<Entry>>,
     /// Scenarios that it leads to, checked already.
     #[serde(skip)]
