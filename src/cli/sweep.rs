@@ -46,7 +46,7 @@ pub(super) struct SweepArgs {
     )]
     pub(super) measure: Vec<String>,
 
-    /// Only every N-th point, the K-th first: one of N parts that --join puts together
+    /// Only the K-th of N parts of the points, in their order; --join puts the parts together
     #[arg(long, value_name = "K/N", requires = "scenario")]
     pub(super) shard: Option<Shard>,
 

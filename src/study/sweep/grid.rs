@@ -213,7 +213,8 @@ impl Sweep {
 
     /// How many rows it has: those of its shard.
     pub fn rows(&self) -> u64 {
-        self.shard.points(self.points)
+        let points = self.shard.range(self.points);
+        points.end - points.start
     }
 
     /// The number of points of the whole grid.
@@ -242,7 +243,7 @@ impl Sweep {
 
     /// The values of the point behind the `row`-th row, from 0, one of each axis.
     pub fn values(&self, row: u64) -> Vec<&Value> {
-        let mut rest = self.shard.point(row);
+        let mut rest = self.shard.range(self.points).start + row;
         let mut values: Vec<_> = self
             .axes
             .iter()

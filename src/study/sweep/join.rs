@@ -1,20 +1,16 @@
 //! One CSV of a sweep's shards.
 
 use super::grid::Sweep;
-use super::part::{PartError, is_writable, whole_rows};
-use super::row::{KindOfRow, RowsThere};
+use super::part::{PartError, There, first_difference, is_writable, whole_rows};
+use super::row::RowsThere;
 use super::shard::Shard;
-use super::there::kind_of_row;
 use crate::export::Destination;
 use crate::export::destination::DestinationError;
 use crate::scenario::Problems;
 use crate::scenario::document::Document;
-use crate::study::sweep::difference::of_headers;
 use crate::text::printable::Shown;
-use crate::text::unread;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
-use std::os::unix::fs::FileExt;
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Why shards cannot be joined.
@@ -32,12 +28,12 @@ pub enum JoinError {
         why: String,
     },
     /// Some are not there.
-    #[error("the sweep has {of} shards, and {} missing: {}", if missing.len() == 1 { "one is" } else { "some are" }, numbers(missing))]
+    #[error("the sweep has {of} shards, and these are missing: {missing}")]
     Missing {
         /// How many there must be.
         of: u64,
-        /// Those that are not.
-        missing: Vec<u64>,
+        /// The first of those that are not there.
+        missing: String,
     },
     /// The file cannot be written.
     #[error(transparent)]
@@ -45,45 +41,12 @@ pub enum JoinError {
     /// The file cannot be written.
     #[error(transparent)]
     Destination(#[from] DestinationError),
-    /// A file cannot be read.
-    #[error("{}: {}", Shown(path), unread::why(error))]
-    Unread {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
-        error: io::Error,
-    },
 }
 
-/// The first dozen of the numbers.
-fn numbers(list: &[u64]) -> String {
-    const MOST: usize = 12;
-    let shown: Vec<_> = list.iter().take(MOST).map(u64::to_string).collect();
-    match list.len().saturating_sub(MOST) {
-        0 => shown.join(", "),
-        more => format!("{} and {more} more", shown.join(", ")),
-    }
-}
-
-/// A shard's file, read up to its first row.
-struct Part {
-    path: PathBuf,
-    sweep: Sweep,
-    rows: BufReader<Reopened>,
-}
-
-/// A file that is open only while bytes are read from it: a sweep may have more shards than files may be open at once.
-struct Reopened {
-    path: PathBuf,
-    /// How many bytes have been read.
-    at: u64,
-}
-
-impl Read for Reopened {
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        let count = File::open(&self.path)?.read_at(bytes, self.at)?;
-        self.at += count as u64;
-        Ok(count)
+fn fails(path: &Path, why: impl Into<String>) -> JoinError {
+    JoinError::Shard {
+        path: path.to_owned(),
+        why: why.into(),
     }
 }
 
@@ -97,17 +60,17 @@ pub fn join(
     path: &Path,
     may_replace: bool,
 ) -> Result<(Sweep, RowsThere), JoinError> {
-    let mut parts = parts
-        .iter()
-        .map(|path| Part::open(path))
-        .collect::<Result<Vec<_>, _>>()?;
-    parts.sort_by_key(|part| part.sweep.shard().number());
-    let whole = of_one_sweep(&parts)?;
+    let mut shards = Vec::new();
+    for part in parts {
+        shards.push((Sweep::open(&Document::read(part)?)?, part.as_path()));
+    }
+    shards.sort_by_key(|(sweep, _)| sweep.shard().number());
+    let whole = of_one_sweep(&shards)?;
     is_writable(path)?;
     if let Some(rows) = whole_rows(path, &whole, may_replace)? {
         return Ok((whole, rows));
     }
-    let mut output = BufWriter::new(Destination::open_file(path, may_replace)?);
+    let mut output = Destination::open_file(path, may_replace)?;
     let cannot_write = |error| DestinationError::Refused {
         path: path.to_owned(),
         error,
@@ -115,134 +78,76 @@ pub fn join(
     output
         .write_all(whole.header().as_bytes())
         .map_err(cannot_write)?;
-    let of = parts.len() as u64;
-    let (mut rows, mut line) = (RowsThere::default(), Vec::new());
-    for point in 0..whole.points() {
-        rows.add(parts[(point % of) as usize].next(point / of, &mut line)?);
-        output.write_all(&line).map_err(cannot_write)?;
+    let mut rows = RowsThere::default();
+    for (sweep, part) in &shards {
+        let (of_part, mut lines) = rows_of(sweep, part)?;
+        rows.append(&of_part);
+        io::copy(&mut lines, &mut output).map_err(cannot_write)?;
     }
-    parts.iter_mut().try_for_each(Part::has_ended)?;
-    let output = output.into_inner();
-    output
-        .map_err(|error| cannot_write(error.into_error()))?
-        .keep()?;
+    output.keep()?;
     Ok((whole, rows))
 }
 
-/// The sweep whose shards `parts`, in the order of their numbers, are.
-fn of_one_sweep(parts: &[Part]) -> Result<Sweep, JoinError> {
-    let Some(first) = parts.first() else {
-        return Err(JoinError::Missing {
-            of: 1,
-            missing: vec![1],
-        });
+/// The sweep whose shards, in the order of their numbers, these are.
+fn of_one_sweep(shards: &[(Sweep, &Path)]) -> Result<Sweep, JoinError> {
+    const MOST_TOLD: usize = 12;
+    let Some((first, first_path)) = shards.first() else {
+        let missing = "all".to_owned();
+        return Err(JoinError::Missing { of: 1, missing });
     };
-    let whole = first.sweep.clone().with_shard(Shard::WHOLE);
-    let of = first.sweep.shard().of();
-    for part in parts {
-        let other = part.sweep.clone().with_shard(Shard::WHOLE);
-        let differs = match part.sweep.shard().of() {
-            count if count != of => format!("one is a shard of {of}, the other of {count}"),
-            _ if other.header() == whole.header() => continue,
-            _ => {
-                let words = ["in it", "in the other"];
-                of_headers(&other.file_lines(), &whole.file_lines(), words).to_string()
-            }
-        };
-        return Err(part.fails(format!(
-            "is no shard of the sweep of {}: {differs}",
-            Shown(&first.path)
-        )));
-    }
-    for pair in parts.windows(2) {
-        if pair[0].sweep.shard() == pair[1].sweep.shard() {
-            return Err(pair[1].fails(format!(
-                "is shard {}, and so is {}",
-                pair[1].sweep.shard(),
-                Shown(&pair[0].path)
-            )));
+    let of = first.shard().of();
+    let whole = first.clone().with_shard(Shard::WHOLE);
+    let mut last = 0;
+    for (sweep, path) in shards {
+        let other = sweep.clone().with_shard(Shard::WHOLE);
+        let (shard, first) = (sweep.shard(), Shown(first_path));
+        let differs = first_difference(&other.header(), &whole.header());
+        if shard.of() != of {
+            let why = format!("is shard {shard}, and {first} is one of {of}");
+            return Err(fails(path, why));
         }
+        if let Some(what) = differs {
+            let why = format!("is no shard of the sweep of {first}: {what}");
+            return Err(fails(path, why));
+        }
+        if shard.number() == last {
+            return Err(fails(path, format!("is shard {shard}, and so is another")));
+        }
+        last = shard.number();
     }
     let is_missing = |number: &u64| {
-        let found = parts.binary_search_by_key(number, |part| part.sweep.shard().number());
+        let found = shards.binary_search_by_key(number, |(sweep, _)| sweep.shard().number());
         found.is_err()
     };
-    let missing: Vec<_> = (1..=of).filter(is_missing).collect();
-    match missing.is_empty() {
-        true => Ok(whole),
-        false => Err(JoinError::Missing { of, missing }),
+    let mut missing: Vec<_> = (1..=of)
+        .filter(is_missing)
+        .take(MOST_TOLD + 1)
+        .map(|number| number.to_string())
+        .collect();
+    if missing.is_empty() {
+        return Ok(whole);
     }
+    if missing.len() > MOST_TOLD {
+        missing[MOST_TOLD] = "and more".to_owned();
+    }
+    let missing = missing.join(", ");
+    Err(JoinError::Missing { of, missing })
 }
 
-impl Part {
-    fn open(path: &Path) -> Result<Self, JoinError> {
-        let cannot_read = |error| JoinError::Unread {
-            path: path.to_owned(),
-            error,
-        };
-        let sweep = Sweep::open(&Document::read(path)?)?;
-        let header = sweep.header();
-        let mut rows = BufReader::new(Reopened {
-            path: path.to_owned(),
-            at: 0,
-        });
-        let mut there = Vec::new();
-        let mut begin = (&mut rows).take(header.len() as u64);
-        begin.read_to_end(&mut there).map_err(cannot_read)?;
-        let part = Self {
-            path: path.to_owned(),
-            sweep,
-            rows,
-        };
-        match there == header.as_bytes() {
-            true => Ok(part),
-            false => {
-                let there = String::from_utf8_lossy(&there);
-                let differs = of_headers(&there, &header, ["in it", "by this program"]);
-                Err(part.fails(format!(
-                    "its sweep file is not as this gyrolab writes it: {differs}"
-                )))
-            }
-        }
-    }
-
-    fn fails(&self, why: String) -> JoinError {
-        JoinError::Shard {
-            path: self.path.clone(),
-            why,
-        }
-    }
-
-    fn next(&mut self, row: u64, line: &mut Vec<u8>) -> Result<KindOfRow, JoinError> {
-        line.clear();
-        let read = self.rows.read_until(b'\n', line);
-        read.map_err(|error| JoinError::Unread {
-            path: self.path.clone(),
-            error,
-        })?;
-        match line.last() {
-            Some(b'\n') => kind_of_row(line, &self.sweep, row).ok_or_else(|| {
-                let (row, shard) = (row + 1, self.sweep.shard());
-                self.fails(format!("its row {row} is no row of shard {shard}"))
-            }),
-            _ => {
-                let (sweep, rows) = (&self.sweep, self.sweep.rows());
-                Err(self.fails(format!(
-                    "shard {} is not whole, it has {row} of {rows} rows: run its command again",
-                    sweep.shard()
-                )))
-            }
-        }
-    }
-
-    fn has_ended(&mut self) -> Result<(), JoinError> {
-        match self.rows.fill_buf() {
-            Ok([]) => Ok(()),
-            Ok(_) => Err(self.fails("it has more rows than its shard".to_owned())),
-            Err(error) => Err(JoinError::Unread {
-                path: self.path.clone(),
-                error,
-            }),
-        }
-    }
+/// The rows of the shard `sweep` in the file `path`, and what reads their lines.
+fn rows_of(sweep: &Sweep, path: &Path) -> Result<(RowsThere, impl Read), JoinError> {
+    let cannot_read = |error: io::Error| fails(path, error.to_string());
+    let file = File::open(path).map_err(cannot_read)?;
+    let rows = There::of(&file, sweep).map_err(cannot_read)?.whole(sweep);
+    let rows = rows.map_err(|why| {
+        let shard = sweep.shard();
+        fails(
+            path,
+            format!("is not the whole shard {shard}: {why}; run its command again"),
+        )
+    })?;
+    let mut lines = BufReader::new(file);
+    let begin = SeekFrom::Start(sweep.header().len() as u64);
+    lines.seek(begin).map_err(cannot_read)?;
+    Ok((rows, lines))
 }

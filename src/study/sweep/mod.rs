@@ -8,7 +8,6 @@
 
 pub mod axis;
 mod checks;
-pub mod difference;
 pub mod file;
 mod grid;
 pub mod in_order;
@@ -17,7 +16,6 @@ pub mod part;
 mod row;
 pub mod shard;
 pub mod shipped;
-mod there;
 
 pub use axis::Axis;
 pub use file::SweepFile;

@@ -1,20 +1,19 @@
 //! The file of a sweep's rows while it is not whole, and the look at what is there before.
 //!
 //! Rows are appended to `FILE.part` in the order of the grid, whole lines at a time. What a kill leaves is therefore the
-//! beginning of the whole file, and perhaps a torn line at its end. The same command drops that line, sees how many rows
-//! there are, and goes on behind them. When all are there the file gets its name.
+//! beginning of the whole file, and perhaps a torn line at its end. The same command goes on behind the last line that is
+//! a row: it drops what follows. When all are there the file gets its name.
 
-use super::difference::Differs;
 use super::grid::Sweep;
-use super::row::RowsThere;
-use super::there::{There, look};
+use super::row::{KindOfRow, RowsThere};
+use crate::analysis::readouts::Readout;
 use crate::export::Destination;
 use crate::export::destination::is_workbook;
-use crate::text::printable::Shown;
+use crate::text::printable::{Shown, brief};
 use crate::text::{unread, unwritten};
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -26,35 +25,26 @@ const SYNC: Duration = Duration::from_secs(2);
 #[derive(Debug, thiserror::Error)]
 pub enum PartError {
     /// There is something else under the file's name.
-    #[error("{} {what}; --force replaces it", Shown(path))]
+    #[error(
+        "{} is not the whole of this sweep: {why}; --force replaces it",
+        Shown(path)
+    )]
     Other {
         /// The file.
         path: PathBuf,
-        /// What it holds, beginning with a verb.
-        what: String,
+        /// What is wrong with it.
+        why: String,
     },
     /// There are the rows of another sweep under the name that these have until they are whole.
     #[error(
-        "{} has the rows of another sweep, which is not whole: {differs}; --force discards them",
+        "{} has the rows of another sweep: {why}; --force discards them",
         Shown(path)
     )]
     OtherPart {
         /// The part file.
         path: PathBuf,
         /// What differs.
-        differs: Differs,
-    },
-    /// Behind rows of this sweep there is something else.
-    #[error(
-        "{} is damaged: its first {rows} rows are of this sweep, and the line behind them is none of its rows. \
-         Remove that line and all below it, and the same command goes on behind row {rows}; --force begins again",
-        Shown(path)
-    )]
-    Damaged {
-        /// The part file.
-        path: PathBuf,
-        /// How many rows are good.
-        rows: u64,
+        why: String,
     },
     /// Somebody else is at it.
     #[error("{} is being written by another gyrolab now", Shown(.0))]
@@ -146,32 +136,20 @@ impl PartFile {
             found: RowsThere::default(),
             synced: Instant::now(),
         };
-        let there = look(&part.file, sweep).map_err(|error| unread(&part.path, error))?;
-        match there {
-            There::Rows(rows, bytes) => {
-                part.file.set_len(bytes).map_err(refused)?;
-                part.file.seek(SeekFrom::End(0)).map_err(refused)?;
-                part.rows = rows.count();
-                part.found = rows;
-            }
-            There::Damaged(rows) if !may_replace => {
-                return Err(PartError::Damaged {
-                    path: part.path,
-                    rows,
-                });
-            }
-            There::Other(differs) if !may_replace => {
-                return Err(PartError::OtherPart {
-                    path: part.path,
-                    differs,
-                });
-            }
-            There::Nothing | There::Damaged(_) | There::Other(_) => {
-                part.file.set_len(0).map_err(refused)?;
-                part.file.rewind().map_err(refused)?;
-                part.write(sweep.header().as_bytes())?;
-            }
+        let there = There::of(&part.file, sweep).map_err(|error| unread(&part.path, error))?;
+        if !may_replace && let Some(why) = there.other {
+            return Err(PartError::OtherPart {
+                path: part.path,
+                why,
+            });
         }
+        part.file.set_len(there.bytes).map_err(refused)?;
+        part.file.seek(SeekFrom::End(0)).map_err(refused)?;
+        if there.bytes == 0 {
+            part.write(sweep.header().as_bytes())?;
+        }
+        part.rows = there.rows.count();
+        part.found = there.rows;
         Ok(Opened::Part(part))
     }
 
@@ -308,28 +286,12 @@ pub(super) fn whole_rows(
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(unread(error)),
     };
-    let length = file.metadata().map_err(unread)?.len();
-    let what = match look(&file, sweep).map_err(unread)? {
-        There::Rows(rows, bytes) if rows.count() == sweep.rows() && bytes == length => {
-            return Ok(Some(rows));
-        }
-        There::Rows(rows, _) => {
-            let (rows, all) = (rows.count(), sweep.rows());
-            format!("is not the whole of this sweep: it has {rows} of the {all} rows")
-        }
-        There::Damaged(rows) => {
-            let row = rows + 1;
-            format!("is not this sweep: its row {row} is no row of it")
-        }
-        There::Nothing => "is no sweep's CSV".to_owned(),
-        There::Other(Differs::Sweep(key)) => format!("holds another sweep: {key}"),
-        There::Other(Differs::Form(form)) => format!("is not this sweep: {form}"),
-    };
-    match may_replace {
-        true => Ok(None),
-        false => Err(PartError::Other {
+    match There::of(&file, sweep).map_err(unread)?.whole(sweep) {
+        Ok(rows) => Ok(Some(rows)),
+        Err(_) if may_replace => Ok(None),
+        Err(why) => Err(PartError::Other {
             path: path.to_owned(),
-            what,
+            why,
         }),
     }
 }
@@ -357,4 +319,124 @@ fn locked(part: &Path) -> Result<File, PartError> {
             return Ok(file);
         }
     }
+}
+
+/// What stands in a file, held against a sweep.
+pub(super) struct There {
+    /// The rows at its beginning that are those of the sweep.
+    rows: RowsThere,
+    /// How many bytes they and the header take.
+    bytes: u64,
+    /// How many bytes there are.
+    length: u64,
+    /// Why what stands above the rows is not of this sweep.
+    other: Option<String>,
+}
+
+impl There {
+    /// Reads `file` up to the first line that is no row of `sweep`.
+    pub(super) fn of(file: &File, sweep: &Sweep) -> io::Result<Self> {
+        let mut there = Self {
+            rows: RowsThere::default(),
+            bytes: 0,
+            length: file.metadata()?.len(),
+            other: None,
+        };
+        let mut reader = BufReader::with_capacity(1 << 16, file);
+        reader.rewind()?;
+        let header = sweep.header();
+        let mut begin = Vec::new();
+        let mut above = (&mut reader).take(header.len() as u64);
+        above.read_to_end(&mut begin)?;
+        if begin != header.as_bytes() {
+            if !header.as_bytes().starts_with(&begin) {
+                there.other = first_difference(&String::from_utf8_lossy(&begin), &header);
+            }
+            return Ok(there);
+        }
+        let mut line = begin;
+        loop {
+            there.bytes += line.len() as u64;
+            line.clear();
+            reader.read_until(b'\n', &mut line)?;
+            let row = there.rows.count();
+            match kind_of_row(&line, sweep, row).filter(|_| row < sweep.rows()) {
+                Some(kind) => there.rows.add(kind),
+                None => break,
+            }
+        }
+        Ok(there)
+    }
+
+    /// The rows, where they are all there and nothing else.
+    ///
+    /// # Errors
+    /// What is wrong.
+    pub(super) fn whole(self, sweep: &Sweep) -> Result<RowsThere, String> {
+        let (rows, all) = (self.rows.count(), sweep.rows());
+        let line = sweep.header().lines().count() as u64 + rows + 1;
+        match self.other {
+            Some(why) => Err(why),
+            None if self.bytes == self.length && rows == all && self.bytes > 0 => Ok(self.rows),
+            None if rows == all => Err("it has more than the rows of the sweep".to_owned()),
+            None if self.bytes == self.length => Err(format!("it has {rows} of the {all} rows")),
+            None => Err(format!("its line {line} is not row {} of {all}", rows + 1)),
+        }
+    }
+}
+
+/// What kind of row `line` is as the `row`-th of `sweep`, from 0; `None` where it cannot be that one: the values that vary
+/// must be those of its point, and behind them stands a number or nothing for each readout, or text for one that is text.
+fn kind_of_row(line: &[u8], sweep: &Sweep, row: u64) -> Option<KindOfRow> {
+    let begin = sweep.row_begins(row);
+    let rest = line.strip_suffix(b"\n")?.strip_prefix(begin.as_bytes())?;
+    let mut cells = csv::StringRecord::new();
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .from_reader(rest);
+    // A line of one empty cell is taken for none.
+    if !reader.read_record(&mut cells).ok()? {
+        cells.push_field("");
+    }
+    let fits = |(cell, readout): (&str, &&Readout)| {
+        cell.is_empty()
+            || readout.is_text
+            || cell == "true"
+            || cell == "false"
+            || cell.parse().is_ok_and(f64::is_finite)
+    };
+    let is_row =
+        cells.len() == sweep.measure().len() && cells.iter().zip(sweep.measure()).all(fits);
+    let is_empty = cells.iter().all(str::is_empty);
+    is_row.then_some(if is_empty {
+        KindOfRow::Empty
+    } else {
+        KindOfRow::Filled
+    })
+}
+
+/// The first line in which `there`, what stands above some rows, is not as `wanted`, in words.
+pub(super) fn first_difference(there: &str, wanted: &str) -> Option<String> {
+    const MOST_SHOWN: usize = 60;
+    const BEFORE: usize = 30;
+    let (mut lines, mut others) = (there.split('\n'), wanted.split('\n'));
+    for number in 1.. {
+        let (line, other) = match (lines.next(), others.next()) {
+            (None, None) => return None,
+            (line, other) => (line.unwrap_or_default(), other.unwrap_or_default()),
+        };
+        if line != other {
+            let same = line.chars().zip(other.chars()).take_while(|(a, b)| a == b);
+            let begin = same.count().saturating_sub(BEFORE);
+            let shown =
+                |line: &str| brief(&line.chars().skip(begin).collect::<String>(), MOST_SHOWN);
+            let dots = if begin > 0 { "..." } else { "" };
+            return Some(format!(
+                "its line {number} is \"{dots}{}\", not \"{dots}{}\"",
+                shown(line),
+                shown(other)
+            ));
+        }
+    }
+    None
 }

@@ -49,6 +49,16 @@ impl RowsThere {
         &self.first_empty
     }
 
+    /// Counts the rows of `next` behind these.
+    pub(super) fn append(&mut self, next: &Self) {
+        let first = next.first_empty.iter().map(|row| self.count + row);
+        let room = Self::MOST_KEPT - self.first_empty.len();
+        self.first_empty
+            .extend(first.take(room).collect::<Vec<_>>());
+        self.count += next.count;
+        self.empty += next.empty;
+    }
+
     /// Counts the next row.
     pub(super) fn add(&mut self, kind: KindOfRow) {
         if kind == KindOfRow::Empty {

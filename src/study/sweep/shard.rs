@@ -1,10 +1,11 @@
 //! A part of a sweep's points, for one of several machines.
 
 use std::fmt;
+use std::ops::Range;
 use std::str::FromStr;
 
-/// The shard `number` of `of`: the points `number` - 1, `number` - 1 + `of`, and so on. Neighbours on the grid take about as
-/// long as each other, so that all shards of a sweep do too.
+/// The shard `number` of `of`: of the points in their order the `number`-th of `of` ranges, which are as long as each other
+/// or differ by one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: u64,
@@ -28,14 +29,10 @@ impl Shard {
         self.of
     }
 
-    /// How many of a sweep's `points` belong to it.
-    pub fn points(self, points: u64) -> u64 {
-        (points + self.of - self.number) / self.of
-    }
-
-    /// The point, counted in the whole sweep, that is the `row`-th of this shard, both from 0.
-    pub fn point(self, row: u64) -> u64 {
-        row * self.of + self.number - 1
+    /// The points, of all `points` of a sweep, that belong to it.
+    pub fn range(self, points: u64) -> Range<u64> {
+        let begin = |number| points * number / self.of; // both are small enough for u64
+        begin(self.number - 1)..begin(self.number)
     }
 }
 
@@ -72,15 +69,13 @@ mod tests {
 
     #[test]
     fn every_point_belongs_to_one_shard() {
-        for points in 0..20 {
-            for of in 1..=7 {
-                let mut seen = vec![0; points as usize];
-                for number in 1..=of {
-                    let shard: Shard = format!("{number}/{of}").parse().unwrap();
-                    (0..shard.points(points)).for_each(|row| seen[shard.point(row) as usize] += 1);
-                }
-                assert!(seen.iter().all(|&count| count == 1), "{points} {of}");
-            }
+        for (points, of) in [(0, 3), (1, 7), (20, 6), (999_999_999, 1_000_000)] {
+            let ranges = (1..=of).map(|number| Shard { number, of }.range(points));
+            let end = ranges.fold(0, |end, range| {
+                assert!(range.start == end && range.end - end <= points / of + 1);
+                range.end
+            });
+            assert_eq!(end, points);
         }
     }
 
