@@ -424,6 +424,19 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_line() {
             &["either"],
         ),
         ("scenario = \"cusps\"\n", "", &["scenario", "is missing"]),
+        (
+            "\"t\"",
+            r#""t\u001b]0;P\u0007""#,
+            &[
+                "s.toml:1: title (",
+                "no control, direction or invisible characters (here U+001B)",
+            ],
+        ),
+        (
+            "title",
+            "about = \"a\u{202e}b\"\ntitle",
+            &["s.toml:1: about (", "U+202E"],
+        ),
     ] {
         let text = good.replacen(from, to, 1);
         assert_ne!(text, good);

@@ -2,6 +2,7 @@
 
 use crate::scenario::document::Document;
 use crate::scenario::dotted::join;
+use crate::scenario::keys;
 use crate::scenario::problem::nearest;
 use crate::scenario::{Problem, Problems, ScenarioFile};
 use serde::Serialize;
@@ -97,10 +98,10 @@ impl SweepFile {
         };
         reader.know(&KEYS);
         let file = Self {
-            gyrolab: reader.text("gyrolab"),
-            title: reader.line("title"),
-            about: reader.text("about"),
-            source: reader.text("source"),
+            gyrolab: reader.as_in_scenarios("gyrolab"),
+            title: reader.as_in_scenarios("title"),
+            about: reader.as_in_scenarios("about"),
+            source: reader.as_in_scenarios("source"),
             shard: reader.text("shard"),
             measure: reader.words("measure"),
             vary: Vec::new(),
@@ -168,10 +169,13 @@ impl<'a> Reader<'a> {
         self.value(name, "text", Value::as_str).map(str::to_owned)
     }
 
-    fn line(&mut self, name: &str) -> Option<String> {
-        let is_line = |text: &&str| !text.trim().is_empty() && !text.contains('\n');
-        let read = |value: &'a Value| value.as_str().filter(is_line).map(str::to_owned);
-        self.value(name, "one line of text", read)
+    /// The text of a key that scenarios have too, by their rule.
+    fn as_in_scenarios(&mut self, name: &str) -> Option<String> {
+        let value = self.table.get(name)?;
+        if let Err(rule) = keys::find(name).and_then(|(_, kind)| kind.check(value)) {
+            self.refuse(name, rule);
+        }
+        value.as_str().map(str::to_owned)
     }
 
     fn number(&mut self, name: &str) -> Option<f64> {
