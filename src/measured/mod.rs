@@ -25,7 +25,7 @@ pub use of_run::{Reader, at_times, is_within_reach};
 pub use places::{Place, places};
 pub use quantity::Quantity;
 pub use reading::{open, read, text};
-pub use residual::{Residual, residuals};
+pub use residual::{Residual, is_counted, residuals};
 
 use crate::analysis::readouts::Readout;
 use crate::scenario::{Problem, Problems};

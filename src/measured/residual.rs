@@ -51,7 +51,7 @@ pub fn residuals(quantity: Option<&Quantity>, points: &[Point], model: &[f64]) -
 }
 
 /// Whether the directions of `points`, degrees, were counted on through full turns.
-fn is_counted(points: &[Point]) -> bool {
+pub fn is_counted(points: &[Point]) -> bool {
     let values = || points.iter().map(|point| point.value);
     let (least, most) = (
         values().fold(f64::INFINITY, f64::min),

@@ -423,6 +423,68 @@ fn data_without_uncertainties_are_weighed_by_their_scatter() {
 }
 
 #[test]
+fn few_data_without_uncertainties_have_students_factor() {
+    const KEYS: [(&str, f64); 2] = [("start.tilt_deg", 30.0), ("start.turn_deg", 20.0)];
+    for (data, words) in [(5, "1.65 (Student's factor for 3 degrees"), (6, "1.43 (")] {
+        let off = |seed: u64| {
+            let mut dice = Dice(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+            (0..20).for_each(|_| {
+                dice.unit();
+            });
+            let mut text = "t_s,tilt_deg,azimuth_deg\n".to_owned();
+            for row in 0..3 {
+                let [tilt, azimuth] = [30.0, -70.0].map(|angle| angle + 0.1 * normal(&mut dice));
+                let azimuth = (2 * row + 1 < data).then_some(azimuth.to_string());
+                text += &format!("0,{tilt},{}\n", azimuth.unwrap_or_default());
+            }
+            let document = Document::parse("top.toml", TOP).unwrap();
+            let free = KEYS.map(|(key, _)| Free::parse(key, &document).unwrap());
+            let measured = read("lab.csv", &text).unwrap();
+            let model = Model::new(&document, free.to_vec(), measured).unwrap();
+            let fit = fitted(&model);
+            let sentence = fit.sentence(&model);
+            assert!(sentence.contains(words), "{sentence}");
+            [0, 1]
+                .map(|key| (fit.keys[key].value - KEYS[key].1).abs() / fit.keys[key].sigma.unwrap())
+        };
+        let offs: Vec<[f64; 2]> = (1..=1000_u64).into_par_iter().map(off).collect();
+        for (key, (name, _)) in KEYS.into_iter().enumerate() {
+            let covered = offs.iter().filter(|off| off[key] <= 2.0).count();
+            println!("{data} data, {name}: {covered} of 1000");
+            assert!(
+                (930..=980).contains(&covered),
+                "{data} data, {name}: {covered}"
+            );
+        }
+    }
+}
+
+#[test]
+fn another_valley_of_an_azimuth_at_even_times_is_named() {
+    let remarks = |times_s: [f64; 4]| {
+        let rows = times_s.map(|time_s| format!("{time_s},{}\n", (-90.0 + 60.0 * time_s) % 360.0));
+        let document = Document::parse("top.toml", TOP).unwrap();
+        let free = vec![Free::parse("start.spin_rpm", &document).unwrap()];
+        let text = format!("t_s,azimuth_deg\n{}", rows.concat());
+        let model = Model::new(&document, free, read("lab.csv", &text).unwrap()).unwrap();
+        let fit = fitted(&model);
+        let report = Report {
+            fit: &fit,
+            model: &model,
+            scheme: "exact",
+            instead_of: None,
+        };
+        serde_json::to_string(&report).unwrap()
+    };
+    let words = "a precession faster or slower by 180 deg/s";
+    let (even, uneven) = (remarks([0.0, 2.0, 4.0, 8.0]), remarks([0.0, 2.0, 4.7, 8.0]));
+    assert!(
+        even.contains(words) && !uneven.contains("faster or slower"),
+        "{even}\n{uneven}"
+    );
+}
+
+#[test]
 fn two_keys_can_have_one_value() {
     // Both moments across the axle, which must stay alike for the body to be symmetric.
     let across = "body.part.0.moments_kg_m2.0+body.part.0.moments_kg_m2.1";

@@ -25,10 +25,18 @@ pub struct Quality {
     pub scatter: Option<f64>,
 }
 
-/// The variance that data without uncertainties have by their scatter, of which `sum` is that of the squares; `None` where it
-/// cannot be stated.
+/// The variance that data without uncertainties have by their scatter, of which `sum` is that of the squares, times the
+/// square of Student's factor; `None` where it cannot be stated.
 pub(super) fn variance(sum: f64, freedom: u64) -> Option<f64> {
-    (freedom >= LEAST_FREEDOM).then(|| sum / freedom as f64)
+    (freedom >= LEAST_FREEDOM).then(|| sum / freedom as f64 * student(freedom).powi(2))
+}
+
+/// Student's factor: an uncertainty made of the scatter of few data is itself uncertain, and times this factor twice of it
+/// still holds the truth in 95.45 % of all cases. The expansion of the quantile in 1/`freedom` (M. Abramowitz, I. Stegun,
+/// Handbook of Mathematical Functions, 26.7.5), within 0.2 % from three degrees of freedom on.
+pub(super) fn student(freedom: u64) -> f64 {
+    let x = 1.0 / freedom as f64;
+    1.0 + x * (1.25 + x * (1.53125 + x * (1.429_687_5 + x * 0.922_037)))
 }
 
 impl Quality {

@@ -2,6 +2,7 @@
 
 use super::free::shown;
 use super::model::Model;
+use super::quality::student;
 use super::search::{Fit, Fitted};
 use crate::measured::Residual;
 use crate::text::number::{NONE, short, shortest, significant, uncertain};
@@ -55,7 +56,8 @@ impl Report<'_> {
                 self.scheme
             )
         });
-        other.into_iter().chain(self.fit.remarks()).collect()
+        let remarks = other.into_iter().chain(self.fit.remarks());
+        remarks.chain(self.fit.aliased(self.model)).collect()
     }
 
     /// The table of the keys.
@@ -186,6 +188,7 @@ impl Report<'_> {
             "chi_squared": quality.chi_squared, "degrees_of_freedom": freedom,
             "chi_squared_per_degree_of_freedom": quality.chi_squared.filter(|_| freedom > 0).map(|sum| sum / freedom as f64),
             "probability": quality.probability, "scatter": quality.scatter,
+            "student_factor": quality.scatter.and(fit.variance).map(|_| student(freedom)),
             "fits": quality.fits(), "verdict": fit.sentence(self.model), "remarks": self.remarks(),
             "cannot_be_told_apart": alike.collect::<Vec<_>>(), "no_influence": silent.collect::<Vec<_>>(),
             "residuals": residuals.collect::<Vec<_>>(), "steps": fit.steps,

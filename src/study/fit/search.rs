@@ -27,7 +27,8 @@ pub struct Fit {
     pub weights: Weights,
     /// How many steps the search took.
     pub steps: u64,
-    /// By what the covariances are multiplied: 1, or of unweighted data the square of their scatter.
+    /// By what the covariances are multiplied: 1, or of unweighted data the square of their scatter times that of
+    /// Student's factor.
     pub variance: Option<f64>,
 }
 

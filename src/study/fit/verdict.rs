@@ -1,8 +1,9 @@
 //! Whether the model fits, in one sentence.
 
-use super::model::Model;
-use super::quality::{LEAST_FREEDOM, Quality, RARE};
+use super::model::{Measurand, Model};
+use super::quality::{LEAST_FREEDOM, Quality, RARE, student};
 use super::search::Fit;
+use crate::measured::{Data, Point, is_counted};
 use crate::text::number::{short, significant};
 
 /// From this chi^2 a degree of freedom on, the search may have ended in a valley that is not the deepest.
@@ -14,6 +15,10 @@ const NOWHERE: &str =
     " No value of the free keys changes that: free a key on which what was measured depends.";
 /// Rows that are off by more than this many uncertainties are named.
 const FAR: f64 = 3.0;
+/// Times are even where they are whole multiples of one to this part of it.
+const EVEN: f64 = 0.01;
+/// With more rows than this in a turn, another whole turn between two of them is too far from the fitted rate to be meant.
+const MOST_ROWS: f64 = 10.0;
 /// The most rows that are named.
 const MOST_NAMED: usize = 5;
 /// From this correlation on, two keys are hardly told apart.
@@ -79,8 +84,9 @@ impl Fit {
                 short(scatter)
             ),
             Some(scatter) => format!(
-                "Whether the model fits cannot be said, since the data have no uncertainties: they scatter about it by {} {unit}, of which the uncertainties of the keys are made.",
-                short(scatter)
+                "Whether the model fits cannot be said, since the data have no uncertainties: they scatter about it by {} {unit}, of which the uncertainties of the keys are made, times {} (Student's factor for {freedom} degrees of freedom).",
+                short(scatter),
+                significant(student(freedom), 3)
             ),
             None => "Whether the model fits cannot be said: the data have no uncertainties, and there are as many fitted values as data.".to_owned(),
         }
@@ -188,6 +194,39 @@ impl Fit {
             );
         }
         remarks
+    }
+
+    /// What is said of an azimuth that was measured as a direction at even times, where the model turns it so far from one
+    /// time to the next that other whole turns between them may be the true ones.
+    pub(super) fn aliased(&self, model: &Model) -> Option<String> {
+        let Data::Series(series) = &model.measured.data else {
+            return None;
+        };
+        let is_direction = |column: &Measurand| column.quantity.is_some_and(|q| q.is_direction);
+        let column = model.columns.iter().position(is_direction)?;
+        let of_column =
+            (model.data.iter().zip(&self.residuals)).filter(|(d, _)| d.column == column);
+        let (points, at): (Vec<Point>, Vec<[f64; 2]>) = of_column
+            .map(|(datum, r)| (datum.point, [series.times_s[datum.point.row], r.model]))
+            .unzip();
+        let ways = at
+            .windows(2)
+            .map(|pair| [0, 1].map(|i| pair[1][i] - pair[0][i]));
+        let ways: Vec<[f64; 2]> = ways.filter(|[time_s, _]| *time_s > 0.0).collect();
+        let apart_s = ways.iter().map(|way| way[0]).reduce(f64::min)?;
+        let is_even = |[time_s, _]: &[f64; 2]| {
+            let times = time_s / apart_s;
+            (times - times.round()).abs() < EVEN
+        };
+        let turns = |[time_s, way]: &[f64; 2]| (way * apart_s / time_s).abs() > 360.0 / MOST_ROWS;
+        let is_aliased = ways.iter().all(is_even) && ways.iter().any(turns) && !is_counted(&points);
+        is_aliased.then(|| {
+            let rate = significant(360.0 / apart_s, 3);
+            let apart_s = significant(apart_s, 3);
+            format!(
+                "The azimuth is a direction, measured at even times, {apart_s} s apart: a precession faster or slower by {rate} deg/s makes whole turns more between them and fits as well. Begin near the right one by --set KEY=VALUE, or measure at uneven times."
+            )
+        })
     }
 
     /// A change of the `index`-th key by a part, such as "motion.gravity_m_per_s2 by +1 %".
