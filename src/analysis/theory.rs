@@ -9,14 +9,15 @@ use std::f64::consts::PI;
 use std::fmt;
 
 /// The theory of one heavy symmetric top under its present loads, of which only gravity is vertical by right: under a
-/// tilted load (a sideways push on the axle) "vertical" is the direction opposite to it, and without a load that of L.
+/// tilted load (a sideways push on the axle) "vertical" is the direction opposite to it, and without a load that of L. A
+/// load along z, up or down, has +z for its vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Theory {
     /// The axis about which precession, tilts and path are meant.
     pub axis: Axis,
     /// κ = I3/I1.
     pub kappa: f64,
-    /// Moment of the load, N m: M g h for gravity alone.
+    /// Moment of the load, N m: M g h for gravity alone, negative where it pulls the axle to +z.
     pub load: f64,
     /// L3 = L·axle, J s, a constant of the motion.
     pub spin: f64,
@@ -37,8 +38,9 @@ pub struct Theory {
     pub nutation_period_s: Option<f64>,
     /// Least and greatest tilt of this very motion, degrees.
     pub tilt_range_deg: (f64, f64),
-    /// The least |L3| with which this top sleeps, J s: L3² > 4 I1 mgl.
-    pub sleeping_limit: f64,
+    /// The least |L3| with which this top sleeps, J s: L3² > 4 I1 mgl; `None` where the load pulls the axle up, so that it
+    /// stands without spin.
+    pub sleeping_limit: Option<f64>,
     /// Tilt at which the axle stands still in azimuth, degrees: the height of the cusps; `None` where it never does.
     pub cusp_tilt_deg: Option<f64>,
     /// The path of the axle.
@@ -142,11 +144,18 @@ impl Theory {
         let momenta = state.momentum.norm() + (top.across * size).sqrt();
         let spins = spin.abs() > SAME_PART * momenta;
         let (low, high) = motion.tilt_range();
+        // What turns about -z turns the other way about +z, from which tilts and azimuths are measured.
+        let is_turned_over = (up + Vector3::z()).norm() <= SAME_DIRECTION;
+        let (up, load, way, (low, high)) = if is_turned_over {
+            (-up, -size, -1.0, (PI - high, PI - low))
+        } else {
+            (up, size, 1.0, (low, high))
+        };
         let is_through_vertical = low <= PASSES_RAD || high >= PI - PASSES_RAD;
         let tilt_range_deg = (low.to_degrees(), high.to_degrees());
         let cosine = Some(axle.dot(&up)).filter(|cosine| cosine.abs() > LEVEL);
         let (slow, fast) = match spins {
-            true => steady_precession(top.across * cosine.unwrap_or(0.0), spin, size),
+            true => steady_precession(top.across * cosine.unwrap_or(0.0), spin, load),
             false => (None, None),
         };
         let cusp_cosine = state.momentum.dot(&up) / spin;
@@ -155,17 +164,17 @@ impl Theory {
         Self {
             axis: Axis::new(up, size > 0.0),
             kappa: top.kappa(),
-            load: size,
+            load,
             spin,
-            fast_top_precession: spins.then(|| size / spin),
+            fast_top_precession: spins.then(|| load / spin),
             slow_precession: slow,
             fast_precession: fast,
-            precession: (!is_through_vertical).then(|| motion.mean_precession()),
+            precession: (!is_through_vertical).then(|| way * motion.mean_precession()),
             fast_top_nutation: spin / top.across,
             body_cone_period_s: body_cone_period_s(top, spin, size).filter(|_| spins),
             nutation_period_s: motion.nutation_period(),
             tilt_range_deg,
-            sleeping_limit: 2.0 * (top.across * size).sqrt(),
+            sleeping_limit: (load >= 0.0).then(|| 2.0 * (top.across * size).sqrt()),
             cusp_tilt_deg,
             path: match is_through_vertical {
                 true => Path::ThroughVertical,

@@ -162,7 +162,11 @@ impl Summary {
         };
         writeln!(f, "  steady        {steady}{about}")?;
         let spin = self.readouts.spin;
-        let sleeps = if spin.abs() > theory.sleeping_limit {
+        let Some(limit) = theory.sleeping_limit else {
+            let why = "without spin too: the forces pull the axle up";
+            return writeln!(f, "  upright       stands{about} {why}");
+        };
+        let sleeps = if spin.abs() > limit {
             "it would"
         } else {
             "it would not"
@@ -171,7 +175,7 @@ impl Summary {
             Axis::Z => "  upright       sleeps".to_owned(),
             axis => format!("  upright       along {axis} it sleeps"),
         };
-        let [limit, spin] = [theory.sleeping_limit, spin].map(|momentum| fixed(momentum, 3));
+        let [limit, spin] = [limit, spin].map(|momentum| fixed(momentum, 3));
         writeln!(
             f,
             "{along} with L.axle above {limit} J s; with {spin} {sleeps}"

@@ -338,6 +338,37 @@ fn blemish(text: &str) -> Option<String> {
     words.find(bad).map(str::to_owned)
 }
 
+#[test]
+fn theory_of_a_top_that_is_pulled_up_is_about_z_as_what_is_measured() {
+    let names = [
+        "precession_rad_per_s",
+        "nutation_period_s",
+        "lowest_tilt_deg",
+        "highest_tilt_deg",
+    ];
+    let hanging = preset(
+        "loops",
+        &["motion.gravity_m_per_s2=-9.8", "motion.scheme=exact"],
+    );
+    for (scenario, names) in [(preset("earth", &[]), &names[..1]), (hanging, &names[..])] {
+        let readouts = readouts(&scenario);
+        assert_eq!(readouts.theory.unwrap().axis, Axis::Z);
+        for name in names {
+            let [predicted, measured] = ["predicted", "measured"].map(|by| {
+                let number = readouts.number(&format!("{by}_{name}"));
+                number.unwrap_or_else(|| panic!("{by}_{name}"))
+            });
+            let off = (predicted / measured - 1.0).abs();
+            assert!(off < 1e-5, "{name}: {predicted}, {measured}");
+        }
+        let text = summary(readouts).to_string();
+        assert!(
+            !text.contains("about") && text.contains("stands without spin too"),
+            "{text}"
+        );
+    }
+}
+
 /// What is changed in a preset so that its numbers come to the edge of their range.
 const EXTREME: &[&[&str]] = &[
     &["motion.gravity_m_per_s2=5e-324"],

@@ -207,7 +207,7 @@ readouts! {
     "most_distance_m", "m", Exact, "the largest such distance so far", |r| r.health.most_distance_m;
     "L_axle_drift_Js", "J s", Exact, "L along the axle less the exact motion's", |r| r.health.deviation.map(|off| off.spin);
     "Lz_drift_Js", "J s", Exact, "L_z less the exact motion's", |r| r.health.deviation.map(|off| off.lz);
-    "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle", |r| r.kappa, "*κ*";
+    "kappa", "", Scenario, "I3/I1 of a body that is symmetric about its axle; with start.rotor I3 is of that part alone", |r| r.kappa, "*κ*";
     "theory_axis", "", Theory, "the axis that theory speaks of: +z, or another (against the forces, or along L where there are none), and then what it says about that axis is null", |r| r.theory.map(|theory| theory.axis.to_string());
     "path", "", Theory, "the path of the axle about +z", |r| r.lasting_theory().map(|theory| theory.path.to_string());
     "predicted_lowest_tilt_deg", "deg", Theory, "least tilt of the exact motion from +z", |r| r.lasting_theory().map(|theory| theory.tilt_range_deg.0), "*θ*_{min}";
@@ -228,8 +228,8 @@ readouts! {
     "fast_top_nutation_rad_per_s", "rad/s", Theory, "the fast top's nutation L3/I1", |r| r.theory.map(|theory| theory.fast_top_nutation), "*ω*_{n}";
     "fast_top_nutation_rpm", "rpm", Theory, "the same in revolutions a minute", |r| r.theory.map(|theory| start::rpm(theory.fast_top_nutation)), "*ω*_{n}";
     "L_axle_Js", "J s", State, "L along the axle", |r| r.spin, "*L*_{3}";
-    "spin_rpm", "rpm", State, "rate of the spin about the axle: omega along it, or, where start.rotor names a part, L along it over that part's moment", |r| start::rpm(r.spin_rad_per_s), "*ω*_{3}";
-    "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps", |r| r.theory_about_z().map(|theory| theory.sleeping_limit);
+    "spin_rpm", "rpm", State, "rate of the spin about the axle: omega along it", |r| start::rpm(r.spin_rad_per_s), "*ω*_{3}";
+    "sleeping_limit_Js", "J s", Theory, "least L along the axle with which this top, stood upright, sleeps; null where it stands without spin, its centre of mass below the pivot", |r| r.theory_about_z().and_then(|theory| theory.sleeping_limit);
     "health", "", Exact, "whether the numbers hold, in one sentence", |r| r.health.sentence(r.advice.as_ref());
     "wall_s", "s", Clock, "time spent on stepping alone", |r| r.stepping.map(|wall| wall.as_secs_f64());
     "steps_per_second", "1/s", Clock, "steps taken in a second of it", |r| r.stepping.map(|wall| per_second(r.sample.step, wall));
