@@ -10,6 +10,9 @@ use std::f64::consts::TAU;
 /// Fewer nutations than this do not say how much they differ from one another: of a symmetric body, and of a lopsided one,
 /// whose nutations grow longer and shorter over several of them.
 const FEWEST: [u64; 2] = [4, 16];
+/// A swing of a lopsided body's axle that is less than this part of the whole is none: a smaller one may lie unseen between
+/// two rows.
+const LEAST_PART: f64 = 0.05;
 /// Between rows that are further apart than this part of a nutation a highest point may be missed.
 const ROWS_TO_SEE_IT: f64 = 8.0;
 /// By so many rows nutations of the same length differ at most, as the rows show them.
@@ -29,7 +32,7 @@ pub(super) struct Rows {
     last: Option<(u64, Turn)>,
     count: u64,
     turns: Turns,
-    fewest: u64,
+    is_lopsided: bool,
     /// The shortest and the longest time between two highest points, s.
     nutations_s: [f64; 2],
     heights: [f64; 2],
@@ -72,11 +75,11 @@ impl Rows {
             looks: [look; 3],
             seen: 1,
             candidate: None,
-            lowest_since: f64::INFINITY,
+            lowest_since: look.axle[2],
             last: None,
             count: 0,
             turns: Turns::new(),
-            fewest: FEWEST[usize::from(SymmetricTop::of(body).is_none())],
+            is_lopsided: SymmetricTop::of(body).is_none(),
             nutations_s: [f64::INFINITY, 0.0],
             heights: [look.axle[2]; 2],
             is_ambiguous: false,
@@ -96,7 +99,7 @@ impl Rows {
         self.seen += 1;
         let [a, b, c] = self.looks.map(|look| look.axle[2]);
         self.heights = [self.heights[0].min(c), self.heights[1].max(c)];
-        if self.seen > 2 && b >= a && b > c {
+        if self.seen > 2 && b >= a && b > c && self.is_higher(b) {
             self.candidate = Some((self.turn(), b));
             self.lowest_since = f64::INFINITY;
         }
@@ -134,9 +137,30 @@ impl Rows {
         }
     }
 
+    /// The least way that the axle rises to a highest point and sinks from it.
+    fn least_way(&self) -> f64 {
+        let [lowest, highest] = self.heights;
+        if self.is_lopsided {
+            ROUNDING.max(LEAST_PART * (highest - lowest))
+        } else {
+            ROUNDING
+        }
+    }
+
+    /// Whether a highest point at `height` is one to count: of a lopsided body, the highest of those between which the axle
+    /// has not sunk far enough.
+    fn is_higher(&self, height: f64) -> bool {
+        let is_beyond = match &self.candidate {
+            Some((_, candidate)) => height > *candidate,
+            None => height - self.lowest_since > self.least_way(),
+        };
+        is_beyond || !self.is_lopsided
+    }
+
     /// Counts the candidate once the axle has truly sunk below it.
     fn confirm(&mut self) {
-        let is_below = |(_, height): &(Turn, f64)| height - self.lowest_since > ROUNDING;
+        let least = self.least_way();
+        let is_below = |(_, height): &(Turn, f64)| height - self.lowest_since > least;
         let Some((turn, _)) = self.candidate.filter(is_below) else {
             return;
         };
@@ -156,7 +180,8 @@ impl Rows {
     /// The line through the highest points, with what a parabola may be off by at its ends: through three steps of a
     /// swing's top, ψ apart, up to (2/3√3) ψ²/12 of a step.
     fn line(&self) -> Option<StraightLine> {
-        let (number, last) = self.last.filter(|(number, _)| *number >= self.fewest)?;
+        let fewest = FEWEST[usize::from(self.is_lopsided)];
+        let (number, last) = self.last.filter(|(number, _)| *number >= fewest)?;
         let mut line = self.turns.line_to(number, last)?;
         let step = self.looks[2].time_s - self.looks[1].time_s;
         let psi = TAU * step * number as f64 / line.time_s();
@@ -169,11 +194,12 @@ impl Rows {
     }
 
     /// Whether the rows are near enough to one another to show each highest point: where they are not, nutations seem to
-    /// differ because some are taken for one.
+    /// differ because some are taken for one. Of a lopsided body they may differ, and be taken for one, without seeming to.
     fn shows_each(&self) -> bool {
         let row = self.looks[2].time_s - self.looks[1].time_s;
         let [shortest, longest] = self.nutations_s;
-        shortest >= ROWS_TO_SEE_IT * row || longest - shortest <= ROWS_OF_CHANCE * row
+        let seem_alike = longest - shortest <= ROWS_OF_CHANCE * row;
+        shortest >= ROWS_TO_SEE_IT * row || (!self.is_lopsided && seem_alike)
     }
 
     pub fn nutation_period_s(&self) -> Option<Measured> {
