@@ -84,7 +84,7 @@ impl Readouts {
             sample: step.sample(),
             spin: state.momentum.dot(&state.axle()),
             spin_rad_per_s: step.scenario().spin_rad_per_s(state),
-            has_rotor: step.scenario().rotor.is_some(),
+            has_rotor: step.scenario().rotor().is_some(),
             kappa: SymmetricTop::of(&step.scenario().body.mechanics).map(|top| top.kappa()),
             health: *health,
             advice: advice.copied(),

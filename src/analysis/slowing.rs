@@ -13,7 +13,7 @@ const ROUNDING: f64 = 1e-12;
 pub struct Slowing {
     /// Work of friction since the start, J: 0, or less.
     pub work: f64,
-    /// The time in which viscous friction alone takes the spin to 1/e, I3/k1, s; of a rotor by its own moment.
+    /// The time in which viscous friction alone takes the spin to 1/e, I3/k1, s.
     pub spin_decay_s: Option<f64>,
     /// The time in which dry friction alone would stop the present spin, L3/k0, s; 0 where it has, but for rounding.
     pub spin_stop_s: Option<f64>,
@@ -35,17 +35,15 @@ impl Slowing {
             spin_dry,
             spin_viscous,
             swing_viscous,
-            rotor,
             ..
         } = friction;
-        let along = top.map(|top| rotor.unwrap_or(top.along));
         let time = |moment: Option<f64>, rate: f64| Some(moment? / rate).filter(|s| s.is_finite());
         let least = ROUNDING * state.momentum.norm();
         let spin = top.map(|_| state.axle().dot(&state.momentum).abs());
         let spin = spin.map(|spin| if spin > least { spin } else { 0.0 });
         Some(Self {
             work: step.friction_work(),
-            spin_decay_s: time(along, spin_viscous),
+            spin_decay_s: time(top.map(|top| top.along), spin_viscous),
             spin_stop_s: time(spin, spin_dry),
             swing_decay_s: time(top.map(|top| top.across), swing_viscous),
         })

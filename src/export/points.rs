@@ -4,7 +4,7 @@ use super::columns::{
     Cell,
     Value::{Number, Whole},
 };
-use crate::physics::PointMass;
+use crate::physics::{PointMass, rotation};
 use crate::run::Sample;
 use crate::scenario::Scenario;
 use nalgebra::Vector3;
@@ -25,6 +25,8 @@ pub(super) struct NamedPoint {
     /// As it stands in the CSV.
     name: String,
     mass: PointMass,
+    /// Whether it belongs to what does not spin beside a rotor.
+    is_in_frame: bool,
 }
 
 /// A point of the body as it stands and moves at one step.
@@ -44,7 +46,7 @@ pub const POINT_COLUMNS: &[PointColumn] = &[
     column("t_s", "time", |p| number(p.sample.time_s)),
     column(
         "point",
-        "name of the point; rim.0 is the rim's first",
+        "name of the point; rim.0 is the rim's first, a part's six stand along its own axes: wheel +x",
         |p| Cell::Text(&p.point.name),
     ),
     column("mass_kg", "mass of the point", |p| {
@@ -93,37 +95,39 @@ impl PointColumn {
 }
 
 impl NamedPoint {
-    /// The points of `scenario`'s body in its order: the rim's as `rim.0`, `rim.1` and so on, every other by its name, which
-    /// `field` makes fit for the CSV.
+    /// The points of `scenario`'s body in its order: the rim's as `rim.0`, `rim.1` and so on, every other by its
+    /// [name](Scenario::point_name), which `field` makes fit for the CSV.
     pub(super) fn all_of(scenario: &Scenario, field: impl Fn(&str) -> String) -> Vec<Self> {
         let body = &scenario.body;
         let points = body.mechanics.points();
-        let mut named: Vec<_> = points
-            .iter()
-            .enumerate()
-            .map(|(index, mass)| Self {
-                name: format!("rim.{index}"),
-                mass: *mass,
-            })
-            .collect();
-        for name in body.names() {
-            if let Some(point) = body.point(name).and_then(|index| named.get_mut(index)) {
-                point.name = field(name);
-            }
-        }
-        named
+        let rotor = scenario.rotor().map(|part| body.points_of_part(part));
+        let named = points.iter().enumerate().map(|(index, mass)| Self {
+            name: match scenario.point_name(index) {
+                Some(name) => field(&name),
+                None => format!("rim.{index}"),
+            },
+            mass: *mass,
+            is_in_frame: rotor.as_ref().is_some_and(|rotor| !rotor.contains(&index)),
+        });
+        named.collect()
     }
 }
 
 impl<'a> PlacedPoint<'a> {
-    /// `point` where the body stands as `sample` says; its velocity is ω x r.
+    /// `point` where the body stands as `sample` says; its velocity is ω x r, ω without the spin for a point of the frame.
     pub(super) fn new(point: &'a NamedPoint, sample: &'a Sample) -> Self {
-        let position = sample.orientation * point.mass.at;
+        let (mut at, mut omega) = (point.mass.at, sample.angular_velocity);
+        if point.is_in_frame {
+            let axle = sample.orientation.column(2);
+            at = rotation::about(&Vector3::z(), -sample.rotor_turn) * at;
+            omega -= axle * axle.dot(&omega);
+        }
+        let position = sample.orientation * at;
         Self {
             point,
             sample,
             position,
-            velocity: sample.angular_velocity.cross(&position),
+            velocity: omega.cross(&position),
         }
     }
 }

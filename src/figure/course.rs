@@ -310,6 +310,7 @@ fn sample(scenario: &Scenario, state: &State, azimuth: &Azimuth, gravity: f64) -
         tilt_deg: observables::tilt_deg(state),
         azimuth_deg: azimuth.degrees(),
         energy: observables::kinetic_energy(body, state) + weight,
+        rotor_turn: 0.0, // no curve shows it
         segment: 0,
     }
 }

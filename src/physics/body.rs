@@ -23,6 +23,7 @@ pub struct Body {
     first_moment: Vector3<f64>,
     inertia: Matrix3<f64>,
     inverse_inertia: Matrix3<f64>,
+    frame_moment: f64,
 }
 
 /// Why a set of points cannot turn as a rigid body.
@@ -65,7 +66,21 @@ impl Body {
             first_moment,
             inertia,
             inverse_inertia,
+            frame_moment: 0.0,
         })
+    }
+
+    /// The body of which one part alone spins about the axle, with the moment `rotor` (kg m²) about it, while the rest of it
+    /// tilts with the axle but does not spin. The body must be symmetric about its axle. The axle then moves as that of a
+    /// rigid body with the moment `rotor` about the axle, whose angular velocity is the rotor's.
+    ///
+    /// # Errors
+    /// When the inertia about the pivot is then singular.
+    pub fn with_rotor(mut self, rotor: f64) -> Result<Self, BodyError> {
+        self.frame_moment += self.inertia[(2, 2)] - rotor;
+        self.inertia[(2, 2)] = rotor;
+        self.inverse_inertia = invert(&self.inertia)?;
+        Ok(self)
     }
 
     /// The points, in the order in which the scenario lists them.
@@ -83,7 +98,8 @@ impl Body {
         self.first_moment
     }
 
-    /// Inertia about the pivot, kg m², body frame (equation (2) of the report, with E).
+    /// Inertia about the pivot, kg m², body frame (equation (2) of the report, with E); of what does not spin no moment about
+    /// the axle counts ([`with_rotor`](Self::with_rotor)).
     pub fn inertia(&self) -> Matrix3<f64> {
         self.inertia
     }
@@ -91,6 +107,11 @@ impl Body {
     /// Inverse of the inertia about the pivot, 1/(kg m²), body frame.
     pub fn inverse_inertia(&self) -> Matrix3<f64> {
         self.inverse_inertia
+    }
+
+    /// The moment about the axle of what does not spin, kg m²: 0 where the whole body does.
+    pub fn frame_moment(&self) -> f64 {
+        self.frame_moment
     }
 }
 

@@ -23,8 +23,6 @@ pub struct Friction {
     pub spin_quadratic: f64,
     /// k4: viscous friction on the swing, N m s.
     pub swing_viscous: f64,
-    /// Where one part alone spins, its moment about the axle, kg m²: the spin that rubs is L along the axle over it.
-    pub rotor: Option<f64>,
 }
 
 impl Friction {
@@ -47,8 +45,6 @@ pub struct Damping {
     inverse_inertia: Matrix3<f64>,
     /// The moment against a torque about the axle, kg m²: 1/(e3·I⁻¹e3).
     along: f64,
-    /// The spin that rubs over ω3: 1, or that of the rotor.
-    gear: f64,
     /// Across the axle, two directions square to each other in which a torque along one changes ω along it alone, each
     /// with the moment against it, kg m².
     across: [(Vector3<f64>, f64); 2],
@@ -73,7 +69,6 @@ impl Damping {
             inertia: body.inertia(),
             inverse_inertia: inverse,
             along,
-            gear: friction.rotor.map_or(1.0, |moment| along / moment),
             across: across(&inverse),
         })
     }
@@ -101,24 +96,19 @@ impl Damping {
     /// The least moment against a torque of friction, kg m².
     pub fn least_moment(&self) -> f64 {
         let [(_, first), (_, second)] = self.across;
-        first.min(second).min(self.along / self.gear)
+        first.min(second).min(self.along)
     }
 
     /// The rate at which friction slows spin and swing together where the body turns by `omega` rad/s, 1/s.
     pub fn rate(&self, omega: f64) -> f64 {
         let (friction, least) = (&self.friction, self.least_moment());
-        let spin = friction.spin_viscous + friction.spin_quadratic * self.gear * omega.abs();
+        let spin = friction.spin_viscous + friction.spin_quadratic * omega.abs();
         (spin + friction.swing_viscous) / least
-    }
-
-    /// The spin that rubs over ω3.
-    pub fn gear(&self) -> f64 {
-        self.gear
     }
 
     /// The torque of friction where the body turns by `omega`, body frame, rad/s; N m.
     pub fn torque(&self, omega: &Vector3<f64>) -> Vector3<f64> {
-        let (friction, spin) = (&self.friction, self.gear * omega.z);
+        let (friction, spin) = (&self.friction, omega.z);
         let sign = if spin == 0.0 { 0.0 } else { spin.signum() };
         let about = friction.spin_dry * sign
             + (friction.spin_viscous + friction.spin_quadratic * spin.abs()) * spin;
@@ -172,10 +162,8 @@ impl Damping {
         if !self.friction.is_on_spin() {
             return 0.0;
         }
-        let moment = self.along / self.gear;
-        let before = self.gear * omega;
-        let after = spin_after(&self.friction, moment, before, torque, time_s);
-        moment * (after - before) - torque * time_s
+        let after = spin_after(&self.friction, self.along, omega, torque, time_s);
+        self.along * (after - omega) - torque * time_s
     }
 
     /// The impulse of friction across the axle, J s, beside a constant torque (N m).

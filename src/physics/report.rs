@@ -69,6 +69,16 @@ impl Report {
         )
     }
 
+    /// The inertia of points with these `moments`, less that about the axle of what does not spin.
+    #[inline]
+    fn inertia_of(&self, moments: &Moments, state: &State) -> Inertia {
+        let (of_points, axle) = (Inertia::of_points(moments), state.axle());
+        if self.body.frame_moment() == 0.0 {
+            return of_points;
+        }
+        Inertia::of(&(of_points.matrix() - axle * axle.transpose() * self.body.frame_moment()))
+    }
+
     /// The torque of the weight, N m, from Σ m X: it has no moment about z, so that L_z keeps its bits.
     fn weight_torque(&self, first_moment: &Vector3<f64>) -> Vector3<f64> {
         Vector3::new(
@@ -134,7 +144,7 @@ impl Report {
         let momentum = state.momentum;
         state.momentum += dt * torque;
         listener.hear(|| phases::momentum_phase(dt, &torque, &momentum, &state.momentum));
-        self.inertia = Inertia::of_points(&moments);
+        self.inertia = self.inertia_of(&moments, state);
     }
 }
 
@@ -153,7 +163,7 @@ impl Scheme for Report {
             let [x, y, z, mass] = lanes.map(f64x2::new);
             self.points.push(Pair { x, y, z, mass });
         }
-        self.inertia = Inertia::of_points(&Moments::of_all(&self.points));
+        self.inertia = self.inertia_of(&Moments::of_all(&self.points), state);
     }
 
     fn load(&mut self, loads: &Loads) {

@@ -23,6 +23,8 @@ pub struct Sample {
     pub azimuth_deg: f64,
     /// Kinetic energy and that of the weight, from the pivot, J.
     pub energy: f64,
+    /// The angle about the axle by which a rotor has turned in its frame since the start, rad; 0 where the whole body spins.
+    pub rotor_turn: f64,
     /// The number of edits of time step, scheme or gravity before this step.
     pub segment: u64,
 }

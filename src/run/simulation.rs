@@ -106,6 +106,7 @@ impl Simulation {
                 after: state,
                 azimuth: Azimuth::start(&state.axle()),
                 energy,
+                rotor_turn: 0.0,
                 workings: None,
                 derived: Derived::default(),
                 scenario,
@@ -147,6 +148,7 @@ impl Simulation {
         now.number += 1;
         now.workings = workings.map(Arc::new);
         now.azimuth.follow(&now.after.axle());
+        now.turn_rotor();
         Ok(())
     }
 

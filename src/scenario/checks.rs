@@ -6,6 +6,7 @@ use super::keys::{TOP, is_under};
 use super::model::{Body, Scenario};
 use super::parts::{body, motion, pushes};
 use super::problem::{Found, Problem, listed};
+use super::rotor;
 use super::rubbing::{friction, objection};
 use super::start::start;
 use crate::physics::{State, observables};
@@ -18,22 +19,23 @@ use toml::Value;
 /// Every rule that its numbers break together.
 pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
     // Without a body nothing can be said of the rest; of that, each part is looked at by itself.
-    let body = body(&file.body)?;
+    let mut body = body(&file.body)?;
     let trace = match &file.trace {
         Some(name) => body.find("trace", name),
         None => body.point(TOP).ok_or_else(|| no_top(&body)),
     };
     let motion = motion(&file.motion);
-    let started = start(&file.start, &body, &file.body.part, motion.gravity);
-    let started = started.and_then(|(start, rotor)| {
-        let friction = friction(file.friction.as_ref(), &body, rotor)?;
+    let spinning = rotor::spinning(&file.start, &body, &file.body.part);
+    let started = spinning.and_then(|spinning| {
+        let start = start(&file.start, &spinning, motion.gravity)?;
+        let friction = friction(file.friction.as_ref(), &spinning)?;
         match objection("motion.scheme", motion.scheme, &friction) {
-            None => Ok((start, rotor, friction)),
+            None => Ok((spinning, start, friction)),
             Some(problem) => Err(vec![problem]),
         }
     });
     let pushed = pushes(&file.push, &body);
-    let (trace, (start, rotor, friction), pushes) = match (trace, started, pushed) {
+    let (trace, (spinning, start, friction), pushes) = match (trace, started, pushed) {
         (Ok(trace), Ok(started), Ok(pushes)) => (trace, started, pushes),
         (trace, started, pushed) => {
             let mut found = Found::default();
@@ -44,6 +46,7 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
             return Err(found);
         }
     };
+    body.mechanics = spinning;
     let edits = edits(&file, &body, &pushes, &friction)?;
     if !is_readable(&body, trace, &start, motion.gravity) {
         let rule = "energy or traced point leave the range of floating-point numbers: use momentum, gravity and distances nearer to 1";
@@ -53,7 +56,6 @@ pub fn scenario(file: ScenarioFile) -> Result<Scenario, Found> {
         body: Arc::new(body),
         trace,
         start,
-        rotor,
         friction,
         motion,
         steps: file.motion.steps,

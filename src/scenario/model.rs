@@ -5,6 +5,7 @@ use super::problem::{Problem, nearest};
 use super::pushes::{Push, PushFiles, Pushes};
 use crate::physics::{self, Friction, Part, SchemeInfo, State, observables, part};
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A scenario, or a run with its edits, whose numbers have been checked.
@@ -18,8 +19,6 @@ pub struct Scenario {
     pub trace: usize,
     /// Orientation and momentum at t = 0.
     pub start: State,
-    /// The part's moment about the axle, kg m², where only one part of the body spins.
-    pub rotor: Option<f64>,
     /// Friction about the pivot, throughout.
     pub friction: Friction,
     /// How it moves at the start.
@@ -96,6 +95,12 @@ impl Body {
         self.mechanics.points().len() - part::POINTS * self.parts.len()
     }
 
+    /// The indices of the points of the part of this index.
+    pub fn points_of_part(&self, part: usize) -> Range<usize> {
+        let first = self.points_before_parts() + part * part::POINTS;
+        first..first + part::POINTS
+    }
+
     /// Index of the point called `name`.
     pub fn point(&self, name: &str) -> Option<usize> {
         self.names.get(name).copied()
@@ -144,16 +149,31 @@ impl Scenario {
         least_s.min(now_s)
     }
 
-    /// The rate at which the body spins about its axle in `state`, rad/s: ω3, or L along the axle over the rotor's moment
-    /// where only one part spins.
+    /// The rate at which the body, or of it the rotor alone, spins about the axle in `state`, rad/s: ω3.
     pub fn spin_rad_per_s(&self, state: &State) -> f64 {
-        match self.rotor {
-            Some(moment) => state.axle().dot(&state.momentum) / moment,
-            None => {
-                let omega = observables::angular_velocity(&self.body.mechanics, state);
-                state.axle().dot(&omega)
-            }
+        let omega = observables::angular_velocity(&self.body.mechanics, state);
+        state.axle().dot(&omega)
+    }
+
+    /// The name of the point of this index, for a point of a part with its direction from the part's centre: "wheel +x";
+    /// `None` for a point of the rim.
+    pub fn point_name(&self, index: usize) -> Option<String> {
+        const OFF_CENTRE: [&str; part::POINTS] = ["", " +x", " -x", " +y", " -y", " +z", " -z"];
+        let file = &self.file.body;
+        if let Some(of_parts) = index.checked_sub(self.body.points_before_parts()) {
+            let part = file.part.get(of_parts / part::POINTS)?;
+            return Some(part.name.clone() + OFF_CENTRE[of_parts % part::POINTS]);
         }
+        let rim = file.rim.as_ref().map_or(0, |rim| rim.points);
+        let point = file.point.get(index.checked_sub(rim)?)?;
+        Some(point.name.clone())
+    }
+
+    /// Index of the part that alone spins, where there is one.
+    pub fn rotor(&self) -> Option<usize> {
+        let name = self.file.start.rotor.as_ref()?;
+        let parts = &self.file.body.part;
+        parts.iter().position(|part| part.name == *name)
     }
 
     /// The run file: the scenario with its edits, and the version that wrote it. Reading it gives this scenario again.

@@ -1,30 +1,31 @@
 //! The rotor: the one part that spins, in a frame that does not.
 //!
 //! The axle moves by the moments across of all that tilts, by L along the axle, and by the torque. Where the frame is
-//! symmetric too and turns freely about the axle, the gyroscope therefore moves as a rigid body with the rotor's L; only its
-//! angle of spin and its energy are others, and under the `report` scheme the motion, which depends on I3.
+//! symmetric too and turns freely about the axle, the gyroscope therefore moves as a rigid body whose moment about the axle
+//! is the rotor's: that is the body which is computed, and its spin, its energy and the work of friction are the rotor's.
 
 use super::file::{PartFile, StartFile};
 use super::model::Body;
 use super::problem::{Problem, nearest};
-use crate::physics::{Part, SymmetricTop};
+use crate::physics::{self, Part, SymmetricTop};
 use toml::Value;
 
 /// A direction, a place or a moment is on or about the axle to this part of its size, as for
 /// [`SymmetricTop`]: less is the rounding of a scenario's digits.
 const WITHIN: f64 = 1e-9;
 
-/// The moment about the axle, kg m², of the part that `file` names as the rotor; `None` where it names none.
+/// What turns: `body`, of which the part that `file` names as the rotor spins alone.
 ///
 /// # Errors
 /// Where there is no such part, it cannot spin alone about the axle, or the body is lopsided.
-pub(super) fn moment(
+pub(super) fn spinning(
     file: &StartFile,
     body: &Body,
     parts: &[PartFile],
-) -> Result<Option<f64>, Vec<Problem>> {
+) -> Result<physics::Body, Vec<Problem>> {
+    let whole = &body.mechanics;
     let Some(name) = &file.rotor else {
-        return Ok(None);
+        return Ok(whole.clone());
     };
     let refused = |rule: &str| {
         let value = Value::String(name.clone());
@@ -34,13 +35,15 @@ pub(super) fn moment(
         let near = nearest(name, parts.iter().map(|part| part.name.as_str()));
         return refused(&format!("is no part of this body: {near}"));
     };
-    if SymmetricTop::of(&body.mechanics).is_none() {
+    if SymmetricTop::of(whole).is_none() {
         return refused(
             "needs a body that is symmetric about its axle, and this one is lopsided: leave it out",
         );
     }
     match alone(&body.parts[index]) {
-        Ok(moment) => Ok(Some(moment)),
+        Ok(moment) => {
+            (whole.clone().with_rotor(moment)).or_else(|error| refused(&error.to_string()))
+        }
         Err(rule) => refused(rule),
     }
 }

@@ -1,20 +1,15 @@
 //! Friction as a scenario gives it, and the schemes that can be true to it.
 
 use super::file::FrictionFile;
-use super::model::Body;
 use super::problem::{Problem, listed};
-use crate::physics::{Damping, Friction, SchemeInfo, scheme};
+use crate::physics::{Body, Damping, Friction, SchemeInfo, scheme};
 
 /// The most that a coefficient of friction may be over the least moment of the body: what it does to the motion is then
 /// still told apart from infinity.
 const MOST_RATE: f64 = 1e100;
 
-/// The friction of `[friction]` on `body`, of which one part alone spins where its moment `rotor` (kg m²) is given.
-pub(super) fn friction(
-    file: Option<&FrictionFile>,
-    body: &Body,
-    rotor: Option<f64>,
-) -> Result<Friction, Vec<Problem>> {
+/// The friction of `[friction]` on `body`.
+pub(super) fn friction(file: Option<&FrictionFile>, body: &Body) -> Result<Friction, Vec<Problem>> {
     let Some(file) = file else {
         return Ok(Friction::default());
     };
@@ -23,9 +18,8 @@ pub(super) fn friction(
         spin_viscous: file.spin_viscous_Nms.unwrap_or(0.0),
         spin_quadratic: file.spin_quadratic_Nms2.unwrap_or(0.0),
         swing_viscous: file.swing_viscous_Nms.unwrap_or(0.0),
-        rotor,
     };
-    let Some(damping) = Damping::new(&body.mechanics, &friction) else {
+    let Some(damping) = Damping::new(body, &friction) else {
         return Ok(Friction::default());
     };
     let rates = [

@@ -2,12 +2,11 @@
 //! the angular velocity.
 
 use super::dotted::find;
-use super::file::{Frame, PartFile, StartFile};
+use super::file::{Frame, StartFile};
 use super::keys::STATED;
 use super::kind::vector;
-use super::model::{Body, Scenario};
+use super::model::Scenario;
 use super::problem::Problem;
-use super::rotor;
 use crate::physics::observables::{VERTICAL_WITHIN, angular_velocity};
 use crate::physics::symmetry::steady_precession;
 use crate::physics::{self, State, SymmetricTop, rotation};
@@ -19,33 +18,22 @@ use toml::{Table, Value};
 /// rad/s of one revolution a minute.
 const RPM: f64 = TAU / 60.0;
 
-/// The state at t = 0 under the gravity `gravity`, m/s², and the rotor's moment where only one part spins; pushes do not
-/// count.
+/// The state at t = 0 under the gravity `gravity`, m/s²; pushes do not count.
 ///
 /// # Errors
-/// Where the momentum is told in several ways or in none, or asked to be steady where it cannot be, or the rotor is none.
+/// Where the momentum is told in several ways or in none, or asked to be steady where it cannot be.
 pub(super) fn start(
     file: &StartFile,
-    body: &Body,
-    parts: &[PartFile],
+    body: &physics::Body,
     gravity: f64,
-) -> Result<(State, Option<f64>), Vec<Problem>> {
+) -> Result<State, Vec<Problem>> {
     is_told_once(file)?;
-    let rotor = rotor::moment(file, body, parts)?;
     let orientation = orientation(file);
     let turned = |frame: Option<Frame>, vector: [f64; 3]| match frame.unwrap_or_default() {
         Frame::World => Vector3::from(vector),
         Frame::Body => orientation * Vector3::from(vector),
     };
-    let mechanics = &body.mechanics;
-    let momentum_of = |velocity: Vector3<f64>| match rotor {
-        None => orientation * (mechanics.inertia() * velocity),
-        Some(moment) => {
-            let across = Vector3::new(velocity.x, velocity.y, 0.0);
-            let along = Vector3::new(0.0, 0.0, moment * velocity.z);
-            orientation * (mechanics.inertia() * across + along)
-        }
-    };
+    let momentum_of = |velocity: Vector3<f64>| orientation * (body.inertia() * velocity);
     let momentum = match (file.momentum_Js, file.omega_rad_per_s, spin(file)) {
         (Some(momentum), ..) => turned(file.momentum_frame, momentum),
         (None, Some(omega), _) => {
@@ -56,31 +44,17 @@ pub(super) fn start(
             let spin = spin.unwrap_or_default();
             let mut velocity = Vector3::new(0.0, 0.0, spin);
             if file.steady == Some(true) {
-                let precession = steady(mechanics, rotor, &orientation, spin, gravity);
+                let precession = steady(body, &orientation, spin, gravity);
                 velocity += precession.map_err(|rule| refused("steady", true, rule))?;
             }
             momentum_of(velocity)
         }
     };
-    let state = State {
+    Ok(State {
         time_s: 0.0,
         orientation,
         momentum,
-    };
-    Ok((state, rotor))
-}
-
-/// The angular velocity, world frame, rad/s, of a start that is told by it; its part along the axle is the spin.
-pub(crate) fn omega_of(scenario: &Scenario, state: &State) -> Vector3<f64> {
-    let omega = angular_velocity(&scenario.body.mechanics, state);
-    match scenario.rotor {
-        None => omega,
-        Some(_) => {
-            let axle = state.axle();
-            let spin = scenario.spin_rad_per_s(state);
-            omega + (spin - axle.dot(&omega)) * axle
-        }
-    }
+    })
 }
 
 /// The same in revolutions a minute.
@@ -160,7 +134,6 @@ fn is_told_once(file: &StartFile) -> Result<(), Vec<Problem>> {
 /// φ' the slow root.
 fn steady(
     body: &physics::Body,
-    rotor: Option<f64>,
     orientation: &Matrix3<f64>,
     spin: f64,
     gravity: f64,
@@ -168,10 +141,6 @@ fn steady(
     let top = SymmetricTop::of(body).ok_or(
         "needs a body that is symmetric about its axle, and this one is lopsided: leave it out",
     )?;
-    let top = SymmetricTop {
-        along: rotor.unwrap_or(top.along), // L along the axle is this times the spin
-        ..top
-    };
     let up = orientation.row(2).transpose();
     let across = Vector3::new(up.x, up.y, 0.0);
     if across.norm() <= VERTICAL_WITHIN {
@@ -281,7 +250,10 @@ pub(super) fn tell_other_way(table: &mut Table, key: &str, value: &Value, now: &
     };
     let (name, told) = match own[0] {
         "spin_rpm" => ("spin_rad_per_s", now.spin_rad_per_s(start).into()),
-        "omega_rad_per_s" => ("omega_rad_per_s", framed(omega_of(now, start))),
+        "omega_rad_per_s" => (
+            "omega_rad_per_s",
+            framed(angular_velocity(&now.body.mechanics, start)),
+        ),
         _ => ("momentum_Js", framed(start.momentum)),
     };
     if let Some(Value::Table(table)) = table.get_mut("start") {

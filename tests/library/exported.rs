@@ -10,6 +10,7 @@ use gyrolab::physics::SchemeInfo;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
 use gyrolab::study::verify::{Unverified, Verified, What, verify};
+use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::{Arc, LazyLock};
@@ -148,6 +149,45 @@ fn every_point_has_a_row() {
             w[0] * r[1] - w[1] * r[0],
         ];
         assert_eq!([7, 8, 9].map(|at| number(top[at])), velocity);
+    }
+}
+
+#[test]
+fn points_of_parts_have_their_parts_names_and_those_of_the_frame_no_spin() {
+    let points = |name: &str| {
+        let file = LayoutFile {
+            points: true,
+            ..whole()
+        };
+        rows(&csv(
+            &preset(name, &["motion.steps=2", "motion.time_step_s=1e-4"]),
+            file,
+        ))
+    };
+    let ball = points("rugby-pass");
+    assert!(ball.iter().any(|row| row.contains(",ball +z,")), "{ball:?}");
+    assert!(!ball.iter().any(|row| row.contains(",rim.")), "{ball:?}");
+    let gyroscope = points("lab-gyroscope");
+    let of = |point: &str| -> Vec<[f64; 6]> {
+        let own = gyroscope
+            .iter()
+            .filter(|row| row.contains(&format!(",{point},")));
+        own.map(|row| {
+            let cells: Vec<&str> = row.split(',').collect();
+            [4, 5, 6, 7, 8, 9].map(|at| cells[at].parse().unwrap())
+        })
+        .collect()
+    };
+    // The wheel's points stand sqrt(3)/2 of its radius off the axle and make 720 turns a minute; the counterweight precesses.
+    for (point, speed) in [("wheel +x", 7.84), ("counterweight +x", 0.02)] {
+        let places = of(point);
+        let fast = Vector3::from_column_slice(&places[1][3..]);
+        assert!((fast.norm() / speed - 1.0).abs() < 0.05, "{point}: {fast}");
+        for axis in 0..3 {
+            // The velocity is that with which the point goes from row to row.
+            let went = (places[2][axis] - places[0][axis]) / 2e-4;
+            assert!((went - fast[axis]).abs() < 1e-3 * speed, "{point}: {went}");
+        }
     }
 }
 

@@ -192,11 +192,10 @@ impl Sliding {
 
     /// Coefficient `k` of the torque about the axle while the spin has this `sign`.
     fn slows(&self, k: usize, sign: f64) -> f64 {
-        let (friction, gear) = (self.damping.friction(), self.damping.gear());
+        let friction = self.damping.friction();
         let square = convolve(k, |i, j| self.spin[i] * self.spin[j]);
         let dry = if k == 0 { friction.spin_dry } else { 0.0 };
-        -sign * (dry + friction.spin_quadratic * gear * gear * square)
-            - friction.spin_viscous * gear * self.spin[k]
+        -sign * (dry + friction.spin_quadratic * square) - friction.spin_viscous * self.spin[k]
     }
 
     /// Friction's torque across the axle.

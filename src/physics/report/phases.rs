@@ -41,15 +41,19 @@ impl Report {
             table.add(point, [mass, x, y, z, xx, yy, zz, xy, xz, yz]);
         }
         let moments = Moments::of_all(&self.points);
-        Phase::of(
-            "inertia",
-            "I = Σ m (|X|² E − X Xᵀ) = (Sxx + Syy + Szz) E − S, S = Σ m X Xᵀ",
-            vec![
-                Quantity::new("X", "", table),
-                Quantity::new("S", "kg m²", moments.second()),
-                Quantity::new("I", "kg m²", self.inertia.matrix()),
-            ],
-        )
+        let mut quantities = vec![
+            Quantity::new("X", "", table),
+            Quantity::new("S", "kg m²", moments.second()),
+        ];
+        let frame = self.body.frame_moment();
+        let formula = if frame == 0.0 {
+            "I = Σ m (|X|² E − X Xᵀ) = (Sxx + Syy + Szz) E − S, S = Σ m X Xᵀ"
+        } else {
+            quantities.push(Quantity::new("F", "kg m²", frame));
+            "I = Σ m (|X|² E − X Xᵀ) − F a aᵀ = (Sxx + Syy + Szz) E − S − F a aᵀ, S = Σ m X Xᵀ, F the moment about the axle a of what does not spin"
+        };
+        quantities.push(Quantity::new("I", "kg m²", self.inertia.matrix()));
+        Phase::of("inertia", formula, quantities)
     }
 
     pub(super) fn positions_phase(&self, before: &[Pair]) -> Phase {

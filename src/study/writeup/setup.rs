@@ -114,8 +114,13 @@ fn moments(scenario: &Scenario) -> String {
     let Some(top) = SymmetricTop::of(body) else {
         return "lopsided: not symmetric about the axle".to_owned();
     };
+    let of = if scenario.rotor().is_some() {
+        "of the rotor"
+    } else {
+        "about it"
+    };
     format!(
-        "I1 = {} kg m^2 across the axle, I3 = {} kg m^2 about it, kappa = I3/I1 = {}",
+        "I1 = {} kg m^2 across the axle, I3 = {} kg m^2 {of}, kappa = I3/I1 = {}",
         significant(top.across, 6),
         significant(top.along, 6),
         significant(top.kappa(), 6)

@@ -13,7 +13,6 @@ use crate::lab::action::{Action, Direction};
 use crate::lab::explained::Explained;
 use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, View};
-use crate::physics::part::POINTS;
 use crate::physics::workings::{Phase, Quantity, Value};
 use crate::scenario::Scenario;
 use crate::text::number::shortest;
@@ -325,26 +324,10 @@ fn is_made_of_sums(phase: &Phase, quantity: &Quantity) -> bool {
     table.is_some_and(is_summed) && matches!(quantity.symbol, "S" | "I" | "Σ m X")
 }
 
-/// The directions from a part's centre in which its points lie, in their order.
-const OFF_CENTRE: [&str; POINTS - 1] = ["+x", "-x", "+y", "-y", "+z", "-z"];
-
-/// The name of the point of this index. For a point of the rim it has its number on the rim, for a point of a part its
-/// direction from the part's centre.
+/// The name of the point of this index; a point of the rim has its number on the rim.
 pub fn name_of(scenario: &Scenario, point: usize) -> String {
-    let body = &scenario.file.body;
-    let rim = body.rim.as_ref().map_or(0, |rim| rim.points);
-    if let Some(of_part) = point.checked_sub(scenario.body.points_before_parts()) {
-        let name = body
-            .part
-            .get(of_part / POINTS)
-            .map_or("", |part| &part.name);
-        return match (of_part % POINTS).checked_sub(1) {
-            Some(off) => format!("{name} {}", OFF_CENTRE[off]),
-            None => name.to_owned(),
-        };
-    }
-    match point.checked_sub(rim).and_then(|free| body.point.get(free)) {
-        Some(free) => free.name.clone(),
+    match scenario.point_name(point) {
+        Some(name) => name,
         None if point < SHORT => format!("rim {point}"),
         None => point.to_string(),
     }
