@@ -15,6 +15,9 @@ const FEWEST: [u64; 2] = [4, 16];
 const LEAST_PART: f64 = 0.05;
 /// Between rows that are further apart than this part of a nutation a highest point may be missed.
 const ROWS_TO_SEE_IT: f64 = 8.0;
+/// Nutations of a lopsided body that differ by more than this factor in length: between two of their highest points lay
+/// one that was too shallow to be seen.
+const MOST_UNLIKE: f64 = 1.5;
 /// By so many rows nutations of the same length differ at most, as the rows show them.
 const ROWS_OF_CHANCE: f64 = 1.5;
 /// How much more the scatter of nutations that differ at random counts than that of single points.
@@ -199,7 +202,12 @@ impl Rows {
         let row = self.looks[2].time_s - self.looks[1].time_s;
         let [shortest, longest] = self.nutations_s;
         let seem_alike = longest - shortest <= ROWS_OF_CHANCE * row;
-        shortest >= ROWS_TO_SEE_IT * row || (!self.is_lopsided && seem_alike)
+        let is_near = shortest >= ROWS_TO_SEE_IT * row;
+        if self.is_lopsided {
+            is_near && longest <= MOST_UNLIKE * shortest
+        } else {
+            is_near || seem_alike
+        }
     }
 
     pub fn nutation_period_s(&self) -> Option<Measured> {

@@ -1000,8 +1000,8 @@ fn the_handout_has_pictures_and_room_and_no_notes() {
     let begin = paper.find("## Watch").unwrap();
     let end = paper.find("**Prediction.**").unwrap();
     assert!(
-        !paper[begin..end].contains("energy drift"),
+        !paper[begin..end].contains("off exact"),
         "the health is hidden before the prediction"
     );
-    assert!(paper[end..].contains("energy drift"));
+    assert!(paper[end..].contains("off exact"));
 }

@@ -167,12 +167,12 @@ fn advice_is_looked_for_where_the_lab_opens_paused() {
 #[test]
 fn a_time_step_that_is_in_force_mends_from_the_start() {
     let mut stage = Stage::open("wobble-push", &[], LARGE);
-    stage.commands("pause = true\ngo_to = 300\nset = { 'motion.time_step_s' = 0.01 }");
+    stage.commands("pause = true\ngo_to = 300\nset = { 'motion.time_step_s' = 0.002 }");
     stage.lab.take_advice();
     while stage.lab.player().is_seeking_advice() {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
-    stage.wait(0.1).shows("dt 0.01 s from the start mends it");
+    stage.wait(0.1).shows("dt 0.002 s from the start mends it");
 }
 
 #[test]

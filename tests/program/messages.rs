@@ -304,16 +304,6 @@ fn colours_that_were_turned_off_and_on_again_are_no_choice() {
 }
 
 #[test]
-fn the_american_colour_is_answered_with_the_key() {
-    let ground = Ground::new();
-    std::fs::create_dir_all(ground.config().join("gyrolab")).unwrap();
-    ground.write("config/gyrolab/config.toml", "color = 'never'\n");
-    let mut lab = open(&ground);
-    lab.wait_for("color: unknown key: did you mean colour?");
-    lab.quit();
-}
-
-#[test]
 fn a_number_with_a_unit_is_told_without_it() {
     let ground = Ground::new();
     let out = ["-o", "out.csv"];

@@ -52,7 +52,7 @@ fn what_is_pressed_is_done() {
     let (x, y) = cell(&lab, ". step");
     lab.press(&press(x + 3, y));
     lab.wait_for_step(1);
-    let (x, y) = cell(&lab, "o open");
+    let (x, y) = cell(&lab, "o ?");
     lab.ask(&press(x, y), "/ filters by name");
     let (x, y) = cell(&lab, "loops");
     lab.ask(&press(x, y), "> loops");

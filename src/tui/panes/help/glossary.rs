@@ -124,7 +124,7 @@ pub(super) const GLOSSARY: &[Word] = &[
     ),
     (
         "mends it",
-        "with this time step or scheme, which has been tried, the traced point keeps within 1 % of its arm of the exact motion, and the tilt swings as it should",
+        "this time step or scheme was tried: the traced point keeps within 1 % of the exact motion, and the tilt swings as it does there",
     ),
     (
         "band",
