@@ -156,7 +156,7 @@ impl Swings {
             self.blocks = self
                 .blocks
                 .chunks(2)
-                .map(|two| two[1..].iter().fold(two[0], |all, one| all.and(one)))
+                .map(|two| two[1..].iter().fold(two[0], Block::and))
                 .collect();
         }
         self.last_steps = 0;

@@ -1,7 +1,8 @@
 //! `gyrolab fit`: keys of a scenario, so that its runs come nearest to measured data.
 
 use super::args::Changes;
-use super::progress::{self, Ticker};
+use super::commands::{Cli, Command};
+use super::progress::{self, Interruption, Ticker};
 use super::scenario::change;
 use super::{INTERRUPTED, one_on_stdout, print_result, tell};
 use crate::export::Destination;
@@ -12,10 +13,12 @@ use crate::scenario::{Document, Problem, Problems};
 use crate::study::fit::report::Report;
 use crate::study::fit::table::{self, Asked};
 use crate::study::fit::{Fit, Free, Model, NoFit, fit as fitted, free};
+use crate::study::verify::Unverified;
 use crate::text::number::{NONE, shortest, significant};
 use crate::text::printable::{Shown, brief};
 use anyhow::{Context, anyhow};
-use clap::Args;
+use clap::{Args, Parser};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
@@ -90,16 +93,7 @@ const SCHEME: &str = "exact";
 
 pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     one_on_stdout("fit", args.output.as_deref(), args.json);
-    let measured = measured::open(&args.measured)?;
-    let measured = chosen(measured, args.rows.as_ref())?;
-    let (document, own) = scenario(args)?;
-    let keys = args
-        .free
-        .iter()
-        .map(|argument| Free::parse(argument, &document));
-    let keys = keys.collect::<Result<Vec<_>, _>>()?;
-    free::are_apart(&keys)?;
-    let model = Model::new(&document, keys, measured)?;
+    let (model, scheme, own) = model(args)?;
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let ticker = Mutex::new((Ticker::new(), String::new()));
     let tick = |now: Option<String>| {
@@ -139,17 +133,61 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     let report = Report {
         fit: &found,
         model: &model,
-        scheme: scheme_of(&document),
-        instead_of: own.filter(|own| *own != scheme_of(&document)),
+        scheme,
+        instead_of: own.filter(|own| *own != scheme),
     };
-    if let Some(output) = output {
+    if let Some(mut output) = output {
         let path = args.output.as_deref().unwrap_or(Path::new("the output"));
-        write(output, &report, args).with_context(|| format!("cannot write {}", Shown(path)))?;
+        let written = write(&mut output, &report, args).and_then(|()| Ok(output.keep()?));
+        written.with_context(|| format!("cannot write {}", Shown(path)))?;
     }
     if interruption.may_act_at_once() {
         return Ok(ExitCode::from(INTERRUPTED));
     }
     tell_of(&report, args)
+}
+
+/// The CSV of the fit that the command line `command` makes.
+///
+/// # Errors
+/// When it is none of a fit, or the fit cannot be made: its data may be in another place.
+pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8>, Unverified> {
+    let cannot = |why: String| Unverified::from(format!("cannot be recomputed: {why}"));
+    let words = shlex::split(command).unwrap_or_default();
+    let Ok(Some(Command::Fit(args))) = Cli::try_parse_from(words).map(|cli| cli.command) else {
+        let why = "the line command at its top is no command line of a fit";
+        return Err(cannot(why.to_owned()));
+    };
+    let (model, scheme, _) = model(&args).map_err(|problems| cannot(problems.to_string()))?;
+    let found = match fitted(&model, &|| !interruption.has_come(), &|_, _| {}) {
+        Ok(found) => found,
+        Err(NoFit::Interrupted) => return Err(Unverified::Stopped),
+        Err(error) => return Err(cannot(error.to_string())),
+    };
+    let report = Report {
+        fit: &found,
+        model: &model,
+        scheme,
+        instead_of: None,
+    };
+    let mut csv = Vec::new();
+    write(&mut csv, &report, &args).map_err(|error| cannot(error.to_string()))?;
+    Ok(csv)
+}
+
+/// What is fitted, by which scheme, and the scenario's own scheme, where no other was asked for.
+fn model(args: &FitArgs) -> Result<(Model, &'static str, Option<&'static str>), Problems> {
+    let measured = measured::open(&args.measured)?;
+    let measured = chosen(measured, args.rows.as_ref())?;
+    let (document, own) = scenario(args)?;
+    let keys = args
+        .free
+        .iter()
+        .map(|argument| Free::parse(argument, &document));
+    let keys = keys.collect::<Result<Vec<_>, _>>()?;
+    free::are_apart(&keys)?;
+    let model = Model::new(&document, keys, measured)?;
+    Ok((model, scheme_of(&document), own))
 }
 
 /// The scenario with all that the command line changes in it, and its own scheme, where no other was asked for.
@@ -230,7 +268,7 @@ fn command(args: &FitArgs) -> String {
 }
 
 /// Writes the CSV of a fit.
-fn write(mut output: Destination, report: &Report<'_>, args: &FitArgs) -> anyhow::Result<()> {
+fn write(output: impl Write, report: &Report<'_>, args: &FitArgs) -> anyhow::Result<()> {
     let Fit { keys, quality, .. } = report.fit;
     let values: Vec<f64> = keys.iter().map(|key| key.value).collect();
     let scenario = report.model.as_long_as_measured(&values);
@@ -247,9 +285,7 @@ fn write(mut output: Destination, report: &Report<'_>, args: &FitArgs) -> anyhow
         scatter: quality.scatter,
         verdict: report.fit.sentence(report.model),
     };
-    table::write(&mut output, report, &scenario, asked)?;
-    output.keep()?;
-    Ok(())
+    Ok(table::write(output, report, &scenario, asked)?)
 }
 
 /// The result, and where its rows are written.

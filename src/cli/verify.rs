@@ -1,18 +1,17 @@
 //! `gyrolab verify`: whether a CSV is what its header says.
 
 use super::progress::{self, Meter};
-use super::{INTERRUPTED, print, tell};
-use crate::study::verify::{Kind, Unverified, Verified, verify as verified};
+use super::{INTERRUPTED, fit, print, tell};
+use crate::study::verify::{Unverified, Verified, verify as verified};
 use crate::text::printable::{Shown, printable_lines};
 use clap::Args;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArgs {
-    /// CSVs that gyrolab run, compare, sweep or the lab wrote
+    /// CSVs that gyrolab run, compare, sweep, fit or the lab wrote
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
 }
@@ -22,7 +21,8 @@ pub(super) fn verify(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
     let mut code = ExitCode::SUCCESS;
     for file in &args.files {
         let meter = Mutex::new(Meter::new());
-        let result = verified(file, |step, steps| {
+        let fit = |command: &str| fit::again(command, &interruption);
+        let result = verified(file, fit, |step, steps| {
             let meter = meter.lock();
             meter
                 .unwrap_or_else(PoisonError::into_inner)
@@ -47,7 +47,7 @@ pub(super) fn verify(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
     Ok(code)
 }
 
-/// What has come out for `file`, a line each for the rows, the versions and the run.
+/// What has come out for `file`: a line for the rows, and a line for each note.
 fn told(file: &Path, result: &Verified) -> String {
     let (file, rows) = (Shown(file), result.rows);
     let mut text = match (&result.difference, rows) {
@@ -55,30 +55,8 @@ fn told(file: &Path, result: &Verified) -> String {
         (None, 1) => format!("{file}: the same: its row, computed again\n"),
         (None, _) => format!("{file}: the same: all {rows} rows, computed again\n"),
     };
-    let mut line = |line: String| {
-        // Writing to a text does not fail.
-        let _ = writeln!(text, "    {line}");
-    };
-    if let Some(version) = &result.written_by {
-        let own = env!("CARGO_PKG_VERSION");
-        line(format!(
-            "written by gyrolab {version}, computed again by gyrolab {own}"
-        ));
-    }
-    if let Some(end) = &result.not_finite {
-        line(format!("its run ends early: {end}"));
-    }
-    match result.kind {
-        Kind::Run if result.difference.is_some() => {
-            line(format!("of the run in its header: {}", result.verdict));
-        }
-        Kind::Run => line(result.verdict.clone()),
-        Kind::Sweep { failures: 0 } => {}
-        Kind::Sweep { failures } => line(format!("runs that failed, and have empty rows: {failures}")),
-        Kind::Comparison => line(
-            "a comparison: ns_per_step and wall_s are times by the clock, which nothing can compute again"
-                .to_owned(),
-        ),
+    for note in &result.notes {
+        text += &format!("    {note}\n");
     }
     text
 }

@@ -167,7 +167,7 @@ impl Destination {
     }
 
     fn file(path: PathBuf, replace: bool) -> io::Result<Self> {
-        let temporary = temporary::file_in(folder_of(&path), new_permissions())?;
+        let temporary = temporary::file_in(folder_of(&path), &new_permissions())?;
         if let Ok(there) = fs::metadata(&path) {
             copy_permissions(temporary.as_file(), &there)?;
         }

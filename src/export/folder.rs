@@ -37,7 +37,7 @@ impl Folder {
         }
         may_be_written(&path, replace)?;
         let permissions = fs::Permissions::from_mode(0o777); // before the umask
-        let (temporary, lock) = temporary::folder_in(in_folder, permissions).map_err(refused)?;
+        let (temporary, lock) = temporary::folder_in(in_folder, &permissions).map_err(refused)?;
         Ok(Self {
             temporary,
             path,

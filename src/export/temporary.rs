@@ -29,10 +29,10 @@ pub fn remove_own() {
 ///
 /// # Errors
 /// When it cannot be made.
-pub fn file_in(folder: &Path, permissions: Permissions) -> io::Result<NamedTempFile> {
+pub fn file_in(folder: &Path, permissions: &Permissions) -> io::Result<NamedTempFile> {
     remove_what_was_left(folder);
     loop {
-        let made = builder(permissions.clone()).tempfile_in(folder);
+        let made = builder(permissions).tempfile_in(folder);
         let file = made.map_err(of_the_system)?;
         if is_locked_in_time(file.as_file())? {
             let mut own = OWN.lock().unwrap_or_else(PoisonError::into_inner);
@@ -46,10 +46,10 @@ pub fn file_in(folder: &Path, permissions: Permissions) -> io::Result<NamedTempF
 ///
 /// # Errors
 /// When it cannot be made.
-pub fn folder_in(folder: &Path, permissions: Permissions) -> io::Result<(TempDir, File)> {
+pub fn folder_in(folder: &Path, permissions: &Permissions) -> io::Result<(TempDir, File)> {
     remove_what_was_left(folder);
     loop {
-        let made = builder(permissions.clone()).tempdir_in(folder);
+        let made = builder(permissions).tempdir_in(folder);
         let new = made.map_err(of_the_system)?;
         let lock = File::open(new.path())?;
         if is_locked_in_time(&lock)? {
@@ -58,10 +58,10 @@ pub fn folder_in(folder: &Path, permissions: Permissions) -> io::Result<(TempDir
     }
 }
 
-fn builder(permissions: Permissions) -> Builder<'static, 'static> {
+fn builder(permissions: &Permissions) -> Builder<'static, 'static> {
     let mut builder = Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX);
-    builder.rand_bytes(DRAWN).permissions(permissions);
+    builder.rand_bytes(DRAWN).permissions(permissions.clone());
     builder
 }
 
@@ -117,9 +117,9 @@ mod tests {
     #[test]
     fn what_nobody_writes_any_more_is_removed_and_nothing_else() {
         let folder = tempfile::tempdir().unwrap();
-        let permissions = || Permissions::from_mode(0o700);
-        let file = file_in(folder.path(), permissions()).unwrap();
-        let (inner, _lock) = folder_in(folder.path(), permissions()).unwrap();
+        let permissions = Permissions::from_mode(0o700);
+        let file = file_in(folder.path(), &permissions).unwrap();
+        let (inner, _lock) = folder_in(folder.path(), &permissions).unwrap();
         for own in [".gyrolab-notes.part", ".gyrolab-a1b2c3", "run.csv"] {
             fs::write(folder.path().join(own), "mine").unwrap();
         }
@@ -127,7 +127,7 @@ mod tests {
             fs::write(folder.path().join(left), "left").unwrap();
         }
         fs::create_dir(folder.path().join(".gyrolab-F00000.part")).unwrap();
-        drop(file_in(folder.path(), permissions()).unwrap());
+        drop(file_in(folder.path(), &permissions).unwrap());
         assert!(file.path().exists() && inner.path().exists());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 5);
     }

@@ -1,171 +1,196 @@
-//! Is a CSV what its header says? The run, or the table of errors, in the header is computed again and held against the
-//! file line by line, so that memory does not grow with it.
+//! Is a CSV what its header says? What it holds, a run, a sweep, a comparison or a fit, is computed again and held against
+//! the file line by line.
 
-mod comparison;
-mod lines;
-mod of_sweep;
-mod row;
+mod against;
 
-use crate::analysis::Monitor;
-use crate::export::layout::LayoutError;
+use crate::analysis::{Monitor, compare, cost};
+use crate::export::comments::{above_run_file, commented};
 use crate::export::stream::{self, Ended};
 use crate::export::{CsvWriter, Layout};
-use crate::run::{NotFinite, Simulation, Step};
+use crate::physics::SchemeInfo;
+use crate::run::{Clock, Simulation, Step};
 use crate::scenario::head::Head;
+use crate::scenario::rescale::MOST_STEPS;
 use crate::scenario::{Document, Problem, Problems, Scenario};
+use crate::study::fit::table::Header;
 use crate::study::sweep::Sweep;
+use crate::study::sweep::in_order::in_order;
 use crate::text::printable::printable;
 use crate::text::unread;
-pub use lines::{Difference, What};
-use lines::{Held, Lines};
-pub use row::Field;
+use against::Against;
+pub use against::Difference;
 use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{self, BufReader, Read, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What has come out for one file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verified {
-    /// What the file is.
-    pub kind: Kind,
     /// Rows that are the same, up to the first that differs.
     pub rows: u64,
     /// The first thing that differs; `None` where all is the same.
     pub difference: Option<Difference>,
-    /// The version that wrote the file, where it is not this one.
-    pub written_by: Option<String>,
-    /// Whether to believe the run, in one sentence; empty for a table of runs.
-    pub verdict: String,
-    /// Where the run's numbers stop being finite, if they do.
-    pub not_finite: Option<NotFinite>,
-}
-
-/// What a CSV is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// The rows of a run.
-    Run,
-    /// The errors of schemes and time steps, by `gyrolab compare -o`.
-    Comparison,
-    /// The readouts of many runs, by `gyrolab sweep -o`.
-    Sweep {
-        /// How many of them failed, and have empty rows.
-        failures: u64,
-    },
+    /// What else there is to say, a line each: another version, where the run ends early, whether to believe it.
+    pub notes: Vec<String>,
 }
 
 /// Why a file was not verified.
 #[derive(Debug, thiserror::Error)]
 pub enum Unverified {
-    /// It is no CSV of gyrolab's, or what its header holds cannot be run.
+    /// It is no CSV of gyrolab's, or what its header holds cannot be computed.
     #[error("{0}")]
     Refused(Problems),
-    /// It ended before it was done, as the watcher wanted.
+    /// The watcher stopped it.
     #[error("stopped")]
     Stopped,
 }
 
-/// Holds the file `path` against what its header says. `watch` is told the steps taken so far, of how many, and says
-/// whether to go on.
+impl From<Problems> for Unverified {
+    fn from(problems: Problems) -> Self {
+        Self::Refused(problems)
+    }
+}
+
+impl From<Problem> for Unverified {
+    fn from(problem: Problem) -> Self {
+        Self::Refused(Problems::one("", problem))
+    }
+}
+
+impl From<String> for Unverified {
+    fn from(rule: String) -> Self {
+        Problem::at("", rule).into()
+    }
+}
+
+impl From<io::Error> for Unverified {
+    fn from(error: io::Error) -> Self {
+        unread::why(&error).into()
+    }
+}
+
+/// How the line of names begins in the CSV of a comparison.
+const OF_COMPARISON: &[u8] = b"scheme,time_step_s,";
+/// How the line of names ends in the CSV of a fit.
+const OF_FIT: &[u8] = b",residual,residual_sigmas";
+/// The columns of a comparison that hold times by the clock.
+const BY_THE_CLOCK: [&str; 2] = ["ns_per_step", "wall_s"];
+/// A run that differs and has more steps left than this is not played on for its verdict.
+const MOST_FOR_VERDICT: u64 = 2_000_000;
+/// The longest table that is taken as a comparison, bytes.
+const LONGEST_COMPARISON: u64 = 16 << 20;
+
+/// Computes the file `path` again and compares. `fit` makes the fit of a command line again and gives its CSV. `watch` is
+/// told the steps taken so far (of a sweep the rows), of how many, and says whether to go on.
 ///
 /// # Errors
-/// When the file cannot be recomputed, and why; or when `watch` said no.
+/// When the file cannot be computed again, and why; or when `watch` said no.
 pub fn verify(
     path: &Path,
+    fit: impl FnOnce(&str) -> Result<Vec<u8>, Unverified>,
     watch: impl Fn(u64, u64) -> ControlFlow<()> + Sync,
 ) -> Result<Verified, Unverified> {
-    let origin = path.display().to_string();
-    let refused = |problem| Unverified::Refused(Problems::one(origin.as_str(), problem));
-    let cannot_read = |error: io::Error| refused(whole(unread::why(&error)));
-    if path.is_dir() {
-        return Err(refused(whole("is a folder: name a CSV in it".to_owned())));
-    }
-    let mut file = BufReader::new(File::open(path).map_err(cannot_read)?);
-    let head = Head::read(&mut file).map_err(cannot_read)?;
-    let text = run_file(&head).map_err(refused)?;
-    let lines = Lines::new(io::Cursor::new(head.bytes().to_vec()).chain(file));
-    let document = Document::parse(&origin, &text).map_err(Unverified::Refused)?;
-    let version = document.table().get("gyrolab");
-    let version = version.and_then(|version| version.as_str().map(str::to_owned));
-    let verified = match head.names() {
-        names if names.starts_with(comparison::FIRST_COLUMNS) => {
-            let scenario = document.scenario().map_err(Unverified::Refused)?;
-            comparison::verify(&scenario, lines, watch).map_err(|stopped| match stopped {
-                Some(problem) => refused(problem),
-                None => Unverified::Stopped,
-            })?
+    verified(path, fit, watch).map_err(|mut error| {
+        if let Unverified::Refused(problems) = &mut error
+            && problems.origin.is_empty()
+        {
+            problems.origin = path.display().to_string();
         }
-        names if names.ends_with(FIT_COLUMNS) => {
-            let rule = "is the CSV of a fit, which is not computed again: its data stand in another file. The line command at its top makes the fit again: give it -o again.csv, and compare the two files";
-            return Err(refused(whole(rule.to_owned())));
-        }
-        _ if document.table().contains_key("vary") => {
-            let sweep = Sweep::open(&document).map_err(Unverified::Refused)?;
-            let verified = of_sweep::verify(&sweep, &head, lines, watch);
-            verified.map_err(cannot_read)?.ok_or(Unverified::Stopped)?
-        }
-        _ => {
-            let layout = Layout::read(&text).map_err(|error| refused(of_layout(&error)))?;
-            let scenario = document.scenario().map_err(Unverified::Refused)?;
-            let verified = verify_run(&Arc::new(scenario), layout, lines, watch);
-            verified.map_err(cannot_read)?.ok_or(Unverified::Stopped)?
-        }
-    };
-    let written_by = version.filter(|version| version != env!("CARGO_PKG_VERSION"));
-    Ok(Verified {
-        written_by: written_by.map(|version| printable(&version).into_owned()),
-        ..verified
+        error
     })
 }
 
-/// A run with more steps left than this is not played on for its verdict alone, once a difference has been found.
-const MOST_FOR_VERDICT: u64 = 2_000_000;
-
-/// The last columns of the CSV of a fit.
-const FIT_COLUMNS: &[u8] = b",residual,residual_sigmas";
-
-fn whole(rule: String) -> Problem {
-    Problem::at("", rule)
-}
-
-fn of_layout(error: &LayoutError) -> Problem {
-    whole(format!("{error} (in its header)"))
+fn verified(
+    path: &Path,
+    fit: impl FnOnce(&str) -> Result<Vec<u8>, Unverified>,
+    watch: impl Fn(u64, u64) -> ControlFlow<()> + Sync,
+) -> Result<Verified, Unverified> {
+    if path.is_dir() {
+        return Err("is a folder: name a CSV in it".to_owned().into());
+    }
+    let mut file = BufReader::new(File::open(path)?);
+    let head = Head::read(&mut file)?;
+    let text = run_file(&head)?;
+    let document = Document::parse(&path.display().to_string(), &text)?;
+    let (mut against, mut notes);
+    let mut is_run = false;
+    if head.names().starts_with(OF_COMPARISON) {
+        let mut rows = Vec::new();
+        file.take(LONGEST_COMPARISON + 1).read_to_end(&mut rows)?;
+        let computed = comparison(&document.scenario()?, &head, &rows, watch)?;
+        against = Against::new(&head, io::Cursor::new(rows), ',', 2);
+        against.leave_out(&BY_THE_CLOCK);
+        against.write_all(&computed)?;
+        let note = "a comparison: ns_per_step and wall_s are times by the clock, which nothing can compute again";
+        notes = vec![note.to_owned()];
+    } else if head.names().ends_with(OF_FIT) {
+        let header: Header = toml::from_str(&above_run_file(&text))
+            .map_err(|error| format!("{} (in its header)", error.message()))?;
+        let computed = fit(&header.fit.command)?;
+        against = Against::new(&head, file, ',', 0);
+        against.write_all(&computed)?;
+        notes = Vec::new();
+    } else if document.table().contains_key("vary") {
+        let sweep = Sweep::open(&document)?;
+        against = Against::new(&head, file, ',', sweep.axes().len());
+        let failures = play_sweep(&sweep, &mut against, watch)?;
+        let note = format!("runs that failed, and have empty rows: {failures}");
+        notes = Vec::from_iter((failures > 0).then_some(note));
+    } else {
+        let layout = Layout::read(&text).map_err(|error| format!("{error} (in its header)"))?;
+        against = Against::new(&head, file, layout.delimiter(), 1);
+        let scenario = Arc::new(document.scenario()?);
+        notes = play_run(&scenario, layout, &mut against, watch)?;
+        is_run = true;
+    }
+    let (rows, difference) = against.end()?;
+    if let Some(verdict) = notes.last_mut().filter(|_| is_run && difference.is_some()) {
+        verdict.insert_str(0, "of the run in its header: ");
+    }
+    let own = env!("CARGO_PKG_VERSION");
+    let version = document.table().get("gyrolab").and_then(|v| v.as_str());
+    if let Some(version) = version.filter(|version| *version != own) {
+        let version = printable(version);
+        let note = format!("written by gyrolab {version}, computed again by gyrolab {own}");
+        notes.insert(0, note);
+    }
+    Ok(Verified {
+        rows,
+        difference,
+        notes,
+    })
 }
 
 /// The run file in the head of a CSV that gyrolab wrote.
 fn run_file(head: &Head) -> Result<String, Problem> {
-    if head.bytes().is_empty() {
-        return Err(whole("is empty: there is nothing to verify".to_owned()));
-    }
     if head.is_of_csv() {
         return head.run_file();
     }
-    let is_cut = head.bytes().ends_with(b"\n") && head.names().is_empty();
-    let rule = match is_cut && head.bytes().starts_with(b"# ") {
-        true => "ends in its header: there are no rows to verify",
-        false => {
-            "is no CSV that gyrolab wrote: those begin with the run file in \"# \" lines, and name their columns below it"
-        }
+    let bytes = head.bytes();
+    let rule = if bytes.is_empty() {
+        "is empty: there is nothing to verify"
+    } else if bytes.starts_with(b"# ") && bytes.ends_with(b"\n") && head.names().is_empty() {
+        "ends in its header: there are no rows to verify"
+    } else {
+        "is no CSV that gyrolab wrote: those begin with the run file in \"# \" lines, and name their columns below it"
     };
-    Err(whole(rule.to_owned()))
+    Err(Problem::at("", rule))
 }
 
-/// Holds the rows of `scenario` against `lines`; `None` where `watch` stopped it.
-///
-/// # Errors
-/// When the file cannot be read.
-fn verify_run<R: Read>(
+/// Plays `scenario`, and compares its rows. Gives what there is to say of the run, the verdict last.
+fn play_run(
     scenario: &Arc<Scenario>,
     layout: Layout,
-    lines: Lines<R>,
+    against: &mut Against,
     watch: impl Fn(u64, u64) -> ControlFlow<()>,
-) -> io::Result<Option<Verified>> {
-    let held = Held::new(lines, layout.delimiter());
-    let (differs, given_up) = (held.differs(), Cell::new(None));
-    let mut csv = CsvWriter::with_layout(held, scenario, layout)?;
+) -> Result<Vec<String>, Unverified> {
+    let (differs, left) = (against.differs(), Cell::new(0));
+    let mut csv = CsvWriter::with_layout(against, scenario, layout)?;
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let monitor = RefCell::new(Monitor::new(simulation.now()));
     let each = |step: &Step| monitor.borrow_mut().follow_ahead(step);
@@ -177,31 +202,106 @@ fn verify_run<R: Read>(
         |progress| {
             monitor.borrow_mut().catch_up();
             watch(progress.step, progress.steps)?;
-            let left = progress.steps.saturating_sub(progress.step);
-            if differs.get() && left > MOST_FOR_VERDICT {
-                given_up.set(Some(left));
+            left.set(progress.steps.saturating_sub(progress.step));
+            if differs.get() && left.get() > MOST_FOR_VERDICT {
                 return ControlFlow::Break(());
             }
+            left.set(0);
             ControlFlow::Continue(())
         },
     )?;
-    if ended == Ended::Stopped && given_up.get().is_none() {
-        return Ok(None);
+    if ended == Ended::Stopped && left.get() == 0 {
+        return Err(Unverified::Stopped);
     }
-    let (rows, difference) = csv.finish()?.end()?;
-    let verdict = match given_up.get() {
-        None => monitor.into_inner().health(simulation.now()).sentence(None),
-        Some(left) => format!("not judged: {left} of its steps were left to compute"),
+    csv.finish()?;
+    let mut notes = Vec::new();
+    if let Ended::NotFinite(end) = ended {
+        notes.push(format!("its run ends early: {end}"));
+    }
+    let verdict = match left.get() {
+        0 => monitor.into_inner().health(simulation.now()).sentence(None),
+        left => format!("not judged: {left} of its steps were left to compute"),
     };
-    Ok(Some(Verified {
-        kind: Kind::Run,
-        rows,
-        difference,
-        written_by: None,
-        verdict,
-        not_finite: match ended {
-            Ended::NotFinite(error) => Some(error),
-            Ended::Done | Ended::Stopped => None,
-        },
-    }))
+    notes.push(verdict);
+    Ok(notes)
+}
+
+/// Computes the rows of `sweep` on all cores, and compares them. Gives how many runs failed.
+fn play_sweep(
+    sweep: &Sweep,
+    against: &mut Against,
+    watch: impl Fn(u64, u64) -> ControlFlow<()> + Sync,
+) -> Result<u64, Unverified> {
+    against.write_all(sweep.header().as_bytes())?;
+    let differs = against.differs();
+    let (done, total) = (AtomicU64::new(0), sweep.rows());
+    let watched = || watch(done.load(Ordering::Relaxed), total).is_continue();
+    let of = |row: u64, goes_on: &dyn Fn() -> bool| sweep.row(row, &|| goes_on() && watched());
+    let (mut failures, mut written) = (0, Ok(()));
+    in_order(0..if differs.get() { 0 } else { total }, of, |rows| {
+        for row in rows {
+            failures += u64::from(row.failure.is_some());
+            written = against.write_all(row.line.as_bytes());
+            if written.is_err() || differs.get() {
+                return ControlFlow::Break(());
+            }
+            done.fetch_add(1, Ordering::Relaxed);
+        }
+        ControlFlow::Continue(())
+    });
+    written?;
+    if !differs.get() && done.into_inner() < total {
+        return Err(Unverified::Stopped);
+    }
+    Ok(failures)
+}
+
+/// Compares schemes and time steps again, those of the table `rows` below `head`, and gives the CSV.
+fn comparison(
+    scenario: &Scenario,
+    head: &Head,
+    rows: &[u8],
+    watch: impl Fn(u64, u64) -> ControlFlow<()> + Sync,
+) -> Result<Vec<u8>, Unverified> {
+    let cannot = |why: String| Unverified::from(format!("cannot be recomputed: {why}"));
+    if !cost::is_affordable(scenario) {
+        let why = "the exact motion of its run would take too long";
+        return Err(cannot(why.to_owned()));
+    }
+    if rows.len() as u64 > LONGEST_COMPARISON {
+        return Err("is longer than any comparison".to_owned().into());
+    }
+    let (mut schemes, mut time_steps) = (Vec::<&SchemeInfo>::new(), BTreeMap::new());
+    let first = 1 + head.bytes().split_inclusive(|&byte| byte == b'\n').count();
+    for (at, row) in String::from_utf8_lossy(rows).lines().enumerate() {
+        let line = first + at;
+        let mut cells = row.split(',');
+        let scheme = cells.next().and_then(SchemeInfo::find);
+        let step = cells.next().and_then(|step| step.parse::<f64>().ok());
+        let step = step.filter(|step| *step > 0.0 && step.is_finite());
+        let (Some(scheme), Some(step)) = (scheme, step) else {
+            return Err(cannot(format!("line {line} names no scheme and time step")));
+        };
+        if Clock::end_s(scenario) / step > MOST_STEPS {
+            let why = format!("line {line} has more time steps than can be counted");
+            return Err(cannot(why));
+        }
+        if !schemes.iter().any(|known| known.name == scheme.name) {
+            schemes.push(scheme);
+        }
+        time_steps.insert(step.to_bits(), step); // the bits of positive numbers are in their order
+    }
+    if schemes.is_empty() {
+        return Err("has no rows: there is nothing to verify".to_owned().into());
+    }
+    // From coarse to fine, as the order is measured.
+    let time_steps: Vec<f64> = time_steps.into_values().rev().collect();
+    let table = compare::compare(scenario, &schemes, &time_steps, watch);
+    let mut writer = csv::Writer::from_writer(commented(&scenario.to_toml()).into_bytes());
+    for row in table.ok_or(Unverified::Stopped)? {
+        writer.serialize(row).map_err(io::Error::other)?;
+    }
+    Ok(writer
+        .into_inner()
+        .map_err(csv::IntoInnerError::into_error)?)
 }

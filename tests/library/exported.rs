@@ -9,7 +9,7 @@ use gyrolab::export::{CsvWriter, Layout, stream};
 use gyrolab::physics::SchemeInfo;
 use gyrolab::run::Simulation;
 use gyrolab::scenario::{Document, Scenario};
-use gyrolab::study::verify::{Unverified, Verified, What, verify};
+use gyrolab::study::verify::{Unverified, Verified, verify};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::ops::ControlFlow;
@@ -33,7 +33,11 @@ fn verified(bytes: &[u8]) -> Result<Verified, Unverified> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.csv");
     std::fs::write(&path, bytes).unwrap();
-    verify(&path, |_, _| ControlFlow::Continue(()))
+    verify(&path, no_fit, |_, _| ControlFlow::Continue(()))
+}
+
+fn no_fit(_: &str) -> Result<Vec<u8>, Unverified> {
+    unreachable!("it is no fit")
 }
 
 #[track_caller]
@@ -269,12 +273,14 @@ fn an_export_of_every_kind_is_the_same() {
         let result = verified(&bytes).unwrap();
         assert_eq!(result.difference, None);
         assert_eq!(result.rows, rows(&bytes).len() as u64 - 1);
-        assert!(result.verdict.starts_with("Do not believe this run"));
-        assert_eq!((result.written_by, result.not_finite), (None, None));
+        let [verdict] = &result.notes[..] else {
+            panic!("{:?}", result.notes);
+        };
+        assert!(verdict.starts_with("Do not believe this run"));
     }
     let good = preset("steady-slow", &["motion.steps=50"]);
-    let verdict = verified(&csv(&good, whole())).unwrap().verdict;
-    assert!(verdict.starts_with("The numbers hold"), "{verdict}");
+    let notes = verified(&csv(&good, whole())).unwrap().notes;
+    assert!(notes[0].starts_with("The numbers hold"), "{notes:?}");
 }
 
 static GOOD: LazyLock<Vec<u8>> = LazyLock::new(|| csv(&edited(), whole()));
@@ -333,21 +339,16 @@ fn lines_that_are_not_the_runs_are_found() {
     assert_eq!(difference(&joined(&lost)).line, at as u64 + 1);
     let mut longer = lines.clone();
     longer.push("121,1,2");
-    assert!(matches!(
-        difference(&joined(&longer)).what,
-        What::Extra { .. }
-    ));
-    assert!(matches!(
-        difference(&joined(&lines[..at])).what,
-        What::Missing { .. }
-    ));
+    let told = |bytes: &[u8], words: &str| {
+        let told = difference(bytes).to_string();
+        assert!(told.contains(words), "{told}");
+    };
+    told(&joined(&longer), "\"121,1,2\", where the computed rows");
+    told(&joined(&lines[..at]), "it is cut off");
     let uneven = text.replace(lines[at], &format!("{},7", lines[at]));
-    assert!(matches!(
-        difference(uneven.as_bytes()).what,
-        What::Line { .. }
-    ));
+    told(uneven.as_bytes(), " is \"29,");
     let unended = difference(text.trim_end().as_bytes());
-    assert_eq!(unended.what, What::Unended);
+    assert!(unended.to_string().contains("is cut off before its end"));
     assert_eq!(unended.line, lines.len() as u64);
 }
 
@@ -355,7 +356,6 @@ fn lines_that_are_not_the_runs_are_found() {
 fn what_other_programs_do_to_a_file_is_told() {
     let text = String::from_utf8(GOOD.clone()).unwrap();
     let dos = difference(text.replace('\n', "\r\n").as_bytes());
-    assert_eq!(dos.what, What::LineEnds);
     assert!(dos.to_string().contains("CR LF from line 1 on"), "{dos}");
     let marked = format!("\u{feff}{text}");
     assert_eq!(verified(marked.as_bytes()).unwrap().difference, None);
@@ -388,7 +388,8 @@ fn an_edited_header_is_found_by_what_it_changes() {
     let result = verified(other.as_bytes()).unwrap();
     assert_eq!(result.difference, None);
     let own = env!("CARGO_PKG_VERSION");
-    assert_eq!(result.written_by, Some(format!("9.{own}")));
+    let versions = format!("written by gyrolab 9.{own}, computed again by gyrolab {own}");
+    assert_eq!(result.notes[0], versions);
 }
 
 #[test]
@@ -415,7 +416,8 @@ fn what_cannot_be_computed_again_is_refused_with_the_reason() {
         let said = refused(bytes.as_bytes());
         assert!(said.contains(words), "{words}: {said}");
     }
-    let missing = verify("nowhere/a.csv".as_ref(), |_, _| ControlFlow::Continue(()));
+    let go_on = |_, _| ControlFlow::Continue(());
+    let missing = verify("nowhere/a.csv".as_ref(), no_fit, go_on);
     let missing = missing.unwrap_err().to_string();
     assert!(missing.contains("there is no such file"), "{missing}");
 }
@@ -432,7 +434,7 @@ fn a_run_that_ends_early_is_verified_up_to_there() {
     let end = run.step_to(400).expect_err("it breaks down");
     let result = verified(&csv(&scenario, whole())).unwrap();
     assert_eq!(result.difference, None);
-    assert_eq!(result.not_finite, Some(end));
+    assert_eq!(result.notes[0], format!("its run ends early: {end}"));
     assert_eq!(result.rows, end.step);
 }
 
@@ -453,7 +455,7 @@ fn who_stops_it_is_obeyed() {
         ),
     )
     .unwrap();
-    let stopped = verify(&path, |_, _| ControlFlow::Break(()));
+    let stopped = verify(&path, no_fit, |_, _| ControlFlow::Break(()));
     assert!(matches!(stopped, Err(Unverified::Stopped)));
 }
 
@@ -474,7 +476,10 @@ fn the_errors_of_a_comparison_are_computed_again() {
     let error = format!("{:?}", table[2].error_m.unwrap());
     let wrong = good.replacen(&error, &format!("{error}1"), 1);
     let found = difference(wrong.as_bytes()).to_string();
-    assert!(found.contains("rk4 0.002: error_m is "), "{found}");
+    assert!(
+        found.contains("scheme rk4, time_step_s 0.002: error_m is "),
+        "{found}"
+    );
     let lost: String = good.trim_end().rsplit_once('\n').unwrap().0.to_owned() + "\n";
     difference(lost.as_bytes());
     let unknown = good.replace("\nrk4,", "\nrk5,");

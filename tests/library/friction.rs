@@ -393,7 +393,6 @@ fn strong_friction_in_a_long_step_stops_and_does_not_explode() {
             spin_viscous: 1e3,
             spin_quadratic: 1e3,
             swing_viscous: 1e4,
-            ..Friction::default()
         },
     ] {
         for name in ["report", "strang"] {

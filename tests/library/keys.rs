@@ -142,7 +142,10 @@ fn the_help_finds_keys_by_words_that_are_not_theirs() {
         ("screenshot", "X"),
     ] {
         let found = found(search);
-        let names: Vec<_> = found.iter().map(|entry| entry.name()).collect();
+        let names: Vec<_> = found
+            .iter()
+            .map(gyrolab::tui::panes::help::Entry::name)
+            .collect();
         assert!(
             names.iter().any(|name| name.starts_with(key)),
             "{search}: {names:?}"

@@ -107,13 +107,38 @@ fn the_csv_is_drawn_and_runs_again() {
     assert_eq!(code(&drawn), 0, "{}", text(&drawn.stderr));
     let run = ground.run(&["run", "fit.csv", "--steps", "1"]);
     assert_eq!(code(&run), 0, "{}", text(&run.stderr));
-    // What cannot be computed again has the command that does it in its first lines.
-    refused(
-        &ground.run(&["verify", "fit.csv"]),
-        1,
-        "fit.csv: is the CSV of a fit, which is not computed again: its data stand in another file. The line command at its top makes the fit again: give it -o again.csv, and compare the two files",
-    );
     let csv = fs::read_to_string(ground.file("fit.csv")).unwrap();
+    let verified = ground.run(&["verify", "fit.csv"]);
+    let same = "fit.csv: the same: all 10 rows, computed again\n";
+    assert_eq!(
+        (code(&verified), text(&verified.stdout)),
+        (0, same.to_owned())
+    );
+    for (old, new, words) in [
+        (
+            "residual_sigmas\n1,",
+            "residual_sigmas\n2,",
+            "row is 2, computed 1",
+        ),
+        ("# # verdict = \"", "# # verdict = \"No: ", "# # verdict = "),
+    ] {
+        fs::write(ground.file("other.csv"), csv.replacen(old, new, 1)).unwrap();
+        let verified = ground.run(&["verify", "other.csv"]);
+        assert_eq!(code(&verified), 1);
+        let told = text(&verified.stdout);
+        assert!(told.contains(words), "{told}");
+    }
+    // Where its data stand in another place, that is said.
+    let lost = csv.replacen("fit heidelberg-nutation ", "fit lost.csv ", 1);
+    let wrong = csv.replacen("gyrolab fit ", "gyrolab run ", 1);
+    for (text, words) in [
+        (lost, "cannot be recomputed: lost.csv: "),
+        (wrong, "no command line of a fit"),
+    ] {
+        fs::write(ground.file("other.csv"), text).unwrap();
+        let verified = ground.run(&["verify", "other.csv"]);
+        refused(&verified, 1, words);
+    }
     let command = csv
         .lines()
         .find_map(|line| line.strip_prefix("# # command = "));

@@ -233,7 +233,7 @@ fn the_field_of_a_sweep_that_differs_is_told() {
     assert_eq!(
         told(&with("7")),
         format!(
-            "a.csv: differs: line {line}, the row of the point motion.steps = 5, motion.scheme = \"report\": z_m is 7, computed {z_m}\n"
+            "a.csv: differs: line {line}, the row of motion.steps 5, motion.scheme report: z_m is 7, computed {z_m}\n"
         )
     );
     let columns = told(&good.replace(",z_m,path\n", ",path,z_m\n"));

@@ -55,7 +55,7 @@ pub(in crate::storage) fn read(path: &Path) -> io::Result<Vec<u8>> {
 /// When the new file cannot be written; the old one is then unchanged.
 pub(in crate::storage) fn replace(path: &Path, parts: &[&str]) -> io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
-    let mut file = temporary::file_in(folder, Permissions::from_mode(0o600))?;
+    let mut file = temporary::file_in(folder, &Permissions::from_mode(0o600))?;
     for part in parts {
         file.as_file_mut().write_all(part.as_bytes())?; // whose errors do not speak of the temporary name
     }

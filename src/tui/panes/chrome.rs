@@ -202,7 +202,7 @@ fn fitted(mut items: Vec<Item>, width: u16) -> (Vec<Item>, u16) {
     let mut gap = 2;
     loop {
         let whole: u16 = items.iter().map(|item| item.length() + gap).sum();
-        if 1 + whole.saturating_sub(gap) <= width || items.len() <= 2 {
+        if whole.saturating_sub(gap) < width || items.len() <= 2 {
             return (items, gap);
         }
         let others = &items[..items.len() - 2]; // the last two are help and quit

@@ -1,0 +1,257 @@
+//! The lines of a file, compared with those that are computed.
+
+use crate::scenario::head::Head;
+use crate::text::printable::brief;
+use std::cell::Cell;
+use std::fmt;
+use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
+use std::rc::Rc;
+
+/// The most bytes of a line that are read beyond its computed length.
+const MOST_BEYOND: u64 = 4096;
+/// The most characters of a line or a field that are shown.
+const MOST_SHOWN: usize = 60;
+/// The header's line with the version, which may be another one.
+const VERSION: &[u8] = b"# gyrolab = ";
+
+/// The first thing in a file that is not as it is computed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// The line of the file, counted from 1.
+    pub line: u64,
+    /// What differs there: column, both values.
+    text: String,
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+/// Takes what is computed, and compares it with a file line by line up to the first difference.
+pub(super) struct Against {
+    file: Box<dyn BufRead>,
+    delimiter: u8,
+    /// How many of the first columns say which row it is.
+    keys: usize,
+    /// The columns that are not compared.
+    left_out: &'static [&'static str],
+    /// The computed line, as far as it has come.
+    computed: Vec<u8>,
+    line: u64,
+    names: Option<Vec<String>>,
+    rows: u64,
+    /// The first line that ends in CR LF.
+    rewritten: Option<u64>,
+    difference: Option<Difference>,
+    differs: Rc<Cell<bool>>,
+}
+
+impl Against {
+    /// A file of which `head` has been read, and `rest` not.
+    pub(super) fn new(
+        head: &Head,
+        rest: impl Read + 'static,
+        delimiter: char,
+        keys: usize,
+    ) -> Self {
+        let head = Cursor::new(head.bytes().to_vec());
+        Self {
+            file: Box::new(BufReader::new(head.chain(rest))),
+            delimiter: delimiter as u8,
+            keys,
+            left_out: &[],
+            computed: Vec::new(),
+            line: 0,
+            names: None,
+            rows: 0,
+            rewritten: None,
+            difference: None,
+            differs: Rc::default(),
+        }
+    }
+
+    /// Does not compare the columns `names`.
+    pub(super) fn leave_out(&mut self, names: &'static [&'static str]) {
+        self.left_out = names;
+    }
+
+    /// Says, while lines are compared, whether a difference has been found.
+    pub(super) fn differs(&self) -> Rc<Cell<bool>> {
+        Rc::clone(&self.differs)
+    }
+
+    /// How many rows are the same, and what differs first.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    pub(super) fn end(mut self) -> io::Result<(u64, Option<Difference>)> {
+        if self.difference.is_none() {
+            let more = self.next(MOST_BEYOND)?;
+            let (line, text) = (self.line, shown(&more));
+            if !more.is_empty() {
+                let text = format!(
+                    "line {line} is \"{text}\", where the computed rows have come to their end"
+                );
+                self.difference = Some(Difference { line, text });
+            }
+        }
+        let line_ends = self.rewritten.map(|line| Difference {
+            line,
+            text: format!(
+                "every row is the same, but the lines end in CR LF from line {line} on, where gyrolab writes LF: \
+                 another program has rewritten the file"
+            ),
+        });
+        Ok((self.rows, self.difference.or(line_ends)))
+    }
+
+    /// The next line of the file with its end, of which no more than `most` bytes are read; empty behind the last.
+    fn next(&mut self, most: u64) -> io::Result<Vec<u8>> {
+        let mut line = Vec::new();
+        self.line += 1;
+        (&mut self.file).take(most).read_until(b'\n', &mut line)?;
+        Ok(line)
+    }
+
+    /// Compares the computed line with the next one of the file.
+    fn compare(&mut self) -> io::Result<()> {
+        let computed = std::mem::take(&mut self.computed);
+        let there = self.next(computed.len() as u64 + MOST_BEYOND)?;
+        let is_first = self.line == 1;
+        let [computed, there] = [&computed, &there].map(|text| without_mark(text, is_first));
+        let whole = there.strip_suffix(b"\n");
+        let (there, is_whole) = (whole.unwrap_or(there), whole.is_some());
+        let without_cr = there.strip_suffix(b"\r").filter(|_| is_whole);
+        if without_cr.is_some() {
+            self.rewritten.get_or_insert(self.line);
+        }
+        let there = without_cr.unwrap_or(there);
+        let is_header = self.names.is_none() && computed.starts_with(b"#");
+        let is_version = is_header
+            && [computed, there]
+                .iter()
+                .all(|line| line.starts_with(VERSION));
+        let line = self.line;
+        let text = if !is_whole && there.is_empty() {
+            let computed = shown(computed);
+            Some(format!(
+                "the file ends before line {line}, computed \"{computed}\": it is cut off"
+            ))
+        } else if !is_whole && computed.starts_with(there) {
+            Some(format!(
+                "line {line}, the last one, is cut off before its end"
+            ))
+        } else if there == computed || is_version {
+            None
+        } else {
+            self.fields_differ(there, computed)
+        };
+        if let Some(text) = text {
+            self.difference = Some(Difference { line, text });
+            self.differs.set(true);
+        } else if !is_header {
+            match &self.names {
+                None => self.names = Some(fields(computed, self.delimiter)),
+                Some(_) => self.rows += 1,
+            }
+        }
+        Ok(())
+    }
+
+    /// What differs between two lines that are not the same; `None` where only columns that are left out do.
+    fn fields_differ(&self, there: &[u8], computed: &[u8]) -> Option<String> {
+        let line = self.line;
+        let whole = || {
+            let (there, computed) = (shown(there), shown(computed));
+            Some(format!(
+                "line {line} is \"{there}\", computed \"{computed}\""
+            ))
+        };
+        let Some(names) = &self.names else {
+            return whole();
+        };
+        let [there, computed] = [there, computed].map(|line| fields(line, self.delimiter));
+        if there.len() != computed.len() || names.len() != computed.len() {
+            return whole();
+        }
+        let differing: Vec<usize> = (0..names.len())
+            .filter(|&at| there[at] != computed[at])
+            .collect();
+        let is_compared = |at: &&usize| !self.left_out.contains(&names[**at].as_str());
+        let Some(&at) = differing.iter().find(is_compared) else {
+            return if differing.is_empty() { whole() } else { None };
+        };
+        let keys = names.iter().zip(&computed).take(self.keys);
+        let keys: Vec<_> = keys
+            .map(|(name, value)| format!("{name} {value}"))
+            .collect();
+        let row = if keys.is_empty() {
+            String::new()
+        } else {
+            let keys = brief(&keys.join(", "), 2 * MOST_SHOWN);
+            format!(", the row of {keys}")
+        };
+        let [there, computed] = [&there[at], &computed[at]].map(|text| {
+            if text.is_empty() {
+                "empty".to_owned()
+            } else {
+                brief(text, MOST_SHOWN)
+            }
+        });
+        let column = &names[at];
+        let field = format!("line {line}{row}: {column} is {there}, computed {computed}");
+        if self.rows == 0 && differing.len() > 1 {
+            let why = "its rows are not those of the scenario in its header: already in the first";
+            return Some(format!("{why}, {field}"));
+        }
+        Some(field)
+    }
+}
+
+impl Write for Against {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        for part in bytes.split_inclusive(|&byte| byte == b'\n') {
+            if self.difference.is_some() {
+                break;
+            }
+            self.computed.extend_from_slice(part);
+            if self.computed.pop_if(|byte| *byte == b'\n').is_some() {
+                self.compare()?;
+            }
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// `line` without a byte order mark, which only the first one may have.
+fn without_mark(line: &[u8], is_first: bool) -> &[u8] {
+    let marked = line.strip_prefix("\u{feff}".as_bytes());
+    marked.filter(|_| is_first).unwrap_or(line)
+}
+
+/// The fields of a line; none where it is not text.
+fn fields(line: &[u8], delimiter: u8) -> Vec<String> {
+    let mut reader = csv::ReaderBuilder::new();
+    let mut reader = reader
+        .has_headers(false)
+        .delimiter(delimiter)
+        .from_reader(line);
+    let record = reader.records().next().and_then(Result::ok);
+    record.map_or(Vec::new(), |record| {
+        record.iter().map(str::to_owned).collect()
+    })
+}
+
+/// What there is to show of a line.
+fn shown(line: &[u8]) -> String {
+    brief(
+        String::from_utf8_lossy(line).trim_end_matches(['\r', '\n']),
+        MOST_SHOWN,
+    )
+}
