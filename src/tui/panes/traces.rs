@@ -336,7 +336,15 @@ impl Traces<'_> {
             draw(&mut dots, &exact, scale, Stroke::Dashed, ink);
         }
         let ink = Ink::Strong(Self::role(content));
-        draw(&mut dots, run, scale, Stroke::Full, ink);
+        // The dots of a filled band and the dashes of the exact motion are told apart where dots are small.
+        let (across, down) = dots.in_a_cell();
+        let has_dashes = self.run.overlay().is_some();
+        let stroke = if has_dashes && across * down <= 2 {
+            Stroke::Edges
+        } else {
+            Stroke::Full
+        };
+        draw(&mut dots, run, scale, stroke, ink);
         dots.render(&self.view.theme, buf);
     }
 }

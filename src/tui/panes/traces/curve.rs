@@ -19,6 +19,8 @@ const LONG_AND_SHORT: usize = 6;
 pub enum Stroke {
     /// All of them, and a band is filled with a few.
     Full,
+    /// All of them, and of a band its edges alone.
+    Edges,
     /// Those in every other cell: the exact motion.
     Dashed,
     /// Single ones: the run before.
@@ -50,7 +52,7 @@ pub fn draw(dots: &mut Dots, columns: &[Option<Column>], scale: &Scale, stroke: 
         row.clamp(0.0, height as f64 - 1.0) as usize
     };
     let keeps = |x: usize| match stroke {
-        Stroke::Full => true,
+        Stroke::Full | Stroke::Edges => true,
         Stroke::Dashed => (x / across).is_multiple_of(2),
         Stroke::LongAndShort => !matches!(x / across % LONG_AND_SHORT, 3 | 5),
         Stroke::Dotted => x.is_multiple_of(across.max(2)),
@@ -124,11 +126,11 @@ mod tests {
     use ratatui::layout::Rect;
 
     /// The two rows of cells that `columns` are drawn on.
-    fn drawn(columns: &[Option<Column>], scale: &Scale) -> [String; 2] {
+    fn drawn(columns: &[Option<Column>], scale: &Scale, stroke: Stroke) -> [String; 2] {
         let area = Rect::new(0, 0, 20, 2);
         let mut dots = Dots::new(area, Marker::Braille);
         let ink = Ink::Strong(Role::Text);
-        draw(&mut dots, columns, scale, Stroke::Full, ink);
+        draw(&mut dots, columns, scale, stroke, ink);
         let mut buf = Buffer::empty(area);
         let theme = Theme {
             colour: false,
@@ -152,7 +154,10 @@ mod tests {
             })
         };
         let columns: Vec<_> = (0..40).map(column).collect();
-        assert_eq!(drawn(&columns, &scale), [" ".repeat(20), "⠉".repeat(20)]);
+        assert_eq!(
+            drawn(&columns, &scale, Stroke::Full),
+            [" ".repeat(20), "⠉".repeat(20)]
+        );
     }
 
     #[test]
@@ -165,14 +170,14 @@ mod tests {
             extent,
             band: Some(extent),
         }); 40];
-        let [above, below] = drawn(
-            &columns,
-            &Scale {
-                low: 0.0,
-                high: 8.0,
-            },
-        );
+        let scale = Scale {
+            low: 0.0,
+            high: 8.0,
+        };
+        let [above, below] = drawn(&columns, &scale, Stroke::Full);
         assert_eq!(above, below);
         assert!(!above.contains('⠉'), "{above}");
+        let empty = [" ".repeat(20), " ".repeat(20)];
+        assert_eq!(drawn(&columns, &scale, Stroke::Edges), empty);
     }
 }
