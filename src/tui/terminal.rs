@@ -15,10 +15,10 @@ use crossterm::cursor::{Hide, Show};
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
 use crossterm::terminal::{self, Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};
 use crossterm::{execute, style};
-use ratatui::Terminal;
-use ratatui::backend::CrosstermBackend;
+use ratatui::backend::{self, Backend, CrosstermBackend};
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Rect, Size};
+use ratatui::{Terminal, TerminalOptions, Viewport};
 use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGWINCH, SIGXFSZ};
 use signal_hook::iterator::Signals;
 use std::cell::Cell;
@@ -68,6 +68,15 @@ const HEARD_WITHIN: Duration = Duration::from_millis(200);
 /// The most events taken at once; a held key on a slow line may send many.
 const MOST_EVENTS: usize = 256;
 
+/// The most columns and lines that are drawn on: a client may say any size, and each cell takes memory. The rest stays empty.
+const MOST_CELLS: (u16, u16) = (1000, 500);
+
+/// The part that is drawn on of a screen of that `size`.
+fn drawn_of(size: Size) -> Rect {
+    let (columns, lines) = MOST_CELLS;
+    Rect::new(0, 0, size.width.min(columns), size.height.min(lines))
+}
+
 /// An event from the terminal or a signal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
@@ -106,7 +115,9 @@ impl Screen {
         let taken = take_over().and_then(|()| {
             let (writer, sent) = Counted::new(BufWriter::with_capacity(1 << 16, stdout()?));
             let backend = CrosstermBackend::new(writer);
-            Ok((Terminal::new(backend)?, Keyboard::new()?, sent))
+            let viewport = Viewport::Fixed(drawn_of(backend.size()?));
+            let terminal = Terminal::with_options(backend, TerminalOptions { viewport })?;
+            Ok((terminal, Keyboard::new()?, sent))
         });
         match taken {
             Ok((terminal, keyboard, sent)) => Ok(Self {
@@ -131,6 +142,9 @@ impl Screen {
             thread::park(); // a signal is ending the process: nothing may be drawn after the terminal is given back
         }
         let before = self.sent.get();
+        if self.terminal.get_frame().area() != self.size()? {
+            self.forget()?;
+        }
         self.terminal
             .draw(|frame| picture(frame.area(), frame.buffer_mut()))?;
         Ok(self.sent.get() - before)
@@ -152,14 +166,12 @@ impl Screen {
         stdout()?.write_all(if listens { MOUSE_ON } else { MOUSE_OFF })
     }
 
-    /// The size of the screen, cells.
+    /// The part of the screen that is drawn on, cells.
     ///
     /// # Errors
     /// When the terminal does not tell.
     pub fn size(&self) -> io::Result<Rect> {
-        self.terminal
-            .size()
-            .map(|size| Rect::new(0, 0, size.width, size.height))
+        self.terminal.size().map(drawn_of)
     }
 
     /// Makes the next frame be sent completely.
@@ -168,6 +180,9 @@ impl Screen {
     /// When the terminal cannot be written to.
     pub fn forget(&mut self) -> io::Result<()> {
         let size = self.size()?;
+        self.terminal
+            .backend_mut()
+            .clear_region(backend::ClearType::All)?;
         self.terminal.resize(size) // not clear(), which asks where the cursor is
     }
 

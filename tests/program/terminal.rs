@@ -71,6 +71,18 @@ fn it_follows_the_size_of_the_screen() {
 }
 
 #[test]
+fn a_window_of_any_size_is_drawn_within_little_memory() {
+    let mut shell = Ground::new().open_shell();
+    shell.wait_for("shell>");
+    let program = env!("CARGO_BIN_EXE_gyrolab");
+    shell.press("stty cols 65535 rows 65535; ulimit -v 600000\r");
+    shell.press(&format!("{program} --paused; echo ended $?\r"));
+    shell.wait_until("a picture", |shell| shell.sent().len() > 10_000);
+    shell.press("q");
+    shell.wait_for("ended 0");
+}
+
+#[test]
 fn signals_to_end_give_the_terminal_back() {
     for (signal, code) in [("TERM", 143), ("INT", 130), ("HUP", 129), ("QUIT", 131)] {
         let mut terminal = Terminal::open(&["--fps", "60"]);
