@@ -58,17 +58,20 @@ pub fn turn(run: &LiveRun, from: u64, forward: bool) -> Result<u64, Missing> {
         return Err(Missing::NoTurn);
     }
     // From stored states further and further back, until the tilt turns after one of them.
-    let mut begin = from;
+    let (mut begin, mut left) = (from, None);
     while begin > 0 {
         let mut steps = Steps::before(run, begin - 1)?;
+        steps.left = left.unwrap_or(steps.left);
+        let end = from.min(begin + 1); // a turn is seen one step after it
         begin = steps.step_number();
         let mut last = None;
-        while steps.step_number() < from {
+        while steps.step_number() < end {
             last = steps.step()?.or(last);
         }
         if let Some(turn) = last {
             return Ok(turn);
         }
+        left = Some(steps.left);
     }
     Err(Missing::NoTurn)
 }
@@ -165,5 +168,12 @@ mod tests {
         }
         assert_eq!(super::turn(&run, turns[0], false), Err(Missing::NoTurn));
         assert_eq!(super::turn(&run, turns[6], true), Err(Missing::NoTurn));
+    }
+
+    #[test]
+    fn a_turn_that_is_nowhere_is_not_looked_for_without_end() {
+        let run = played("torque-free", 400_000);
+        assert_eq!(turn(&run, 1000, false), Err(Missing::NoTurn));
+        assert_eq!(turn(&run, 400_000, false), Err(Missing::TooFar));
     }
 }
