@@ -7,10 +7,10 @@ use std::io::Read;
 use std::path::Path;
 
 /// The longest file that is read, bytes.
-const LONGEST: u64 = 64 << 20;
+const LONGEST: u64 = 32 << 20;
 
-/// The most rows of one.
-const MOST_ROWS: usize = 1_000_000;
+/// The most values of one, rows times columns.
+const MOST_VALUES: usize = 1_000_000;
 
 /// What may part two cells. The first is that of a CSV; the others leave the comma to the decimals.
 const SEPARATORS: [char; 3] = [',', ';', '\t'];
@@ -133,8 +133,10 @@ impl Cells {
                     Err(texts) => problems.push(at_line(line, self.ragged(&texts))),
                 },
             }
-            if self.rows.len() > MOST_ROWS {
-                let rule = format!("has more than {MOST_ROWS} rows: leave rows out");
+            if self.rows.len() * self.names.len() > MOST_VALUES {
+                let rule = format!(
+                    "has more than {MOST_VALUES} values (rows times columns): leave rows or columns out"
+                );
                 return Err(vec![whole(rule)]);
             }
         }

@@ -249,7 +249,14 @@ fn files_that_are_no_text_are_refused() {
     );
     let file = fs::File::create(&path).unwrap();
     file.set_len(100 << 20).unwrap();
-    assert!(of(name).contains("is longer than 64 MiB"), "{}", of(name));
+    assert!(of(name).contains("is longer than 32 MiB"), "{}", of(name));
+    fs::write(
+        &path,
+        "t_s,tilt_deg\n".to_owned() + &"0,1\n".repeat(500_001),
+    )
+    .unwrap();
+    let told = "has more than 1000000 values (rows times columns): leave rows or columns out";
+    assert!(of(name).ends_with(told), "{}", of(name));
 }
 
 #[test]
