@@ -1,5 +1,6 @@
 //! A page as PNG: white paper, and how large it is printed.
 
+use std::io::Write;
 use tiny_skia::{
     FillRule, LineCap, LineJoin, Mask, Paint as Ink, PathBuilder, Pixmap, Shader, Stroke,
     StrokeDash, Transform,
@@ -10,8 +11,10 @@ use super::unwritable::Unwritable;
 use super::{Color, Item, Paint, Path, Pen, Point, Scene, Segment};
 use crate::text::printable::printable;
 
-/// The most dots of a picture: 100 million of them take 400 MB while it is drawn.
+/// The most dots of a picture.
 const MOST_DOTS: f64 = 1e8;
+/// The most dots that are drawn together: a large picture is drawn in bands, of which each takes 40 MB.
+const DOTS_OF_BAND: u32 = 8_000_000;
 
 /// A page whose places are whole hundredths of a point, with this many dots per inch.
 ///
@@ -27,24 +30,73 @@ pub fn written(scene: &Scene, dots_per_inch: f64) -> Result<Vec<u8>, Unwritable>
         height,
         reason,
     };
-    let fits = f64::from(width) * f64::from(height) <= MOST_DOTS;
-    let sheet = fits.then(|| Pixmap::new(width, height)).flatten();
-    let sheet = sheet.ok_or_else(|| failed("it is too large".to_owned()))?;
-    let mut easel = Easel {
-        sheet,
-        scale: (dots_per_inch / 72.0) as f32,
-        clip: None,
-    };
-    easel.sheet.fill(tiny_skia::Color::WHITE);
-    scene.items.iter().for_each(|item| easel.draw(item));
-    packed(&easel.sheet, &scene.title, dots_per_inch).map_err(|error| failed(error.to_string()))
+    if f64::from(width) * f64::from(height) > MOST_DOTS {
+        return Err(failed("it is too large".to_owned()));
+    }
+    let written = in_bands(scene, (width, height), dots_per_inch);
+    written.map_err(|error| failed(error.to_string()))
+}
+
+/// The file: in grey where all is grey.
+fn in_bands(
+    scene: &Scene,
+    (width, height): (u32, u32),
+    dots_per_inch: f64,
+) -> Result<Vec<u8>, ::png::EncodingError> {
+    let is_grey = scene.items.iter().all(|item| {
+        let (Paint::Fill(Color([red, green, blue]))
+        | Paint::Stroke(Pen {
+            color: Color([red, green, blue]),
+            ..
+        })) = item.paint;
+        red == green && green == blue
+    });
+    let mut file = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut file, width, height);
+    encoder.set_color(if is_grey {
+        ::png::ColorType::Grayscale
+    } else {
+        ::png::ColorType::Rgb
+    });
+    encoder.set_depth(::png::BitDepth::Eight);
+    encoder.set_compression(::png::Compression::High);
+    let dots_per_metre = libm::round(dots_per_inch / 0.0254) as u32;
+    encoder.set_pixel_dims(Some(::png::PixelDimensions {
+        xppu: dots_per_metre,
+        yppu: dots_per_metre,
+        unit: ::png::Unit::Meter,
+    }));
+    encoder.add_itxt_chunk("Title".to_owned(), printable(&scene.title).into_owned())?;
+    let mut writer = encoder.write_header()?;
+    let mut rows = writer.stream_writer()?;
+    let band = (DOTS_OF_BAND / width).max(1);
+    for top in (0..height).step_by(band as usize) {
+        let sheet = Pixmap::new(width, band.min(height - top));
+        let sheet = sheet.ok_or(::png::EncodingError::LimitsExceeded)?;
+        let scale = (dots_per_inch / 72.0) as f32;
+        let mut easel = Easel {
+            sheet,
+            transform: Transform::from_row(scale, 0.0, 0.0, scale, 0.0, -(top as f32)),
+            clip: None,
+        };
+        easel.sheet.fill(tiny_skia::Color::WHITE);
+        scene.items.iter().for_each(|item| easel.draw(item));
+        let parts = if is_grey { 1 } else { 3 };
+        for row in easel.sheet.data().chunks_exact(4 * width as usize) {
+            let dots = row.chunks_exact(4).flat_map(|dot| &dot[..parts]);
+            rows.write_all(&dots.copied().collect::<Vec<u8>>())?;
+        }
+    }
+    rows.finish()?;
+    writer.finish()?;
+    Ok(file)
 }
 
 /// The paper while it is drawn on.
 struct Easel {
     sheet: Pixmap,
-    /// Dots per pt.
-    scale: f32,
+    /// From places on the page to dots of the sheet.
+    transform: Transform,
     /// The rectangle of the last item that was cut off, and its mask: many items in turn have the same.
     clip: Option<([Point; 2], Mask)>,
 }
@@ -56,7 +108,7 @@ impl Easel {
         };
         self.set_clip(item.clip);
         let mask = item.clip.and(self.clip.as_ref()).map(|(_, mask)| mask);
-        let transform = Transform::from_scale(self.scale, self.scale);
+        let transform = self.transform;
         match &item.paint {
             Paint::Fill(color) => {
                 self.sheet
@@ -85,8 +137,7 @@ impl Easel {
         let mask = Mask::new(self.sheet.width(), self.sheet.height());
         self.clip = mask.map(|mut mask| {
             if let Some(path) = outline(&Path::polygon(rectangle)) {
-                let transform = Transform::from_scale(self.scale, self.scale);
-                mask.fill_path(&path, FillRule::Winding, true, transform);
+                mask.fill_path(&path, FillRule::Winding, true, self.transform);
             }
             (corners, mask)
         });
@@ -146,40 +197,4 @@ fn stroke(pen: &Pen) -> Stroke {
         },
         dash: StrokeDash::new(dash, 0.0),
     }
-}
-
-/// The file: in grey where all is grey.
-fn packed(
-    sheet: &Pixmap,
-    title: &str,
-    dots_per_inch: f64,
-) -> Result<Vec<u8>, ::png::EncodingError> {
-    let colors = || sheet.data().chunks_exact(4);
-    let is_grey = colors().all(|dot| dot[0] == dot[1] && dot[1] == dot[2]);
-    let (form, data): (_, Vec<u8>) = match is_grey {
-        true => (
-            ::png::ColorType::Grayscale,
-            colors().map(|dot| dot[0]).collect(),
-        ),
-        false => (
-            ::png::ColorType::Rgb,
-            colors().flat_map(|dot| dot[..3].to_vec()).collect(),
-        ),
-    };
-    let mut file = Vec::new();
-    let mut encoder = ::png::Encoder::new(&mut file, sheet.width(), sheet.height());
-    encoder.set_color(form);
-    encoder.set_depth(::png::BitDepth::Eight);
-    encoder.set_compression(::png::Compression::High);
-    let dots_per_metre = libm::round(dots_per_inch / 0.0254) as u32;
-    encoder.set_pixel_dims(Some(::png::PixelDimensions {
-        xppu: dots_per_metre,
-        yppu: dots_per_metre,
-        unit: ::png::Unit::Meter,
-    }));
-    encoder.add_itxt_chunk("Title".to_owned(), printable(title).into_owned())?;
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(&data)?;
-    writer.finish()?;
-    Ok(file)
 }
