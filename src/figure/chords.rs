@@ -5,6 +5,8 @@
 //! a line with more points; only of a very long stretch of time it has no more than so many.
 
 use super::chart::Style;
+use super::course::Course;
+use super::path::Path;
 use super::request::Drawn;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -51,9 +53,9 @@ fn width(path: &[[f64; 3]]) -> f64 {
     widths.fold(0.0, f64::max)
 }
 
-/// What is drawn, as its path is drawn: of a run with too few points to look round these alone, and its name says so.
-pub(super) fn as_drawn(drawn: &Drawn) -> (String, Style) {
-    if drawn.few_a_turn.is_none() || drawn.is_exact {
+/// What is drawn, as its `path` is drawn: of a run with too few points to look round these alone, and its name says so.
+pub(super) fn as_drawn(drawn: &Drawn, path: &Path) -> (String, Style) {
+    if path.few_a_turn.is_none() || drawn.is_exact {
         return (drawn.name.clone(), drawn.style.clone());
     }
     let name = match drawn.name.as_str() {
@@ -63,10 +65,10 @@ pub(super) fn as_drawn(drawn: &Drawn) -> (String, Style) {
     (name, drawn.style.clone().as_dots())
 }
 
-/// What is said of the first of `drawn` with too few points to look round.
-pub(super) fn warning(drawn: &[Drawn]) -> Option<String> {
+/// What is said of the first of `drawn` whose `path` has too few points to look round.
+pub(super) fn warning(drawn: &[Drawn], path: fn(&Course) -> &Path) -> Option<String> {
     drawn.iter().find_map(|drawn| {
-        let a_turn = drawn.few_a_turn?;
+        let a_turn = path(&drawn.course).few_a_turn?;
         Some(match (drawn.is_exact, drawn.name.as_str()) {
             (true, name) => format!(
                 "the line of {name} has only about {a_turn:.0} points a turn in so long a stretch of time: between them it is straight"

@@ -2,6 +2,7 @@
 
 use super::kind::Plotted;
 use super::over_time::OverTime;
+use super::path::{self, Path};
 use crate::analysis::{Beside, Health};
 use crate::export::stream::{self, Ended};
 use crate::physics::State;
@@ -32,8 +33,10 @@ pub struct Wanted {
 pub struct Course {
     /// A curve for each column.
     pub curves: Vec<OverTime>,
-    /// The traced point, world frame, m.
-    pub path: Arc<Vec<[f64; 3]>>,
+    /// The path of the traced point in space.
+    pub path: Arc<Path>,
+    /// The same from above, of which z is 0: a path that goes up and down in one place is not interrupted there.
+    pub above: Arc<Path>,
     /// The last time of the stretch that it reached, s.
     pub end_s: f64,
     /// Whether no moment lay in the stretch.
@@ -43,12 +46,6 @@ pub struct Course {
     /// How it stands beside the exact motion at its last step; `None` where it was not held against that.
     pub health: Option<Health>,
 }
-
-/// So many points of a path are kept, all of them. Of a longer one, those that reach places of its picture where it has not
-/// been.
-const ALL_KEPT: usize = 1 << 21;
-/// Such a place is this part of the traced point's arm wide, in each direction.
-const PLACES: f64 = 2048.0;
 
 impl Wanted {
     /// The end of the stretch of a run of `scenario`, s.
@@ -64,9 +61,9 @@ pub struct Recorder {
     wanted: Wanted,
     scenario: Arc<Scenario>,
     stretch_end_s: f64,
-    places: Places,
     curves: Vec<OverTime>,
-    path: Vec<[f64; 3]>,
+    path: path::Recorder,
+    above: path::Recorder,
     end_s: f64,
     is_empty: bool,
 }
@@ -74,16 +71,16 @@ pub struct Recorder {
 impl Recorder {
     /// A recorder of what is `wanted` of the run of `scenario`, before its start.
     pub fn new(scenario: &Arc<Scenario>, wanted: Wanted) -> Self {
-        Self::of_moments(scenario, wanted, scenario.least_time_step_s())
+        Self::of_moments(scenario, wanted, scenario.least_time_step_s(), false)
     }
 
-    /// The same of moments that are about `apart_s` apart, s.
-    fn of_moments(scenario: &Arc<Scenario>, wanted: Wanted, apart_s: f64) -> Self {
+    /// The same of moments that are about `apart_s` apart, s; `is_exact` says whether of the exact motion, whose path is a line.
+    fn of_moments(scenario: &Arc<Scenario>, wanted: Wanted, apart_s: f64, is_exact: bool) -> Self {
         Self {
             stretch_end_s: wanted.end_s(scenario),
-            places: Places::new(scenario.arm_m()),
             curves: vec![OverTime::new(apart_s); wanted.columns.len()],
-            path: Vec::new(),
+            path: path::Recorder::new(is_exact),
+            above: path::Recorder::new(is_exact),
             end_s: 0.0,
             is_empty: true,
             scenario: Arc::clone(scenario),
@@ -115,8 +112,9 @@ impl Recorder {
         self.end_s = time_s.min(self.stretch_end_s);
         let is_inside = outside_s <= rounding;
         self.is_empty &= !is_inside;
-        if self.wanted.path && is_inside && self.places.are_new(self.path.len(), position) {
+        if self.wanted.path && is_inside {
             self.path.push([position.x, position.y, position.z]);
+            self.above.push([position.x, position.y, 0.0]);
         }
         if self.wanted.columns.is_empty() {
             return;
@@ -132,7 +130,8 @@ impl Recorder {
         Recorded {
             course: Course {
                 curves: self.curves,
-                path: Arc::new(self.path),
+                path: Arc::new(self.path.end()),
+                above: Arc::new(self.above.end()),
                 end_s: self.end_s,
                 is_empty: self.is_empty,
                 broke,
@@ -164,12 +163,11 @@ impl Recorded {
             Some(self.course.curves[place].clone())
         };
         let curves = wanted.columns.iter().map(curve).collect::<Option<_>>()?;
+        let if_path = |path: &Arc<Path>| wanted.path.then(|| Arc::clone(path)).unwrap_or_default();
         is_all.then(|| Course {
             curves,
-            path: match wanted.path {
-                true => Arc::clone(&self.course.path),
-                false => Arc::default(),
-            },
+            path: if_path(&self.course.path),
+            above: if_path(&self.course.above),
             end_s: self.course.end_s.min(end_s),
             is_empty: self.course.is_empty,
             broke: self.course.broke,
@@ -181,39 +179,6 @@ impl Recorded {
 /// Times that are so near to the ends of a stretch up to `end_s` belong to it, s.
 fn rounding_s(end_s: f64) -> f64 {
     1e-9 * end_s.abs()
-}
-
-/// Where a path has been.
-#[derive(Clone, Debug)]
-struct Places {
-    size_m: f64,
-    seen: Vec<u64>,
-}
-
-impl Places {
-    fn new(arm_m: f64) -> Self {
-        Self {
-            size_m: 2.0 * arm_m / PLACES,
-            seen: Vec::new(),
-        }
-    }
-
-    /// Whether a path with so many points goes on to a place where it has not been.
-    fn are_new(&mut self, kept: usize, position: &Vector3<f64>) -> bool {
-        if kept < ALL_KEPT {
-            return true;
-        }
-        let side = PLACES as usize + 1;
-        self.seen.resize(side * side, 0);
-        let number =
-            |length: f64| ((length / self.size_m + 0.5 * PLACES).max(0.0) as usize).min(side - 1);
-        let place = number(position.y) * side + number(position.x);
-        // Of each place 64 layers from the lowest to the highest.
-        let layer = (number(position.z) * 64 / side).min(63);
-        let is_new = self.seen[place] & (1 << layer) == 0;
-        self.seen[place] |= 1 << layer;
-        is_new
-    }
 }
 
 /// Steps through the run of `scenario` and gives what is `wanted` of it. `watch` is told the step reached and the last one, and
@@ -279,7 +244,7 @@ pub fn exact(
     let apart_s = fine_s.min(scenario.motion.time_step_s);
     let count = ((end_s - begin_s) / apart_s).ceil().clamp(LEAST, MOST) as u64;
     let apart_s = (end_s - begin_s) / count as f64;
-    let mut recorder = Recorder::of_moments(scenario, wanted.clone(), apart_s);
+    let mut recorder = Recorder::of_moments(scenario, wanted.clone(), apart_s, true);
     let mut azimuth = Azimuth::start(&scenario.start.axle());
     for number in 0..=count {
         let time_s = begin_s + (end_s - begin_s) * (number as f64 / count as f64);
@@ -339,8 +304,8 @@ mod tests {
             .iter()
             .map(|point| (point[0] * 1e6).round() / 1e6)
             .collect();
-        assert_eq!(course.is_empty, course.path.is_empty());
-        (times, course.path.len(), course.end_s)
+        assert_eq!(course.is_empty, course.path.points.is_empty());
+        (times, course.path.points.len(), course.end_s)
     }
 
     #[test]

@@ -1,9 +1,12 @@
 //! Whether a figure would be solid black, and which stretch of time would not.
 
 use super::chart::Chart;
+use super::chart::curve;
 use super::chart::layout::Layout;
-use super::page::cover::range;
+use super::course::Course;
+use super::page::cover::Grid;
 use super::page::scene::Point;
+use super::path::Path;
 use super::request::{Drawn, Request};
 use crate::text::ladder;
 use crate::text::number::{shortest, significant};
@@ -108,55 +111,36 @@ const INSIDE: usize = 3;
 const LINE_PT: f64 = 0.9;
 const LOOSE: f64 = 0.3;
 
-/// As [`warning`], of the paths of `drawn`, the points of which stand at `places` on the page: of the runs, and where none of
-/// them is dense, of the exact motion.
+/// As [`warning`], of the paths of `drawn`, of which `path` gives the lines on the page: of the runs, and where none of them is
+/// dense, of the exact motion.
 pub(super) fn of_paths(
     drawn: &[Drawn],
     request: &Request,
-    places: impl Fn(&Drawn) -> Vec<Point>,
+    path: impl Fn(&Course) -> (Vec<Vec<Point>>, &Path),
 ) -> Option<Dense> {
     let earliest = |is_exact: bool| {
         let drawn = drawn.iter().filter(|drawn| drawn.is_exact == is_exact);
-        let dense =
-            drawn.filter_map(|drawn| path_warning(&places(drawn), drawn.course.end_s, request));
+        let dense = drawn.filter_map(|drawn| {
+            let (lines, path) = path(&drawn.course);
+            path_warning(&lines, path, drawn.course.end_s, request)
+        });
         dense.min_by(|a, b| a.to_s.total_cmp(&b.to_s))
     };
     earliest(false).or_else(|| earliest(true))
 }
 
-/// As [`warning`], of a path whose points stand at `places` on the page, in the order of time up to `end_s`.
-fn path_warning(places: &[Point], end_s: f64, request: &Request) -> Option<Dense> {
-    if places.len() < 2000 {
+/// As [`warning`], of a `path` up to `end_s`, which is `lines` on the page.
+fn path_warning(lines: &[Vec<Point>], path: &Path, end_s: f64, request: &Request) -> Option<Dense> {
+    if path.points.len() < 2000 {
         return None;
     }
-    let (left, right) = range(places.iter().map(|place| place.x))?;
-    let (top, bottom) = range(places.iter().map(|place| place.y))?;
-    let side = |length: f64| (length / PLACE_PT) as usize + 1;
-    let (columns, rows) = (side(right - left), side(bottom - top));
-    let mut ink = vec![false; columns * rows];
-    let mut length_pt = 0.0;
-    for pair in places.windows(2) {
-        let (dx, dy) = (pair[1].x - pair[0].x, pair[1].y - pair[0].y);
-        let length = (dx * dx + dy * dy).sqrt();
-        length_pt += length;
-        let parts = (length / PLACE_PT).ceil().clamp(1.0, 4000.0);
-        let (dx, dy) = (dx / parts / PLACE_PT, dy / parts / PLACE_PT);
-        let (x, y) = ((pair[0].x - left) / PLACE_PT, (pair[0].y - top) / PLACE_PT);
-        for part in 0..parts as u32 {
-            let part = f64::from(part);
-            let (column, row) = ((x + part * dx) as usize, (y + part * dy) as usize);
-            if let Some(place) = ink.get_mut(row * columns + column) {
-                *place = true;
-            }
-        }
-    }
-    let inked = ink.iter().filter(|inked| **inked).count();
-    let inside = deep_inside(&ink, columns);
-    if (inside as f64) < MOST * inked as f64 {
+    let grid = Grid::inked(lines, PLACE_PT, 0.0)?;
+    let area_pt2 = grid.area_pt2();
+    if grid.area_inside_pt2(INSIDE) < MOST * area_pt2 {
         return None;
     }
-    let area = inked as f64 * PLACE_PT * PLACE_PT;
-    let share = (LOOSE * area / (length_pt * LINE_PT)).min(0.5);
+    let length_pt: f64 = lines.iter().map(|line| curve::length(line)).sum();
+    let share = (LOOSE * area_pt2 / (path.times * length_pt * LINE_PT)).min(0.5);
     let window_s = share * (end_s - request.from_s);
     Some(proposal(
         request.from_s,
@@ -164,31 +148,6 @@ fn path_warning(places: &[Point], end_s: f64, request: &Request) -> Option<Dense
         request,
         "its turns".to_owned(),
     ))
-}
-
-/// How many places are the lower right corner of a square of ink with sides of more than `INSIDE` places.
-fn deep_inside(ink: &[bool], columns: usize) -> usize {
-    let rows = ink.len() / columns.max(1);
-    // Ink to the left without a gap, up to the place; the same to the top gives squares.
-    let mut sides = vec![0_usize; ink.len()];
-    let mut count = 0;
-    for row in 0..rows {
-        for column in 0..columns {
-            let here = row * columns + column;
-            if !ink[here] {
-                continue;
-            }
-            let before = match (row, column) {
-                (0, _) | (_, 0) => 0,
-                _ => sides[here - 1]
-                    .min(sides[here - columns])
-                    .min(sides[here - columns - 1]),
-            };
-            sides[here] = before + 1;
-            count += usize::from(sides[here] > INSIDE);
-        }
-    }
-    count
 }
 
 fn proposal(from_s: f64, window_s: f64, request: &Request, what: String) -> Dense {

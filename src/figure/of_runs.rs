@@ -119,7 +119,6 @@ fn play(
         drawn.push(Drawn {
             name,
             style,
-            few_a_turn: chords::points_a_turn(&course.path),
             course,
             is_exact: false,
         });
@@ -138,7 +137,6 @@ fn play(
             drawn.push(Drawn {
                 name,
                 style,
-                few_a_turn: chords::points_a_turn(&course.path),
                 course,
                 is_exact: true,
             });
@@ -186,13 +184,13 @@ fn draw(
             let mut chart = charts::above(title, runs, drawn, request);
             warnings.extend(measured::above(&mut chart, runs, request)?);
             dense = charts::path_warning(&chart, drawn, request);
-            warnings.extend(chords::warning(drawn));
+            warnings.extend(chords::warning(drawn, |course| &course.above));
             chart.scene()
         }
         Kind::ThreeD | Kind::Residuals => {
             let scene;
             (scene, dense) = space::scene(&title, runs, drawn, request);
-            warnings.extend(chords::warning(drawn));
+            warnings.extend(chords::warning(drawn, |course| &course.path));
             warnings.extend(measured::in_space(request));
             scene
         }

@@ -47,8 +47,6 @@ pub(super) struct Drawn {
     pub name: String,
     pub style: Style,
     pub course: Course,
-    /// How many points its path has to a turn, where they are too few to look round.
-    pub few_a_turn: Option<f64>,
     /// Whether it is the exact motion beside a run.
     pub is_exact: bool,
 }

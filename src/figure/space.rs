@@ -8,7 +8,7 @@ mod path;
 use super::chart::layout::EDGE;
 use super::chart::legend::Legend;
 use super::chart::ticks::{Tick, Ticks};
-use super::chart::{Axis, Style};
+use super::chart::{Axis, Style, curve};
 use super::chords;
 use super::dense::{self, Dense};
 use super::page::ink::{self, BLACK, LABEL_PT, TITLE_PT, at, grey, pen};
@@ -60,9 +60,6 @@ pub(super) fn scene(
         ranges: ranges(drawn, size::of(runs, "z_m")),
         side_pt: 0.5 * width_pt,
     };
-    let named: Vec<_> = drawn.iter().map(chords::as_drawn).collect();
-    let series = named.iter().map(|(name, style)| (name.as_str(), style));
-    let legend = Legend::new(series, space.stretched().as_deref());
     // The labels do not grow with the box: the room that is left over tells how much larger it may be. All paths are in it.
     for _ in 0..4 {
         let (left, _, right, _) = extent(&space.draw(&[], &[]));
@@ -72,7 +69,16 @@ pub(super) fn scene(
             break;
         }
     }
-    let styles: Vec<_> = named.iter().map(|(_, style)| style.clone()).collect();
+    let (names, mut styles): (Vec<_>, Vec<_>) = drawn
+        .iter()
+        .map(|drawn| chords::as_drawn(drawn, &drawn.course.path))
+        .unzip();
+    for (drawn, style) in drawn.iter().zip(&mut styles) {
+        let lines = drawn.course.path.lines(|at| space.place(&space.boxed(at)));
+        *style = curve::told_apart(&lines, style.clone());
+    }
+    let series = names.iter().map(String::as_str).zip(&styles);
+    let legend = Legend::new(series, space.stretched().as_deref());
     let mut items = space.draw(drawn, &styles);
     let (left, top, right, bottom) = extent(&items);
     let above = legend.height_above(width_pt) + EDGE;
@@ -84,9 +90,9 @@ pub(super) fn scene(
     items.width_pt = width_pt;
     items.height_pt = above + bottom - top + EDGE;
     legend.draw_above(width_pt, EDGE, &mut items);
-    let dense = dense::of_paths(drawn, request, |drawn| {
-        let path = drawn.course.path.iter();
-        path.map(|at| space.place(&space.boxed(at))).collect()
+    let dense = dense::of_paths(drawn, request, |course| {
+        let lines = course.path.lines(|at| space.place(&space.boxed(at)));
+        (lines, &course.path)
     });
     (items, dense)
 }
@@ -104,7 +110,9 @@ fn camera(runs: &[Run]) -> Camera {
 
 fn ranges(drawn: &[Drawn], size: f64) -> [(f64, f64); 3] {
     let range = |index: usize| {
-        let values = drawn.iter().flat_map(|drawn| drawn.course.path.iter());
+        let values = drawn
+            .iter()
+            .flat_map(|drawn| drawn.course.path.points.iter());
         let axis = Axis {
             size,
             flat_below: size::flat_below("z_m"),

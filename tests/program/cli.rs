@@ -731,6 +731,26 @@ fn memory_does_not_grow_with_the_run() {
     );
 }
 
+/// What is drawn takes 300 MB at most, however long the run and however much was measured.
+#[test]
+fn memory_does_not_grow_with_what_is_drawn() {
+    let lab = Ground::new();
+    let rows = (0..200_000).map(|row| format!("{row},{}\n", 1000 + row * 41 % 97));
+    lab.write(
+        "many.csv",
+        &("t_s,spin_rpm\n".to_owned() + &rows.collect::<String>()),
+    );
+    for arguments in [
+        "writeup falling --set motion.time_step_s=1e7 --set motion.steps=200 -o falling || [ $? = 1 ]",
+        "figure heidelberg --measured many.csv --kind spin_rpm -o many.svg",
+        "figure method-1 --steps 2000000 --kind 3d -o path.svg",
+        "figure cusps --kind above --width 400mm -o wide.png",
+    ] {
+        let limited = format!("ulimit -v 300000 && RAYON_NUM_THREADS=2 \"$G\" {arguments}");
+        done(lab.shell(&limited));
+    }
+}
+
 #[test]
 fn numbers_that_stop_being_finite_end_the_run_and_keep_its_rows() {
     let lab = Ground::new();

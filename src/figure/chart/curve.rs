@@ -1,18 +1,25 @@
 //! The line of a series on the page, without the points that nobody could see.
 
-use super::dashes::{self, Ground, Strokes};
 use super::layout::Placed;
-use super::{Circles, Series};
+use super::{Circles, Series, Style};
 use crate::figure::page::clip::clipped;
+use crate::figure::page::cover::Grid;
 use crate::figure::page::ink::{Frame, at};
 use crate::figure::page::scene::{Path, Pen, Point, Scene};
+use crate::figure::page::simplify::simplified;
 use crate::figure::page::thin::{Thinned, plane_curve};
 
-/// Width of a column of which only first, lowest, highest and last point are drawn, pt. It is well below the width of a line,
-/// and below a dot at 300 dpi.
-const THINNED_PT: f64 = 0.2;
-/// Swings of a dashed line that are lower than this are drawn as their middle, pt: they would take up its dashes.
+/// How far a dashed line may leave its points, pt: below a dot at 600 an inch. And where it is a ripple about a flatter line.
+const UNSEEN_PT: f64 = 0.015;
 const FLAT_PT: f64 = 0.4;
+/// A line has ripples where the flatter one is at most this part of its length.
+const RIPPLED: f64 = 0.8;
+/// A line of more pieces than this is interrupted because it was there before.
+const MOST_PIECES: usize = 50;
+/// Parts of a dashed line that are nearer to each other than this lie in each other's gaps, in periods of its dashes.
+const APART: f64 = 1.0 / 3.0;
+/// The area of the places that a line passes, of that of a straight line as long: at least this where no part of it lies in another one's gaps.
+const SHARE: f64 = 0.7;
 /// How far outside of its panel a line is followed, pt: half its width, which is cut off at the edge.
 const BEYOND_PT: f64 = 2.0;
 
@@ -24,13 +31,19 @@ impl Placed {
 
     /// Draws the line of `series` in this panel.
     pub fn draw_line(&self, series: &Series, scene: &mut Scene) {
+        let pieces = self.pieces(series);
+        draw_curve(&pieces, &series.style.pen(), Some(&self.frame), scene);
+    }
+
+    /// The line of `series` in this panel.
+    pub fn pieces(&self, series: &Series) -> Vec<Vec<Point>> {
         let places = series.points.iter().map(|point| self.place(point));
         let clip = self.frame.grown(BEYOND_PT);
-        let pieces = match series.style.is_dots {
-            true => dots(places.filter(|place| clip.holds(*place))),
-            false => clipped(places, &clip),
-        };
-        draw_curve(&pieces, &series.style.pen(), Some(&self.frame), scene);
+        if series.style.is_dots {
+            dots(places.filter(|place| clip.holds(*place)))
+        } else {
+            clipped(places, &clip)
+        }
     }
 
     /// Whether a part of one of `circles` is drawn in `frame`.
@@ -85,188 +98,81 @@ pub fn dots(places: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
 
 /// Draws a line that is cut off outside of `clip`, in fewer pieces that look the same.
 pub fn draw_curve(pieces: &[Vec<Point>], pen: &Pen, clip: Option<&Frame>, scene: &mut Scene) {
-    let runs_right = pieces.iter().flatten().is_sorted_by(|a, b| b.x >= a.x);
-    let is_dashed = !pen.dash_pt.is_empty();
-    if runs_right {
-        let flat = if is_dashed { FLAT_PT } else { 0.0 };
-        for line in pieces.iter().map(|piece| thinned(piece, flat)) {
-            stroke(line, pen, dashes::by_width, clip, scene);
+    let lines = if pen.dash_pt.is_empty() {
+        match plane_curve(pieces, pen.width_pt) {
+            Thinned::Area(area) => return scene.fill_in(area, pen.color, clip),
+            Thinned::Lines(lines) => lines,
         }
-        return;
-    }
-    draw_plane_curve(
-        &Ground::of(pieces.iter().map(|piece| piece.iter().copied())),
-        pieces,
-        pen,
-        clip,
-        scene,
-    );
-}
-
-/// The same of pieces of lines which may turn back; `ground` is that of all pieces of the line.
-pub fn draw_plane_curve(
-    ground: &Ground,
-    pieces: &[Vec<Point>],
-    pen: &Pen,
-    clip: Option<&Frame>,
-    scene: &mut Scene,
-) {
-    if pen.dash_pt.is_empty() {
-        return draw_thinned(plane_curve(pieces, pen.width_pt), pen, clip, scene);
-    }
-    if !ground.is_covered
-        && let Thinned::Lines(lines) = plane_curve(pieces, pen.width_pt)
-    {
-        for line in lines {
-            stroke(line, pen, dashes::by_way, clip, scene);
-        }
-        return;
-    }
-    // It would fill its own gaps.
-    let strokes = ground.strokes(pieces, &pen.dash_pt);
-    let strokes = plane_curve(&strokes, pen.width_pt);
-    draw_thinned(strokes, &solid(pen), clip, scene);
-}
-
-fn draw_thinned(thinned: Thinned, pen: &Pen, clip: Option<&Frame>, scene: &mut Scene) {
-    match thinned {
-        Thinned::Area(area) => scene.fill_in(area, pen.color, clip),
-        Thinned::Lines(lines) => {
-            for line in lines {
-                scene.stroke(Path::polyline(line), pen.clone(), clip);
-            }
-        }
-    }
-}
-
-/// Draws `line`; of a dashed one that `cut` has strokes of, these.
-fn stroke(
-    line: Vec<Point>,
-    pen: &Pen,
-    cut: fn(&[Point], &[f64]) -> Option<Strokes>,
-    clip: Option<&Frame>,
-    scene: &mut Scene,
-) {
-    let strokes = match pen.dash_pt.is_empty() {
-        true => None,
-        false => cut(&line, &pen.dash_pt),
+    } else {
+        pieces.iter().map(|piece| without_ripples(piece)).collect()
     };
-    match strokes {
-        None => scene.stroke(Path::polyline(line), pen.clone(), clip),
-        Some(strokes) => {
-            for line in strokes {
-                scene.stroke(Path::polyline(line), solid(pen), clip);
-            }
-        }
+    for line in lines {
+        scene.stroke(Path::polyline(line), pen.clone(), clip);
     }
 }
 
-/// `pen` without its dashes.
-fn solid(pen: &Pen) -> Pen {
-    Pen {
-        dash_pt: Vec::new(),
-        ..pen.clone()
+/// `line` through fewer points; without the swings that are too low to be seen, where these would use its dashes up.
+fn without_ripples(line: &[Point]) -> Vec<Point> {
+    let (fine, flat) = (simplified(line, UNSEEN_PT), simplified(line, FLAT_PT));
+    if length(&flat) < RIPPLED * length(&fine) {
+        flat
+    } else {
+        fine
     }
 }
 
-/// `points`, which run to the right, with their first, lowest, highest and last of each column alone; with one in the middle,
-/// where all of a column's are no farther apart than `flat_pt`.
-fn thinned(points: &[Point], flat_pt: f64) -> Vec<Point> {
-    if points.len() < 8 {
-        return points.to_vec();
+/// The length of `line`, pt.
+pub fn length(line: &[Point]) -> f64 {
+    let pairs = line.windows(2);
+    let ways = pairs.map(|pair| (pair[1].x - pair[0].x).hypot(pair[1].y - pair[0].y));
+    ways.sum()
+}
+
+/// `style` as it is told apart on the line that consists of `pieces`: a thin solid one in place of dashes that fill their gaps.
+pub fn told_apart(pieces: &[Vec<Point>], style: Style) -> Style {
+    if fills_its_gaps(pieces, style.dash_pt) {
+        style.solid()
+    } else {
+        style
     }
-    let column = |point: &Point| (point.x / THINNED_PT).floor();
-    let mut kept = Vec::new();
-    for column in points.chunk_by(|a, b| column(a) == column(b)) {
-        let by_height = |a: &&Point, b: &&Point| a.y.total_cmp(&b.y);
-        let first = column.first();
-        let lowest = column.iter().max_by(by_height);
-        let highest = column.iter().min_by(by_height);
-        let last = column.last();
-        if let (Some(lowest), Some(highest)) = (lowest, highest)
-            && column.len() > 1
-            && lowest.y - highest.y < flat_pt
-        {
-            let x = 0.5 * (column[0].x + column[column.len() - 1].x);
-            kept.push(at(x, 0.5 * (lowest.y + highest.y)));
-            continue;
-        }
-        // In the order in which the line comes to them.
-        let mut four: Vec<&Point> = [first, lowest, highest, last]
-            .into_iter()
-            .flatten()
-            .collect();
-        four.sort_by_key(|&point| std::ptr::from_ref(point));
-        four.dedup_by(|a, b| std::ptr::eq(*a, *b));
-        kept.extend(four.into_iter().copied());
+}
+
+/// Whether the dashes of a line that consists of `pieces` would lie in its own gaps: it then looks solid, and not evenly so.
+fn fills_its_gaps(pieces: &[Vec<Point>], dash_pt: &[f64]) -> bool {
+    let period_pt: f64 = dash_pt.iter().sum();
+    if period_pt == 0.0 || pieces.len() > MOST_PIECES {
+        return period_pt > 0.0;
     }
-    kept
+    let lines: Vec<_> = pieces.iter().map(|piece| without_ripples(piece)).collect();
+    let length_pt: f64 = lines.iter().map(|line| length(line)).sum();
+    let place_pt = APART * period_pt;
+    let area_pt2 = Grid::inked(&lines, place_pt, 0.0).map_or(0.0, |grid| grid.area_pt2());
+    area_pt2 < SHARE * place_pt * length_pt
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::chart::Style;
-    use crate::figure::page::scene::{Item, Paint};
-    use proptest::prelude::*;
+    use std::f64::consts::PI;
 
     #[test]
-    fn a_dashed_line_that_covers_itself_becomes_an_area_and_another_keeps_its_dashes() {
-        let zigzag = |apart: f64| -> Vec<Point> {
-            let place = |i: i32| at(f64::from(i % 2) * 40.0, f64::from(i) * apart);
-            (0..6000).map(place).collect()
+    fn dashes_are_told_apart_or_would_fill_their_gaps() {
+        let dash_pt = Style::exact().dash_pt;
+        let zigzag = |apart: f64, high: f64| -> Vec<Point> {
+            let place = |i: i32| at(f64::from(i) * apart, f64::from(i % 2) * high);
+            (0..400).map(place).collect()
         };
-        let drawn = |apart: f64| {
-            let mut scene = Scene::new(100.0, 100.0, "");
-            let pen = Style::exact().pen();
-            draw_curve(&[zigzag(apart)], &pen, None, &mut scene);
-            scene.items
+        let circle = |turns: u32| -> Vec<Point> {
+            let angles = (0..=100 * turns).map(|i| 0.02 * PI * f64::from(i));
+            let place = |angle: f64| at(40.0 * libm::cos(angle), 40.0 * libm::sin(angle));
+            angles.map(place).collect()
         };
-        let [area] = &drawn(0.01)[..] else {
-            panic!("one area")
-        };
-        assert!(matches!(area.paint, Paint::Fill(_)) && area.path.0.len() < 1000);
-        // It covers itself without becoming an area: its strokes are cut, and all of them are drawn.
-        let strokes = drawn(1.5);
-        assert!(strokes.len() > 1000, "{}", strokes.len());
-        let is_solid =
-            |item: &Item| matches!(&item.paint, Paint::Stroke(pen) if pen.dash_pt.is_empty());
-        assert!(strokes.iter().all(is_solid));
-        let circle = |i: i32| {
-            at(
-                50.0 * libm::cos(0.05 * f64::from(i)),
-                50.0 * libm::sin(0.05 * f64::from(i)),
-            )
-        };
-        let mut scene = Scene::new(100.0, 100.0, "");
-        draw_curve(
-            &[(0..120).map(circle).collect()],
-            &Style::exact().pen(),
-            None,
-            &mut scene,
-        );
-        let [line] = &scene.items[..] else {
-            panic!("one line")
-        };
-        assert!(!is_solid(line));
-    }
-
-    proptest! {
-        #[test]
-        fn thinning_keeps_every_extreme(values in prop::collection::vec(-1e3_f64..1e3, 8..4000), width in 1.0_f64..200.0) {
-            let step = width / values.len() as f64;
-            let points: Vec<_> = values.iter().enumerate().map(|(i, &y)| at(i as f64 * step, y)).collect();
-            let kept = thinned(&points, 0.0);
-            let columns = (width / THINNED_PT) as usize + 2;
-            prop_assert!(kept.len() <= 4 * columns);
-            for column in points.chunk_by(|a, b| (a.x / THINNED_PT).floor() == (b.x / THINNED_PT).floor()) {
-                for wanted in [f64::min, f64::max] {
-                    let extreme = column.iter().map(|p| p.y).reduce(wanted).unwrap();
-                    let there = kept.iter().any(|p| p.y == extreme && column.iter().any(|c| c.x == p.x));
-                    prop_assert!(there);
-                }
-            }
-            prop_assert!(kept.windows(2).all(|pair| pair[0].x <= pair[1].x));
-        }
+        assert!(fills_its_gaps(&[zigzag(0.5, 40.0)], dash_pt));
+        assert!(fills_its_gaps(&[circle(2)], dash_pt));
+        assert!(!fills_its_gaps(&[circle(1)], dash_pt));
+        assert!(!fills_its_gaps(&[zigzag(8.0, 40.0)], dash_pt));
+        // Ripples that nobody sees are no swings.
+        assert!(!fills_its_gaps(&[zigzag(0.1, 0.3)], dash_pt));
+        assert!(without_ripples(&zigzag(0.1, 0.3)).len() < 10);
     }
 }

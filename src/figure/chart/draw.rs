@@ -2,15 +2,18 @@
 
 use super::layout::{EDGE, GAP, Layout, Placed};
 use super::legend::Legend;
-use super::slope;
 use super::ticks::Ticks;
 use super::{Chart, Circles, Panel, Series};
+use super::{curve, slope};
 use crate::figure::page::clip::clipped;
-use crate::figure::page::ink::{self, BLACK, Frame, LABEL_PT, at, pen};
+use crate::figure::page::ink::{self, BLACK, Frame, LABEL_PT, MARK_PT, at, pen};
 use crate::figure::page::letters;
 use crate::figure::page::scene::{Path, Point, Scene};
+use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 
+/// Fewer marks than these in a panel are all drawn, and of more at most so many.
+const MOST_MARKS: f64 = 10_000.0;
 /// Width of axes, ticks and error bars, pt.
 const FRAME_PT: f64 = 0.5;
 /// Length of a tick with a label and of one without, pt.
@@ -25,6 +28,29 @@ impl Chart {
     /// The chart on its page.
     pub fn scene(&self) -> Scene {
         let bare = Layout::new(self, 0.0);
+        self.as_seen(&bare).placed(bare)
+    }
+
+    /// The chart without what could not be told apart in the places of `layout`: points that stand upon each other, and
+    /// dashes of a line that fills its own gaps.
+    fn as_seen(&self, layout: &Layout) -> Self {
+        let mut seen = self.clone();
+        seen.x.range = layout.panels.first().map(|placed| placed.x.range);
+        for (panel, placed) in seen.panels.iter_mut().zip(&layout.panels) {
+            panel.y.range = Some(placed.y.range);
+            for series in &mut panel.series {
+                placed.thin_marks(series);
+                if series.style.width_pt > 0.0 {
+                    let lines = placed.pieces(series);
+                    series.style = curve::told_apart(&lines, series.style.clone());
+                }
+            }
+        }
+        seen
+    }
+
+    /// The chart in its places, of which `bare` leaves no room for a legend above the panels.
+    fn placed(&self, bare: Layout) -> Scene {
         let known = if self.lacks_errors() { "known " } else { "" };
         let errors = self.errors.words();
         let remark = match self.bars_hidden(&bare) {
@@ -111,6 +137,26 @@ struct Bar {
 }
 
 impl Placed {
+    /// Leaves out those points of `series`, which are marks, that stand where another one does: marks that are nearer to each
+    /// other than half of their width cannot be told apart.
+    fn thin_marks(&self, series: &mut Series) {
+        let area = self.frame.width() * self.frame.height();
+        let cell_pt = MARK_PT.max((area / MOST_MARKS).sqrt());
+        if series.style.mark.is_none() || (series.points.len() as f64) <= MOST_MARKS {
+            return;
+        }
+        let mut taken = HashSet::new();
+        let mut is_kept = |point: &[f64; 2]| {
+            let place = self.place(point);
+            let cell = [place.x, place.y].map(|length| (length / cell_pt).floor() as i64);
+            self.frame.holds(place) && taken.insert(cell)
+        };
+        let is_kept: Vec<bool> = series.points.iter().map(&mut is_kept).collect();
+        retain(&mut series.points, &is_kept);
+        retain(&mut series.errors, &is_kept);
+        retain(&mut series.errors_across, &is_kept);
+    }
+
     /// The error bars of `series` whose point is in the panel.
     fn bars<'a>(&'a self, series: &'a Series) -> impl Iterator<Item = Bar> + 'a {
         let points = series.points.iter().zip(&series.errors);
@@ -182,6 +228,12 @@ impl Panel {
             scene.write(&tick.label, LABEL_PT, place, 1.0);
         }
     }
+}
+
+/// Leaves those of `items`, which may be none, of which `is_kept` says so.
+fn retain<Item>(items: &mut Vec<Item>, is_kept: &[bool]) {
+    let mut kept = is_kept.iter();
+    items.retain(|_| kept.next() == Some(&true));
 }
 
 /// The parts in `frame` of the circle of that radius (pt), as lines: it may be far larger than the page.

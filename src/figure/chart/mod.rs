@@ -1,11 +1,10 @@
 //! What a figure with axes shows, before anything of it has a place: panels one above the other over one axis.
 //!
 //! [`axis`] and [`ticks`] say what stands at an axis, [`layout`] gives the parts their places, and [`draw`] puts them on a
-//! page: [`curve`] the curves with their [`dashes`], [`legend`] their names, [`slope`] the triangle beside a power law.
+//! page: [`curve`] the curves, [`legend`] their names, [`slope`] the triangle beside a power law.
 
 pub mod axis;
 pub mod curve;
-pub mod dashes;
 pub mod draw;
 pub mod layout;
 pub mod legend;
@@ -280,6 +279,17 @@ impl Style {
             dash_pt: &[],
             width_pt: DOT_PT,
             is_dots: true,
+            ..self
+        }
+    }
+
+    /// The same as a thin solid line, where its dashes could not be told apart.
+    pub fn solid(self) -> Self {
+        /// Of its width.
+        const THIN: f64 = 0.4;
+        Self {
+            dash_pt: &[],
+            width_pt: THIN * self.width_pt,
             ..self
         }
     }

@@ -63,10 +63,16 @@ pub(super) fn over_time(
 /// The paths from above.
 pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Request) -> Chart {
     let series = drawn.iter().map(|drawn| {
-        let (name, style) = chords::as_drawn(drawn);
+        let (name, style) = chords::as_drawn(drawn, &drawn.course.above);
         Series {
             name,
-            points: drawn.course.path.iter().map(|at| [at[0], at[1]]).collect(),
+            points: drawn
+                .course
+                .above
+                .points
+                .iter()
+                .map(|at| [at[0], at[1]])
+                .collect(),
             style,
             ..Series::default()
         }
@@ -102,9 +108,9 @@ pub(super) fn above(title: String, runs: &[Run], drawn: &[Drawn], request: &Requ
 pub(super) fn path_warning(chart: &Chart, drawn: &[Drawn], request: &Request) -> Option<Dense> {
     let layout = Layout::new(chart, 0.0);
     let placed = layout.panels.first()?;
-    dense::of_paths(drawn, request, |drawn| {
-        let path = drawn.course.path.iter();
-        path.map(|at| placed.place(&[at[0], at[1]])).collect()
+    dense::of_paths(drawn, request, |course| {
+        let lines = course.above.lines(|at| placed.place(&[at[0], at[1]]));
+        (lines, &course.above)
     })
 }
 

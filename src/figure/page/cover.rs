@@ -11,7 +11,7 @@ const CELLS_PT: [f64; 2] = [0.06, 0.12];
 /// Points of an outline beyond which the grid is made coarser: a file of 800 kB.
 const MANY: usize = 100_000;
 /// Cells of a grid at most.
-const MOST_CELLS: f64 = 64e6;
+const MOST_CELLS: f64 = 32e6;
 /// How far an outline may leave the middles of the cells' sides, in cells.
 const SMOOTH: f64 = 1.0;
 /// An outline of so many sides of cells is a dot that cannot be seen.
@@ -38,12 +38,9 @@ fn is_steep(lines: &[Vec<Point>]) -> bool {
 fn area_of_level(lines: &[Vec<Point>], width_pt: f64) -> Path {
     let mut area = Path::default();
     for cell_pt in CELLS_PT {
-        let Some(mut grid) = Grid::around(lines, width_pt, cell_pt) else {
+        let Some(mut grid) = Grid::inked(lines, cell_pt, width_pt) else {
             continue;
         };
-        for pair in lines.iter().flat_map(|line| line.windows(2)) {
-            grid.trace(pair[0], pair[1]);
-        }
         grid.widen(0.5 * width_pt / cell_pt);
         area = grid.outlines();
         if area.0.len() <= MANY {
@@ -54,7 +51,7 @@ fn area_of_level(lines: &[Vec<Point>], width_pt: f64) -> Path {
 }
 
 /// Cells in rows from the top, with an empty one at each edge.
-struct Grid {
+pub struct Grid {
     /// The place of the upper left corner, pt.
     origin: Point,
     cell_pt: f64,
@@ -63,7 +60,42 @@ struct Grid {
 }
 
 impl Grid {
-    /// `None` where nothing is drawn, where a place is not a number, or where the grid would be too large.
+    /// A grid with room for lines `width_pt` wide, in which the cells that `lines` pass through are inked. `None` where nothing
+    /// is drawn, where a place is not a number, or where the grid would be too large.
+    pub fn inked(lines: &[Vec<Point>], cell_pt: f64, width_pt: f64) -> Option<Self> {
+        let mut grid = Self::around(lines, width_pt, cell_pt)?;
+        for pair in lines.iter().flat_map(|line| line.windows(2)) {
+            grid.trace(pair[0], pair[1]);
+        }
+        Some(grid)
+    }
+
+    /// The area of the inked cells, pt².
+    pub fn area_pt2(&self) -> f64 {
+        let inked = self.is_inked.iter().filter(|inked| **inked).count();
+        inked as f64 * self.cell_pt * self.cell_pt
+    }
+
+    /// The area of the inked cells that are the lower right corner of a square of ink with sides of more than `inside` cells, pt².
+    pub fn area_inside_pt2(&self, inside: usize) -> f64 {
+        // Ink to the left without a gap, up to the cell; the same to the top gives squares.
+        let mut sides = vec![0_u16; self.is_inked.len()];
+        let mut count = 0;
+        for (here, _) in self
+            .is_inked
+            .iter()
+            .enumerate()
+            .filter(|(_, inked)| **inked)
+        {
+            let side = |back: usize| here.checked_sub(back).map_or(0, |before| sides[before]);
+            let (left, above) = (side(1), side(self.columns));
+            let side = 1 + left.min(above).min(side(self.columns + 1));
+            sides[here] = side;
+            count += usize::from(usize::from(side) > inside);
+        }
+        count as f64 * self.cell_pt * self.cell_pt
+    }
+
     fn around(lines: &[Vec<Point>], width_pt: f64, cell_pt: f64) -> Option<Self> {
         let points = || lines.iter().flatten();
         let (left, right) = range(points().map(|p| p.x))?;
@@ -218,7 +250,7 @@ impl Grid {
 }
 
 /// The least and the greatest of `numbers`; `None` where there is none, or one is not finite.
-pub fn range(numbers: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+fn range(numbers: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let start = (f64::INFINITY, f64::NEG_INFINITY);
     let (low, high) = numbers.fold(start, |(low, high), n| (low.min(n), high.max(n)));
     (low <= high && (high - low).is_finite()).then_some((low, high))

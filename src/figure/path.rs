@@ -1,0 +1,210 @@
+//! A path in bounded memory: where it has been already, it is not kept again.
+
+use super::chords;
+use foldhash::fast::FixedState;
+use std::collections::HashSet;
+
+/// Points that are kept at most.
+const MOST: usize = 1 << 19;
+/// The cells along each side of the path that it is first thinned by: finer than a page's dots at 600 an inch.
+const FINEST: f64 = 4096.0;
+
+/// The path of a point. Of a short one every point is kept; of a long one those that lead from one cell of a grid to another by
+/// a way that has not been gone before. Of a path that is drawn as points each cell has one. The cells grow with what there is
+/// to keep; upright they have a size of their own, since a picture in space may stretch z.
+#[derive(Clone, Debug)]
+pub struct Recorder {
+    is_line: bool,
+    path: Path,
+    low: [f64; 3],
+    high: [f64; 3],
+    /// Where it was last, once it is thinned.
+    last: Option<[f64; 3]>,
+    /// Cells along each side; `None` while every point is kept.
+    cells: Option<f64>,
+    /// The size of a cell, m.
+    size: [f64; 3],
+    gone: HashSet<[[i32; 3]; 2], FixedState>,
+    left_out: u64,
+}
+
+/// What was kept of a path.
+#[derive(Clone, Debug, Default)]
+pub struct Path {
+    /// Its points, world frame, m; NaN where the line is interrupted, since it has been there before.
+    pub points: Vec<[f64; 3]>,
+    /// How many times as long the whole path is, about.
+    pub times: f64,
+    /// How many points it has to a turn, where they are too few to look round.
+    pub few_a_turn: Option<f64>,
+}
+
+impl Path {
+    /// Its lines, of each point what `place` gives.
+    pub fn lines<Place>(&self, place: impl Fn(&[f64; 3]) -> Place) -> Vec<Vec<Place>> {
+        let lines = self.points.split(|point| point[0].is_nan());
+        lines
+            .map(|line| line.iter().map(&place).collect())
+            .collect()
+    }
+}
+
+impl Recorder {
+    /// A recorder of a path that has not begun; `is_line` says whether it is drawn as a line however few points it has.
+    pub fn new(is_line: bool) -> Self {
+        Self {
+            is_line,
+            path: Path::default(),
+            low: [f64::INFINITY; 3],
+            high: [f64::NEG_INFINITY; 3],
+            last: None,
+            cells: None,
+            size: [0.0; 3],
+            gone: HashSet::default(),
+            left_out: 0,
+        }
+    }
+
+    /// Goes on to `point`, m.
+    pub fn push(&mut self, point: [f64; 3]) {
+        for (axis, value) in point.into_iter().enumerate() {
+            self.low[axis] = self.low[axis].min(value);
+            self.high[axis] = self.high[axis].max(value);
+        }
+        if self.cells.is_none() {
+            self.path.points.push(point);
+        } else {
+            self.keep(point, true);
+        }
+        if self.path.points.len() > MOST {
+            self.coarsen();
+        }
+    }
+
+    /// Keeps `point` where it is new; `is_joined` says whether a line leads there.
+    fn keep(&mut self, point: [f64; 3], is_joined: bool) {
+        let to = self.cell(&point);
+        if self.is_dots() {
+            if self.gone.insert([to, to]) {
+                self.path.points.push(point);
+            } else {
+                self.left_out += 1;
+            }
+            return;
+        }
+        let last = *self.last.get_or_insert(point);
+        let from = self.cell(&last);
+        if from == to {
+            return;
+        }
+        self.last = Some(point);
+        if !is_joined {
+            return;
+        }
+        if !self.gone.insert([from.min(to), from.max(to)]) {
+            self.left_out += 1;
+            return;
+        }
+        let end = self.path.points.last();
+        let is_near = |end: &[f64; 3]| {
+            let end = self.cell(end);
+            (0..3).all(|axis| end[axis].abs_diff(from[axis]) <= 2)
+        };
+        if end.is_none_or(|end| !is_near(end)) {
+            let gap = end.map(|_| [f64::NAN; 3]);
+            self.path.points.extend(gap.into_iter().chain([last]));
+        }
+        self.path.points.push(point);
+    }
+
+    fn is_dots(&self) -> bool {
+        self.path.few_a_turn.is_some() && !self.is_line
+    }
+
+    fn cell(&self, point: &[f64; 3]) -> [i32; 3] {
+        [0, 1, 2].map(|axis| (point[axis] / self.size[axis]).floor() as i32)
+    }
+
+    /// Thins the path until half as many points are kept as there may be.
+    fn coarsen(&mut self) {
+        if self.cells.is_none() {
+            self.path.few_a_turn = chords::points_a_turn(&self.path.points);
+        }
+        while self.path.points.len() > MOST / 2 {
+            let cells = self.cells.map_or(FINEST, |cells| 0.5 * cells);
+            self.cells = Some(cells);
+            let [x, y, z] = [0, 1, 2].map(|axis| self.high[axis] - self.low[axis]);
+            self.size = [x.max(y), x.max(y), z].map(|side| (side / cells).max(f64::MIN_POSITIVE));
+            self.last = None;
+            self.gone.clear();
+            let mut is_joined = true;
+            for point in std::mem::take(&mut self.path.points) {
+                if point[0].is_nan() {
+                    is_joined = false;
+                } else {
+                    self.keep(point, std::mem::replace(&mut is_joined, true));
+                }
+            }
+        }
+    }
+
+    /// What was kept.
+    pub fn end(mut self) -> Path {
+        if self.cells.is_none() {
+            self.path.few_a_turn = chords::points_a_turn(&self.path.points);
+        } else if self.path.points.is_empty() {
+            self.path.points.extend(self.last); // it stands still
+        }
+        let kept = self.path.points.len().max(1) as f64;
+        self.path.times = 1.0 + self.left_out as f64 / kept;
+        self.path
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn recorded(is_line: bool, points: impl Iterator<Item = [f64; 3]>) -> Path {
+        let mut recorder = Recorder::new(is_line);
+        points.for_each(|point| recorder.push(point));
+        recorder.end()
+    }
+
+    /// A circle, with small loops on it.
+    fn looping(number: usize) -> [f64; 3] {
+        let (slow, fast) = (1e-5 * number as f64, 0.3 * number as f64);
+        let (x, y) = (
+            slow.cos() + 2e-4 * fast.cos(),
+            slow.sin() + 2e-4 * fast.sin(),
+        );
+        [x, y, 1e-6 * fast.cos()]
+    }
+
+    #[test]
+    fn a_short_path_is_kept_as_it_is_and_a_long_one_where_it_is_new() {
+        let short: Vec<_> = (0..2000).map(looping).collect();
+        assert_eq!(recorded(false, short.iter().copied()).points, short);
+        let long = recorded(true, (0..3_000_000).map(looping));
+        assert!(long.points.len() <= MOST && long.times > 2.0);
+        let off = |angle: f64| {
+            let (x, y) = (angle.cos(), angle.sin());
+            let off = long.points.iter().map(|at| (at[0] - x).hypot(at[1] - y));
+            off.fold(f64::INFINITY, f64::min)
+        };
+        // Nowhere on the way round is it farther off than a line is wide on paper, 1/300 of a page.
+        let places = (0..628).map(|number| off(0.01 * f64::from(number)));
+        let most = places.fold(0.0, f64::max);
+        assert!(most < 2.0 / 300.0, "{most}");
+        let bounded = |step: f64| {
+            let angle = |number: u32| step * f64::from(number);
+            let point = |angle: f64| [angle.cos(), angle.sin(), 0.0];
+            recorded(false, (0..600_000).map(|number| point(angle(number))))
+        };
+        // Chords of which none is gone twice are points; what stands still is one.
+        let chords = bounded(2.0_f64.sqrt());
+        assert!(chords.points.len() <= MOST && chords.few_a_turn.is_some());
+        assert!(chords.points.iter().all(|point| point[0].is_finite()));
+        assert_eq!(bounded(0.0).points.len(), 1);
+    }
+}
