@@ -163,7 +163,13 @@ impl Recorded {
             Some(self.course.curves[place].clone())
         };
         let curves = wanted.columns.iter().map(curve).collect::<Option<_>>()?;
-        let if_path = |path: &Arc<Path>| wanted.path.then(|| Arc::clone(path)).unwrap_or_default();
+        let if_path = |path: &Arc<Path>| {
+            if wanted.path {
+                Arc::clone(path)
+            } else {
+                Arc::default()
+            }
+        };
         is_all.then(|| Course {
             curves,
             path: if_path(&self.course.path),
