@@ -34,9 +34,10 @@ pub fn readouts(
         let end = scenario.steps.min(simulation.step_number() + BLOCK);
         while simulation.step_number() < end {
             let step = simulation.step().map_err(|error| error.to_string())?;
-            match is_held {
-                true => monitor.follow(step),
-                false => monitor.measure(step),
+            if is_held {
+                monitor.follow(step);
+            } else {
+                monitor.measure(step);
             }
         }
         if !go_on() {

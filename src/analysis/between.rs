@@ -104,9 +104,10 @@ impl Between {
             is_first_order: motion.scheme.order == Some(1),
             is_exact: motion.scheme.order.is_none(),
             steady_swing: is_steady.then_some(range),
-            confirmed_by: match is_steady {
-                true => ROUNDING,
-                false => (1e-3 * range).min(ROUNDING),
+            confirmed_by: if is_steady {
+                ROUNDING
+            } else {
+                (1e-3 * range).min(ROUNDING)
             },
             start,
             now: start,

@@ -106,9 +106,10 @@ impl ComparisonRow {
             energy_drift: trial.energy_drift,
             spin_drift: Some(trial.spin_drift).filter(|drift| drift.is_finite()),
             lz_drift: Some(trial.lz_drift).filter(|drift| drift.is_finite()),
-            ns_per_step: match trial.fastest_s.is_finite() {
-                true => trial.fastest_s * 1e9,
-                false => 0.0, // it broke at its first step
+            ns_per_step: if trial.fastest_s.is_finite() {
+                trial.fastest_s * 1e9
+            } else {
+                0.0
             },
             wall_s,
         }

@@ -285,21 +285,23 @@ fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
     }
     if trial(own, scheme).is_some() {
         let is_edited = |edit: &Edit| edit.motion.scheme != scheme || edit.touches.time_step;
-        return match scenario.edits.iter().any(is_edited) {
-            true => Advice::TimeStep(own),
-            false => Advice::Holds,
+        return if scenario.edits.iter().any(is_edited) {
+            Advice::TimeStep(own)
+        } else {
+            Advice::Holds
         };
     }
     let better = better_scheme(scenario);
     if rescale::accumulates(scenario) {
         // At another time step it would be another run.
-        return match better != scheme && holds(own, better) {
-            true => Advice::Scheme {
+        return if better != scheme && holds(own, better) {
+            Advice::Scheme {
                 name: better.name,
                 time_step_s: own,
                 tried_s: own,
-            },
-            false => Advice::BoundToItsTimeStep,
+            }
+        } else {
+            Advice::BoundToItsTimeStep
         };
     }
     let mut tried_s = own;

@@ -62,9 +62,10 @@ impl Remark {
 
 /// What there is to say of `health`, and of what would mend it, where that is known; most important first.
 pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
-    let mut remarks = match health.is_a_rotation {
-        true => vec![turns(health), distance(health)],
-        false => vec![broken_down(health)],
+    let mut remarks = if health.is_a_rotation {
+        vec![turns(health), distance(health)]
+    } else {
+        vec![broken_down(health)]
     };
     remarks.extend(wrong_swing(health));
     if health.is_believed() == Some(false) {
@@ -104,9 +105,10 @@ fn mend(health: &Health, advice: &Advice) -> Option<Remark> {
     let (long, short) = match advice {
         Advice::TimeStep(step) => {
             let step = shortest(*step);
-            let long = match health.can_be_rescaled {
-                true => format!("--time-step {step} would mend it"),
-                false => format!("a time step of {step} s throughout would mend it"),
+            let long = if health.can_be_rescaled {
+                format!("--time-step {step} would mend it")
+            } else {
+                format!("a time step of {step} s throughout would mend it")
             };
             (long, format!("dt {step} s mends it"))
         }

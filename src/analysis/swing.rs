@@ -120,9 +120,10 @@ impl Interpolation {
         // Of both roots the one at which it turns the right way: linear + 2 square t is negative at a top.
         let root = (linear * linear - 4.0 * square * begin).max(0.0).sqrt();
         let signed = if is_top { -root } else { root };
-        let share = match linear * signed > 0.0 {
-            true => -2.0 * begin / (linear + signed),
-            false => (signed - linear) / (2.0 * square),
+        let share = if linear * signed > 0.0 {
+            -2.0 * begin / (linear + signed)
+        } else {
+            (signed - linear) / (2.0 * square)
         };
         share.clamp(0.0, 1.0) * self.step_s
     }

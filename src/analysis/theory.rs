@@ -154,9 +154,10 @@ impl Theory {
         let is_through_vertical = low <= PASSES_RAD || high >= PI - PASSES_RAD;
         let tilt_range_deg = (low.to_degrees(), high.to_degrees());
         let cosine = Some(axle.dot(&up)).filter(|cosine| cosine.abs() > LEVEL);
-        let (slow, fast) = match spins {
-            true => steady_precession(top.across * cosine.unwrap_or(0.0), spin, load),
-            false => (None, None),
+        let (slow, fast) = if spins {
+            steady_precession(top.across * cosine.unwrap_or(0.0), spin, load)
+        } else {
+            (None, None)
         };
         let cusp_cosine = state.momentum.dot(&up) / spin;
         let cusp_tilt_deg = (size > 0.0 && spins && cusp_cosine.abs() <= 1.0)
@@ -176,9 +177,10 @@ impl Theory {
             tilt_range_deg,
             sleeping_limit: (load >= 0.0).then(|| 2.0 * (top.across * size).sqrt()),
             cusp_tilt_deg,
-            path: match is_through_vertical {
-                true => Path::ThroughVertical,
-                false => path(tilt_range_deg, cusp_tilt_deg),
+            path: if is_through_vertical {
+                Path::ThroughVertical
+            } else {
+                path(tilt_range_deg, cusp_tilt_deg)
             },
             is_of_a_moment: false,
         }

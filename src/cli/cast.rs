@@ -149,9 +149,12 @@ impl Cast {
     /// Lets the lab take its steps up to now, as many as there are to take. Only a signal cuts them short.
     fn advance(&self, lab: &mut Lab, interruption: &Interruption) {
         let mut is_first = true;
-        let mut clock = || match interruption.has_come() && !std::mem::take(&mut is_first) {
-            true => self.now + LONGEST,
-            false => self.now,
+        let mut clock = || {
+            if interruption.has_come() && !std::mem::take(&mut is_first) {
+                self.now + LONGEST
+            } else {
+                self.now
+            }
         };
         lab.advance(&mut clock);
         while lab.files().is_exporting() && !interruption.has_come() {

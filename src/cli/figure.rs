@@ -187,9 +187,10 @@ fn no_kind(args: &FigureArgs, refusal: &str) -> ! {
 fn runs(args: &FigureArgs) -> anyhow::Result<Vec<Run>> {
     let mut runs = Vec::new();
     for named in &args.runs {
-        let schemes: Vec<Option<&String>> = match args.schemes.is_empty() {
-            true => vec![None],
-            false => args.schemes.iter().map(Some).collect(),
+        let schemes: Vec<Option<&String>> = if args.schemes.is_empty() {
+            vec![None]
+        } else {
+            args.schemes.iter().map(Some).collect()
         };
         for scheme in schemes {
             let mut changes = args.changes.clone();

@@ -120,9 +120,10 @@ pub(super) fn readout_list() -> Result<String, std::fmt::Error> {
 pub(super) fn check(files: &[PathBuf]) -> anyhow::Result<ExitCode> {
     let mut code = ExitCode::SUCCESS;
     for file in files {
-        let checked = match lesson::is_named_as_one(file) {
-            true => lesson::checked(file)?,
-            false => Document::read(file).and_then(|document| checked(&document)),
+        let checked = if lesson::is_named_as_one(file) {
+            lesson::checked(file)?
+        } else {
+            Document::read(file).and_then(|document| checked(&document))
         };
         match checked {
             Ok(described) => {

@@ -55,9 +55,10 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
             .map_err(|problem| refused(&lesson, problem))?;
         Ok(handout::page(page, &walk, &picture))
     })?;
-    match interruption.may_act_at_once() {
-        true => Ok(ExitCode::from(INTERRUPTED)),
-        false => print(&text),
+    if interruption.may_act_at_once() {
+        Ok(ExitCode::from(INTERRUPTED))
+    } else {
+        print(&text)
     }
 }
 

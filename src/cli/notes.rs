@@ -86,9 +86,10 @@ fn folder() -> anyhow::Result<PathBuf> {
 /// The name of the session that is meant: of those with an open lesson, the one in use that was written last.
 fn find(folder: &Path, name: &str) -> anyhow::Result<Option<String>> {
     let open = session::list(folder)?.into_iter().filter(|session| {
-        let is_meant = match name.is_empty() {
-            true => session.is_in_use,
-            false => session.name == name,
+        let is_meant = if name.is_empty() {
+            session.is_in_use
+        } else {
+            session.name == name
         };
         is_meant && open_in(session).is_some()
     });
@@ -111,9 +112,10 @@ fn open_in(session: &Listed) -> Option<(String, Place)> {
 
 /// A line at the bottom of the terminal that changes; without a terminal there is none.
 fn live_line() -> ProgressBar {
-    let line = match io::stdout().is_terminal() {
-        true => ProgressBar::with_draw_target(None, indicatif::ProgressDrawTarget::stdout()),
-        false => ProgressBar::hidden(),
+    let line = if io::stdout().is_terminal() {
+        ProgressBar::with_draw_target(None, indicatif::ProgressDrawTarget::stdout())
+    } else {
+        ProgressBar::hidden()
     };
     line.set_style(
         ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_bar()),

@@ -34,9 +34,10 @@ impl Interruption {
 
     /// Whether to go on, for what asks as it works.
     pub(super) fn go_on(&self) -> ControlFlow<()> {
-        match self.has_come() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        if self.has_come() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
         }
     }
 

@@ -93,9 +93,10 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 }
 
 fn cannot_write(path: &Path) -> String {
-    match path == Path::new("-") {
-        true => "cannot write to stdout".to_owned(),
-        false => format!("cannot write {}", Shown(path)),
+    if path == Path::new("-") {
+        "cannot write to stdout".to_owned()
+    } else {
+        format!("cannot write {}", Shown(path))
     }
 }
 

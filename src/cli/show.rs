@@ -143,9 +143,10 @@ pub(super) fn go_to(
             return arrived;
         }
         meter.show(here, step);
-        part = match begin.elapsed() < LOOK {
-            true => part.saturating_mul(2),
-            false => (part / 2).max(1),
+        part = if begin.elapsed() < LOOK {
+            part.saturating_mul(2)
+        } else {
+            (part / 2).max(1)
         };
     }
 }

@@ -116,17 +116,14 @@ fn is_neither(name: &str) -> bool {
 /// The sweep that the command line means.
 fn sweep_of(name: &str, args: &SweepArgs) -> Result<Sweep, Problems> {
     let mut document = document(name)?;
-    let (mut file, base) = match document.is_sweep() {
-        true => {
-            let file = SweepFile::read(&document)?;
-            let base = Sweep::base(&file, &document, |base| change(base, &args.changes))?;
-            (file, base)
-        }
-        false => {
-            change(&mut document, &args.changes)?;
-            let base = document.scenario()?;
-            (SweepFile::from_nothing(), base)
-        }
+    let (mut file, base) = if document.is_sweep() {
+        let file = SweepFile::read(&document)?;
+        let base = Sweep::base(&file, &document, |base| change(base, &args.changes))?;
+        (file, base)
+    } else {
+        change(&mut document, &args.changes)?;
+        let base = document.scenario()?;
+        (SweepFile::from_nothing(), base)
     };
     let from_file = file.vary.len();
     for argument in &args.vary {

@@ -31,9 +31,10 @@ pub(super) fn frames(text: &str) -> Result<u32, String> {
 }
 
 pub(super) fn setting(text: &str) -> Result<String, String> {
-    match text.contains('=') {
-        true => Ok(text.to_owned()),
-        false => Err("must be KEY=VALUE, such as motion.time_step_s=0.05".to_owned()),
+    if text.contains('=') {
+        Ok(text.to_owned())
+    } else {
+        Err("must be KEY=VALUE, such as motion.time_step_s=0.05".to_owned())
     }
 }
 

@@ -51,9 +51,10 @@ impl<W: Write> CsvWriter<W> {
                 .as_bytes(),
         )?;
         out.write_all(b"\n")?;
-        let points = match layout.is_of_points() {
-            true => NamedPoint::all_of(scenario, |name| field(name, layout.delimiter() as u8)),
-            false => Vec::new(),
+        let points = if layout.is_of_points() {
+            NamedPoint::all_of(scenario, |name| field(name, layout.delimiter() as u8))
+        } else {
+            Vec::new()
         };
         Ok(Self {
             rows: Rows {

@@ -116,8 +116,9 @@ fn write_last<W: Write>(
     };
     let (step, every) = (last.number(), csv.layout().steps_between());
     let is_written = written.is_some_and(|row| row.step == step) || step.is_multiple_of(every);
-    match !is_written && csv.layout().has_time(last) {
-        true => csv.write(&last.sample()),
-        false => Ok(()),
+    if !is_written && csv.layout().has_time(last) {
+        csv.write(&last.sample())
+    } else {
+        Ok(())
     }
 }

@@ -125,9 +125,10 @@ impl Summary {
             (Some(kappa), Some(theory)) => (fixed(kappa, 4), theory),
         };
         let Theory { path, axis, .. } = theory;
-        let ceased = match theory.is_of_a_moment {
-            true => "if friction ceased now: ",
-            false => "",
+        let ceased = if theory.is_of_a_moment {
+            "if friction ceased now: "
+        } else {
+            ""
         };
         let (low, high) = theory.tilt_range_deg;
         let [low, high] = [low, high].map(|tilt| fixed(tilt, 4));

@@ -118,9 +118,12 @@ impl Kind {
         let is_list = name.contains(',');
         let columns = name.split(',').map(str::trim).map(|name| {
             // Whoever shows the refusal names the whole list.
-            column(name).map_err(|rule| match is_list {
-                true => format!("{name} {rule}"),
-                false => rule,
+            column(name).map_err(|rule| {
+                if is_list {
+                    format!("{name} {rule}")
+                } else {
+                    rule
+                }
             })
         });
         columns.collect::<Result<_, _>>().map(Self::OverTime)

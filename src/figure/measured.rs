@@ -48,9 +48,10 @@ pub(super) fn over_time(
             continue;
         };
         let curve = &series.curves[place];
-        let points = match curve.quantity.is_direction {
-            true => turned(series, place, runs, known)?,
-            false => curve.points.clone(),
+        let points = if curve.quantity.is_direction {
+            turned(series, place, runs, known)?
+        } else {
+            curve.points.clone()
         };
         let shown = drawn(series, &points, request);
         if let (Some(range), None) = (&mut chart.x.range, request.to_s) {

@@ -75,9 +75,10 @@ fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, String> {
 
 /// `markup`, or where it is longer than `room_pt` `plain`, which is cut where that is too long as well.
 fn within_room(markup: String, plain: &str, room_pt: f64) -> String {
-    match ink::width(&markup, LABEL_PT) <= room_pt {
-        true => markup,
-        false => letters::shortened(plain, LABEL_PT, room_pt),
+    if ink::width(&markup, LABEL_PT) <= room_pt {
+        markup
+    } else {
+        letters::shortened(plain, LABEL_PT, room_pt)
     }
 }
 

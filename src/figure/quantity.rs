@@ -29,9 +29,10 @@ fn of_key(key: &str) -> Axis {
     let last = key.rsplit('.').next().unwrap_or(key);
     let readout = readouts::find(last).filter(|readout| !readout.symbol.is_empty());
     if let Some(readout) = readout {
-        let symbol = match key.starts_with("start.") {
-            true => at_start(readout.symbol),
-            false => readout.symbol.to_owned(),
+        let symbol = if key.starts_with("start.") {
+            at_start(readout.symbol)
+        } else {
+            readout.symbol.to_owned()
         };
         return Axis::new(symbol, unit_markup(readout.unit));
     }

@@ -74,12 +74,11 @@ impl Browser {
             return false;
         };
         let (is_up, from) = (name == ABOVE, self.folder.clone());
-        let to = match is_up {
-            true => self.passed.pop().or_else(|| above(&from)),
-            false => {
-                self.passed.push(from.clone());
-                Some(PathBuf::from(name.trim_end_matches('/')))
-            }
+        let to = if is_up {
+            self.passed.pop().or_else(|| above(&from))
+        } else {
+            self.passed.push(from.clone());
+            Some(PathBuf::from(name.trim_end_matches('/')))
         };
         let Some(to) = to else {
             return false;
@@ -283,12 +282,12 @@ impl Browser {
 
     /// Selects the first entry that is shown; without a filter, the one that is open.
     fn refilter(&mut self) {
-        let open = match self.filter.is_empty() {
-            true => self
-                .entries
+        let open = if self.filter.is_empty() {
+            self.entries
                 .iter()
-                .position(|entry| entry.name == self.open),
-            false => None,
+                .position(|entry| entry.name == self.open)
+        } else {
+            None
         };
         self.selected = open.unwrap_or(0);
         self.load_preview();
@@ -301,9 +300,10 @@ impl Browser {
         }
         self.is_chosen = false;
         self.preview = choice.filter(|entry| !entry.is_folder).map(|entry| {
-            let preview = match entry.is_file {
-                true => self.loader.ask(&entry.name),
-                false => Preview::Known(Arc::new(read(&entry.name))),
+            let preview = if entry.is_file {
+                self.loader.ask(&entry.name)
+            } else {
+                Preview::Known(Arc::new(read(&entry.name)))
             };
             (entry, preview)
         });

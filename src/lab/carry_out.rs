@@ -182,16 +182,15 @@ impl Lab {
             .into_iter()
             .partition(|(key, _)| is_of_a_new_run(key));
         let acts = acts(rest);
-        match new.is_empty() {
-            false => self.begin_with(&new, acts, false),
-            true => {
-                let made_way = self.act_all(acts, false)?;
-                let done = Done::saying(made_way.unwrap_or_else(|| match table.len() {
-                    1 => table.keys().map(|key| self.said_of(key)).collect(),
-                    more => format!("{more} values; u takes them back"),
-                }));
-                Ok(self.on_its_way(done))
-            }
+        if new.is_empty() {
+            let made_way = self.act_all(acts, false)?;
+            let done = Done::saying(made_way.unwrap_or_else(|| match table.len() {
+                1 => table.keys().map(|key| self.said_of(key)).collect(),
+                more => format!("{more} values; u takes them back"),
+            }));
+            Ok(self.on_its_way(done))
+        } else {
+            self.begin_with(&new, acts, false)
         }
     }
 

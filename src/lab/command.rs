@@ -256,9 +256,10 @@ pub fn is_file_of_commands(document: &Document) -> bool {
 /// # Errors
 /// What is wrong with it: file, line, key, value and rule, and the nearest right name.
 pub fn open(path: &Path) -> Result<Commands, Problems> {
-    read(&match path == Path::new("-") {
-        true => Document::read_from("standard input", std::io::stdin().lock())?,
-        false => Document::read(path)?,
+    read(&if path == Path::new("-") {
+        Document::read_from("standard input", std::io::stdin().lock())?
+    } else {
+        Document::read(path)?
     })
 }
 
@@ -295,12 +296,13 @@ pub fn read(document: &Document) -> Result<Commands, Problems> {
             Problem::at("", rule)
         }),
     }
-    match problems.list.is_empty() {
-        true => Ok(Commands {
+    if problems.list.is_empty() {
+        Ok(Commands {
             origin: document.origin().to_owned(),
             list,
-        }),
-        false => Err(document.placed(problems)),
+        })
+    } else {
+        Err(document.placed(problems))
     }
 }
 
@@ -326,9 +328,10 @@ fn one(index: usize, value: &Value) -> Result<Command, Vec<Problem>> {
     match table.iter().collect::<Vec<_>>()[..] {
         [(name, value)] => Command::new(name, value).map_err(|problems| {
             let inside = |problem: Problem| Problem {
-                key: match problem.key.is_empty() {
-                    true => name.clone(),
-                    false => format!("{name}.{}", problem.key),
+                key: if problem.key.is_empty() {
+                    name.clone()
+                } else {
+                    format!("{name}.{}", problem.key)
                 },
                 ..problem
             };
@@ -361,9 +364,10 @@ fn unknown(name: &str, beside: Option<&CommandRow>) -> Problem {
         ),
         None => nearest(name, COMMANDS.iter().map(|row| row.name)),
     };
-    let key = match name.contains('.') {
-        true => format!("\"{name}\""),
-        false => name.to_owned(),
+    let key = if name.contains('.') {
+        format!("\"{name}\"")
+    } else {
+        name.to_owned()
     };
     Problem::at(key, format!("unknown command: {near}"))
 }

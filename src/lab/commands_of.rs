@@ -29,9 +29,10 @@ impl Lab {
         let speed = |notches| Ok(Command::Speed(self.player.other_speed(notches)?));
         match action {
             Action::TogglePause if !self.script.is_done() => Ok(None),
-            Action::TogglePause => one(match self.player.is_moving() {
-                true => Command::Pause,
-                false => Command::Run,
+            Action::TogglePause => one(if self.player.is_moving() {
+                Command::Pause
+            } else {
+                Command::Run
             }),
             Action::Step | Action::StepBack if count == Some(0) => one(Command::Pause),
             Action::Step => one(Command::Step(steps())),

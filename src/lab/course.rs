@@ -42,13 +42,14 @@ impl Player {
         let end = self.playback.end_step();
         let is_beyond = step > end && step > self.run().furthest();
         self.playback.go_to(step);
-        let done = match is_beyond {
-            true => Done::saying(format!(
+        let done = if is_beyond {
+            Done::saying(format!(
                 "step {} is beyond the end of the run, step {}: it is played on to there",
                 HumanCount(step),
                 HumanCount(end)
-            )),
-            false => Done::SILENT,
+            ))
+        } else {
+            Done::SILENT
         };
         Ok(done.going_on(UnderWay::Going))
     }
@@ -58,9 +59,10 @@ impl Player {
     /// # Errors
     /// If the time is negative or not finite.
     pub(super) fn step_at(&self, time_s: f64) -> Result<u64, String> {
-        match time_s >= 0.0 && time_s.is_finite() {
-            true => Ok(Simulation::step_at(self.run().scenario(), time_s)),
-            false => Err("must be a time from 0 s on: the run begins there".to_owned()),
+        if time_s >= 0.0 && time_s.is_finite() {
+            Ok(Simulation::step_at(self.run().scenario(), time_s))
+        } else {
+            Err("must be a time from 0 s on: the run begins there".to_owned())
         }
     }
 
@@ -75,9 +77,10 @@ impl Player {
             let mut now = numbers.at(run);
             bound.holds(|source| now.value(source))
         };
-        Ok(match self.playback.run_until(Box::new(holds)) {
-            true => Done::SILENT.going_on(UnderWay::Playing),
-            false => Done::saying("it holds already, at this step"),
+        Ok(if self.playback.run_until(Box::new(holds)) {
+            Done::SILENT.going_on(UnderWay::Playing)
+        } else {
+            Done::saying("it holds already, at this step")
         })
     }
 
@@ -132,11 +135,12 @@ impl Player {
             return Done::SILENT;
         };
         let wall_s = self.run().simulation().motion().time_step_s / speed;
-        match wall_s > LONG_STEP_S {
-            true => Done::saying(format!(
+        if wall_s > LONG_STEP_S {
+            Done::saying(format!(
                 "a step takes {wall_s:.0} s at this speed; . takes one now"
-            )),
-            false => Done::SILENT,
+            ))
+        } else {
+            Done::SILENT
         }
     }
 

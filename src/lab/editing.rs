@@ -49,18 +49,20 @@ impl Lab {
         self.player.begin(scenario, is_again);
         self.player.playback.set_end(self.work.present().end_s);
         self.scenario_has_changed();
-        let done = match left_at > 0 {
-            true => Done::saying("a new run; the one before is dotted, and u goes back to it"),
-            false => Done::SILENT,
+        let done = if left_at > 0 {
+            Done::saying("a new run; the one before is dotted, and u goes back to it")
+        } else {
+            Done::SILENT
         };
         Ok(self.on_its_way(done))
     }
 
     /// `done`; it says that the command is under way where the run is replayed to the time at which the lab stood.
     pub(super) fn on_its_way(&self, done: Done) -> Done {
-        match self.player.is_replaying() {
-            true => done.going_on(UnderWay::Going),
-            false => done,
+        if self.player.is_replaying() {
+            done.going_on(UnderWay::Going)
+        } else {
+            done
         }
     }
 
@@ -99,9 +101,10 @@ impl Lab {
         let is_edited = acts.iter().any(|act| matches!(act, Act::Edit(_)));
         let acts_at_start_again = is_again && self.player.acts_at_start_again();
         let from_start = is_edited && (acts_at_start_again || self.player.stands_at_start());
-        let step = match from_start {
-            true => 0,
-            false => self.player.playback.step_number(),
+        let step = if from_start {
+            0
+        } else {
+            self.player.playback.step_number()
         };
         let steps = self.player.run().scenario().steps;
         let is_described = acts.iter().all(|act| matches!(act, Act::Describe(_)));
@@ -178,13 +181,12 @@ impl Lab {
     /// Shows the run of `scenario`, which is the present one again, at the step where it was left. `is_of_same_name` tells
     /// whether the run shown until now was opened under the same name: that one then stays as a ghost.
     fn return_to_run(&mut self, scenario: Arc<Scenario>, is_of_same_name: bool) {
-        match is_of_same_name {
-            true => {
-                self.values.suit(&scenario);
-                self.player.go_over_to(scenario);
-                self.scenario_has_changed();
-            }
-            false => self.show_another(scenario),
+        if is_of_same_name {
+            self.values.suit(&scenario);
+            self.player.go_over_to(scenario);
+            self.scenario_has_changed();
+        } else {
+            self.show_another(scenario);
         }
         let run = self.work.present();
         if let Some(push) = run.next_push.clone() {

@@ -192,9 +192,10 @@ impl Lab {
         }
         let here = self.player.playback.step_number();
         let Some(explained) = self.player.explained() else {
-            return match times > 0 {
-                true => Ok(vec![Command::Step(1), first]),
-                false => Err("the run begins here: . takes the first time step".to_owned()),
+            return if times > 0 {
+                Ok(vec![Command::Step(1), first])
+            } else {
+                Err("the run begins here: . takes the first time step".to_owned())
             };
         };
         let count = explained.workings.phases().count().max(1) as i64;

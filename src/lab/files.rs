@@ -219,9 +219,10 @@ fn refusal(error: DestinationError) -> Refusal {
 }
 
 fn is_named(path: &Path) -> Result<(), Refusal> {
-    match path.as_os_str().is_empty() {
-        true => Err(Refusal::Because("the file needs a name".to_owned())),
-        false => Ok(()),
+    if path.as_os_str().is_empty() {
+        Err(Refusal::Because("the file needs a name".to_owned()))
+    } else {
+        Ok(())
     }
 }
 

@@ -233,9 +233,10 @@ impl Player {
     /// something to do.
     pub(super) fn follow_measured(&mut self, clock: &mut dyn FnMut() -> Duration) -> bool {
         let step = self.playback.step_number();
-        let share = match self.is_moving() {
-            true => FOLLOWING,
-            false => CATCHING_UP,
+        let share = if self.is_moving() {
+            FOLLOWING
+        } else {
+            CATCHING_UP
         };
         match &mut self.measured {
             Some(beside) if beside.is_behind(step) => {

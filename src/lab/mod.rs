@@ -154,9 +154,10 @@ impl Lab {
 
     /// The choice of colours, as it is remembered.
     fn colour_choice(&self) -> &'static str {
-        match self.usual_colour == Some(self.view.theme.colour) {
-            true => "auto",
-            false => self.view.theme.colour_choice(),
+        if self.usual_colour == Some(self.view.theme.colour) {
+            "auto"
+        } else {
+            self.view.theme.colour_choice()
         }
     }
 

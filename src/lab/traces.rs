@@ -65,9 +65,10 @@ impl Lab {
 
     pub(super) fn magnify(&mut self, times: f64) -> Answer {
         self.view.magnified = times;
-        Ok(Done::saying(match times > 1.0 {
-            true => format!("values are magnified {times} times; Home shows all of them again"),
-            false => "values are shown in full".to_owned(),
+        Ok(Done::saying(if times > 1.0 {
+            format!("values are magnified {times} times; Home shows all of them again")
+        } else {
+            "values are shown in full".to_owned()
         }))
     }
 

@@ -155,9 +155,10 @@ impl Work {
     ) -> Result<Arc<Scenario>, String> {
         let before = (!acts.is_empty()).then(|| self.history.clone());
         let history = self.change();
-        let begun = match is_again {
-            true => history.begin_again_with(set),
-            false => history.begin_with(set),
+        let begun = if is_again {
+            history.begin_again_with(set)
+        } else {
+            history.begin_with(set)
         };
         let mut begun_with = None;
         let begun = begun.and_then(|begun| {
@@ -190,9 +191,10 @@ impl Work {
         let history = self.change();
         let mut done = None;
         for (index, act) in acts.into_iter().enumerate() {
-            let result = match is_again || index > 0 {
-                true => history.act_again(step, act),
-                false => history.act(step, act),
+            let result = if is_again || index > 0 {
+                history.act_again(step, act)
+            } else {
+                history.act(step, act)
             };
             let is_refused = result.is_err();
             done = Some(result);

@@ -145,9 +145,10 @@ impl Cells {
                 "has no rows below the names of its columns: nothing was measured",
             ));
         }
-        match problems.is_empty() {
-            true => Ok(()),
-            false => Err(problems),
+        if problems.is_empty() {
+            Ok(())
+        } else {
+            Err(problems)
         }
     }
 
@@ -222,8 +223,9 @@ fn fitting(mut texts: Vec<String>, count: usize) -> Result<Vec<String>, Vec<Stri
     while texts.len() > count && texts.last().is_some_and(String::is_empty) {
         texts.pop();
     }
-    match texts.len() == count {
-        true => Ok(texts),
-        false => Err(texts),
+    if texts.len() == count {
+        Ok(texts)
+    } else {
+        Err(texts)
     }
 }

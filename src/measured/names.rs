@@ -71,9 +71,10 @@ pub(super) fn named(cells: &Cells) -> Result<Vec<Named>, Vec<Problem>> {
         .filter(|(_, name)| !is_uncertainty(name));
     let mut columns = Vec::new();
     for (place, name) in values {
-        let is = match is_series {
-            true => of_series(name),
-            false => of_table(name),
+        let is = if is_series {
+            of_series(name)
+        } else {
+            of_table(name)
         };
         let uncertainty = with_word(name, UNCERTAINTY);
         match is {
@@ -94,9 +95,10 @@ pub(super) fn named(cells: &Cells) -> Result<Vec<Named>, Vec<Problem>> {
     }
     columns.retain(|column| !matches!(column.is, Is::Count));
     let place = |problem| at_line(cells.line_of_names, problem);
-    match problems.is_empty() {
-        true => Ok(columns),
-        false => Err(problems.into_iter().map(place).collect()),
+    if problems.is_empty() {
+        Ok(columns)
+    } else {
+        Err(problems.into_iter().map(place).collect())
     }
 }
 
@@ -191,9 +193,10 @@ fn unknown<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Stri
         return told;
     }
     let is_time = ["t", "time", "zeit"].contains(&stem(name).to_lowercase().as_str());
-    match is_time {
-        true => format!("is no column that gyrolab knows: did you mean {TIME}?"),
-        false => format!("is no column that gyrolab knows: {}", nearest(name, known)),
+    if is_time {
+        format!("is no column that gyrolab knows: did you mean {TIME}?")
+    } else {
+        format!("is no column that gyrolab knows: {}", nearest(name, known))
     }
 }
 

@@ -177,9 +177,10 @@ impl<'a> Numbers<'a> {
             return None;
         }
         let has_comma = text.contains(',');
-        let written = match has_comma && self.cells.separator != ',' && !text.contains('.') {
-            true => text.replacen(',', ".", 1),
-            false => text.to_owned(),
+        let written = if has_comma && self.cells.separator != ',' && !text.contains('.') {
+            text.replacen(',', ".", 1)
+        } else {
+            text.to_owned()
         };
         let number = match written.parse::<f64>() {
             Ok(number) if number.is_finite() => number,
@@ -189,13 +190,10 @@ impl<'a> Numbers<'a> {
                 return None;
             }
             Err(_) => {
-                let rule = match has_comma {
-                    true => {
-                        "must be a number with one decimal sign, a point (1.5), and nothing between its thousands"
-                    }
-                    false => {
-                        "must be a number, without its unit; a value that is missing is an empty place"
-                    }
+                let rule = if has_comma {
+                    "must be a number with one decimal sign, a point (1.5), and nothing between its thousands"
+                } else {
+                    "must be a number, without its unit; a value that is missing is an empty place"
                 };
                 self.refuse(line, name, text, rule);
                 return None;

@@ -39,9 +39,10 @@ pub fn places(series: &Series, traced: &Vector3<f64>) -> Vec<Place> {
             continue;
         };
         let (values, sigmas) = ([first.value, other.value], [first.sigma, other.sigma]);
-        let (at, sigmas) = match is_polar {
-            true => on_axle(traced.z, values, sigmas),
-            false => (values, sigmas),
+        let (at, sigmas) = if is_polar {
+            on_axle(traced.z, values, sigmas)
+        } else {
+            (values, sigmas)
         };
         places.push(Place {
             time_s: series.times_s[first.row],

@@ -68,9 +68,10 @@ pub fn read(origin: &str, text: &str) -> Result<Measured, Problems> {
         scenario_instead(origin, text).unwrap_or(refused)
     })?;
     let mut numbers = Numbers::of(&cells);
-    let data = match columns.iter().any(|column| column.name == TIME) {
-        true => Data::Series(numbers.series(&columns)),
-        false => Data::Table(numbers.table(&columns)),
+    let data = if columns.iter().any(|column| column.name == TIME) {
+        Data::Series(numbers.series(&columns))
+    } else {
+        Data::Table(numbers.table(&columns))
     };
     let measured = Measured {
         origin: origin.to_owned(),

@@ -40,9 +40,10 @@ pub fn residuals(quantity: Option<&Quantity>, points: &[Point], model: &[f64]) -
     let pairs = points.iter().zip(model).enumerate();
     let all = pairs.map(|(index, (point, &model))| Residual {
         row: point.row,
-        measured: match is_direction {
-            true => point.value + common.unwrap_or_else(|| shift(index)),
-            false => point.value,
+        measured: if is_direction {
+            point.value + common.unwrap_or_else(|| shift(index))
+        } else {
+            point.value
         },
         sigma: point.sigma,
         model,

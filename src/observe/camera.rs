@@ -205,9 +205,10 @@ mod tests {
             assert!(READ.contains(&right.hypot(up)), "{azimuth}");
             assert_eq!(aside.aside_of(&axle), aside);
             assert_eq!(aside.pitch_deg, camera.pitch_deg);
-            match aside == camera {
-                true => kept += 1,
-                false => turned += 1,
+            if aside == camera {
+                kept += 1;
+            } else {
+                turned += 1;
             }
         }
         assert!(turned > 60 && kept > 120, "{turned} {kept}");

@@ -148,21 +148,16 @@ impl Playback {
 
     /// Plays `owed_s` of simulated time, or until `enough` returns true. Returns why the playback stopped, if it did.
     fn play(&mut self, owed_s: f64, wall: Duration, enough: impl FnMut() -> bool) -> Option<Halt> {
-        let end = match self.hurries {
-            true => {
-                self.run
-                    .play(f64::INFINITY, self.stop, enough, |_| false)
-                    .end
-            }
-            false => {
-                let mut until = self.until.as_mut();
-                let is_fulfilled =
-                    |run: &mut LiveRun| until.as_mut().is_some_and(|until| until(run));
-                let Played { stepped_s, end } =
-                    self.run.play(owed_s, self.stop, enough, is_fulfilled);
-                self.pace.spend(stepped_s, wall, end == PlayEnd::CutShort);
-                end
-            }
+        let end = if self.hurries {
+            self.run
+                .play(f64::INFINITY, self.stop, enough, |_| false)
+                .end
+        } else {
+            let mut until = self.until.as_mut();
+            let is_fulfilled = |run: &mut LiveRun| until.as_mut().is_some_and(|until| until(run));
+            let Played { stepped_s, end } = self.run.play(owed_s, self.stop, enough, is_fulfilled);
+            self.pace.spend(stepped_s, wall, end == PlayEnd::CutShort);
+            end
         };
         let halt = match end {
             PlayEnd::InTime | PlayEnd::CutShort => return None,

@@ -108,9 +108,10 @@ impl Strip {
     pub fn blocks(&self, recording: &Recording) -> Blocks {
         let column = |time_s: f64| self.place(time_s.max(self.begin_s));
         let place = |block: Block| {
-            let last = match block.end_s <= self.end_s() {
-                true => self.place(block.end_s).min(self.columns.saturating_sub(1)),
-                false => self.place(block.end_s),
+            let last = if block.end_s <= self.end_s() {
+                self.place(block.end_s).min(self.columns.saturating_sub(1))
+            } else {
+                self.place(block.end_s)
             };
             (block, column(block.begin_s).min(last), last)
         };

@@ -178,16 +178,18 @@ impl Scheme for Report {
     }
 
     fn step(&mut self, dt: f64, state: &mut State) {
-        match self.damping.is_some() {
-            true => self.rub(dt, state, &mut Nobody),
-            false => self.advance(dt, state, &mut Nobody),
+        if self.damping.is_some() {
+            self.rub(dt, state, &mut Nobody);
+        } else {
+            self.advance(dt, state, &mut Nobody);
         }
     }
 
     fn explain(&mut self, dt: f64, state: &mut State, phases: &mut Vec<Phase>) {
-        match self.damping.is_some() {
-            true => self.rub(dt, state, phases),
-            false => self.advance(dt, state, phases),
+        if self.damping.is_some() {
+            self.rub(dt, state, phases);
+        } else {
+            self.advance(dt, state, phases);
         }
     }
 

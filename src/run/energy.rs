@@ -43,9 +43,10 @@ impl EnergyScale {
         let body = &scenario.body.mechanics;
         let kinetic = observables::kinetic_energy(body, &scenario.start);
         let weight = scenario.motion.gravity.abs() * moment(body);
-        let (size, unit) = match weight > 0.0 && weight >= LEAST_PART * kinetic {
-            true => (weight, EnergyUnit::Weight),
-            false => (kinetic, EnergyUnit::KineticAtStart),
+        let (size, unit) = if weight > 0.0 && weight >= LEAST_PART * kinetic {
+            (weight, EnergyUnit::Weight)
+        } else {
+            (kinetic, EnergyUnit::KineticAtStart)
         };
         (size > 0.0 && size.is_finite()).then_some(Self { size, unit })
     }
@@ -58,8 +59,9 @@ fn moment(body: &Body) -> f64 {
         .points()
         .iter()
         .map(|point| point.mass * point.at.norm());
-    match moment > ROUNDING * parts.sum::<f64>() {
-        true => moment,
-        false => 0.0,
+    if moment > ROUNDING * parts.sum::<f64>() {
+        moment
+    } else {
+        0.0
     }
 }

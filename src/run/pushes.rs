@@ -70,9 +70,10 @@ fn factor(push: &Push, counting: Counting, stretch: &Stretch) -> f64 {
     match (push.window, counting) {
         (Window::Steps { first, count }, Counting::Steps) => {
             let nth = (stretch.step + 1).saturating_sub(first); // 1 on its first step, 0 before
-            match push.accumulates {
-                true => nth.min(count) as f64,
-                false => f64::from(nth >= 1 && nth <= count),
+            if push.accumulates {
+                nth.min(count) as f64
+            } else {
+                f64::from(nth >= 1 && nth <= count)
             }
         }
         (Window::Steps { first, count }, Counting::Seconds { written_for_s })

@@ -386,9 +386,10 @@ fn step_of_edit(scenario: &Scenario, index: usize) -> u64 {
 
 /// How the step counts of pushes are read: as steps, unless they were written for another time step.
 fn counting(scenario: &Scenario) -> Counting {
-    match scenario.written_for_s == scenario.motion.time_step_s {
-        true => Counting::Steps,
-        false => Counting::in_seconds(scenario),
+    if scenario.written_for_s == scenario.motion.time_step_s {
+        Counting::Steps
+    } else {
+        Counting::in_seconds(scenario)
     }
 }
 
@@ -397,8 +398,9 @@ fn safe_below(scenario: &Scenario, gravity: f64) -> f64 {
     const EDGE: f64 = 1e300;
     let body = &scenario.body.mechanics;
     let weight = gravity.abs() * body.first_moment().norm();
-    match weight < EDGE && scenario.arm_m() < EDGE {
-        true => EDGE / body.inverse_inertia().trace().max(1.0),
-        false => 0.0,
+    if weight < EDGE && scenario.arm_m() < EDGE {
+        EDGE / body.inverse_inertia().trace().max(1.0)
+    } else {
+        0.0
     }
 }

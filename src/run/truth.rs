@@ -103,9 +103,10 @@ impl Truth {
         self.end_s = self.end_of_piece(begin_s);
         // What is done where the piece begins, as at the start, is in force on all of it.
         if self.loads_from(begin_s) != self.loads {
-            let state = match begin_s == 0.0 {
-                true => self.scenario.start,
-                false => self.piece.at(begin_s),
+            let state = if begin_s == 0.0 {
+                self.scenario.start
+            } else {
+                self.piece.at(begin_s)
             };
             self.begin_piece(state);
         }

@@ -87,9 +87,10 @@ pub fn names(table: &toml::Table, found: &mut Found) {
         let Some(name) = name.filter(|name| body.point(name).is_none()) else {
             continue;
         };
-        match found.is_full() {
-            true => found.more += 1,
-            false => found.add_all(body.find(&key, name).err().unwrap_or_default()),
+        if found.is_full() {
+            found.more += 1;
+        } else {
+            found.add_all(body.find(&key, name).err().unwrap_or_default());
         }
     }
 }

@@ -222,12 +222,13 @@ impl Document {
     /// What is wrong with the scenario, or cannot be held.
     pub fn set_time_step(&mut self, time_step_s: f64) -> Result<(), Problems> {
         let file = rescale::at_time_step(&self.scenario()?.file, time_step_s);
-        let file = file.map_err(|mut problem| match problem.key == "motion.time_step_s" {
-            true => {
+        let file = file.map_err(|mut problem| {
+            if problem.key == "motion.time_step_s" {
                 problem.place = Some(format!("--time-step {}", shortest(time_step_s)));
                 Problems::one(self.origin.as_str(), problem)
+            } else {
+                self.placed(vec![problem])
             }
-            false => self.placed(vec![problem]),
         })?;
         *self = Self::from_file(&self.origin, &file)?;
         Ok(())
@@ -359,9 +360,10 @@ fn set_place(argument: &str) -> String {
 
 fn no_preset(name: &str) -> Problems {
     let near = nearest(name, presets::PRESETS.iter().map(|preset| preset.name));
-    let hint = match Path::new(name).exists() {
-        true => format!("for the file of that name write ./{}", printable(name)),
-        false => "a file's name holds a / or ends in .toml or .csv".to_owned(),
+    let hint = if Path::new(name).exists() {
+        format!("for the file of that name write ./{}", printable(name))
+    } else {
+        "a file's name holds a / or ends in .toml or .csv".to_owned()
     };
     let rule = format!("no preset of that name: {near} ({hint})");
     Problems::one(name, Problem::at("", rule))

@@ -17,9 +17,10 @@ pub(super) fn names(key: &str) -> Result<Vec<&str>, Problem> {
         let rule = format!("leads deeper than any key: at most {DEEPEST} names and numbers");
         return Err(Problem::at(key, rule));
     }
-    match names.iter().all(|name| !name.is_empty()) {
-        true => Ok(names),
-        false => Err(Problem::at(key, NOT_DOTTED)),
+    if names.iter().all(|name| !name.is_empty()) {
+        Ok(names)
+    } else {
+        Err(Problem::at(key, NOT_DOTTED))
     }
 }
 

@@ -54,9 +54,10 @@ impl<'a> Progress<'a> {
             motion: motion(&file.motion),
             steps: file.motion.steps,
             pushes: pushes.clone(),
-            written: match file.edit.is_empty() {
-                true => PushFiles::default(),
-                false => file.push.iter().cloned().collect(),
+            written: if file.edit.is_empty() {
+                PushFiles::default()
+            } else {
+                file.push.iter().cloned().collect()
             },
             last: 0,
         }

@@ -166,9 +166,10 @@ pub(crate) fn described<'a>(
 /// The file of `document`, which has been held against the keys.
 fn checked(document: &Document) -> Result<ScenarioFile, Problems> {
     let problems = keys::check(document.table());
-    match problems.list.is_empty() {
-        true => document.file(),
-        false => Err(document.placed(problems)),
+    if problems.list.is_empty() {
+        document.file()
+    } else {
+        Err(document.placed(problems))
     }
 }
 

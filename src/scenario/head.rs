@@ -117,9 +117,10 @@ pub(super) fn read_text(path: &Path) -> Result<String, Problem> {
         reader.read_to_end(&mut text).map_err(cannot)?; // of a FIFO no more than the limit
     }
     if length > LONGEST || text.len() as u64 > LONGEST {
-        let how_long = match length > LONGEST {
-            true => format!("{length} bytes long, longer"),
-            false => "longer".to_owned(),
+        let how_long = if length > LONGEST {
+            format!("{length} bytes long, longer")
+        } else {
+            "longer".to_owned()
         };
         let most = LONGEST >> 20;
         return Err(whole(format!(

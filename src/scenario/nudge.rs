@@ -47,12 +47,15 @@ fn hundredth(size: f64) -> Option<f64> {
 /// What is wrong with it, to be read after the name of the value.
 pub fn typed(text: &str, unit: &str) -> Result<f64, String> {
     let text = text.trim();
-    let wrong = || match text.is_empty() {
-        true => "must be a number".to_owned(),
-        false => format!(
-            "must be a number, not \"{}\"",
-            crate::text::printable::brief(text, 20)
-        ),
+    let wrong = || {
+        if text.is_empty() {
+            "must be a number".to_owned()
+        } else {
+            format!(
+                "must be a number, not \"{}\"",
+                crate::text::printable::brief(text, 20)
+            )
+        }
     };
     let ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
     let read = |end: usize| Some((text[..end].trim_end().parse().ok()?, text[end..].trim()));

@@ -21,9 +21,10 @@ pub(super) fn body(file: &BodyFile) -> Result<Body, Found> {
     let rim = file.rim.as_ref().map_or(0, |rim| rim.points);
     let count = rim + file.point.len() + OF_PART * file.part.len();
     if count > usize::try_from(MOST_POINTS).unwrap_or(usize::MAX) {
-        let of_parts = match file.part.is_empty() {
-            true => "",
-            false => ", six for each part",
+        let of_parts = if file.part.is_empty() {
+            ""
+        } else {
+            ", six for each part"
         };
         let rule = format!("has {count} points{of_parts}; at most {MOST_POINTS} are allowed");
         return Err(vec![Problem::at("body", rule)].into());
@@ -136,9 +137,10 @@ pub(super) fn pushes(files: &[PushFile], body: &Body) -> Result<Pushes, Found> {
         push.map_err(|refused| found.add_all(refused)).ok()
     });
     let pushes = pushes.collect();
-    match found.list.is_empty() {
-        true => Ok(pushes),
-        false => Err(found),
+    if found.list.is_empty() {
+        Ok(pushes)
+    } else {
+        Err(found)
     }
 }
 

@@ -70,9 +70,10 @@ pub struct Found {
 impl Found {
     /// Adds a problem; beyond the first hundred they are only counted.
     pub fn add(&mut self, problem: impl FnOnce() -> Problem) {
-        match self.list.len() < MOST_TOLD {
-            true => self.list.push(problem()),
-            false => self.more += 1,
+        if self.list.len() < MOST_TOLD {
+            self.list.push(problem());
+        } else {
+            self.more += 1;
         }
     }
 

@@ -198,12 +198,13 @@ fn tube(file: &PartFile) -> Result<Shape, Problem> {
 
 fn not_negative(name: &str, numbers: Option<[f64; 3]>) -> Result<Vector3<f64>, Problem> {
     let numbers = Vector3::from(numbers.unwrap_or_default());
-    match numbers.min() < 0.0 {
-        true => Err(Problem::with_value(
+    if numbers.min() < 0.0 {
+        Err(Problem::with_value(
             name,
             &vector(&numbers),
             "must hold no negative number",
-        )),
-        false => Ok(numbers),
+        ))
+    } else {
+        Ok(numbers)
     }
 }

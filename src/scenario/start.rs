@@ -152,9 +152,10 @@ fn steady(
         up.z
     };
     let load = gravity * top.first_moment;
-    let slow = match load == 0.0 {
-        true => Some(0.0),
-        false => steady_precession(top.across * cosine, top.along * spin, load).0,
+    let slow = if load == 0.0 {
+        Some(0.0)
+    } else {
+        steady_precession(top.across * cosine, top.along * spin, load).0
     };
     let precession = slow.filter(|slow| slow.is_finite());
     precession

@@ -79,9 +79,10 @@ pub(super) fn mistake(value: &str, error: &toml::de::Error) -> Option<String> {
     }
     let from = error.span().map_or(0, |span| span.start);
     let rest = value.get(from..).unwrap_or_default();
-    let rest = match rest.is_empty() {
-        true => "its end".to_owned(),
-        false => format!("\"{}\"", brief(rest, 24)),
+    let rest = if rest.is_empty() {
+        "its end".to_owned()
+    } else {
+        format!("\"{}\"", brief(rest, 24))
     };
     let message = brief(error.message(), 120);
     Some(format!("is no TOML: at {rest}: {message}"))

@@ -74,15 +74,17 @@ fn expression(
     is_condition: bool,
     find: impl Fn(&str) -> Result<(), String>,
 ) -> Result<Expression, String> {
-    let read = match is_condition {
-        true => Expression::condition(text),
-        false => Expression::parse(text),
+    let read = if is_condition {
+        Expression::condition(text)
+    } else {
+        Expression::parse(text)
     };
     let read = read.map_err(|fault| fault.to_string())?;
     read.bind(find).map_err(|fault| fault.to_string())?;
-    match read.is_condition() && !is_condition {
-        true => Err("compares: a number must stand here".to_owned()),
-        false => Ok(read),
+    if read.is_condition() && !is_condition {
+        Err("compares: a number must stand here".to_owned())
+    } else {
+        Ok(read)
     }
 }
 

@@ -107,9 +107,10 @@ fn room_for(predict: &Predict, lab: &Lab, kept: &Kept) -> String {
 fn blanked(compare: &Compare, lab: &Lab, kept: &Kept) -> String {
     compare.text.filled(|expression, format| {
         let is_answer = |name| [WITH, PREDICTION].contains(&name);
-        match expression.names().any(is_answer) {
-            true => BLANK.to_owned(),
-            false => format.written(names::value(expression, lab, kept)),
+        if expression.names().any(is_answer) {
+            BLANK.to_owned()
+        } else {
+            format.written(names::value(expression, lab, kept))
         }
     })
 }

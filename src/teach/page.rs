@@ -51,9 +51,10 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
             sheet.paragraphs.push(about);
         }
     }
-    let keys = match shipped::LESSONS.is_empty() && names.is_empty() {
-        true => "There is no lesson. gyrolab lesson FILE.md opens one of your own.",
-        false => "Up, Down choose; Enter opens; L goes back.",
+    let keys = if shipped::LESSONS.is_empty() && names.is_empty() {
+        "There is no lesson. gyrolab lesson FILE.md opens one of your own."
+    } else {
+        "Up, Down choose; Enter opens; L goes back."
     };
     sheet.paragraphs.push(Paragraph::new(Kind::Hint, keys));
     sheet
@@ -125,9 +126,10 @@ impl Writer<'_> {
                 Block::Check(check) => {
                     let is_reached = self.taken.has_reached(check.line);
                     let state = if is_reached { "done" } else { "not yet" };
-                    let text = match check.goal.is_empty() {
-                        true => state.to_owned(),
-                        false => format!("{state}: {}", check.goal),
+                    let text = if check.goal.is_empty() {
+                        state.to_owned()
+                    } else {
+                        format!("{state}: {}", check.goal)
                     };
                     self.add(Paragraph::new(Kind::Goal { is_reached }, text));
                     if !is_reached && self.taken.shows_hints() && !check.hint.is_empty() {

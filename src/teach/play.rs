@@ -170,15 +170,16 @@ pub fn check(lesson: &Lesson, lab: Lab, go_on: GoOn<'_>) -> Result<Played, Probl
             break; // the pages to come stand on it
         }
     }
-    match found.list.is_empty() {
-        true => Ok(Played {
+    if found.list.is_empty() {
+        Ok(Played {
             unstated: unstated.list,
-        }),
-        false => Err(Problems {
+        })
+    } else {
+        Err(Problems {
             origin: lesson.origin.clone(),
             list: found.list,
             more: found.more,
-        }),
+        })
     }
 }
 

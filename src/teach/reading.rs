@@ -228,9 +228,10 @@ impl<'a> Assembly<'a> {
         }
         if !WORDS.contains(&word) {
             let near = nearest(word, WORDS.into_iter().chain(LANGUAGES));
-            let also = match near.starts_with("did you mean") {
-                true => format!(" (shown as they are: {})", listed(LANGUAGES.into_iter())),
-                false => String::new(),
+            let also = if near.starts_with("did you mean") {
+                format!(" (shown as they are: {})", listed(LANGUAGES.into_iter()))
+            } else {
+                String::new()
             };
             let rule = format!("is no block of a lesson: {near}{also}");
             return self.refuse(line, Problem::at(word, rule));

@@ -40,9 +40,10 @@ impl Lesson {
             let own = page.lab().into_iter();
             let task = page.task().filter(|_| page.number < number);
             for setup in own.chain(task) {
-                let is_hiding = match page.number == number {
-                    true => !predictions.are_locked_on(page),
-                    false => page.predicts().next().is_none(),
+                let is_hiding = if page.number == number {
+                    !predictions.are_locked_on(page)
+                } else {
+                    page.predicts().next().is_none()
                 };
                 setups.push(Stage {
                     lesson: self,
@@ -107,9 +108,10 @@ impl Stage<'_> {
     /// The commands, for the lab as it stands. Where a run is opened, what the lab shows otherwise than at first is put
     /// back before, so that the page looks the same whatever was done before.
     pub fn commands(&self, lab: &Lab) -> Commands {
-        let put_back = match self.setup.opens() {
-            true => put_back(lab),
-            false => Vec::new(),
+        let put_back = if self.setup.opens() {
+            put_back(lab)
+        } else {
+            Vec::new()
         };
         let line = Some(self.setup.line);
         let put_back = put_back.into_iter().map(|command| Placed { command, line });

@@ -156,9 +156,10 @@ impl<'a> Walk<'a, '_> {
         let is_of_lessons = WORDS.contains(&word);
         if !is_alone {
             let rule = "stands in a list or a quotation: a block begins at the edge of the page";
-            return match is_of_lessons {
-                true => Err(on_line(line, Problem::at(word, rule))),
-                false => Ok(()),
+            return if is_of_lessons {
+                Err(on_line(line, Problem::at(word, rule)))
+            } else {
+                Ok(())
             };
         }
         let block = &self.text[range.clone()];

@@ -187,9 +187,10 @@ impl Taken {
         for stage in &stages[..before] {
             stage.carry_out(lab, &mut self.place.kept, |_, _| {
                 is_late |= begin.elapsed() > LONGEST;
-                match is_late {
-                    true => ControlFlow::Break(()),
-                    false => ControlFlow::Continue(()),
+                if is_late {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
                 }
             })?;
             if is_late {

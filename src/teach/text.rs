@@ -74,9 +74,10 @@ impl Format {
         };
         let digits = digits.parse().ok().filter(|digits| *digits <= MOST_DIGITS);
         let digits = digits.ok_or_else(wrong)?;
-        Ok(match is_exponent {
-            true => Self::Exponent(digits),
-            false => Self::Fixed(digits),
+        Ok(if is_exponent {
+            Self::Exponent(digits)
+        } else {
+            Self::Fixed(digits)
         })
     }
 }
@@ -124,9 +125,10 @@ impl Text {
         }
         parts.push(Piece::Plain(source[plain..].to_owned()));
         parts.retain(|part| !matches!(part, Piece::Plain(text) if text.is_empty()));
-        match problems.is_empty() {
-            true => Ok(Self { line, parts }),
-            false => Err(problems),
+        if problems.is_empty() {
+            Ok(Self { line, parts })
+        } else {
+            Err(problems)
         }
     }
 

@@ -30,17 +30,20 @@ pub fn without_minus_zero(text: String) -> String {
 /// As [`fixed`], with its sign: `+0.1160`, `+0.0000`.
 pub fn signed(number: f64, decimals: usize) -> String {
     let text = fixed(number, decimals);
-    match number.is_finite() && !text.starts_with('-') {
-        true => format!("+{text}"),
-        false => text,
+    if number.is_finite() && !text.starts_with('-') {
+        format!("+{text}")
+    } else {
+        text
     }
 }
 
 /// `number` with an exponent and `digits` digits after the point: `2.4e-9`.
 pub fn exponent(number: f64, digits: usize) -> String {
-    match number.is_finite() {
-        true => format!("{:.digits$e}", number + 0.0), // adding 0 makes 0 of -0
-        false => NONE.to_owned(),
+    if number.is_finite() {
+        format!("{:.digits$e}", number + 0.0)
+    } else {
+        // adding 0 makes 0 of -0
+        NONE.to_owned()
     }
 }
 
@@ -50,9 +53,10 @@ pub fn signed_exponent(number: f64, digits: usize) -> String {
 }
 
 fn with_sign(number: f64, text: String) -> String {
-    match number.is_finite() && number.is_sign_positive() {
-        true => format!("+{text}"),
-        false => text,
+    if number.is_finite() && number.is_sign_positive() {
+        format!("+{text}")
+    } else {
+        text
     }
 }
 

@@ -39,9 +39,10 @@ fn escaped(text: &str, is_allowed: impl Fn(char) -> bool) -> Cow<'_, str> {
     }
     let mut safe = String::with_capacity(text.len() + 16);
     for c in text.chars() {
-        match is_safe(c) {
-            true => safe.push(c),
-            false => safe.extend(c.escape_default()),
+        if is_safe(c) {
+            safe.push(c);
+        } else {
+            safe.extend(c.escape_default());
         }
     }
     Cow::Owned(safe)

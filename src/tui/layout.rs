@@ -66,9 +66,10 @@ impl Layout {
         let title = cut(&mut rest, area.height >= 3, false);
         let keys = cut(&mut rest, keys && area.height >= 7, true);
         let hint = cut(&mut rest, area.height >= 6, true);
-        let (lines, has_health) = match area.height >= TWO_LINES_FROM {
-            true => (1 + u16::from(area.width < ONE_LINE_FROM), true),
-            false => below::on_low_screen(said, area.height, view.hides(Part::Health)),
+        let (lines, has_health) = if area.height >= TWO_LINES_FROM {
+            (1 + u16::from(area.width < ONE_LINE_FROM), true)
+        } else {
+            below::on_low_screen(said, area.height, view.hides(Part::Health))
         };
         let hint = (1..lines).fold(hint, |hint, _| hint.union(cut(&mut rest, true, true)));
         let health = cut(&mut rest, has_health, true);
@@ -280,9 +281,10 @@ fn columns(area: Rect, rows: &[&PaneRow]) -> Vec<(Pane, Rect)> {
     let rounds = of(Width::Round).count() as u16;
     let pair: u16 = of(Width::Round).take(2).map(|row| row.least.1).sum();
     let is_stacked = rounds > 1 && area.height >= pair;
-    let (in_a_column, widest) = match is_stacked {
-        true => (2, area.height * 5 / 4),
-        false => (1, 2 * area.height),
+    let (in_a_column, widest) = if is_stacked {
+        (2, area.height * 5 / 4)
+    } else {
+        (1, 2 * area.height)
     };
     let round_columns = rounds.div_ceil(in_a_column);
     let wides = of(Width::Wide).count() as u16;

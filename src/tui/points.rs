@@ -152,9 +152,10 @@ impl Points {
                 if is_shown {
                     target.set_char(symbol).set_style(theme.style(cell.role));
                 }
-                to_be_seen = match is_shown && !is_free {
-                    true => SEEN,
-                    false => to_be_seen.saturating_sub(1),
+                to_be_seen = if is_shown && !is_free {
+                    SEEN
+                } else {
+                    to_be_seen.saturating_sub(1)
                 };
             }
         }

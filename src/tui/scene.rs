@@ -159,9 +159,10 @@ impl Scene {
             Stroke::Heavy | Stroke::Thick => &[1.0],
             Stroke::Thin | Stroke::Dotted(_) => &[],
         };
-        let across = match dx.abs() > dy.abs() {
-            true => (0.0, 1.0),
-            false => (1.0, 0.0),
+        let across = if dx.abs() > dy.abs() {
+            (0.0, 1.0)
+        } else {
+            (1.0, 0.0)
         };
         for dot in (0..=length as u32).step_by(every as usize) {
             let share = f64::from(dot) / length.max(1.0);
@@ -245,9 +246,10 @@ impl Scene {
     pub fn beyond(&self, from: &Vector3<f64>, tip: &Vector3<f64>) -> Vector3<f64> {
         let (begin, end) = (self.dot(from), self.dot(tip));
         let length = (end.0 - begin.0).hypot(end.1 - begin.1);
-        match length < SHORTEST {
-            true => *tip,
-            false => tip + (tip - from) * (self.in_cell.1 as f64 / length),
+        if length < SHORTEST {
+            *tip
+        } else {
+            tip + (tip - from) * (self.in_cell.1 as f64 / length)
         }
     }
 

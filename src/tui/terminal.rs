@@ -265,9 +265,10 @@ fn take_over() -> io::Result<()> {
         Hide,
         EnableBracketedPaste
     )?;
-    match MOUSE.load(Ordering::SeqCst) {
-        true => stdout()?.write_all(MOUSE_ON),
-        false => Ok(()),
+    if MOUSE.load(Ordering::SeqCst) {
+        stdout()?.write_all(MOUSE_ON)
+    } else {
+        Ok(())
     }
 }
 

@@ -207,9 +207,10 @@ impl Trail {
 
 /// The longest line between two places of the last turn, recent or not, on a sheet of `width` and `height` dots.
 pub fn longest_line((width, height): (usize, usize), is_recent: bool) -> f64 {
-    match is_recent {
-        true => LONGEST_RECENT_LINE * width.min(height) as f64,
-        false => LONGEST_LINE,
+    if is_recent {
+        LONGEST_RECENT_LINE * width.min(height) as f64
+    } else {
+        LONGEST_LINE
     }
 }
 

@@ -51,9 +51,10 @@ impl Original {
         let is_short = (1..=LONGEST_NAME).contains(&file.chars().count());
         Self {
             scenario: Arc::clone(opened),
-            name: match is_short {
-                true => file,
-                false => "what was opened".to_owned(),
+            name: if is_short {
+                file
+            } else {
+                "what was opened".to_owned()
             },
         }
     }

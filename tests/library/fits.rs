@@ -260,9 +260,10 @@ fn heidelberg_one_weight_and_two_differ() {
         .text;
     let without: String = text
         .lines()
-        .map(|line| match line.starts_with('#') {
-            true => format!("{line}\n"),
-            false => {
+        .map(|line| {
+            if line.starts_with('#') {
+                format!("{line}\n")
+            } else {
                 let mut cells: Vec<&str> = line.split(',').collect();
                 cells.remove(3);
                 cells.join(",") + "\n"

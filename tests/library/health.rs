@@ -217,15 +217,16 @@ fn a_scheme_is_advised_at_a_time_step_at_which_it_holds() {
 
 /// A wheel or a few points anywhere, spinning, with a push or none.
 fn random(dice: &mut Dice) -> Scenario {
-    let body = match dice.unit() < 0.6 {
-        true => format!(
+    let body = if dice.unit() < 0.6 {
+        format!(
             "[body.rim]\npoints = {}\nradius_m = {}\nheight_m = {}\npoint_mass_kg = {}\n",
             dice.whole(3, 12),
             dice.between(0.3, 1.0),
             dice.between(-0.8, 1.2),
             dice.scale(0.1, 1.0)
-        ),
-        false => (0..dice.whole(3, 5))
+        )
+    } else {
+        (0..dice.whole(3, 5))
             .map(|j| {
                 let at = dice.vector();
                 format!(
@@ -236,18 +237,19 @@ fn random(dice: &mut Dice) -> Scenario {
                     dice.between(0.1, 1.0)
                 )
             })
-            .collect(),
+            .collect()
     };
     let spin = dice.vector() * 10.0;
     let momentum = format!("[{}, {}, {}]", spin.x, spin.y, dice.scale(1.0, 200.0));
     let dt = dice.scale(0.001, 0.2);
-    let push = match dice.unit() < 0.5 {
-        true => format!(
+    let push = if dice.unit() < 0.5 {
+        format!(
             "[[push]]\npoint = 'top'\nforce_N = [{}, 0, -20]\nfrom_s = {}\nfor_s = 0.5\n",
             dice.between(-20.0, 20.0),
             dice.between(0.0, 3.0)
-        ),
-        false => String::new(),
+        )
+    } else {
+        String::new()
     };
     parse(&format!(
         "title = 'x'\n{body}[[body.point]]\nname = 'top'\nat_m = [0, 0, 1.2]\nmass_kg = 0.1\n[start]\ntilt_deg = {}\nmomentum_Js = {momentum}\nmomentum_frame = 'body'\n[motion]\nscheme = '{}'\ntime_step_s = {dt}\nsteps = {}\n{push}",

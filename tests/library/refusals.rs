@@ -294,11 +294,12 @@ fn check_refusal(text: &str, line: usize, begin: &str, words: &str) -> Result<()
         .lines()
         .any(|one| one.starts_with(&format!("{place}{begin}")));
     let steering = message.chars().any(|c| c != '\n' && is_steering(c));
-    match named && message.contains(words) && !steering {
-        true => Ok(()),
-        false => Err(format!(
+    if named && message.contains(words) && !steering {
+        Ok(())
+    } else {
+        Err(format!(
             "expected \"{place}{begin}...{words}\", got:\n{message}\n"
-        )),
+        ))
     }
 }
 

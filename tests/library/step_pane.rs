@@ -240,14 +240,10 @@ fn the_numbers_printed_are_the_records() {
                     .collect::<Vec<f64>>()
             })
             .collect();
-        let new = match size == LARGE {
-            true => shown[3..6].to_vec(),
-            false => shown[3..6].to_vec(),
-        };
-        for (shown, exact) in new.iter().zip(sample.position.iter()) {
+        for (shown, exact) in shown[3..6].iter().zip(sample.position.iter()) {
             assert!(
                 (shown - exact).abs() < 1e-4,
-                "{new:?} {:?}",
+                "{shown:?} {:?}",
                 sample.position
             );
         }

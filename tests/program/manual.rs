@@ -84,13 +84,13 @@ fn no_line_of_a_page_or_a_topic_is_wider_than_80_columns() {
                 _ => {
                     let line = line.replace("\\&", "").replace("\\fB", "");
                     let line = line.replace("\\fR", "").replace("\\-", "-");
-                    let width = match is_kept {
-                        true => indent + line.chars().count(),
+                    let width = if is_kept {
+                        indent + line.chars().count()
+                    } else {
                         // Lines are broken between words: of an explanation, at 14 columns.
-                        false => {
-                            let words = line.split(' ');
-                            14 + words.map(|word| word.chars().count()).max().unwrap_or(0)
-                        }
+
+                        let words = line.split(' ');
+                        14 + words.map(|word| word.chars().count()).max().unwrap_or(0)
                     };
                     lines_kept += usize::from(is_kept);
                     assert!(width <= 80, "{name}: {line}");

@@ -31,14 +31,16 @@ impl Equations {
         let mut swing = row.after(time, &self.pull);
         for _ in 0..16 {
             let (climb, bend) = (swing.climb(), swing.bend(&self.pull));
-            match (climb > 0.0) == is_top {
-                true => low = time,
-                false => high = time,
+            if (climb > 0.0) == is_top {
+                low = time;
+            } else {
+                high = time;
             }
             let next = time - climb / bend;
-            let next = match next >= low && next <= high {
-                true => next,
-                false => 0.5 * (low + high),
+            let next = if next >= low && next <= high {
+                next
+            } else {
+                0.5 * (low + high)
             };
             let is_found = (next - time).abs() <= f64::EPSILON * self.time_step_s;
             if !next.is_finite() {

@@ -53,9 +53,6 @@ impl Crossing {
     /// The height of the row nearer to the turning point.
     pub fn height(&self) -> f64 {
         let [a, b] = [self.before, self.after.unwrap_or(self.before)].map(|row| row.swing.axle.z);
-        match self.is_top {
-            true => a.max(b),
-            false => a.min(b),
-        }
+        if self.is_top { a.max(b) } else { a.min(b) }
     }
 }

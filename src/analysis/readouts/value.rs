@@ -30,9 +30,10 @@ impl Value {
 
 impl From<f64> for Value {
     fn from(number: f64) -> Self {
-        match number.is_finite() {
-            true => Self::Number(number),
-            false => Self::Nothing,
+        if number.is_finite() {
+            Self::Number(number)
+        } else {
+            Self::Nothing
         }
     }
 }

@@ -119,9 +119,10 @@ fn cause(health: &Health) -> String {
 
 fn how_to_mend(health: &Health, advice: &Advice) -> String {
     // A run with edits at steps is refused another time step: it has to be written anew.
-    let throughout = match health.can_be_rescaled {
-        true => "",
-        false => " throughout, with its edits of gravity and pushes at the same times,",
+    let throughout = if health.can_be_rescaled {
+        ""
+    } else {
+        " throughout, with its edits of gravity and pushes at the same times,"
     };
     match advice {
         Advice::Holds => String::new(),
@@ -132,10 +133,11 @@ fn how_to_mend(health: &Health, advice: &Advice) -> String {
         }
         Advice::TimeStep(step) => {
             let step = shortest(*step);
-            let option = match health.can_be_rescaled {
-                true => format!(" (--time-step {step})"),
-                false => String::new(),
-            };
+            let option = if health.can_be_rescaled {
+format!(" (--time-step {step})")
+} else {
+String::new()
+};
             format!("; a time step of {step} s{option}{throughout} mends it")
         }
         Advice::Scheme {

@@ -79,9 +79,10 @@ fn keys(begin: &str) -> Vec<CompletionCandidate> {
     for key in scenario_keys() {
         let path = instance(key.path, begin);
         let is_in_vector = key.kind == Kind::Vector && begin.starts_with(&format!("{path}."));
-        let names = match is_in_vector {
-            true => elements(&path).to_vec(),
-            false => vec![path],
+        let names = if is_in_vector {
+            elements(&path).to_vec()
+        } else {
+            vec![path]
         };
         let fitting = names.iter().filter(|name| name.starts_with(begin));
         found.extend(fitting.map(|name| candidate(&format!("{name}="), key.about)));

@@ -105,9 +105,10 @@ fn show(page: &str, args: &ManArgs) -> anyhow::Result<ExitCode> {
 }
 
 fn show_text(text: &str, args: &ManArgs) -> anyhow::Result<ExitCode> {
-    match args.no_pager {
-        true => print(text),
-        false => pager::show(text),
+    if args.no_pager {
+        print(text)
+    } else {
+        pager::show(text)
     }
 }
 

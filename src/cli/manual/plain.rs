@@ -115,9 +115,10 @@ impl Text {
         }
         let indent = self.margin + self.hanging;
         for (index, line) in wrapped(&paragraph, WIDTH - indent).iter().enumerate() {
-            match index == 0 && !mark.is_empty() {
-                true => self.line(self.margin, &format!("{mark} {line}")),
-                false => self.line(indent, line),
+            if index == 0 && !mark.is_empty() {
+                self.line(self.margin, &format!("{mark} {line}"));
+            } else {
+                self.line(indent, line);
             }
         }
     }

@@ -41,9 +41,10 @@ pub(super) fn synopsis(command: &clap::Command) -> String {
     for arg in places {
         let name = arg.get_value_names().and_then(|names| names.first());
         let name = name.map_or_else(|| arg.get_id().to_string(), ToString::to_string);
-        line += &match arg.is_required_set() {
-            true => format!(" <\\fI{}\\fR>", plain(&name)),
-            false => format!(" [\\fI{}\\fR]", plain(&name)),
+        line += &if arg.is_required_set() {
+            format!(" <\\fI{}\\fR>", plain(&name))
+        } else {
+            format!(" [\\fI{}\\fR]", plain(&name))
         };
     }
     if command.has_subcommands() {
@@ -63,9 +64,12 @@ fn takes_value(arg: &clap::Arg) -> Option<String> {
 pub(super) fn plain(text: &str) -> String {
     let text = text.replace('\\', "\\e").replace('-', "\\-");
     let begins_as_request = |line: &&str| line.starts_with(['.', '\'']);
-    let lines = text.split('\n').map(|line| match begins_as_request(&line) {
-        true => format!("\\&{line}"),
-        false => line.to_owned(),
+    let lines = text.split('\n').map(|line| {
+        if begins_as_request(&line) {
+            format!("\\&{line}")
+        } else {
+            line.to_owned()
+        }
     });
     lines.collect::<Vec<_>>().join("\n")
 }
@@ -77,9 +81,10 @@ const INDENTED: usize = 73;
 pub(super) fn verbatim(title: &str, text: &str) -> String {
     let (title, text) = (title.to_uppercase(), text.trim_end());
     let is_wide = text.lines().any(|line| columns(line) > INDENTED);
-    let (begin, end) = match is_wide {
-        true => (".in 0\n", ".in\n"),
-        false => ("", ""),
+    let (begin, end) = if is_wide {
+        (".in 0\n", ".in\n")
+    } else {
+        ("", "")
     };
     let lines = plain(text);
     format!(".SH \"{title}\"\n.nf\n{begin}{lines}\n{end}.fi\n")

@@ -83,18 +83,19 @@ pub(super) fn come_back_to(
         }
         return Ok((lab, Ok(resumed.session)));
     }
-    match aside.is_empty() {
-        false => anyhow::bail!(
-            "--resume {shown}: {}",
-            printable(aside.trim_end_matches("; "))
-        ),
-        true => anyhow::bail!(
+    if aside.is_empty() {
+        anyhow::bail!(
             "--resume {shown}: it is open in another lab{}",
             found
                 .in_use_by
                 .first()
                 .map_or(String::new(), |process| format!(", process {process}"))
-        ),
+        )
+    } else {
+        anyhow::bail!(
+            "--resume {shown}: {}",
+            printable(aside.trim_end_matches("; "))
+        )
     }
 }
 
@@ -121,9 +122,10 @@ pub(super) fn come_back(
                 }
                 return Ok((lab, session));
             }
-            let none = match found.in_use_by.is_empty() {
-                true => "no session to come back to: this is a new one",
-                false => "this is a new one",
+            let none = if found.in_use_by.is_empty() {
+                "no session to come back to: this is a new one"
+            } else {
+                "this is a new one"
             };
             (passed_over, none.to_owned())
         }

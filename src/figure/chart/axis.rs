@@ -23,9 +23,10 @@ impl Scale {
     /// Where `value` stands, pt; far outside, or not finite, where it cannot be shown.
     pub fn place(&self, value: f64) -> f64 {
         let (low, high) = self.range;
-        let share = match self.is_log {
-            true => libm::log(value / low) / libm::log(high / low),
-            false => (value - low) / (high - low),
+        let share = if self.is_log {
+            libm::log(value / low) / libm::log(high / low)
+        } else {
+            (value - low) / (high - low)
         };
         self.places.0 + share * (self.places.1 - self.places.0)
     }
@@ -64,9 +65,10 @@ impl Scale {
 
     fn ticks(&self, axis: &Axis, fits: impl Fn(&[Tick]) -> bool) -> Ticks {
         let (low, high) = self.range;
-        let mut ticks = match axis.is_log {
-            true => Ticks::log(low, high, fits),
-            false => Ticks::linear(low, high, fits),
+        let mut ticks = if axis.is_log {
+            Ticks::log(low, high, fits)
+        } else {
+            Ticks::linear(low, high, fits)
         };
         ticks.major.retain(|tick| self.shows(tick.at));
         ticks.minor.retain(|at| self.shows(*at));

@@ -164,9 +164,12 @@ impl Placed {
             .filter(|(point, error)| error.is_finite() && self.frame.holds(self.place(point)));
         points.map(|(point, error)| {
             let y = |sign: f64| self.y.place(point[1] + sign * error);
-            let limit = |y: f64| match y.is_finite() {
-                true => y.clamp(self.frame.top, self.frame.bottom),
-                false => self.frame.bottom, // below zero on a logarithmic axis
+            let limit = |y: f64| {
+                if y.is_finite() {
+                    y.clamp(self.frame.top, self.frame.bottom)
+                } else {
+                    self.frame.bottom
+                }
             };
             let (top, bottom) = (limit(y(1.0)), limit(y(-1.0)));
             Bar {

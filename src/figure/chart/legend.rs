@@ -172,9 +172,10 @@ impl Entry {
             let ends = [at(place.x, y), at(place.x + KEY, y)];
             let pen = Pen {
                 is_round: false,
-                dash_pt: match style.is_dots {
-                    true => vec![style.width_pt, 2.0 * style.width_pt],
-                    false => style.dash_pt.to_vec(),
+                dash_pt: if style.is_dots {
+                    vec![style.width_pt, 2.0 * style.width_pt]
+                } else {
+                    style.dash_pt.to_vec()
                 },
                 ..style.pen()
             };

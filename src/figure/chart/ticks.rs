@@ -93,9 +93,10 @@ impl Ticks {
         let largest = low.abs().max(high.abs());
         let counts = between(low / step, high / step);
         let is_offset = step < OFFSET * largest;
-        let power = match is_offset {
-            true => leading_power(high - low),
-            false => leading_power(largest),
+        let power = if is_offset {
+            leading_power(high - low)
+        } else {
+            leading_power(largest)
         };
         let base = if is_offset { counts.0 } else { 0 };
         let numbers = Numbers { digit, decade };
@@ -127,9 +128,10 @@ impl Ticks {
         if high / low < 32.0 {
             let close = Self::of_rungs(low, high);
             let are_enough = close.major.len() >= 2 && fits(&close.major);
-            return match are_enough {
-                true => close,
-                false => Self::linear(low, high, fits),
+            return if are_enough {
+                close
+            } else {
+                Self::linear(low, high, fits)
             };
         }
         let all = |every: i64| -> Vec<Tick> {
@@ -205,9 +207,10 @@ fn floor(number: f64) -> i64 {
 /// The power of ten that numbers up to `largest` leave to the title: a multiple of 3, and 0 for ordinary numbers.
 fn leading_power(largest: f64) -> i32 {
     let exponent = libm::log10(largest).floor() as i32;
-    match (SMALL + 1..LARGE).contains(&exponent) {
-        true => 0,
-        false => exponent.div_euclid(3) * 3,
+    if (SMALL + 1..LARGE).contains(&exponent) {
+        0
+    } else {
+        exponent.div_euclid(3) * 3
     }
 }
 

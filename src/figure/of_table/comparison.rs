@@ -105,9 +105,10 @@ fn without_point(words: &str, values: &[f64]) -> Vec<String> {
 
 /// The columns that are drawn where `columns` were asked for.
 fn or_error<'a>(columns: &'a [&'a str]) -> &'a [&'a str] {
-    match columns.is_empty() {
-        true => &["error_m"],
-        false => columns,
+    if columns.is_empty() {
+        &["error_m"]
+    } else {
+        columns
     }
 }
 

@@ -117,17 +117,19 @@ pub(super) fn drawn(
         if groups.len() > MOST_GROUPS {
             groups = vec![(String::new(), rows.clone())];
         }
-        let curve = match along == TIME {
-            true => curve(fit.run_file, &name, &x),
-            false => None,
+        let curve = if along == TIME {
+            curve(fit.run_file, &name, &x)
+        } else {
+            None
         };
         let drawing = Drawing { table, fit, x: &x };
         panels.push(drawing.values(&name, &groups, curve.as_deref())?);
         panels.push(drawing.residuals(&name, &groups)?);
     }
-    match panels.is_empty() {
-        true => Err("none of these is a quantity that was fitted".to_owned()),
-        false => Ok((quantity::axis(along), panels)),
+    if panels.is_empty() {
+        Err("none of these is a quantity that was fitted".to_owned())
+    } else {
+        Ok((quantity::axis(along), panels))
     }
 }
 
@@ -145,9 +147,12 @@ fn along<'a>(table: &Table, settings: &'a [String]) -> Result<(&'a str, Vec<f64>
         is_whole.then_some((name.as_str(), numbers))
     });
     // Of columns with as many, the first.
-    let most = numbers.reduce(|most, next| match count(&next.1) > count(&most.1) {
-        true => next,
-        false => most,
+    let most = numbers.reduce(|most, next| {
+        if count(&next.1) > count(&most.1) {
+            next
+        } else {
+            most
+        }
     });
     most.ok_or_else(|| "no column that says where its values were measured is a number".to_owned())
 }
@@ -269,9 +274,10 @@ impl Drawing<'_> {
             let (points, errors) = self.points("measured", "uncertainty", rows)?;
             panel.series.push(Series {
                 errors_across: Vec::new(),
-                name: match is_alone {
-                    true => "measured".to_owned(),
-                    false => group.clone(),
+                name: if is_alone {
+                    "measured".to_owned()
+                } else {
+                    group.clone()
                 },
                 points,
                 errors,
@@ -286,9 +292,10 @@ impl Drawing<'_> {
         let all = groups.iter().flat_map(|(_, rows)| rows.iter().copied());
         let errors = numbers(self.table, "uncertainty")?;
         let are_stated = all.clone().all(|row| errors[row].is_finite());
-        let (column, unit) = match are_stated {
-            true => ("residual_sigmas", letters::escape("σ")),
-            false => ("residual", quantity::axis(name).unit),
+        let (column, unit) = if are_stated {
+            ("residual_sigmas", letters::escape("σ"))
+        } else {
+            ("residual", quantity::axis(name).unit)
         };
         let ends = all
             .map(|row| self.x[row])
@@ -312,9 +319,10 @@ impl Drawing<'_> {
             panel.series.push(Series {
                 errors_across: Vec::new(),
                 name: String::new(),
-                errors: match are_stated {
-                    true => vec![1.0; points.len()],
-                    false => errors,
+                errors: if are_stated {
+                    vec![1.0; points.len()]
+                } else {
+                    errors
                 },
                 points,
                 style: Style::points(index),

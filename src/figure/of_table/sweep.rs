@@ -260,9 +260,10 @@ impl Drawing<'_> {
                 errors.collect::<Vec<_>>()
             });
             Series {
-                name: match is_other {
-                    true => self.name(&word, &[]),
-                    false => self.name(&word, &curve.settings),
+                name: if is_other {
+                    self.name(&word, &[])
+                } else {
+                    self.name(&word, &curve.settings)
                 },
                 errors: errors.collect(),
                 points: rows

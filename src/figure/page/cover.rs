@@ -129,9 +129,10 @@ impl Grid {
         }
         let mut enters = upper.0;
         for row in upper.1 as usize..=lower.1 as usize {
-            let leaves = match row == lower.1 as usize {
-                true => lower.0,
-                false => upper.0 + ((row + 1) as f64 - upper.1) * slope,
+            let leaves = if row == lower.1 as usize {
+                lower.0
+            } else {
+                upper.0 + ((row + 1) as f64 - upper.1) * slope
             };
             let (left, right) = (enters.min(leaves) as usize, enters.max(leaves) as usize);
             let begin = row * self.columns;

@@ -227,9 +227,10 @@ fn number(value: f64) -> String {
 
 /// `#rgb` where that says it all, else `#rrggbb`.
 fn hex(Color([red, green, blue]): Color) -> String {
-    match [red, green, blue].iter().all(|part| part % 17 == 0) {
-        true => format!("#{:x}{:x}{:x}", red / 17, green / 17, blue / 17),
-        false => format!("#{red:02x}{green:02x}{blue:02x}"),
+    if [red, green, blue].iter().all(|part| part % 17 == 0) {
+        format!("#{:x}{:x}{:x}", red / 17, green / 17, blue / 17)
+    } else {
+        format!("#{red:02x}{green:02x}{blue:02x}")
     }
 }
 

@@ -60,9 +60,10 @@ pub(super) fn since(value: &Value) -> Read {
 
 pub(super) fn magnify(value: &Value) -> Read {
     let times = number(Range::Positive, value)?;
-    match (1.0..=MOST_MAGNIFIED).contains(&times) {
-        true => Ok(Command::Magnify(times)),
-        false => wrong(value, "must be between 1 and 1000000"),
+    if (1.0..=MOST_MAGNIFIED).contains(&times) {
+        Ok(Command::Magnify(times))
+    } else {
+        wrong(value, "must be between 1 and 1000000")
     }
 }
 

@@ -95,9 +95,10 @@ pub(super) fn fields<'a>(value: &'a Value, known: &[&str]) -> Result<&'a Table, 
             Problem::at(name.clone(), format!("unknown key: {near}"))
         })
         .collect();
-    match problems.is_empty() {
-        true => Ok(table),
-        false => Err(problems),
+    if problems.is_empty() {
+        Ok(table)
+    } else {
+        Err(problems)
     }
 }
 
@@ -157,9 +158,10 @@ pub(super) fn set(value: &Value) -> Read {
             }
         }
     }
-    match problems.is_empty() {
-        true => Ok(Command::Set(table.clone())),
-        false => Err(problems),
+    if problems.is_empty() {
+        Ok(Command::Set(table.clone()))
+    } else {
+        Err(problems)
     }
 }
 
@@ -173,9 +175,10 @@ fn first_inside(key: &str, value: &Value) -> String {
 
 /// `key` as a TOML table has it as one key: in quotes where it has dots.
 fn quoted(key: &str) -> String {
-    match key.contains('.') {
-        true => format!("\"{key}\""),
-        false => key.to_owned(),
+    if key.contains('.') {
+        format!("\"{key}\"")
+    } else {
+        key.to_owned()
     }
 }
 
@@ -222,9 +225,10 @@ pub(super) fn push(value: &Value) -> Read {
 
 pub(super) fn next_push(value: &Value) -> Read {
     let choice = push_choice(value)?;
-    match choice == PushChoice::default() {
-        true => wrong(value, "must hold one of point, force_N, toward, for_s"),
-        false => Ok(Command::NextPush(choice)),
+    if choice == PushChoice::default() {
+        wrong(value, "must hold one of point, force_N, toward, for_s")
+    } else {
+        Ok(Command::NextPush(choice))
     }
 }
 
@@ -296,9 +300,10 @@ pub(super) fn run_until(value: &Value) -> Read {
 
 pub(super) fn wait(value: &Value) -> Read {
     let seconds = number(Range::NotNegative, value)?;
-    match seconds <= LONGEST_WAIT {
-        true => Ok(Command::Wait(seconds)),
-        false => wrong(value, format!("must be at most {LONGEST_WAIT}")),
+    if seconds <= LONGEST_WAIT {
+        Ok(Command::Wait(seconds))
+    } else {
+        wrong(value, format!("must be at most {LONGEST_WAIT}"))
     }
 }
 

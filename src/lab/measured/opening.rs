@@ -60,9 +60,10 @@ impl Lab {
         let Some(name) = name else {
             let had = self.player.measured.take().is_some();
             self.view.measured = false;
-            return Ok(Done::saying(match had {
-                true => "the measured data are taken away",
-                false => "there are no measured data beside the run",
+            return Ok(Done::saying(if had {
+                "the measured data are taken away"
+            } else {
+                "there are no measured data beside the run"
             }));
         };
         let put = self.put_beside(name, false);
@@ -77,9 +78,10 @@ impl Lab {
             );
         }
         self.view.residuals = shown;
-        Ok(Done::saying(match shown {
-            true => "measured less run, where something was measured; m shows both again",
-            false => "measured values and the run",
+        Ok(Done::saying(if shown {
+            "measured less run, where something was measured; m shows both again"
+        } else {
+            "measured values and the run"
         }))
     }
 

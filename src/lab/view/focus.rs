@@ -85,13 +85,15 @@ impl View {
 
     /// Fills the screen with the 3-D view, or shows all panes again if it fills the screen already.
     pub fn toggle_three_d(&mut self) {
-        let first = match self.may_show(Pane::LESSON) {
-            true => Pane::LESSON,
-            false => Pane::TRACES,
+        let first = if self.may_show(Pane::LESSON) {
+            Pane::LESSON
+        } else {
+            Pane::TRACES
         };
-        (self.focus, self.filled) = match self.is_filled_by(Pane::THREE_D) {
-            true => (first, false),
-            false => (Pane::THREE_D, true),
+        (self.focus, self.filled) = if self.is_filled_by(Pane::THREE_D) {
+            (first, false)
+        } else {
+            (Pane::THREE_D, true)
         };
         self.is_touched = self.filled;
     }

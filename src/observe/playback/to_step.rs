@@ -80,9 +80,10 @@ impl Playback {
     /// many steps as take about 50 ms (40 ms for a nudge) are taken before returning, and the others over the next frames.
     /// Returns whether it has arrived.
     pub fn catch_up(&mut self, step: u64, is_again: bool) -> bool {
-        let most = match is_again {
-            true => MOST_COST_PER_NUDGE,
-            false => MOST_COST_PER_EDIT,
+        let most = if is_again {
+            MOST_COST_PER_NUDGE
+        } else {
+            MOST_COST_PER_EDIT
         };
         let steps = step.saturating_sub(self.step_number());
         self.take_in_parts(steps, steps.min(most / self.cost(1)));

@@ -32,9 +32,11 @@ impl LagrangeTop {
         if self.lattice.is_pulsed() || (latest + self.since_origin.abs()) * per_s > MOST_TURNS {
             return None;
         }
-        let period = match self.lattice.per_period == 0.0 {
-            true => 0.0, // it is none, and there is one cell
-            false => self.lattice.period,
+        let period = if self.lattice.per_period == 0.0 {
+            0.0
+        } else {
+            // it is none, and there is one cell
+            self.lattice.period
         };
         let vertical = self.vertical.to_rotation_matrix();
         let mut positions = [[0.0; AT_ONCE]; 3];

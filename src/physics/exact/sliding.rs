@@ -101,10 +101,11 @@ impl Sliding {
             Contact::Holds => !ends,
             Contact::Smooth | Contact::Slips(_) => hold.abs() <= friction.spin_dry,
         };
-        self.contact = match is_strong_enough {
-            true => Contact::Holds,
+        self.contact = if is_strong_enough {
+            Contact::Holds
+        } else {
             // It is set off against the torque that would have held it.
-            false => Contact::Slips(-hold.signum()),
+            Contact::Slips(-hold.signum())
         };
     }
 
@@ -168,9 +169,10 @@ impl Sliding {
         let (mut low, mut high) = (at(piece - 1), at(piece));
         while low < 0.5 * (low + high) && 0.5 * (low + high) < high {
             let middle = 0.5 * (low + high);
-            match left(middle) < 0.0 {
-                true => high = middle,
-                false => low = middle,
+            if left(middle) < 0.0 {
+                high = middle;
+            } else {
+                low = middle;
             }
         }
         (high > SAME_EVENT * radius).then_some(high)

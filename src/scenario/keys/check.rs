@@ -43,9 +43,10 @@ fn check_table(table: &toml::Table, under: &str, path: &str, problems: &mut Foun
                 let near =
                     elsewhere(name).unwrap_or_else(|| nearest(name, level.names.iter().copied()));
                 // In quotes, or a dot in the name would make it the path of another key.
-                let key = match name.contains('.') {
-                    true => join(path, &format!("\"{name}\"")),
-                    false => key,
+                let key = if name.contains('.') {
+                    join(path, &format!("\"{name}\""))
+                } else {
+                    key
                 };
                 Problem::at(key, format!("unknown key: {near}"))
             });

@@ -181,21 +181,23 @@ fn ends(bounds: &str) -> Result<(f64, f64), String> {
             .ok_or_else(wrong),
     };
     let (from, to) = (number(from, f64::NEG_INFINITY)?, number(to, f64::INFINITY)?);
-    match from < to {
-        true => Ok((from, to)),
-        false => Err(format!(
+    if from < to {
+        Ok((from, to))
+    } else {
+        Err(format!(
             "the bounds leave no room: {} must be below {}",
             shown(from),
             shown(to)
-        )),
+        ))
     }
 }
 
 /// A bound as it is written; nothing where there is none.
 pub(super) fn shown(bound: f64) -> String {
-    match bound.is_finite() {
-        true => shortest(bound),
-        false => String::new(),
+    if bound.is_finite() {
+        shortest(bound)
+    } else {
+        String::new()
     }
 }
 

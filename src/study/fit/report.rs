@@ -134,13 +134,14 @@ impl Report<'_> {
         let rows: Vec<_> = std::iter::once(head.map(str::to_owned))
             .chain(rows)
             .collect();
-        match all.len() > MOST {
-            true => writeln!(
+        if all.len() > MOST {
+            writeln!(
                 f,
                 "\nThe {MOST} of {} residuals that are furthest off:",
                 all.len()
-            )?,
-            false => writeln!(f, "\nResiduals:")?,
+            )?;
+        } else {
+            writeln!(f, "\nResiduals:")?;
         }
         write_table(f, &rows)
     }

@@ -190,12 +190,11 @@ fn finished(
     }
     let freedom = model.data.len().saturating_sub(solution.rank) as u64;
     let sum = minimum.residuals.norm_squared();
-    let quality = match weights.are_stated {
-        true => Quality::weighted(sum, freedom, &residuals),
-        false => {
-            let unit = weights.sigma.first().copied().unwrap_or(1.0);
-            Quality::unweighted(sum.sqrt() * unit, freedom)
-        }
+    let quality = if weights.are_stated {
+        Quality::weighted(sum, freedom, &residuals)
+    } else {
+        let unit = weights.sigma.first().copied().unwrap_or(1.0);
+        Quality::unweighted(sum.sqrt() * unit, freedom)
     };
     let scattered = || quality::variance(sum, freedom);
     let variance = weights.are_stated.then_some(1.0).or_else(scattered);
@@ -244,9 +243,10 @@ impl Problem for Weighed<'_> {
         let residuals = self.model.residuals(&values);
         let residuals: Vec<f64> = residuals.iter().map(Residual::value).collect();
         let white = self.weights.whitened(&residuals);
-        match white.norm_squared().is_finite() {
-            true => Ok(white),
-            false => Err(beyond()),
+        if white.norm_squared().is_finite() {
+            Ok(white)
+        } else {
+            Err(beyond())
         }
     }
 
@@ -265,18 +265,20 @@ impl Problem for Weighed<'_> {
         let column = |(index, (slope, _)): (usize, &(Vec<f64>, f64))| {
             let column = self.weights.whitened(slope);
             // The slope of what does not move is rounding, and would lead anywhere.
-            match column.norm() * self.model.free[index].size(p[index]) <= SILENT {
-                true => DVector::zeros(column.len()),
-                false => column,
+            if column.norm() * self.model.free[index].size(p[index]) <= SILENT {
+                DVector::zeros(column.len())
+            } else {
+                column
             }
         };
         let columns: Vec<DVector<f64>> = found.iter().enumerate().map(column).collect();
         *self.kept() = found.iter().map(|(_, change)| *change).collect();
         let slopes = DMatrix::from_columns(&columns);
         // The decomposition of a matrix with a NaN would not end.
-        match slopes.norm_squared().is_finite() {
-            true => Ok(slopes),
-            false => Err(beyond()),
+        if slopes.norm_squared().is_finite() {
+            Ok(slopes)
+        } else {
+            Err(beyond())
         }
     }
 

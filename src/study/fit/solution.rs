@@ -101,9 +101,10 @@ impl Solution {
     /// The correlation of two keys.
     pub fn correlation(&self, i: usize, j: usize) -> Option<f64> {
         let correlation = self.covariance[i][j]? / (self.sigma(i)? * self.sigma(j)?);
-        match i == j {
-            true => Some(1.0),
-            false => Some(correlation.clamp(-1.0, 1.0)),
+        if i == j {
+            Some(1.0)
+        } else {
+            Some(correlation.clamp(-1.0, 1.0))
         }
     }
 }

@@ -232,13 +232,14 @@ impl Fit {
     /// A change of the `index`-th key by a part, such as "motion.gravity_m_per_s2 by +1 %".
     fn changed(&self, index: usize, part: f64) -> String {
         let fitted = &self.keys[index];
-        match fitted.value == 0.0 {
-            true => format!(
+        if fitted.value == 0.0 {
+            format!(
                 "{} by {:+.2e}",
                 fitted.free.key,
                 0.01 * part * fitted.free.scale
-            ),
-            false => format!("{} by {:+.2} %", fitted.free.key, part),
+            )
+        } else {
+            format!("{} by {:+.2} %", fitted.free.key, part)
         }
     }
 }

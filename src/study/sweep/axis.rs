@@ -62,12 +62,13 @@ impl Axis {
                 Some(Problem::with_value(vary.key.clone(), value, rule))
             })
             .collect();
-        match problems.is_empty() {
-            true => Ok(Self {
+        if problems.is_empty() {
+            Ok(Self {
                 key: vary.key.clone(),
                 values,
-            }),
-            false => Err(problems),
+            })
+        } else {
+            Err(problems)
         }
     }
 }
@@ -83,12 +84,13 @@ fn kind(key: &str) -> Result<Kind, String> {
 /// Whether `value` may stand at a key of this kind. (Whether the scenario takes it shows at its point.)
 fn fits(kind: Kind, value: &Value) -> Result<(), String> {
     kind.check(value)?;
-    match value
+    if value
         .as_str()
         .is_some_and(|text| text.contains(is_steering))
     {
-        true => Err("must be one line, without control characters".to_owned()),
-        false => Ok(()),
+        Err("must be one line, without control characters".to_owned())
+    } else {
+        Ok(())
     }
 }
 

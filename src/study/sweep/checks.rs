@@ -19,9 +19,10 @@ pub(super) fn axes(files: &[VaryFile], problems: &mut Vec<Problem>) -> Vec<Axis>
         match Axis::new(file, &place) {
             Ok(axis) => {
                 if let Some(other) = axes.iter().find(|other| overlap(&other.key, &axis.key)) {
-                    let rule = match other.key == axis.key {
-                        true => "varies twice".to_owned(),
-                        false => format!("varies, and so does {}, which writes into it", other.key),
+                    let rule = if other.key == axis.key {
+                        "varies twice".to_owned()
+                    } else {
+                        format!("varies, and so does {}, which writes into it", other.key)
                     };
                     problems.push(Problem::at(axis.key.clone(), rule));
                 }

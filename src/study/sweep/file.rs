@@ -108,9 +108,10 @@ impl SweepFile {
             scenario: reader.scenario(),
         };
         let vary = reader.varied();
-        match reader.problems.is_empty() {
-            true => Ok(Self { vary, ..file }),
-            false => Err(document.placed(reader.problems)),
+        if reader.problems.is_empty() {
+            Ok(Self { vary, ..file })
+        } else {
+            Err(document.placed(reader.problems))
         }
     }
 

@@ -136,9 +136,12 @@ impl Sweep {
             Base::Checked(file) => (Document::from_file(document.origin(), file)?, true),
         };
         change(&mut base)?;
-        base.scenario().map_err(|problems| match is_inside {
-            true => inside(problems, document),
-            false => problems,
+        base.scenario().map_err(|problems| {
+            if is_inside {
+                inside(problems, document)
+            } else {
+                problems
+            }
         })
     }
 
@@ -287,11 +290,12 @@ impl Sweep {
         let mut document = self.base.clone();
         let mut time_step_s = None;
         for (axis, value) in self.axes.iter().zip(self.values(row)) {
-            match axis.key == TIME_STEP {
-                true => time_step_s = value.as_float(),
-                false => document
+            if axis.key == TIME_STEP {
+                time_step_s = value.as_float();
+            } else {
+                document
                     .set_value(&axis.key, value.clone())
-                    .map_err(|problem| problem.to_string())?,
+                    .map_err(|problem| problem.to_string())?;
             }
         }
         let scenario = document

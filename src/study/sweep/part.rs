@@ -110,9 +110,10 @@ impl PartFile {
             return Ok(Opened::Whole(rows));
         }
         // A symbolic link is kept: the file to which it leads is replaced.
-        let behind_link = match path.is_symlink() {
-            true => fs::canonicalize(path).map_err(|error| unread(path, error))?,
-            false => path.to_owned(),
+        let behind_link = if path.is_symlink() {
+            fs::canonicalize(path).map_err(|error| unread(path, error))?
+        } else {
+            path.to_owned()
         };
         let path = behind_link.as_path();
         let part = part_of(path);
@@ -188,9 +189,10 @@ impl PartFile {
     /// When the system reports an error, or another file has got that name meanwhile and may not be replaced.
     pub fn keep(self) -> Result<(), PartError> {
         self.file.sync_all().map_err(|error| self.refused(error))?;
-        let named = match self.may_replace {
-            true => fs::rename(&self.path, &self.last),
-            false => rename_to_new(&self.path, &self.last),
+        let named = if self.may_replace {
+            fs::rename(&self.path, &self.last)
+        } else {
+            rename_to_new(&self.path, &self.last)
         };
         named.map_err(|error| PartError::Refused {
             path: self.last.clone(),

@@ -191,13 +191,15 @@ pub fn figures(
 
 /// What is said of a figure of that kind in which something covers the paper.
 fn crowded(dense: &Dense, kind: &Kind, exact: bool, has_swings: bool) -> String {
-    let hidden = match exact {
-        true => ", and the exact motion hides the run below it",
-        false => "",
+    let hidden = if exact {
+        ", and the exact motion hides the run below it"
+    } else {
+        ""
     };
-    let swings = match has_swings && matches!(kind, Kind::OverTime(_)) {
-        true => format!("`{SWINGS}.pdf` shows a few of them; "),
-        false => String::new(),
+    let swings = if has_swings && matches!(kind, Kind::OverTime(_)) {
+        format!("`{SWINGS}.pdf` shows a few of them; ")
+    } else {
+        String::new()
     };
     format!(
         "On {} mm {} cover the paper: none is told from the next{hidden}. {swings}`gyrolab figure {RUN_FILE} --kind {}{} {} -o part.pdf` \

@@ -167,9 +167,10 @@ fn friction_in_words(friction: &FrictionFile) -> String {
         Some(format!("{kind} {of} {} {unit}", shortest(size)))
     });
     let there: Vec<_> = there.collect();
-    match there.is_empty() {
-        true => "none".to_owned(),
-        false => there.join(", "),
+    if there.is_empty() {
+        "none".to_owned()
+    } else {
+        there.join(", ")
     }
 }
 
@@ -184,9 +185,10 @@ fn push_in_words(push: &Push, point: &str) -> String {
             format!("from {} s on for {} s", shortest(from_s), shortest(for_s))
         }
     };
-    let grows = match push.accumulates {
-        true => ", added anew on each of them and kept to the end",
-        false => "",
+    let grows = if push.accumulates {
+        ", added anew on each of them and kept to the end"
+    } else {
+        ""
     };
     format!("({x}, {y}, {z}) N on the point {point} {when}{grows}")
 }

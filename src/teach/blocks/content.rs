@@ -38,9 +38,10 @@ impl Reader<'_> {
         let keys: Vec<String> = content.document.table().keys().cloned().collect();
         for key in keys.iter().filter(|key| !known.contains(&key.as_str())) {
             let near = nearest(key, known.iter().copied());
-            let what = match COMMANDS.iter().any(|row| row.name == key) {
-                true => "is no key of this block",
-                false => "unknown key",
+            let what = if COMMANDS.iter().any(|row| row.name == key) {
+                "is no key of this block"
+            } else {
+                "unknown key"
             };
             content.refuse(Problem::at(key, format!("{what}: {near}")));
         }
@@ -150,9 +151,10 @@ impl Content {
 
     /// `made`, unless something was refused.
     pub(super) fn finish<T>(self, made: T) -> Found<T> {
-        match self.problems.is_empty() {
-            true => Ok(made),
-            false => Err(self.problems),
+        if self.problems.is_empty() {
+            Ok(made)
+        } else {
+            Err(self.problems)
         }
     }
 }

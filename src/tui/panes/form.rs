@@ -50,12 +50,11 @@ impl Widget for FormPane<'_> {
             height,
             ..area
         };
-        let inside = match is_framed {
-            true => frame_on_top(&self.form.title, place, self.theme, buf),
-            false => {
-                Clear.render(place, buf);
-                place
-            }
+        let inside = if is_framed {
+            frame_on_top(&self.form.title, place, self.theme, buf)
+        } else {
+            Clear.render(place, buf);
+            place
         };
         for (line, y) in lines.iter().zip(0..inside.height) {
             self.draw_line(line, y, inside, buf);

@@ -143,9 +143,12 @@ impl FromAbove<'_> {
         let before = self.ghost.map(Ghost::path);
         let pinned = self.pinned.map(Ghost::path);
         let paths = [Some(self.run.path()), exact, before, pinned];
-        let about = |path: &Path| match middle == Vector2::zeros() {
-            true => path.radius(),
-            false => path.radius_about(middle.x, middle.y).max(middle.norm()),
+        let about = |path: &Path| {
+            if middle == Vector2::zeros() {
+                path.radius()
+            } else {
+                path.radius_about(middle.x, middle.y).max(middle.norm())
+            }
         };
         let radii = paths.into_iter().flatten().map(about);
         let away = self.places().iter().map(|place| (place.at - middle).norm());
@@ -196,9 +199,10 @@ impl FromAbove<'_> {
                 let extremes = &reading.readouts.extremes;
                 let swing_deg = extremes.highest_tilt_deg - extremes.lowest_tilt_deg;
                 let swing_dots = swing_deg.to_radians() * traced.norm() * across;
-                match swing_dots > LARGE_SWING {
-                    true => Moment::new(&reading.state, &traced),
-                    false => *self.run.now(),
+                if swing_dots > LARGE_SWING {
+                    Moment::new(&reading.state, &traced)
+                } else {
+                    *self.run.now()
                 }
             }
             _ => *self.run.now(),

@@ -29,9 +29,10 @@ fn lines_of(text: &str, width: u16) -> u16 {
 /// needs too, as long as the message stays: that about the numbers, and on a small or a bare screen the last of a pane.
 pub fn place(lab: &Lab, layout: &Layout) -> Rect {
     let place = layout.hint;
-    let needed = match has_message(lab) {
-        true => lines_of(&said(lab).0, place.width),
-        false => 0,
+    let needed = if has_message(lab) {
+        lines_of(&said(lab).0, place.width)
+    } else {
+        0
     };
     if needed <= place.height || place.is_empty() {
         return place;

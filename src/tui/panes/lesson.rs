@@ -220,9 +220,10 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<Line> {
 
 /// `line` of code as it is, or in several lines where it is longer than there is room.
 fn in_room(line: &str, room: usize) -> Vec<String> {
-    match columns(line) <= room {
-        true => vec![line.to_owned()],
-        false => wrapped(line, room),
+    if columns(line) <= room {
+        vec![line.to_owned()]
+    } else {
+        wrapped(line, room)
     }
 }
 

@@ -26,9 +26,10 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let sum = &beside.compared().sum;
     let room = area.width.saturating_sub(1) as usize;
     let mark = lab.view().marker.point().to_string();
-    let what = match lab.view().residuals {
-        true => " residuals: ",
-        false => " measured: ",
+    let what = if lab.view().residuals {
+        " residuals: "
+    } else {
+        " measured: "
     };
     let end_s = lab.player().playback().end_s();
     let counts = counted(beside, sum, end_s);
@@ -127,20 +128,22 @@ fn parts(sum: &Sum, in_short: bool) -> Vec<String> {
     }
     if let Some(largest) = sum.largest {
         let (sigmas, words) = (short(largest.sigmas), largest.quantity.words());
-        parts.push(match in_short {
-            true => format!("largest {sigmas} sigma"),
-            false => format!(
+        parts.push(if in_short {
+            format!("largest {sigmas} sigma")
+        } else {
+            format!(
                 "largest {sigmas} sigma ({words} at {} s)",
                 short(largest.time_s)
-            ),
+            )
         });
     }
     for (quantity, scatter) in &sum.scatter {
         let (words, off) = (quantity.words(), short(*scatter));
         let unit = quantity.unit();
-        parts.push(match in_short {
-            true => format!("{words} off {off} {unit}"),
-            false => format!("{words} off by {off} {unit} (rms)"),
+        parts.push(if in_short {
+            format!("{words} off {off} {unit}")
+        } else {
+            format!("{words} off by {off} {unit} (rms)")
         });
     }
     parts

@@ -135,9 +135,10 @@ pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
 
 /// Draws a frame with a title, marked where the pane has the focus; returns the area inside.
 pub(super) fn frame(title: &str, area: Rect, focus: bool, theme: &Theme, buf: &mut Buffer) -> Rect {
-    let (border, text) = match focus {
-        true => (Role::Focus, Role::Focus),
-        false => (Role::Quiet, Role::Heading),
+    let (border, text) = if focus {
+        (Role::Focus, Role::Focus)
+    } else {
+        (Role::Quiet, Role::Heading)
     };
     let title = printable(title);
     let title = shortened(&title, area.width.saturating_sub(4) as usize);
@@ -153,9 +154,10 @@ pub(super) fn frame(title: &str, area: Rect, focus: bool, theme: &Theme, buf: &m
 /// The title of a round pane: `name`, its magnification, and the step that it shows if the scheme has broken down
 /// since. The longest form that fits in `width` columns.
 pub(super) fn round_title(name: &str, zoom: f64, reading: Option<&Reading>, width: u16) -> String {
-    let title = match zoom == 1.0 {
-        true => name.to_owned(),
-        false => format!("{name} ×{zoom}"),
+    let title = if zoom == 1.0 {
+        name.to_owned()
+    } else {
+        format!("{name} ×{zoom}")
     };
     let Some(step) = reading.and_then(|reading| reading.last_whole) else {
         return title;

@@ -249,9 +249,10 @@ impl Parameters<'_> {
         let (shown, above, below) = around_selected(lines, room);
         self.columns(shown.chunks(height.max(1)), wide, place, buf);
         // On the frame, or in the last column of the lines, which is empty.
-        let x = match self.view.filled && area.width == count * wide {
-            true => area.right() - 1,
-            false => area.right(),
+        let x = if self.view.filled && area.width == count * wide {
+            area.right() - 1
+        } else {
+            area.right()
         };
         self.hint(above, (x, place.y), ABOVE, buf);
         self.hint(below, (x, place.bottom().saturating_sub(1)), BELOW, buf);

@@ -245,9 +245,10 @@ impl PhasePage<'_> {
             |quantity: &&Quantity| matches!(quantity.value, Value::Vector(_) | Value::Matrix(_));
         // While points are added up, the quantities that are made of the full sums are less important.
         let is_aside = |quantity: &Quantity| adds_up && is_made_of_sums(self.phase, quantity);
-        let heads = match all.iter().filter(is_vector).all(is_aside) {
-            true => ASIDE,
-            false => 5,
+        let heads = if all.iter().filter(is_vector).all(is_aside) {
+            ASIDE
+        } else {
+            5
         };
         let mut sections = Vec::new();
         let mut has_heads = false;

@@ -107,9 +107,12 @@ impl Timeline {
     /// The signs of a line of `width` columns, each with its role.
     fn signs(&self, width: u16) -> Vec<(&'static str, Role)> {
         let reached = self.column(self.furthest_s, width);
-        let way = |column| match column <= reached && self.furthest_s > 0.0 {
-            true => (REACHED, Role::Text),
-            false => (AHEAD, Role::Quiet),
+        let way = |column| {
+            if column <= reached && self.furthest_s > 0.0 {
+                (REACHED, Role::Text)
+            } else {
+                (AHEAD, Role::Quiet)
+            }
         };
         let mut signs: Vec<_> = (0..width).map(way).collect();
         let mut put = |column: u16, sign, role| {

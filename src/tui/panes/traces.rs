@@ -178,9 +178,10 @@ impl Traces<'_> {
     ) {
         let is_detail = self.is_detail(&group.strip);
         let is_residual = self.is_residual(content, is_detail);
-        let scale = match is_residual {
-            true => self.residual_scale(content),
-            false => self.scale(content, is_detail.then_some(&group.strip)),
+        let scale = if is_residual {
+            self.residual_scale(content)
+        } else {
+            self.scale(content, is_detail.then_some(&group.strip))
         };
         let mut run = self.columns_of_run(content, columns, &marks.edits);
         if is_detail {

@@ -301,20 +301,23 @@ proptest! {
                     let mut whole = Journal { checked: Checked::default(), ..journal.clone() };
                     let before = journal.clone();
                     let is_chained = value % 4 == 0;
-                    let result = match is_chained {
-                        true => journal.act_again(step, act.clone()),
-                        false => journal.act(step, act.clone()),
-                    };
-                    let again = match is_chained {
-                        true => whole.act_again(step, act),
-                        false => whole.act(step, act),
-                    };
+                    let result = if is_chained {
+journal.act_again(step, act.clone())
+} else {
+journal.act(step, act.clone())
+};
+                    let again = if is_chained {
+whole.act_again(step, act)
+} else {
+whole.act(step, act)
+};
                     prop_assert_eq!(&journal, &whole);
                     prop_assert!(result.is_ok() || journal == before);
-                    match result.is_ok() {
-                        true => accepted += 1,
-                        false => refused += 1,
-                    }
+                    if result.is_ok() {
+accepted += 1;
+} else {
+refused += 1;
+}
                     known::assert_same(&result, &again);
                 }
             }

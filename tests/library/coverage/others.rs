@@ -76,14 +76,16 @@ fn stepped(seed: u64, scheme: &str, rows: [f64; 2]) -> Option<Pair> {
     let mut dice = dice(seed);
     let start = Simulation::new(Arc::clone(&scenario));
     let turn_s = TAU / start.now().angular_velocity().norm();
-    let quickest_s = match rows[0] < 2.0 {
-        true => truth[1],
-        false => truth[1].min(turn_s),
+    let quickest_s = if rows[0] < 2.0 {
+        truth[1]
+    } else {
+        truth[1].min(turn_s)
     };
     let time_step_s = quickest_s / log_between(&mut dice, rows[0], rows[1]);
-    let nutations = match rows[0] < 2.0 {
-        true => log_between(&mut dice, 20.0, 400.0),
-        false => log_between(&mut dice, 0.6, 40.0),
+    let nutations = if rows[0] < 2.0 {
+        log_between(&mut dice, 20.0, 400.0)
+    } else {
+        log_between(&mut dice, 0.6, 40.0)
     };
     let steps = (nutations * truth[1] / time_step_s).max(2.0) as u64;
     let run = |steps| measured(&again(&scenario, scheme, time_step_s, steps));

@@ -98,9 +98,10 @@ impl Setting {
 
     /// The whole key and its value.
     fn plain(&self) -> String {
-        match self.key == SCHEME {
-            true => self.value.clone(),
-            false => format!("{} = {}", self.key, self.value),
+        if self.key == SCHEME {
+            self.value.clone()
+        } else {
+            format!("{} = {}", self.key, self.value)
         }
     }
 }

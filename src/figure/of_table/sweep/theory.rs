@@ -70,9 +70,10 @@ impl Line {
     /// How it is drawn on a page of that width, the theory at `place` of its panel: as a line where the rows are close, else
     /// as marks at the rows, since theory goes another way between them than the fine strokes that join them.
     pub fn style(&self, place: usize, width_pt: f64) -> Style {
-        match self.points.len() as f64 > SMOOTH * width_pt / COLUMN_PT {
-            true => Style::theory(self.index, place),
-            false => Style::theory_marked(self.index, place),
+        if self.points.len() as f64 > SMOOTH * width_pt / COLUMN_PT {
+            Style::theory(self.index, place)
+        } else {
+            Style::theory_marked(self.index, place)
         }
     }
 }

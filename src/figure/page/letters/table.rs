@@ -86,9 +86,10 @@ impl Style {
     fn numbered(&self, code: u32) -> Option<Letter> {
         let line = self.lines.get(&code)?;
         let (advance, outline) = line.split_once(' ').unwrap_or((line, ""));
-        let outline = match outline.starts_with('+') {
-            true => self.put_together(outline)?,
-            false => read_outline(outline)?,
+        let outline = if outline.starts_with('+') {
+            self.put_together(outline)?
+        } else {
+            read_outline(outline)?
         };
         Some(Letter {
             advance: advance.parse().ok()?,

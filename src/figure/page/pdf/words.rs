@@ -38,9 +38,10 @@ impl Fonts {
             let letters = words().flat_map(|words| &words.letters);
             let letters = letters.filter(|letter| letter.is_italic == is_italic);
             let letters: BTreeSet<char> = letters.map(|letter| letter.letter).collect();
-            let (style, name, end) = match is_italic {
-                false => (&*REGULAR, &b"R"[..], "Regular"),
-                true => (&*ITALIC, &b"I"[..], "Italic"),
+            let (style, name, end) = if is_italic {
+                (&*ITALIC, &b"I"[..], "Italic")
+            } else {
+                (&*REGULAR, &b"R"[..], "Regular")
             };
             OfPage {
                 names: (name, format!("{}+STIXTwoText-{end}", tag(&letters))),
@@ -101,9 +102,10 @@ impl Fonts {
         };
         let (x, y) = (first.origin.x as f32, first.origin.y as f32);
         content.set_font(Name(of_page.names.0), first.size_pt as f32);
-        content.set_text_matrix(match is_upward {
-            true => [0.0, -1.0, -1.0, 0.0, x, y],
-            false => [1.0, 0.0, 0.0, -1.0, x, y],
+        content.set_text_matrix(if is_upward {
+            [0.0, -1.0, -1.0, 0.0, x, y]
+        } else {
+            [1.0, 0.0, 0.0, -1.0, x, y]
         });
         let along = |p: &Placed| if is_upward { -p.origin.y } else { p.origin.x };
         let advances: Vec<f32> = font.advances().collect();
@@ -154,9 +156,10 @@ impl OfPage {
         let flags = FontFlags::SERIF | FontFlags::SYMBOLIC;
         pdf.font_descriptor(descriptor)
             .name(name)
-            .flags(match self.is_italic {
-                true => flags | FontFlags::ITALIC,
-                false => flags,
+            .flags(if self.is_italic {
+                flags | FontFlags::ITALIC
+            } else {
+                flags
             })
             .bbox(Rect::new(left, low, right, high))
             .italic_angle(if self.is_italic { SLANT_DEG } else { 0.0 })

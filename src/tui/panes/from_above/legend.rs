@@ -40,9 +40,10 @@ impl FromAbove<'_> {
         write(area, (0, last), &bar, style, buf);
         let lines = self.legend(plan, area.width, area.height as usize);
         for (line, y) in lines.iter().zip(0..) {
-            let x = match y == last {
-                true => area.width.saturating_sub(columns(line) as u16),
-                false => 0,
+            let x = if y == last {
+                area.width.saturating_sub(columns(line) as u16)
+            } else {
+                0
             };
             write(area, (x, y), line, style, buf);
         }

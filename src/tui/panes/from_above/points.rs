@@ -26,9 +26,10 @@ impl FromAbove<'_> {
             let (x, y) = (place.at.x, place.at.y);
             let level = |sigma: f64| -> Ends { (cell(x - sigma, y).0, cell(x + sigma, y).0) };
             let upright = |sigma: f64| -> Ends { (cell(x, y + sigma).1, cell(x, y - sigma).1) };
-            let role = match place.time_s <= now_s {
-                true => Role::Measured,
-                false => Role::Quiet,
+            let role = if place.time_s <= now_s {
+                Role::Measured
+            } else {
+                Role::Quiet
             };
             let [of_x, of_y] = place.sigmas;
             points.add(cell(x, y), of_x.map(level), of_y.map(upright), role);

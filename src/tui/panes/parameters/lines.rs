@@ -75,9 +75,10 @@ fn sized(
     /// A number smaller than this part of the size is rounding error.
     const ROUNDING: f64 = 1e-9;
     let is_small = size > 0.0 && size < 0.1;
-    match is_small && number.abs() > ROUNDING * size {
-        true => value(rank, label, exponent(number, 3), unit),
-        false => self::number(rank, label, number, digits, unit),
+    if is_small && number.abs() > ROUNDING * size {
+        value(rank, label, exponent(number, 3), unit)
+    } else {
+        self::number(rank, label, number, digits, unit)
     }
 }
 
@@ -87,9 +88,10 @@ fn given(rank: u8, label: &'static str, number: f64, digits: usize, unit: &'stat
     let usual = fixed(label, Some(number), digits);
     let is_whole = usual.parse() == Ok(number);
     let room = (VALUE_END as usize).saturating_sub(label.len() + 2);
-    let text = match is_whole {
-        true => usual,
-        false => fewer_digits(&in_pane(number), room).into_owned(),
+    let text = if is_whole {
+        usual
+    } else {
+        fewer_digits(&in_pane(number), room).into_owned()
     };
     value(rank, label, text, unit)
 }

@@ -80,24 +80,20 @@ impl Format {
         let decimals = wanted.min(digits);
         let seen = libm::floor(libm::log10(number.abs())) as i32 + decimals + 1;
         let fits = (0..=digits + 1).contains(&wanted);
-        match fits && seen >= LEAST_SEEN {
-            true => format!("{number:.*}", decimals.unsigned_abs() as usize),
-            false => {
-                // As many digits as leave room for the exponent.
-                let text = exponent(number, 0);
-                let taken = columns(&text) + 2;
-                exponent(number, self.cell.saturating_sub(taken).min(self.digits - 1))
-            }
+        if fits && seen >= LEAST_SEEN {
+            format!("{number:.*}", decimals.unsigned_abs() as usize)
+        } else {
+            // As many digits as leave room for the exponent.
+            let text = exponent(number, 0);
+            let taken = columns(&text) + 2;
+            exponent(number, self.cell.saturating_sub(taken).min(self.digits - 1))
         }
     }
 }
 
 /// The lines of `quantity`, which is no table; `is_result` says whether the phase was about it.
 pub fn lines(quantity: &Quantity, format: Format, is_result: bool) -> Vec<Line> {
-    let role = match is_result {
-        true => Role::Heading,
-        false => Role::Text,
-    };
+    let role = if is_result { Role::Heading } else { Role::Text };
     let rows: Vec<Vec<f64>> = match &quantity.value {
         Value::Number(number) => vec![vec![*number]],
         Value::Vector(vector) => vec![vector.iter().copied().collect()],
@@ -111,9 +107,10 @@ pub fn lines(quantity: &Quantity, format: Format, is_result: bool) -> Vec<Line> 
     let cells = match &quantity.value {
         Value::Number(number) => {
             let text = significant(*number, format.digits);
-            match columns(&text) < format.cell {
-                true => vec![format!("{text:>0$}", format.cell)],
-                false => format.aligned(&[*number]),
+            if columns(&text) < format.cell {
+                vec![format!("{text:>0$}", format.cell)]
+            } else {
+                format.aligned(&[*number])
             }
         }
         _ => format.aligned(&rows.concat()),
@@ -127,19 +124,18 @@ pub fn lines(quantity: &Quantity, format: Format, is_result: bool) -> Vec<Line> 
         first.pieces.push((unit, unit_of(quantity), Role::Quiet));
     }
     let symbol = (0, quantity.symbol.to_owned(), Role::Focus);
-    match columns(quantity.symbol) < SYMBOL {
-        true => {
-            if let Some(first) = lines.first_mut() {
-                first.pieces.push(symbol);
-            }
+    if columns(quantity.symbol) < SYMBOL {
+        if let Some(first) = lines.first_mut() {
+            first.pieces.push(symbol);
         }
-        false => lines.insert(
+    } else {
+        lines.insert(
             0,
             Line {
                 pieces: vec![symbol],
                 ..Line::default()
             },
-        ),
+        );
     }
     lines
 }

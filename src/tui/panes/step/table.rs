@@ -90,9 +90,10 @@ impl TableView<'_> {
             }
         }
         if left > 0 {
-            let what = match summed(self.table).is_empty() {
-                true => "Down goes through them",
-                false => "Down adds them up one by one",
+            let what = if summed(self.table).is_empty() {
+                "Down goes through them"
+            } else {
+                "Down adds them up one by one"
             };
             let text = format!("... {left} more: {what}");
             lines.push(Line::of(0, text, Role::Quiet));
@@ -122,9 +123,10 @@ impl TableView<'_> {
 
     /// The column of the screen in which the numbers of `group` begin.
     fn begin(&self, group: &Range<usize>) -> usize {
-        match self.has_mass_aside(group) {
-            true => NAME - 1 + MASS,
-            false => NAME,
+        if self.has_mass_aside(group) {
+            NAME - 1 + MASS
+        } else {
+            NAME
         }
     }
 
@@ -164,15 +166,12 @@ impl TableView<'_> {
                 line = line.and(NAME - 1, format!("{mass:>MASS$}"), Role::Quiet);
             }
             let units = side_by_side(&mut columns.iter().map(|(_, unit)| *unit));
-            match columns.iter().all(|(_, unit)| *unit == columns[0].1) {
-                true => {
-                    let unit = format!("in {}", columns[0].1);
-                    lines.push(line.and(0, unit, Role::Quiet));
-                }
-                false => {
-                    lines.push(line);
-                    lines.push(Line::of(self.begin(group), units, Role::Quiet));
-                }
+            if columns.iter().all(|(_, unit)| *unit == columns[0].1) {
+                let unit = format!("in {}", columns[0].1);
+                lines.push(line.and(0, unit, Role::Quiet));
+            } else {
+                lines.push(line);
+                lines.push(Line::of(self.begin(group), units, Role::Quiet));
             }
         }
         lines

@@ -335,9 +335,10 @@ fn dip(
     let mut plan = Plan::new(picture, view, (least + most) * 0.5, half);
     let ink = Ink::Strong(Role::Path);
     for pair in dip.way_m.windows(2) {
-        match is_seen {
-            true => plan.line(at(&pair[0]), at(&pair[1]), ink),
-            false => plan.line(at(&pair[1]), at(&pair[1]), ink),
+        if is_seen {
+            plan.line(at(&pair[0]), at(&pair[1]), ink);
+        } else {
+            plan.line(at(&pair[1]), at(&pair[1]), ink);
         }
     }
     plan.sign(first, "o", Role::Focus);

@@ -154,9 +154,10 @@ impl Subject<'_> {
             Some(_) => (["τ torque", "τ torque", "τ"], ["dL = τ dt", "dL", "dL"]),
             None => (["no torque", "no torque", ""], ["L stays", "", ""]),
         };
-        let weight = match self.run.simulation().loads().gravity == 0.0 {
-            true => ["no weight", "", ""],
-            false => ["g weight", "g weight", "g"],
+        let weight = if self.run.simulation().loads().gravity == 0.0 {
+            ["no weight", "", ""]
+        } else {
+            ["g weight", "g weight", "g"]
         };
         let mut words = vec![
             (["L angular momentum", "L", "L"], Role::Z),

@@ -68,12 +68,11 @@ impl Subject<'_> {
             MARGIN * widest / zoom,
             MARGIN * 0.5 * (highest - lowest) / zoom,
         );
-        let middle = match zoom > 1.0 {
-            true => {
-                let (right, up) = self.view.camera.project(&self.wheel());
-                (Zoom::middle(right, half.0), Zoom::middle(up, half.1))
-            }
-            false => (0.0, 0.5 * (lowest + highest)),
+        let middle = if zoom > 1.0 {
+            let (right, up) = self.view.camera.project(&self.wheel());
+            (Zoom::middle(right, half.0), Zoom::middle(up, half.1))
+        } else {
+            (0.0, 0.5 * (lowest + highest))
         };
         Shown {
             middle,

@@ -76,9 +76,12 @@ fn both_ends(strip: &Strip, width: usize) -> Vec<Placed> {
 fn ends(strip: &Strip, width: usize) -> (String, String) {
     let digits = scale::decimals(strip.window_s / 10.0).min(6);
     // Whole numbers that tell the two ends apart, up to where they have more digits than anyone reads.
-    let [begin, end] = [strip.begin_s, strip.end_s()].map(|time_s| match time_s < MOST_TIME_S {
-        true => format!("{time_s:.digits$}"),
-        false => exponent(time_s, 3),
+    let [begin, end] = [strip.begin_s, strip.end_s()].map(|time_s| {
+        if time_s < MOST_TIME_S {
+            format!("{time_s:.digits$}")
+        } else {
+            exponent(time_s, 3)
+        }
     });
     let end = end + UNIT;
     if begin.len() + end.len() < width {
@@ -98,9 +101,10 @@ pub fn values(scale: &Scale, rows: usize) -> Vec<Placed> {
     /// Rows for each value.
     const ROWS: usize = 3;
     let last = rows.saturating_sub(1);
-    let ticks = match rows > 2 * ROWS {
-        true => scale.ticks(rows / ROWS),
-        false => Vec::new(),
+    let ticks = if rows > 2 * ROWS {
+        scale.ticks(rows / ROWS)
+    } else {
+        Vec::new()
     };
     if let [first, second, ..] = ticks[..] {
         let digits = scale::decimals(second - first);

@@ -81,13 +81,15 @@ impl Traces<'_> {
             if contents.is_empty() {
                 continue;
             }
-            let weight = match is_upper {
-                true => contents.len() as u16,
-                false => weigh(&contents),
+            let weight = if is_upper {
+                contents.len() as u16
+            } else {
+                weigh(&contents)
             };
-            let height = match Some(index) == last {
-                true => inside.bottom() - y,
-                false => (rows * weight).div_ceil(all) + 1,
+            let height = if Some(index) == last {
+                inside.bottom() - y
+            } else {
+                (rows * weight).div_ceil(all) + 1
             };
             let area = Rect {
                 y,

@@ -41,9 +41,10 @@ impl Traces<'_> {
         };
         let reach = points.iter().map(reach).fold(LEAST, f64::max);
         let scale = Scale::about_zero(reach);
-        match self.view.magnified > 1.0 {
-            true => scale.zoomed(self.view.magnified, 0.0),
-            false => scale,
+        if self.view.magnified > 1.0 {
+            scale.zoomed(self.view.magnified, 0.0)
+        } else {
+            scale
         }
     }
 
@@ -77,9 +78,10 @@ impl Traces<'_> {
         let row = |value: f64| scale.from_top(value) * f64::from(area.height);
         let mut points = Points::new(area, self.view.marker);
         for point in &all[begin..end.max(begin)] {
-            let value = match is_residual {
-                true => point.residual(),
-                false => Some(point.value),
+            let value = if is_residual {
+                point.residual()
+            } else {
+                Some(point.value)
             };
             let (Some(value), Some(column)) = (value, strip.column(point.time_s)) else {
                 continue;
@@ -91,9 +93,10 @@ impl Traces<'_> {
             };
             // The lowest value stands on the last row.
             let at = row(value);
-            let at = match at == f64::from(area.height) {
-                true => at - 1.0,
-                false => at,
+            let at = if at == f64::from(area.height) {
+                at - 1.0
+            } else {
+                at
             };
             points.add(
                 ((column / across) as f64, at),

@@ -97,9 +97,10 @@ fn word(pushed: &[bool], (begin, end): (usize, usize), free_from: usize) -> Opti
     };
     let before = begin.checked_sub(length);
     let before = before.filter(|&at| at >= free_from && is_free(at.saturating_sub(1), begin));
-    match is_free(end, end + length + 1) {
-        true => Some(end),
-        false => before,
+    if is_free(end, end + length + 1) {
+        Some(end)
+    } else {
+        before
     }
 }
 
