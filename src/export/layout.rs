@@ -19,16 +19,12 @@ use std::num::NonZeroU64;
 #[serde(deny_unknown_fields)]
 pub struct LayoutFile {
     /// 10 writes rows 0, 10, 20 and so on, and the last.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub every: Option<NonZeroU64>,
     /// The time of the first row, s; earlier ones are left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub from_s: Option<f64>,
     /// The time of the last row, s; later ones are left out.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub to_s: Option<f64>,
     /// The names of the columns, in their order.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub columns: Option<Vec<String>>,
     /// Whether there is a row for each point of the body.
     #[serde(skip_serializing_if = "is_false")]

@@ -44,7 +44,6 @@ pub struct Found {
     /// Its value.
     pub value: f64,
     /// One standard uncertainty of it.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub uncertainty: Option<f64>,
 }
 

@@ -21,7 +21,6 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 struct KeptWork {
     history: History,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pinned: Option<KeptPinned>,
 }
 
@@ -32,7 +31,6 @@ struct KeptPinned {
     /// The step up to which it was played; of no meaning for the present run.
     step: u64,
     /// The run file with all that was done to the run; `None` where the present run is pinned.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     run: Option<ScenarioFile>,
 }
 
@@ -65,55 +63,38 @@ impl KeptPinned {
 struct KeptPlace {
     step: u64,
     /// Simulated seconds a second; `None` at top speed.
-    #[serde(skip_serializing_if = "Option::is_none")]
     speed: Option<f64>,
     shows_exact: bool,
     window_s: f64,
     /// The time that the strip of the fast motion shows; `None` where the motion or `[view]` of the scenario tells.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     detail_s: Option<f64>,
     /// What that strip shows; `None` where the motion or `[view]` of the scenario tells.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     detail_of: Option<String>,
     /// The id of the pane in focus.
     focus: String,
     filled: bool,
     /// The file of the export that was in progress.
-    #[serde(skip_serializing_if = "Option::is_none")]
     exporting: Option<String>,
     /// The ids of the panes that share the screen; `None` where `[view]` of the scenario tells.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     show: Option<Vec<String>>,
     /// The ids of what is hidden; `None` where `[view]` of the scenario tells.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     hide: Option<Vec<String>>,
     /// The line about what there is to see; `None` where the scenario tells.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     look_at: Option<String>,
     /// The line about what to try next; `None` where the scenario or the preset tells.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     next: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     bare: Option<bool>,
     /// The measured data beside the run, and whether they are shown less what it says.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     measured: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     residuals: Option<bool>,
     /// The page of the step pane, and how many rows it adds up; `None` where they are as usual.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     phase: Option<Choice>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     sum_to: Option<usize>,
     next_push: NextPush,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     camera: Option<KeptCamera>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     zoom: Option<ZoomFile>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     script: Option<KeptScript>,
     /// What the room of the lessons keeps.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     lessons: Option<toml::Table>,
 }
 

@@ -8,14 +8,10 @@ use std::sync::Arc;
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct ScenarioFile {
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub gyrolab: Option<String>,
     pub title: String,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub about: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub trace: Option<String>,
     #[serde(default)]
     pub body: BodyFile,
@@ -23,9 +19,7 @@ pub struct ScenarioFile {
     pub motion: MotionFile,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub push: Vec<PushFile>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub friction: Option<FrictionFile>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub view: Option<ViewFile>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub expected: Vec<ExpectedFile>,
@@ -38,7 +32,6 @@ pub struct ScenarioFile {
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct BodyFile {
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub rim: Option<RimFile>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub point: Vec<PointFile>,
@@ -64,7 +57,6 @@ pub struct RimFile {
 pub struct PointFile {
     pub name: String,
     pub at_m: [f64; 3],
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub mass_kg: Option<f64>,
 }
 
@@ -77,19 +69,12 @@ pub struct PartFile {
     pub name: String,
     pub mass_kg: f64,
     pub at_m: [f64; 3],
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub axis: Option<[f64; 3]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub radius_m: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub inner_radius_m: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub outer_radius_m: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub length_m: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub size_m: Option<[f64; 3]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub moments_kg_m2: Option<[f64; 3]>,
 }
 
@@ -99,27 +84,16 @@ pub struct PartFile {
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 #[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct StartFile {
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub tilt_deg: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub turn_deg: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub roll_deg: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub momentum_Js: Option<[f64; 3]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub momentum_frame: Option<Frame>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub spin_rpm: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub spin_rad_per_s: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub steady: Option<bool>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub omega_rad_per_s: Option<[f64; 3]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub omega_frame: Option<Frame>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub rotor: Option<String>,
 }
 
@@ -149,9 +123,7 @@ impl Frame {
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct MotionFile {
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub gravity_m_per_s2: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub scheme: Option<String>,
     pub time_step_s: f64,
     pub steps: u64,
@@ -165,15 +137,10 @@ pub struct MotionFile {
 pub struct PushFile {
     pub point: String,
     pub force_N: [f64; 3],
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub first_step: Option<u64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub steps: Option<u64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub from_s: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub for_s: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub accumulates: Option<bool>,
 }
 
@@ -183,13 +150,9 @@ pub struct PushFile {
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 #[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct FrictionFile {
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub spin_dry_Nm: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub spin_viscous_Nms: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub spin_quadratic_Nms2: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub swing_viscous_Nms: Option<f64>,
 }
 
@@ -198,38 +161,23 @@ pub struct FrictionFile {
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct ViewFile {
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub look_at: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub window_s: Option<f64>,
     /// Length of time that the strip of the fast motion shows, s.
     pub detail_s: Option<f64>,
     pub detail_of: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub exact: Option<bool>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub show: Option<Vec<String>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub hide: Option<Vec<String>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub fill: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub phase: Option<Choice>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub sum_to: Option<Choice>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub bare: Option<bool>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub residuals: Option<bool>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraFile>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub zoom: Option<ZoomFile>,
 }
 
@@ -248,9 +196,7 @@ pub enum Choice {
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct CameraFile {
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub yaw_deg: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub pitch_deg: Option<f64>,
 }
 
@@ -259,9 +205,8 @@ pub struct CameraFile {
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct ZoomFile {
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub above: Option<f64>,
-    #[serde(rename = "3d", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "3d")]
     pub three_d: Option<f64>,
 }
 

@@ -44,7 +44,6 @@ enum Shown {
 #[serde(deny_unknown_fields)]
 pub struct KeptLessons {
     /// The one that is taken.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub open: Option<String>,
     /// Where each stands, by its name.
     #[serde(default)]

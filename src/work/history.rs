@@ -25,7 +25,6 @@ pub struct RunRecord {
     /// Time at which the run ends, s. An edit of the time step changes the number of steps, not this time.
     pub end_s: f64,
     /// The push that the user had prepared when they left the run.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub next_push: Option<NextPush>,
     /// Whether the run follows the advice about the one before. The edits that it has from that one cannot be undone
     /// one by one in it.

@@ -37,15 +37,12 @@ pub struct Asked {
     /// The free keys, as they were given.
     pub free: Vec<String>,
     /// The rows that were fitted, where these are not all.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub rows: Option<String>,
     /// chi^2, of data with uncertainties.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub chi_squared: Option<f64>,
     /// The degrees of freedom.
     pub degrees_of_freedom: u64,
     /// The scatter of data without uncertainties, in their unit.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub scatter: Option<f64>,
     /// Whether the model fits, in a sentence.
     pub verdict: String,

@@ -12,22 +12,16 @@ use toml::{Table, Value};
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SweepFile {
     /// The version that wrote the file; only in the header of a CSV.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub gyrolab: Option<String>,
     /// What it is called; without one, as the scenario is.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
     /// What it shows.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub about: Option<String>,
     /// Where it comes from.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
     /// `K/N`: of its rows only those of this shard.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub shard: Option<String>,
     /// The readouts; without any, every number.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub measure: Option<Vec<String>>,
     /// What varies; the last fastest.
     pub vary: Vec<VaryFile>,
@@ -53,16 +47,12 @@ pub struct VaryFile {
     /// The dotted key.
     pub key: String,
     /// Its values, one by one.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub values: Option<Vec<Value>>,
     /// The first of evenly spaced values, where `values` has none.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub from: Option<f64>,
     /// The last of them.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub to: Option<f64>,
     /// How many there are.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub count: Option<u64>,
 }
 
