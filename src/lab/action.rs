@@ -148,7 +148,6 @@ pub enum LessonKey {
 
 /// A change in the field of a dialog that types no character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum FieldEdit {
     Delete,
     Clear,
@@ -162,7 +161,6 @@ pub enum FieldEdit {
 
 /// The direction of an arrow or page key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum Direction {
     Up,
     Down,

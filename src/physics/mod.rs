@@ -6,6 +6,8 @@
 //! from or who looks at them, and nothing here depends on the processor or on the C library: sine, cosine and arc tangent
 //! are compiled in, sums have a fixed order, and no multiply-add is fused.
 
+#![warn(missing_docs)]
+
 pub mod body;
 pub mod exact;
 pub mod friction;

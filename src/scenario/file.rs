@@ -6,7 +6,6 @@ use std::sync::Arc;
 /// A scenario file; with `gyrolab` and any number of edits, a run file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct ScenarioFile {
     pub gyrolab: Option<String>,
     pub title: String,
@@ -30,7 +29,6 @@ pub struct ScenarioFile {
 /// `[body]`
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct BodyFile {
     pub rim: Option<RimFile>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -42,7 +40,6 @@ pub struct BodyFile {
 /// `[body.rim]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct RimFile {
     pub points: usize,
     pub radius_m: f64,
@@ -53,7 +50,6 @@ pub struct RimFile {
 /// `[[body.point]]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct PointFile {
     pub name: String,
     pub at_m: [f64; 3],
@@ -63,7 +59,6 @@ pub struct PointFile {
 /// `[[body.part]]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct PartFile {
     pub shape: String,
     pub name: String,
@@ -82,7 +77,6 @@ pub struct PartFile {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
-#[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct StartFile {
     pub tilt_deg: Option<f64>,
     pub turn_deg: Option<f64>,
@@ -121,7 +115,6 @@ impl Frame {
 /// `[motion]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct MotionFile {
     pub gravity_m_per_s2: Option<f64>,
     pub scheme: Option<String>,
@@ -133,7 +126,6 @@ pub struct MotionFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
-#[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct PushFile {
     pub point: String,
     pub force_N: [f64; 3],
@@ -148,7 +140,6 @@ pub struct PushFile {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
-#[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct FrictionFile {
     pub spin_dry_Nm: Option<f64>,
     pub spin_viscous_Nms: Option<f64>,
@@ -159,7 +150,6 @@ pub struct FrictionFile {
 /// `[view]`
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct ViewFile {
     pub speed: Option<f64>,
     pub look_at: Option<String>,
@@ -194,7 +184,6 @@ pub enum Choice {
 /// `[view.camera]`
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct CameraFile {
     pub yaw_deg: Option<f64>,
     pub pitch_deg: Option<f64>,
@@ -203,7 +192,6 @@ pub struct CameraFile {
 /// `[view.zoom]`
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct ZoomFile {
     pub above: Option<f64>,
     #[serde(rename = "3d")]
@@ -213,7 +201,6 @@ pub struct ZoomFile {
 /// `[[expected]]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct ExpectedFile {
     pub readout: String,
     pub at_step: u64,
@@ -224,7 +211,6 @@ pub struct ExpectedFile {
 /// `[[edit]]`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[allow(missing_docs, reason = "the table of keys says what each key means")]
 pub struct EditFile {
     pub step: u64,
     pub set: Arc<toml::Table>,

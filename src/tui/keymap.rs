@@ -10,7 +10,6 @@ use Mode::{Browser, Dialog, Filter, Find, Help, Lab};
 
 /// A key, as no terminal library names it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "they are on the keyboard")]
 pub enum Key {
     Char(char),
     Ctrl(char),

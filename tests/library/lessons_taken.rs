@@ -240,8 +240,8 @@ fn pages_before_one_that_take_too_long_do_not_hold_the_keys_up() {
 ## One
 
 ```lab
-open = "wobble-push"
-run_until = "measured_precession_rad_per_s > 1e9"
+open = "wing-nut"
+run_until = "distance_m < 0"
 ```
 
 x
