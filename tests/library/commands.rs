@@ -502,6 +502,11 @@ fn a_run_is_played_until_a_condition_holds() {
     let text = "[[do]]\nrun_until = \"step >= 2 * motion.steps and abs(z_m) > 0\"\n[[do]]\nrun_until = \"t_s > 0\"";
     let (desk, end) = finished("method-2", text);
     assert_eq!((end, desk.step()), (Ok(()), 4600));
+}
+
+#[test]
+#[ignore = "takes ten million steps: seconds"]
+fn a_condition_that_never_holds_is_given_up() {
     let (desk, end) = finished(
         "cusps",
         "[[do]]\nrun_until = \"z_m > 1000\"\n[[do]]\nstep = 1",

@@ -177,6 +177,7 @@ fn advice_is_right(name: &str, scenario: &Scenario) -> Advice {
 }
 
 #[test]
+#[ignore = "tries some 400 runs at many time steps: half a minute"]
 fn the_advice_is_right_for_every_preset_under_every_scheme() {
     let cases: Vec<_> = PRESETS
         .iter()
@@ -262,6 +263,7 @@ fn random(dice: &mut Dice) -> Scenario {
 const SCHEMES_TRIED: &[&str] = &["report", "report", "rk4", "strang", "srkn11b", "exact"];
 
 #[test]
+#[ignore = "tries 150 runs at many time steps: ten seconds"]
 fn the_advice_is_right_for_random_bodies() {
     let mut dice = Dice(0x5851_F42D_4C95_7F2D);
     let scenarios: Vec<_> = (0..150).map(|_| random(&mut dice)).collect();

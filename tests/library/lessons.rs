@@ -664,13 +664,6 @@ fn a_lesson_is_played_to_its_end() {
     );
     assert!(told.starts_with(&format!("a.md:{line}: ")), "{told}");
     let task = WHOLE.lines().position(|line| line == "go_to = 10").unwrap() + 1;
-    let told = not_good("go_to = 10", "run_until = \"t_s < 0\"");
-    assert!(
-        told.starts_with(&format!(
-            "a.md:{task}: run_until: did not hold on any of 10,000,000 steps"
-        )),
-        "{told}"
-    );
     let told = not_good("open = \"method-2\"", "open = \"./nowhere.toml\"");
     assert!(
         told.starts_with(&format!(
@@ -830,6 +823,7 @@ fn every_lesson_plays_and_its_checks_fail_without_their_blocks() {
 }
 
 #[test]
+#[ignore = "plays each lesson once for each of its pages: ten seconds"]
 fn a_page_is_the_same_whether_turned_to_or_jumped_to() {
     for lesson in lessons() {
         let mut walk = Walk::new(&lesson, lab());

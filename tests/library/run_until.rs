@@ -131,30 +131,3 @@ fn what_is_read_again_alone_is_what_is_read_with_everything() {
         }
     }
 }
-
-/// `cargo test --test library run_until:: -- --ignored --nocapture` prints how fast a run is played until a condition
-/// holds.
-#[test]
-#[ignore = "it measures, and decides nothing"]
-fn steps_a_second() {
-    for condition in [
-        "step >= 1000000",
-        "tilt_deg < 0 or step >= 1000000",
-        "measured_highest_tilt_deg > 180 or step >= 1000000",
-        "measured_precession_rad_per_s > 1e9 or step >= 1000000",
-        "distance_m < 0 or step >= 1000000",
-        "predicted_precession_rad_per_s > 1e9 or step >= 1000000",
-    ] {
-        let begin = std::time::Instant::now();
-        let (desk, end) = played("cusps", condition);
-        let rate = desk.step() as f64 / begin.elapsed().as_secs_f64();
-        println!("{rate:10.0} steps/s: {condition} {end:?}");
-    }
-    let begin = std::time::Instant::now();
-    let mut run = LiveRun::new(Arc::new(preset("cusps", &[])));
-    (0..1_000_000).for_each(|_| run.step().unwrap());
-    println!(
-        "{:10.0} steps/s: no condition",
-        1e6 / begin.elapsed().as_secs_f64()
-    );
-}

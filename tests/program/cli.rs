@@ -724,6 +724,7 @@ fn a_signal_ends_the_wait_for_the_reader_of_a_fifo() {
 /// Ten million rows kept in memory would be 1.2 GB; a run of a hundred steps takes 5 MB, most of it the program
 /// itself, and the limit (on address space, the larger figure) is 50 MB.
 #[test]
+#[ignore = "makes runs of millions of steps: ten seconds"]
 fn memory_does_not_grow_with_the_run() {
     let lab = Ground::new();
     done(
@@ -733,6 +734,7 @@ fn memory_does_not_grow_with_the_run() {
 
 /// What is drawn takes 300 MB at most, however long the run and however much was measured.
 #[test]
+#[ignore = "draws runs of millions of steps: ten seconds"]
 fn memory_does_not_grow_with_what_is_drawn() {
     let lab = Ground::new();
     let rows = (0..200_000).map(|row| format!("{row},{}\n", 1000 + row * 41 % 97));

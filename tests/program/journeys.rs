@@ -773,6 +773,7 @@ fn a_place_for_sessions_that_is_lost_is_told_of_and_found_again() {
 
 /// A lab that resumes at a far step is on its way for a second. If it ends on the way, it must still resume there.
 #[test]
+#[ignore = "goes 12 million steps, four times: ten seconds"]
 fn an_end_on_the_way_back_costs_nothing() {
     let ground = Ground::new();
     let mut lab = paused_at(&ground, 12_000_000);
@@ -821,6 +822,7 @@ struct Observed {
 }
 
 #[test]
+#[ignore = "uses the lab for a second or two before each kill: ten seconds"]
 fn twenty_kills_cost_no_more_than_the_last_second() {
     thread::scope(|scope| {
         for seed in 1..=4 {

@@ -168,6 +168,7 @@ fn hold(what: &str, pairs: &[Pair], fewest: usize) {
 }
 
 #[test]
+#[ignore = "measures 360 runs: seconds"]
 fn stated_uncertainties_hold_what_a_scheme_makes_of_the_motion() {
     for (scheme, fewest) in [("rk4", 20), ("strang", 80), ("srkn11b", 80)] {
         let seeds = (1..=120_u64).into_par_iter();
@@ -188,6 +189,7 @@ fn stated_uncertainties_hold_the_picture_of_strobed_runs() {
 }
 
 #[test]
+#[ignore = "measures 800 runs: seconds"]
 fn stated_uncertainties_hold_for_lopsided_bodies() {
     let pairs: Vec<_> = (1..=800_u64).into_par_iter().filter_map(lopsided).collect();
     hold("lopsided", &pairs, 100);
@@ -223,6 +225,7 @@ fn tumbling(seed: u64) -> Option<[Measured; 2]> {
 }
 
 #[test]
+#[ignore = "measures hundreds of runs: seconds"]
 fn a_nutation_that_may_lie_between_two_rows_is_not_counted() {
     let seeds = (1..=400_u64).into_par_iter();
     let pairs: Vec<_> = seeds
