@@ -579,6 +579,15 @@ fn a_phase_shows_its_own_arrows_in_space() {
 }
 
 #[test]
+fn under_friction_the_change_of_momentum_is_not_said_to_be_along_the_torque() {
+    let mut stage = Stage::open("first-dip", &["motion.scheme='rk4'"], LARGE);
+    stage.commands("pause = true\nstep = 5\nshow = ['3d', 'step']\nphase = 7");
+    stage.shows("dL, its direction").shows_no("dL along τ");
+    stage.commands("show = ['3d', 'above']");
+    stage.shows("dL with friction").shows_no("dL = τ dt");
+}
+
+#[test]
 fn a_large_body_is_shown_as_any_other() {
     let scenario = parse(
         "title = 'x'\n[body.rim]\npoints = 99999\nradius_m = 0.8\nheight_m = 0.5\npoint_mass_kg = 0.00005\n\

@@ -18,6 +18,7 @@ use crate::observe::ages::Ages;
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::reading::Reading;
+use crate::physics::friction::Damping;
 use crate::physics::{State, loads, observables};
 use crate::text::wrap::columns;
 use crate::tui::dashes::{self, on_and_off};
@@ -170,6 +171,8 @@ struct Subject<'a> {
     arm: f64,
     /// The direction of the torque of all forces about the pivot, where there is one.
     torque: Option<Vector3<f64>>,
+    /// That of this torque and friction's together: the direction of dL.
+    change: Option<Vector3<f64>>,
     /// The phase that the step pane is at, where that is on the screen.
     shown_phase: Option<phase::Shown<'a>>,
 }
@@ -186,6 +189,7 @@ impl<'a> Subject<'a> {
         let ages = pane.reading.map(|reading| Ages::of(&reading.readouts));
         let shape = Shape::of(run);
         let reach = shape.reach();
+        let [torque, change] = torques(run, state);
         Self {
             run,
             ghost: pane.ghost,
@@ -197,7 +201,8 @@ impl<'a> Subject<'a> {
             reach,
             arm: shape.arm().max(LEAST_ARM * reach),
             shape,
-            torque: torque(run, state),
+            torque,
+            change,
             shown_phase: phase::Shown::of(pane.explained, pane.view),
         }
     }
@@ -284,10 +289,15 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// The direction of the torque of all forces about the pivot at `state`, where there is one.
-fn torque(run: &LiveRun, state: &State) -> Option<Vector3<f64>> {
+/// The directions of the torque of all forces about the pivot at `state`, and of that with friction's, where there is one.
+fn torques(run: &LiveRun, state: &State) -> [Option<Vector3<f64>>; 2] {
     let (loads, body) = (run.simulation().loads(), &run.scenario().body.mechanics);
     let torque = loads::torque(&state.orientation, &loads.moment(body));
     let largest = loads.gravity.abs() * body.first_moment().norm();
-    torque.try_normalize((NO_TORQUE * largest).max(f64::MIN_POSITIVE))
+    let friction = Damping::new(body, &loads.friction).map(|damping| {
+        let omega = observables::angular_velocity(body, state);
+        state.orientation * damping.torque(&(state.orientation.transpose() * omega))
+    });
+    let least = (NO_TORQUE * largest).max(f64::MIN_POSITIVE);
+    [torque, torque + friction.unwrap_or_default()].map(|torque| torque.try_normalize(least))
 }

@@ -68,10 +68,10 @@ impl Subject<'_> {
             // Both are short and cross the rim, which would hide them.
             let to = torque * (TORQUE * reach);
             arrow("τ", Role::X, Scene::arrow_in_front, pivot, to, None);
-            if let Some(momentum) = momentum {
-                let to = torque * (CHANGE * reach);
-                arrow("dL", Role::X, Scene::arrow_in_front, momentum, to, None);
-            }
+        }
+        if let (Some(change), Some(momentum)) = (self.direction("dL", self.change), momentum) {
+            let to = change * (CHANGE * reach);
+            arrow("dL", Role::X, Scene::arrow_in_front, momentum, to, None);
         }
         if let Some(new) = self.new_momentum() {
             let to = new * (MOMENTUM * arm);
@@ -150,9 +150,15 @@ impl Subject<'_> {
     }
 
     fn arrows_in_words(&self, is_pushed: bool) -> Vec<Words> {
-        let (torque, change) = match self.torque {
-            Some(_) => (["τ torque", "τ torque", "τ"], ["dL = τ dt", "dL", "dL"]),
-            None => (["no torque", "no torque", ""], ["L stays", "", ""]),
+        let is_rubbed = !self.run.simulation().loads().friction.is_none();
+        let torque = match self.torque {
+            Some(_) => ["τ torque", "τ torque", "τ"],
+            None => ["no torque", "no torque", ""],
+        };
+        let change = match self.change {
+            Some(_) if is_rubbed => ["dL with friction", "dL", "dL"],
+            Some(_) => ["dL = τ dt", "dL", "dL"],
+            None => ["L stays", "", ""],
         };
         let weight = if self.run.simulation().loads().gravity == 0.0 {
             ["no weight", "", ""]

@@ -75,6 +75,12 @@ impl<'a> Shown<'a> {
         }
     }
 
+    /// Whether friction has a part in dL, which is not along τ then.
+    fn is_rubbed(&self) -> bool {
+        let mut parts = self.explained.workings.parts.iter();
+        parts.any(|part| !part.loads.friction.is_none())
+    }
+
     fn before(&self) -> &State {
         &self.explained.states.0
     }
@@ -154,6 +160,7 @@ impl Subject<'_> {
             "Ω" => (["Ω angular velocity", "Ω", "Ω"], Role::Y),
             "u" => (["u axis of the turn", "u axis", "u"], Role::Y),
             "τ" => (["τ torque", "τ torque", "τ"], Role::X),
+            "dL" if shown.is_rubbed() => (["dL, its direction", "dL, direction", "dL"], Role::X),
             "dL" => (
                 ["dL along τ, its direction", "dL, direction", "dL"],
                 Role::X,
