@@ -85,7 +85,7 @@ pub fn remarks(health: &Health, advice: Option<&Advice>) -> Vec<Remark> {
     if health.picture == Picture::Strobed && health.is_believed() != Some(false) {
         // Of the picture alone: it changes no number, so it is said last.
         remarks.push(Remark::new(
-            "the wheel's picture is strobed, the motion is not".to_owned(),
+            "the body's picture is strobed, the motion is not".to_owned(),
             false,
         ));
     }
@@ -179,7 +179,7 @@ fn swing_of(health: &Health, nutation: &Nutation) -> Vec<(bool, Remark)> {
 
 fn turns(health: &Health) -> Remark {
     if health.picture == Picture::Unknown {
-        let text = "the wheel turns further in a step than numbers reach".to_owned();
+        let text = "the body turns further in a step than numbers reach".to_owned();
         return Remark::new(text, true);
     }
     let turns = steady(health.turns_per_step);
@@ -190,7 +190,7 @@ fn turns(health: &Health) -> Remark {
     };
     let short = if long.is_empty() { "" } else { ": strobed" };
     Remark {
-        long: format!("the wheel turns {turns} times a step{long}"),
+        long: format!("the body turns {turns} times a step{long}"),
         short: format!("{turns} turns a step{short}"),
         warns,
     }

@@ -38,7 +38,7 @@ fn it_warns_of_the_runs_that_the_time_step_has_made() {
         (
             "method-2",
             &[][..],
-            "the wheel turns 4.97 times in a time step",
+            "the body turns 4.97 times in a time step",
         ),
         ("wobble-push", &[], "times in a time step"),
         ("wobble-push-accumulating", &[], "times in a time step"),

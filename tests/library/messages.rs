@@ -97,7 +97,7 @@ fn a_wheel_that_is_strobed_is_no_fault_of_the_run() {
     let last = remarks.last().map(|remark| remark.long.as_str());
     assert_eq!(
         last,
-        Some("the wheel's picture is strobed, the motion is not")
+        Some("the body's picture is strobed, the motion is not")
     );
     for size in [SMALL, LARGE] {
         Stage::open("method-2", &["motion.time_step_s=0.0022"], size).shows_no(": strobed");

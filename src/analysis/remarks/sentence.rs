@@ -44,10 +44,10 @@ fn sentence(health: &Health, advice: Option<&Advice>) -> String {
     let picture = match health.picture {
         Picture::Right => String::new(),
         Picture::Unknown => {
-            format!(" (in a step the wheel turns {})", health.picture)
+            format!(" (in a step the body turns {})", health.picture)
         }
         _ => format!(
-            "; only a picture of the turning wheel would mislead, which turns {} times a step: {}",
+            "; only a picture of the turning body would mislead, which turns {} times a step: {}",
             short(health.turns_per_step),
             health.picture
         ),
@@ -93,7 +93,7 @@ fn cause(health: &Health) -> String {
         }
         Some(_) if psi >= PI => {
             format!(
-                "the wheel turns {turns} times in a time step, so that the swing of the axle is strobed: it is the time step's"
+                "the body turns {turns} times in a time step, so that the swing of the axle is strobed: it is the time step's"
             )
         }
         Some(nutation) if health.nutation_is_the_cause() => {

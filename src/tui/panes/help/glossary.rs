@@ -84,7 +84,7 @@ pub(super) const GLOSSARY: &[Word] = &[
     ),
     (
         "strobed",
-        "as under a strobe light, a fast swing between steps seems slow; where only the wheel's picture seems to turn wrongly, no number suffers",
+        "as under a strobe light, a fast swing between steps seems slow; where only the body's picture seems to turn wrongly, no number suffers",
     ),
     (
         "predicted",
