@@ -178,10 +178,13 @@ impl Lab {
         mut go_on: impl FnMut(u64, u64) -> ControlFlow<()>,
     ) -> Result<(), String> {
         self.release_script();
+        let mut steps = 0;
         while !self.script.is_done() {
             let begin = Instant::now();
             let playback = &mut self.player.playback;
+            let from = playback.step_number();
             let halt = playback.finish_part(|| begin.elapsed() > PART);
+            steps += playback.step_number().abs_diff(from);
             match halt {
                 Some(halt) => self.halted(halt),
                 None if go_on(playback.step_number(), playback.stops_at()).is_break() => {
@@ -197,6 +200,16 @@ impl Lab {
             }
             if let Some((_, UnderWay::Waiting(until))) = &self.script.under_way {
                 self.now = self.now.max(*until);
+            }
+            if steps > MOST_UNTIL
+                && let Some((placed, _)) = self.script.under_way.take()
+            {
+                let most = HumanCount(MOST_UNTIL);
+                self.player.pause();
+                self.script_has_failed(
+                    &placed,
+                    &format!("commands take at most {most} steps in all"),
+                );
             }
             self.go_on_with_script(halt);
         }

@@ -519,6 +519,15 @@ fn a_condition_that_never_holds_is_given_up() {
         "{told}"
     );
     assert_eq!(desk.step(), 10_000_000);
+    // So many in all, not each.
+    let (desk, end) = finished(
+        "cusps",
+        "[[do]]\ngo_to = 9000000\n[[do]]\ngo_to = \"start\"\n[[do]]\nrun_until = \"z_m > 1000\"",
+    );
+    let told = end.unwrap_err();
+    let limit = "run_until: commands take at most 10,000,000 steps in all";
+    assert!(told.contains(limit), "{told}");
+    assert!(desk.step() < 2_000_000, "{}", desk.step());
 }
 
 #[test]
