@@ -13,6 +13,7 @@ use crate::run::{Clock, Simulation, Step};
 use crate::scenario::Scenario;
 use crate::text::number::shortest;
 use crate::text::printable::Shown;
+use crate::text::unwritten::advised;
 use anyhow::{Context, bail};
 use clap::Args;
 use std::cell::RefCell;
@@ -161,9 +162,9 @@ pub(super) fn played<W: Write>(
         },
     );
     meter.clear();
-    let (ended, wall) = ended?;
+    let (ended, wall) = ended.map_err(advised)?;
     let rows = csv.as_ref().map(CsvWriter::count);
-    let output = csv.map(CsvWriter::finish).transpose()?;
+    let output = csv.map(CsvWriter::finish).transpose().map_err(advised)?;
     Ok(Played {
         ended,
         wall,

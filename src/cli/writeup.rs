@@ -13,6 +13,7 @@ use crate::scenario::{Document, Scenario};
 use crate::study::writeup::figures::{figures, recorder};
 use crate::study::writeup::{Beside, CSV, Writeup};
 use crate::text::printable::{Shown, printable};
+use crate::text::unwritten::advised;
 use crate::work::changed::Original;
 use anyhow::Context;
 use clap::Args;
@@ -89,7 +90,8 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     };
     let writeup = Writeup::new(scenario, readouts, broken, beside, drawings);
     for (name, bytes) in writeup.files()? {
-        fs::write(folder.path().join(name), bytes).with_context(cannot_write)?;
+        let written = fs::write(folder.path().join(name), bytes);
+        written.map_err(advised).with_context(cannot_write)?;
     }
     if interruption.may_act_at_once() {
         return Ok(ExitCode::from(INTERRUPTED));

@@ -67,10 +67,9 @@ fn builder(permissions: &Permissions) -> Builder<'static, 'static> {
 
 /// The system's own error, without the temporary name that `error` speaks of.
 fn of_the_system(error: io::Error) -> io::Error {
-    let inner = error.get_ref().and_then(|inner| inner.source());
-    let inner = inner.and_then(|inner| inner.downcast_ref::<io::Error>());
-    let code = inner.and_then(io::Error::raw_os_error);
-    code.map_or(error, io::Error::from_raw_os_error)
+    let text = error.to_string();
+    let own = text.split(" at path \"").next().unwrap_or_default();
+    io::Error::new(error.kind(), own)
 }
 
 /// Locks `new`. False where another process took it, while it was not locked yet, for one that was left.
@@ -113,6 +112,14 @@ fn is_temporary(name: &str) -> bool {
 mod tests {
     use super::*;
     use std::os::unix::fs::PermissionsExt;
+
+    #[test]
+    fn what_cannot_be_made_is_not_told_with_its_temporary_name() {
+        let permissions = Permissions::from_mode(0o700);
+        let error = file_in(Path::new("/nowhere"), &permissions).unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::NotFound);
+        assert!(!error.to_string().contains(PREFIX), "{error}");
+    }
 
     #[test]
     fn what_nobody_writes_any_more_is_removed_and_nothing_else() {

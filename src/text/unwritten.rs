@@ -17,6 +17,11 @@ pub fn why(error: &Error) -> String {
     format!("{error}: {advice}")
 }
 
+/// `error` with what would help.
+pub fn advised(error: Error) -> Error {
+    Error::new(error.kind(), why(&error))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

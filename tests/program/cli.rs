@@ -426,7 +426,10 @@ fn what_cannot_be_written_is_named_and_leaves_nothing() {
     if Path::new("/dev/full").exists() {
         failed(
             &lab.run(&["run", "method-1", "-o", "/dev/full"]),
-            &["/dev/full", "space"],
+            &[
+                "/dev/full",
+                "free some room, or name a file on another disk",
+            ],
         );
         failed(
             &lab.shell("\"$G\" run method-1 -o - > /dev/full"),
