@@ -40,6 +40,16 @@ fn the_help_does_the_entry_that_is_found() {
 }
 
 #[test]
+fn the_help_finds_how_curves_are_drawn_and_the_colours() {
+    for word in ["dashed", "dotted", "light", "dark"] {
+        let mut stage = open(SMALL);
+        stage
+            .press(&format!("?{word}"))
+            .shows_no("nothing has that");
+    }
+}
+
+#[test]
 fn letters_of_the_help_are_typed_and_esc_clears_them_first() {
     let mut stage = open(SMALL);
     stage
