@@ -18,6 +18,8 @@ pub struct Class {
     shown: Shown,
     /// Where the lessons were left that are not taken now, by their names.
     left: BTreeMap<String, Place>,
+    /// Which lesson was selected when the list was closed.
+    selected: usize,
     /// The time since the lab was opened.
     now: Duration,
     /// Whether the page is to be written again.
@@ -141,7 +143,8 @@ impl Class {
                 }
             }
             (_, LessonKey::List) => self.open_list(),
-            (Shown::List { .. }, LessonKey::Leave) => {
+            (Shown::List { selected, .. }, LessonKey::Leave) => {
+                self.selected = *selected;
                 self.shown = Shown::Nothing;
                 lab.refuse(
                     "the lessons are closed: L lists them again, each stands where it was left",
@@ -183,7 +186,7 @@ impl Class {
             .as_ref()
             .and_then(|here| names.iter().position(|name| name == here));
         self.shown = Shown::List {
-            selected: selected.unwrap_or(0),
+            selected: selected.unwrap_or(self.selected),
             from: here,
         };
     }
