@@ -90,7 +90,10 @@ impl Dialog {
     /// Asks for the CSV file of the run `scenario`; it offers `path`.
     pub(super) fn export(scenario: Arc<Scenario>, path: String) -> Self {
         let fields = [("file", path), ("every", "1".to_owned())];
-        let title = format!("export steps 0 to {} as CSV", scenario.steps);
+        let title = format!(
+            "export steps 0 to {}, where x was pressed, as CSV",
+            scenario.steps
+        );
         let mut dialog = Self::new(Question::Export(scenario), &title, &fields, &[]);
         dialog.show_estimate();
         dialog
