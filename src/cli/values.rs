@@ -1,5 +1,6 @@
 //! How the values of several commands' arguments are read.
 
+use crate::tui::terminal::MOST_CELLS;
 use std::num::NonZeroU64;
 
 pub(super) fn one_or_more(text: &str) -> Result<NonZeroU64, String> {
@@ -46,18 +47,17 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// The largest picture, columns and lines.
-const LARGEST: u16 = 1000;
-
 pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
-    let number = |text: &str| {
-        text.parse()
-            .ok()
-            .filter(|number| (1..=LARGEST).contains(number))
+    let (columns, lines) = MOST_CELLS;
+    let number = |text: &str, most| {
+        let number = text.parse().ok();
+        number.filter(|number| (1..=most).contains(number))
     };
     text.split_once('x')
-        .and_then(|(width, height)| Some((number(width)?, number(height)?)))
-        .ok_or_else(|| format!("must be columns x lines, such as 80x24, each from 1 to {LARGEST}"))
+        .and_then(|(width, height)| Some((number(width, columns)?, number(height, lines)?)))
+        .ok_or_else(|| {
+            format!("must be columns x lines, such as 80x24, from 1x1 to {columns}x{lines}")
+        })
 }
 
 /// How a time is given, and how a step, which is no time.

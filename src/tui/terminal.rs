@@ -69,7 +69,7 @@ const HEARD_WITHIN: Duration = Duration::from_millis(200);
 const MOST_EVENTS: usize = 256;
 
 /// The most columns and lines that are drawn on: a client may say any size, and each cell takes memory. The rest stays empty.
-const MOST_CELLS: (u16, u16) = (1000, 500);
+pub const MOST_CELLS: (u16, u16) = (1000, 500);
 
 /// The part that is drawn on of a screen of that `size`.
 fn drawn_of(size: Size) -> Rect {

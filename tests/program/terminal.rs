@@ -397,6 +397,7 @@ fn what_is_wrong_on_the_command_line_is_refused_in_words() {
         (vec!["no-such-preset"], 1, "no preset of that name"),
         (vec!["show"], 2, "SCENARIO"),
         (vec!["show", "cusps", "--size", "0x9"], 2, "80x24"),
+        (vec!["show", "cusps", "--size", "1000x501"], 2, "1000x500"),
         (vec!["--scheme", "euler"], 2, "report"),
         (vec!["--at", "x"], 2, "a whole number of steps"),
         (
