@@ -13,7 +13,7 @@ const MEMORY: usize = 24 << 20;
 /// Memory of one checkpoint for each point of the body, bytes.
 const PER_POINT: usize = 64;
 /// Memory of one checkpoint besides its points, bytes.
-const PER_CHECKPOINT: usize = 9 << 10;
+const PER_CHECKPOINT: usize = 16 << 10;
 /// Least number of checkpoints, however large the body.
 const FEWEST: usize = 8;
 
