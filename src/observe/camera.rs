@@ -1,7 +1,7 @@
 //! The parallel projection of the world onto a picture, along a direction that the user turns.
 
 use crate::scenario::file::{CameraFile, ZoomFile};
-use crate::scenario::keys::ZOOM;
+use crate::scenario::keys::{PITCH_DEG, ZOOM};
 use crate::text::ladder;
 use nalgebra::Vector3;
 
@@ -88,7 +88,7 @@ impl Camera {
     /// Turns the viewing direction by these angles, degrees; the pitch stays within −90 to 90.
     pub fn turn(&mut self, yaw_deg: f64, pitch_deg: f64) {
         self.yaw_deg = (self.yaw_deg + yaw_deg).rem_euclid(360.0);
-        self.pitch_deg = (self.pitch_deg + pitch_deg).clamp(-90.0, 90.0);
+        self.pitch_deg = (self.pitch_deg + pitch_deg).clamp(PITCH_DEG.0, PITCH_DEG.1);
     }
 
     /// The camera turned about the vertical so that `axle` (a direction, world frame) is seen aslant: long enough to be

@@ -5,7 +5,7 @@
 
 mod check;
 
-pub use super::kind::{Kind, Range, ZOOM};
+pub use super::kind::{Kind, PITCH_DEG, Range, ZOOM};
 use super::problem::nearest;
 use super::screen::{ALL_ROWS, DETAILS, FILLING, HIDEABLE, PANES, PHASES};
 use super::solids;
@@ -238,9 +238,9 @@ pub static KEYS: &[Key] = &[
     may("view.measured", Line, "measured data beside the run: data that come with gyrolab (heidelberg-spin-decay), or a CSV file (default: none)"),
     may("view.residuals", Flag, "whether measured data are shown less what the run says (default: false)"),
     may("view.camera.yaw_deg", Number(Any), "from where the 3-D view is seen: angle of the eye about +z, from -y, degrees"),
-    may("view.camera.pitch_deg", Number(Any), "height of the eye above the horizontal, degrees, -90 to 90"),
-    may("view.zoom.above", Number(Range::Zoom), "how much larger than the whole the path from above is shown, 0.5 to 100 (default: 1)"),
-    may("view.zoom.3d", Number(Range::Zoom), "how much larger than the whole the scene in space is shown, 0.5 to 100 (default: 1)"),
+    may("view.camera.pitch_deg", Number(Range::Within(PITCH_DEG)), "height of the eye above the horizontal, degrees, -90 to 90"),
+    may("view.zoom.above", Number(Range::Within(ZOOM)), "how much larger than the whole the path from above is shown, 0.5 to 100 (default: 1)"),
+    may("view.zoom.3d", Number(Range::Within(ZOOM)), "how much larger than the whole the scene in space is shown, 0.5 to 100 (default: 1)"),
     must("expected.*.readout", Line, "a column of the CSV that the preset's test checks"),
     must("expected.*.at_step", Whole(0, i64::MAX), "at which step"),
     must("expected.*.value", Number(Any), "its value there"),

@@ -3,7 +3,7 @@
 use super::problem::nearest;
 use crate::text::printable::is_steering;
 use Kind::{Flag, Line, Number, OneOf, Paragraph, Settings, Vector, Whole, WholeOr, Words};
-use Range::{NotNegative, Positive};
+use Range::{NotNegative, Positive, Within};
 use nalgebra::Vector3;
 use toml::Value;
 
@@ -47,12 +47,14 @@ pub enum Range {
     Positive,
     /// Zero or greater.
     NotNegative,
-    /// Within [`ZOOM`].
-    Zoom,
+    /// From the first to the second.
+    Within((f64, f64)),
 }
 
 /// The least and the greatest zoom.
 pub const ZOOM: (f64, f64) = (0.5, 100.0);
+/// The least and the greatest height of the eye above the horizontal, degrees.
+pub const PITCH_DEG: (f64, f64) = (-90.0, 90.0);
 
 impl Kind {
     /// Whether `value` is of this kind and in its range.
@@ -66,7 +68,8 @@ impl Kind {
             Number(range) => number(value).and_then(|number| range.check(number)),
             Whole(least, most) => check_whole(value, least, most),
             WholeOr(most, words) => match value {
-                Value::String(word) => check_word(word, words),
+                Value::String(word) => check_word(word, words)
+                    .map_err(|rule| format!("{rule}, or a whole number from 1 to {most}")),
                 _ => check_whole(value, 1, most),
             },
             Vector => check_vector(value),
@@ -89,8 +92,8 @@ impl Range {
         match self {
             Positive if number <= 0.0 => Err("must be greater than zero".to_owned()),
             NotNegative if number < 0.0 => Err("must not be negative".to_owned()),
-            Self::Zoom if number < ZOOM.0 || number > ZOOM.1 => {
-                Err(format!("must be from {} to {}", ZOOM.0, ZOOM.1))
+            Within((least, most)) if number < least || number > most => {
+                Err(format!("must be from {least} to {most}"))
             }
             _ => Ok(()),
         }
@@ -100,6 +103,9 @@ impl Range {
 fn not(wanted: &str, value: &Value) -> String {
     let found = match value {
         Value::String(_) => "text",
+        Value::Float(number) if !number.is_finite() => {
+            return format!("must be {wanted}, and {number} is no finite number");
+        }
         Value::Integer(_) | Value::Float(_) => "a number",
         Value::Boolean(_) => "true or false",
         Value::Datetime(_) => "a date",
@@ -200,7 +206,8 @@ fn check_word(word: &str, words: &[&str]) -> Result<(), String> {
     } else {
         String::new()
     };
-    Err(format!("must be one of {}{near}", words.join(", ")))
+    let one_of = if words.len() > 1 { "one of " } else { "" };
+    Err(format!("must be {one_of}{}{near}", words.join(", ")))
 }
 
 /// `vector` as the value of a key that holds one.

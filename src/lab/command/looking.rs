@@ -10,7 +10,7 @@ use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
 use crate::observe::recording::Curve;
 use crate::scenario::file::Choice;
-use crate::scenario::keys::{Kind, Range};
+use crate::scenario::keys::{Kind, PITCH_DEG, Range, ZOOM};
 use toml::Value;
 
 pub(super) fn speed(value: &Value) -> Read {
@@ -149,17 +149,17 @@ fn choice_in(value: &Value) -> Choice {
 
 pub(super) fn camera(value: &Value) -> Read {
     let table = fields(value, &["yaw_deg", "pitch_deg"])?;
-    let angle = |name: &str| field(table, name, |value| number(Range::Any, value));
+    let angle = |name: &str, range| field(table, name, |value| number(range, value));
     let usual = Camera::default();
     Ok(Command::Camera(Camera {
-        yaw_deg: angle("yaw_deg")?.unwrap_or(usual.yaw_deg),
-        pitch_deg: angle("pitch_deg")?.unwrap_or(usual.pitch_deg),
+        yaw_deg: angle("yaw_deg", Range::Any)?.unwrap_or(usual.yaw_deg),
+        pitch_deg: angle("pitch_deg", Range::Within(PITCH_DEG))?.unwrap_or(usual.pitch_deg),
     }))
 }
 
 pub(super) fn zoom(value: &Value) -> Read {
     let table = fields(value, &["above", "3d"])?;
-    let factor = |name: &str| field(table, name, |value| number(Range::Zoom, value));
+    let factor = |name: &str| field(table, name, |value| number(Range::Within(ZOOM), value));
     let whole = Zoom::default();
     Ok(Command::Zoom(Zoom {
         above: factor("above")?.unwrap_or(whole.above),

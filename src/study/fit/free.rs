@@ -137,7 +137,7 @@ impl Free {
             },
             least: match range {
                 Range::NotNegative | Range::Positive => 0.0,
-                Range::Any | Range::Zoom => f64::NEG_INFINITY,
+                Range::Any | Range::Within(_) => f64::NEG_INFINITY,
             },
         })
     }
