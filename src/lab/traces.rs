@@ -8,7 +8,6 @@ use crate::observe::live::LiveRun;
 use crate::observe::lookup;
 use crate::observe::recording::Curve;
 use crate::observe::strip::Strip;
-use crate::scenario::screen::{AUTO, DETAILS};
 
 /// The share of the window by which a key moves the cursor, and by which it moves the window.
 const CURSOR_SHARE: f64 = 0.02;
@@ -43,16 +42,17 @@ impl Lab {
         Ok(Done::saying(text))
     }
 
-    /// The command that shows another curve in the strip of the fast motion, in the order of [`DETAILS`].
+    /// The command that shows another curve in the strip of the fast motion than it shows now.
     pub(super) fn other_detail(&self, direction: Direction, times: i32) -> Command {
-        let now = self.view.detail_of.map_or(AUTO, Curve::name);
-        let now = DETAILS.iter().position(|name| *name == now).unwrap_or(0) as i32;
+        let shown = self.view.detail_of.unwrap_or(self.player.detail().curve);
+        let curves = [Curve::X, Curve::Y, Curve::Z, Curve::Tilt];
+        let now = curves.iter().position(|curve| *curve == shown).unwrap_or(0) as i32;
         let by = match direction {
             Direction::Up | Direction::PageUp => -times,
             _ => times,
         };
-        let next = (now + by).rem_euclid(DETAILS.len() as i32) as usize;
-        Command::DetailOf(Curve::of_name(DETAILS[next]))
+        let next = (now + by).rem_euclid(curves.len() as i32) as usize;
+        Command::DetailOf(Some(curves[next]))
     }
 
     pub(super) fn set_since(&mut self, since_s: Option<f64>) -> Answer {
@@ -168,6 +168,7 @@ impl Lab {
     /// The commands that show the run again, after the time or the values were chosen by hand.
     pub(super) fn whole_view(&self) -> Vec<Command> {
         vec![
+            Command::DetailOf(None),
             Command::Cursor(CursorTo::Nowhere),
             Command::Magnify(1.0),
             Command::Window(self.view.usual_window_s(self.player.run().scenario())),

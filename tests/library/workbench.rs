@@ -233,6 +233,15 @@ fn a_teacher_stops_steps_and_goes_on() {
 }
 
 #[test]
+fn each_press_shows_another_curve_enlarged_and_home_the_first() {
+    let mut stage = Stage::open("cusps", &[], SMALL);
+    stage.wait(1.0).press("↑").shows("the upper strip shows z");
+    stage.press("↓").shows("the upper strip shows tilt");
+    stage.key(Key::Home);
+    assert_eq!(stage.lab.view().detail_of, None);
+}
+
+#[test]
 fn round_pictures_are_zoomed_where_they_have_the_focus() {
     let mut stage = Stage::open("cusps", &[], SMALL);
     stage

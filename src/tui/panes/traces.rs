@@ -82,7 +82,7 @@ const KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Char(']')], Action::Pan(Direction::Right), "", "show later times"),
     row(&[Mode::Lab], &[Key::Char('z')], Action::Magnify(true), "values", "magnify the values"),
     row(&[Mode::Lab], &[Key::Char('Z')], Action::Magnify(false), "", "magnify them less"),
-    row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up), "", "another curve in the strip zoom: tilt, z, y, x, or what swings"),
+    row(&[Mode::Lab], &[Key::Up], Action::Move(Direction::Up), "", "another curve in the strip zoom: tilt, z, y, x; Home: what swings"),
     row(&[Mode::Lab], &[Key::Down], Action::Move(Direction::Down), "", "the same, the other way round"),
     row(&[Mode::Lab], &[Key::Home], Action::WholeView, "whole", "show the run again as at first: no cursor, no zoom"),
 ];
