@@ -127,12 +127,13 @@ impl Detail {
             COLUMNS_OF_LARGE
         };
         let swings = self.swing_s.map_or(1.0, |swing_s| self.window_s / swing_s);
-        let parts = (swings * least / columns.max(1) as f64).ceil();
+        let parts = swings * least / columns.max(1) as f64;
         let parts = parts.min(swings.floor()).max(1.0);
         let part_s = self.window_s / parts;
         let at_s = if self.is_snapshot { self.begin_s } else { at_s };
         let part = Strip::following((at_s - self.begin_s).min(self.window_s), part_s, columns);
-        Strip::new(self.begin_s + part.begin_s, part_s, columns)
+        let begin_s = part.begin_s.min(self.window_s - part_s);
+        Strip::new(self.begin_s + begin_s, part_s, columns)
     }
 }
 
@@ -306,6 +307,8 @@ mod tests {
                 let swing_s = detail.swing_s.unwrap();
                 let width = columns as f64 * swing_s / strip.window_s;
                 assert!(width >= least, "{preset}: {width} columns a swing");
+                let swings = strip.window_s / swing_s;
+                assert!(swings >= 3.0, "{preset}: {swings} swings");
                 assert!(strip.column(now_s).is_some(), "{preset}: {strip:?}");
             }
         }

@@ -305,8 +305,8 @@ fn the_edges_of_a_band_are_the_extremes_of_the_steps() {
 }
 
 /// The traces of `now` on the pane of an 80x24 screen, with the fast motion above.
-fn divided(now: &LiveRun, buf: &mut Buffer) {
-    let view = &view(now, Marker::Braille);
+fn divided(now: &LiveRun, marker: Marker, buf: &mut Buffer) {
+    let view = &view(now, marker);
     let wanted = Wanted::following(view.window_s);
     let readouts = LiveRun::new(Arc::clone(now.scenario())).readouts();
     let detail = &Detail::new(now, &readouts, &wanted, None);
@@ -328,7 +328,7 @@ fn the_dashes_of_the_exact_motion_are_seen_over_the_run() {
     now.set_overlay(true);
     now.follow_exact(|| false);
     let mut buf = Buffer::empty(Rect::new(0, 0, 27, 19));
-    divided(&now, &mut buf);
+    divided(&now, Marker::Braille, &mut buf);
     let exact = view(&now, Marker::Braille).theme.style(Role::Exact).fg;
     let is_dash = |cell: &&Cell| Some(cell.fg) == exact && cell.symbol() != " ";
     let dashes = buf.content.iter().filter(is_dash).count();
@@ -339,9 +339,15 @@ fn the_dashes_of_the_exact_motion_are_seen_over_the_run() {
 fn a_band_is_named_even_and_its_swings_are_found_below() {
     let now = run("method-1", &[], "", 2000);
     let mut buf = Buffer::empty(Rect::new(0, 0, 27, 19));
-    divided(&now, &mut buf);
+    divided(&now, Marker::Braille, &mut buf);
     let picture = text(&buf);
     assert!(picture.contains("z 1.04 .. 1.14 m swings"), "{picture}");
+    for marker in [Marker::HalfBlock, Marker::Dot, Marker::Ascii] {
+        let mut buf = Buffer::empty(Rect::new(0, 0, 27, 19));
+        divided(&now, marker, &mut buf);
+        let picture = text(&buf);
+        assert!(picture.contains("x -0.5 .. 0.5 m swings"), "{picture}");
+    }
     assert!(
         picture.lines().last().unwrap().contains("zoom"),
         "{picture}"

@@ -187,11 +187,14 @@ impl Traces<'_> {
         if is_detail {
             without_bands(&mut run);
         }
-        let rows = f64::from(area.height) * self.view.marker.dots().1 as f64;
+        let (across, down) = self.view.marker.dots();
+        let rows = f64::from(area.height) * down as f64;
+        // A band of large dots hides the curve as soon as it is one dot high.
+        let thinnest = across.min(THINNEST_BAND) as f64;
         let has_band = run.iter().flatten().filter_map(|column| column.band);
         let has_band = has_band
             .map(|band| scale.from_top(band.min) - scale.from_top(band.max))
-            .any(|share| share * rows >= THINNEST_BAND as f64);
+            .any(|share| share * rows >= thinnest);
         let sheet = if group.beside > 0 {
             self.beside_strip(content, group, &scale, has_band, area, buf)
         } else {
