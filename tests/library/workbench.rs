@@ -242,6 +242,16 @@ fn each_press_shows_another_curve_enlarged_and_home_the_first() {
 }
 
 #[test]
+fn the_path_before_is_named_beside_the_exact_motion_where_there_is_room() {
+    let mut stage = Stage::open("cusps", &[], LARGE);
+    stage
+        .wait(1.0)
+        .press("t")
+        .shows("e exact")
+        .shows("dotted: before");
+}
+
+#[test]
 fn round_pictures_are_zoomed_where_they_have_the_focus() {
     let mut stage = Stage::open("cusps", &[], SMALL);
     stage

@@ -10,6 +10,7 @@ use ratatui::layout::Rect;
 
 /// What stands between two words of a legend at length, and in short.
 const BETWEEN: [&str; 2] = [", ", " "];
+const BEFORE: [&str; 2] = ["dotted: before"; 2];
 
 impl FromAbove<'_> {
     /// The lines of the legend on `width` columns; the last has room for the scale of `plan` beside it. Where `most` lines
@@ -18,9 +19,21 @@ impl FromAbove<'_> {
         let width = width as usize;
         let room = width.saturating_sub(columns(&self.bar(plan, width)) + 1);
         let words = self.words();
+        let legend = Self::in_fewest_lines(&words, width, room, most);
+        if words.len() == 1 || self.ghost.is_some() {
+            return legend;
+        }
+        // The path before the last swings is dotted too: said where it costs no line.
+        let longer = [&words[..], &[BEFORE]].concat();
+        let longer = Self::in_fewest_lines(&longer, width, room, legend.len());
+        let has_all = longer.iter().any(|line| line.contains(BEFORE[0]));
+        if has_all { longer } else { legend }
+    }
+
+    fn in_fewest_lines(words: &[[&str; 2]], width: usize, room: usize, most: usize) -> Vec<String> {
         for lines in 1..=most {
             for form in [0, 1] {
-                let legend = in_lines(&words, form, width, room);
+                let legend = in_lines(words, form, width, room);
                 if legend.len() <= lines {
                     return legend;
                 }
@@ -82,7 +95,7 @@ impl FromAbove<'_> {
             });
         }
         if words.len() == 1 {
-            words.push(["dotted: before"; 2]);
+            words.push(BEFORE);
         }
         words
     }
