@@ -22,6 +22,8 @@ const STAYS_X: f64 = 1.5;
 /// The fewest columns of dots in which a swing is seen as one: of small dots, and of dots as wide as a cell.
 const COLUMNS_OF_SMALL: f64 = 5.0;
 const COLUMNS_OF_LARGE: f64 = 8.0;
+/// The fewest swings that a part of the window shows, where there is room.
+const FEWEST_SEEN: f64 = 3.0;
 /// The shortest window, in time steps.
 const LEAST_STEPS: f64 = 10.0;
 
@@ -128,6 +130,13 @@ impl Detail {
         };
         let swings = self.swing_s.map_or(1.0, |swing_s| self.window_s / swing_s);
         let parts = swings * least / columns.max(1) as f64;
+        // A whole part of the window where that has swings enough.
+        let whole = parts.ceil();
+        let parts = if swings >= FEWEST_SEEN * whole {
+            whole
+        } else {
+            parts
+        };
         let parts = parts.min(swings.floor()).max(1.0);
         let part_s = self.window_s / parts;
         let at_s = if self.is_snapshot { self.begin_s } else { at_s };

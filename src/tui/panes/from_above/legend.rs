@@ -20,7 +20,7 @@ impl FromAbove<'_> {
         let room = width.saturating_sub(columns(&self.bar(plan, width)) + 1);
         let words = self.words();
         let legend = Self::in_fewest_lines(&words, width, room, most);
-        if words.len() == 1 || self.ghost.is_some() {
+        if words.contains(&BEFORE) || self.ghost.is_some() {
             return legend;
         }
         // The path before the last swings is dotted too: said where it costs no line.
