@@ -154,7 +154,7 @@ impl Player {
         Done::saying(match cost::objection(self.run().scenario()) {
             Some(objection) => format!("{objection}: it is left out; a shorter run has it"),
             None => {
-                "the exact motion of the same start is drawn in dashes; t takes it away".to_owned()
+                "the exact motion (same start, same pushes) is dashed; t takes it away".to_owned()
             }
         })
     }

@@ -25,9 +25,11 @@ impl HelpSearch {
         *self = Self::default();
     }
 
-    /// Adds `text` to the text that is searched for, up to 100 characters; the first entry found is selected.
+    /// Adds `text` to the text that is searched for, up to 100 characters; the first entry found is selected. `/` begins a
+    /// search in other panes: at the beginning it means nothing here.
     pub(super) fn type_text(&mut self, text: &str) {
-        type_into(&mut self.text, text);
+        let begun = if self.text.is_empty() { "/" } else { "" };
+        type_into(&mut self.text, text.strip_prefix(begun).unwrap_or(text));
         self.selected = 0;
     }
 

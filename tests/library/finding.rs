@@ -19,7 +19,7 @@ fn the_help_does_the_entry_that_is_found() {
     let mut stage = open(SMALL);
     let step = stage.step();
     stage
-        .press("?one time step on")
+        .press("?/one time step on")
         .shows("help: one time step on_")
         .press("\n")
         .wait(0.1);
