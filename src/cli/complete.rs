@@ -1,16 +1,14 @@
 //! Completion in the shell: what fits after the words that are typed. The script that `gyrolab completions` prints asks
-//! the program itself, so that presets, keys and names are always those of this version.
-
-mod keys;
+//! the program itself: presets, keys and names are always of this version.
 
 use super::manual::topics::names_and_commands;
 use super::{command, print};
 use crate::analysis::readouts::READOUTS;
-use crate::export::columns::{COLUMNS, OPTIONAL_COLUMNS};
+use crate::export::columns::{COLUMNS, Column, OPTIONAL_COLUMNS};
 use crate::export::points::POINT_COLUMNS;
 use crate::figure::kind;
-use crate::measured::quantity::QUANTITIES;
 use crate::measured::shipped::SHIPPED;
+use crate::scenario::keys::{Effect, KEYS, Key, Kind};
 use crate::scenario::presets::PRESETS;
 use crate::study::sweep::shipped::SWEEPS;
 use crate::teach::shipped::LESSONS;
@@ -22,46 +20,59 @@ use clap_complete::engine::{
     ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter,
 };
 use clap_complete::env::{CompleteEnv, Shells};
-use keys::{free_keys, settings, varied};
 use std::ffi::OsStr;
-use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
 /// The environment variable by which the script asks; its value is the name of the shell.
 pub(super) const VARIABLE: &str = "GYROLAB_COMPLETE";
 
-/// What completes a value, of which the beginning is typed.
-type Completer = fn(&OsStr) -> Vec<CompletionCandidate>;
+/// Names with what they mean, given what is typed before them (a list up to its comma, a key up to its `=`) and of them.
+type Names = fn(&str, &str) -> Vec<(String, &'static str)>;
 
-/// What completes the values of the arguments called so, in every command that has one.
-const COMPLETERS: &[(&str, Completer)] = &[
-    ("scenario", scenarios),
-    ("runs", scenarios),
-    ("set", settings),
-    ("vary", varied),
-    ("free", free_keys),
-    ("measured", measured),
-    ("columns", columns),
-    ("kind", kinds),
-    ("measure", readouts),
-    ("files", files),
-    ("commands", toml_files),
-    ("topic", topics),
-];
+/// Command (or any), argument, the names that complete its value, and the endings of files that do.
+type Completed = (&'static str, &'static str, Names, &'static [&'static str]);
 
-/// The same for arguments whose name says less: command, argument.
-const COMPLETERS_OF: &[(&str, &str, Completer)] = &[
-    ("presets", "name", all_shipped),
-    ("sweep", "scenario", sweeps_and_scenarios),
-    ("lesson", "name", lessons),
-    ("verify", "files", csv_files),
+const COMPLETED: &[Completed] = &[
+    (
+        "presets",
+        "name",
+        |_, _| [presets(), shipped(SWEEPS), shipped(SHIPPED)].concat(),
+        &[],
+    ),
+    (
+        "sweep",
+        "scenario",
+        |_, _| [shipped(SWEEPS), presets()].concat(),
+        &["toml", "csv"],
+    ),
+    ("lesson", "name", |_, _| shipped(LESSONS), &["md"]),
+    ("verify", "files", |_, _| Vec::new(), &["csv"]),
+    ("", "scenario", |_, _| presets(), &["toml", "csv"]),
+    ("", "runs", |_, _| presets(), &["toml", "csv"]),
+    ("", "set", settings, &[]),
+    ("", "vary", settings, &[]),
+    ("", "free", |_, begin| keys(begin, is_free, ""), &[]),
+    ("", "measured", |_, _| shipped(SHIPPED), &["csv"]),
+    ("", "columns", |_, _| columns(), &[]),
+    (
+        "",
+        "kind",
+        |_, _| [named(&kind::NAMES, |name| (name, "")), columns()].concat(),
+        &[],
+    ),
+    (
+        "",
+        "measure",
+        |_, _| named(READOUTS, |it| (it.name, it.meaning)),
+        &[],
+    ),
+    ("", "files", |_, _| Vec::new(), &["toml", "csv", "md"]),
+    ("", "commands", |_, _| Vec::new(), &["toml"]),
+    ("", "topic", |_, _| topics(), &[]),
 ];
 
 /// Answers the shell where it asks; gives whether it did.
-///
-/// # Errors
-/// When it cannot be answered: another shell, or a closed stdout.
 pub(super) fn answered() -> Result<bool, clap::Error> {
     let folder = std::env::current_dir().ok();
     CompleteEnv::with_factory(command)
@@ -74,25 +85,21 @@ pub(super) fn answered() -> Result<bool, clap::Error> {
 /// `command` and all of its commands with what completes their values.
 pub(super) fn with_completers(command: Command) -> Command {
     let name = command.get_name().to_owned();
-    let complete = |arg: Arg| match completer(&name, arg.get_id().as_str()) {
-        Some(completer) => arg.add(ArgValueCompleter::new(completer)),
-        None => arg,
+    let complete = |arg: Arg| {
+        let is_of_arg = |row: &&Completed| {
+            (row.0.is_empty() || row.0 == name) && row.1 == arg.get_id().as_str()
+        };
+        match COMPLETED.iter().find(is_of_arg) {
+            Some((_, _, names, endings)) => arg.add(ArgValueCompleter::new(|current: &OsStr| {
+                completed(current, *names, endings)
+            })),
+            None => arg,
+        }
     };
     command.mut_args(complete).mut_subcommands(with_completers)
 }
 
-fn completer(command: &str, arg: &str) -> Option<Completer> {
-    let of_command = COMPLETERS_OF
-        .iter()
-        .find(|(of, id, _)| (*of, *id) == (command, arg));
-    let of_all = || COMPLETERS.iter().find(|(id, _)| *id == arg);
-    of_command
-        .map(|(.., completer)| *completer)
-        .or_else(|| of_all().map(|(_, completer)| *completer))
-}
-
-/// The scripts for shells in which clap's own do not know that a value holds `=`, as those of `--set` do, or do not
-/// complete when they are loaded by name.
+/// Scripts in place of clap's own, which part a value at `=` (bash), or do nothing at the first use (zsh).
 const SCRIPTS: [(Shell, &str); 2] = [
     (Shell::Bash, include_str!("completion.bash")),
     (Shell::Zsh, include_str!("completion.zsh")),
@@ -104,8 +111,7 @@ pub(super) fn completions(shell: Shell) -> anyhow::Result<ExitCode> {
         Shell::Zsh => "#compdef gyrolab\n", // it must be the first line of a file that compinit finds
         _ => "",
     };
-    let script = script(shell)?;
-    print(&format!("{first}{}{script}", what_is_completed()))
+    print(&format!("{first}{}", script(shell)?))
 }
 
 fn script(shell: Shell) -> anyhow::Result<String> {
@@ -122,143 +128,111 @@ fn script(shell: Shell) -> anyhow::Result<String> {
     String::from_utf8(script).context("the completion script is not text")
 }
 
-/// What the script completes, as its comment: each command with its options.
-fn what_is_completed() -> String {
-    let mut text = String::from("# Completion for gyrolab. It asks the program as you type:\n");
-    for command in command().get_subcommands() {
-        let options = command.get_arguments().filter_map(Arg::get_long);
-        let options: Vec<_> = options.map(|long| format!(" --{long}")).collect();
-        // Writing to a text does not fail.
-        let _ = writeln!(text, "#   {}{}", command.get_name(), options.concat());
-    }
-    text
-}
-
-/// Those of `names` that begin as `current` does, each with what it means.
-fn named<'a>(
+/// The names that begin as `current` does behind its last `,` or `=`, and the files and folders that end so.
+fn completed(
     current: &OsStr,
-    names: impl Iterator<Item = (&'a str, &'a str)>,
-) -> Vec<CompletionCandidate> {
-    let begin = current.to_string_lossy();
-    let fitting = names.filter(|(name, _)| name.starts_with(&*begin));
-    fitting
-        .map(|(name, about)| candidate(name, about))
-        .collect()
-}
-
-fn candidate(value: &str, about: &str) -> CompletionCandidate {
-    let about = Some(about).filter(|about| !about.is_empty());
-    CompletionCandidate::new(value).help(about.map(|about| about.to_owned().into()))
-}
-
-fn presets(current: &OsStr) -> Vec<CompletionCandidate> {
-    named(current, PRESETS.iter().map(|preset| (preset.name, "")))
-}
-
-fn shipped(current: &OsStr, list: &'static [Shipped]) -> Vec<CompletionCandidate> {
-    named(current, list.iter().map(|file| (file.name, "")))
-}
-
-/// All that `gyrolab presets` prints.
-fn all_shipped(current: &OsStr) -> Vec<CompletionCandidate> {
-    let lists = [
-        presets(current),
-        shipped(current, SWEEPS),
-        shipped(current, SHIPPED),
-    ];
-    lists.into_iter().flatten().collect()
-}
-
-fn sweeps_and_scenarios(current: &OsStr) -> Vec<CompletionCandidate> {
-    let lists = [shipped(current, SWEEPS), scenarios(current)];
-    lists.into_iter().flatten().collect()
-}
-
-fn lessons(current: &OsStr) -> Vec<CompletionCandidate> {
-    with_files(current, shipped(current, LESSONS), &["md"])
-}
-
-fn scenarios(current: &OsStr) -> Vec<CompletionCandidate> {
-    with_files(current, presets(current), &["toml", "csv"])
-}
-
-fn files(current: &OsStr) -> Vec<CompletionCandidate> {
-    with_files(current, Vec::new(), &["toml", "csv", "md"])
-}
-
-fn csv_files(current: &OsStr) -> Vec<CompletionCandidate> {
-    with_files(current, Vec::new(), &["csv"])
-}
-
-fn toml_files(current: &OsStr) -> Vec<CompletionCandidate> {
-    with_files(current, Vec::new(), &["toml"])
-}
-
-/// `candidates`, and the files that end so, and the folders.
-fn with_files(
-    current: &OsStr,
-    mut candidates: Vec<CompletionCandidate>,
+    names: Names,
     endings: &'static [&'static str],
 ) -> Vec<CompletionCandidate> {
-    let ends_so = |path: &Path| {
-        let ending = path.extension().and_then(OsStr::to_str);
-        path.is_dir() || ending.is_some_and(|ending| endings.contains(&ending))
-    };
-    let files = PathCompleter::any().filter(ends_so);
-    candidates.extend(files.complete(current));
+    let text = current.to_string_lossy();
+    let (typed, begin) = text.split_at(text.rfind([',', '=']).map_or(0, |mark| mark + 1));
+    let fitting = names(typed, begin).into_iter();
+    let fitting = fitting.filter(|(name, _)| name.starts_with(begin));
+    let mut candidates: Vec<_> = fitting
+        .map(|(name, about)| {
+            let about = (!about.is_empty()).then(|| about.to_owned().into());
+            CompletionCandidate::new(format!("{typed}{name}")).help(about)
+        })
+        .collect();
+    if !endings.is_empty() {
+        let ends_so = |path: &Path| {
+            let ending = path.extension().and_then(OsStr::to_str);
+            path.is_dir() || ending.is_some_and(|ending| endings.contains(&ending))
+        };
+        candidates.extend(PathCompleter::any().filter(ends_so).complete(current));
+    }
     candidates
 }
 
-fn columns(current: &OsStr) -> Vec<CompletionCandidate> {
-    let columns = COLUMNS.iter().map(|column| (column.name, column.about));
-    let optional = OPTIONAL_COLUMNS.iter();
-    let optional = optional.map(|column| (column.name, column.about));
-    let mut found = named(current, columns.chain(optional));
-    let of_points = POINT_COLUMNS
-        .iter()
-        .filter(|point| COLUMNS.iter().all(|column| column.name != point.name));
-    found.extend(named(
-        current,
-        of_points.map(|column| (column.name, column.about)),
-    ));
+fn named<T>(
+    table: &[T],
+    row: fn(&T) -> (&'static str, &'static str),
+) -> Vec<(String, &'static str)> {
+    let rows = table.iter().map(row);
+    rows.map(|(name, about)| (name.to_owned(), about)).collect()
+}
+
+fn presets() -> Vec<(String, &'static str)> {
+    named(PRESETS, |preset| (preset.name, ""))
+}
+
+fn shipped(list: &'static [Shipped]) -> Vec<(String, &'static str)> {
+    named(list, |file| (file.name, ""))
+}
+
+fn columns() -> Vec<(String, &'static str)> {
+    let mut columns = named(COLUMNS, |column| (column.name, column.about));
+    columns.extend(named(&OPTIONAL_COLUMNS, |column| {
+        (column.name, column.about)
+    }));
+    let of_points = named(POINT_COLUMNS, |column| (column.name, column.about));
+    columns.extend(
+        of_points
+            .into_iter()
+            .filter(|(name, _)| Column::find(name).is_none()),
+    );
+    columns
+}
+
+fn topics() -> Vec<(String, &'static str)> {
+    let names = names_and_commands(&command()).into_iter();
+    names.map(|name| (name, "")).collect()
+}
+
+/// A dotted key with its `=`; behind that the words that it may hold.
+fn settings(typed: &str, begin: &str) -> Vec<(String, &'static str)> {
+    let Some((key, _)) = typed.split_once('=') else {
+        return keys(begin, |_| true, "=");
+    };
+    let row = KEYS.iter().find(|row| instance(row.path, key) == key);
+    let words: &[&'static str] = match row.map(|row| row.kind) {
+        Some(Kind::OneOf(words) | Kind::WholeOr(_, words)) => words,
+        Some(Kind::Flag) => &["true", "false"],
+        _ => &[],
+    };
+    named(words, |word| (word, ""))
+}
+
+/// The dotted keys that are `wanted`, each with `end`; of a vector that is typed its three numbers.
+fn keys(begin: &str, wanted: fn(&Key) -> bool, end: &str) -> Vec<(String, &'static str)> {
+    let mut found = Vec::new();
+    let of_scenario = KEYS.iter().filter(|key| !key.path.starts_with("edit."));
+    for key in of_scenario.filter(|key| wanted(key)) {
+        let path = instance(key.path, begin);
+        if key.kind == Kind::Vector && begin.starts_with(&format!("{path}.")) {
+            found.extend([0, 1, 2].map(|place| (format!("{path}.{place}{end}"), key.about)));
+        } else {
+            found.push((path + end, key.about));
+        }
+    }
     found
 }
 
-/// Measured data that come with the program, and files of such.
-fn measured(current: &OsStr) -> Vec<CompletionCandidate> {
-    with_files(current, shipped(current, SHIPPED), &["csv"])
+/// Whether a fit can look for the value of `key`.
+fn is_free(key: &Key) -> bool {
+    Effect::of(key.path) != Effect::None && matches!(key.kind, Kind::Number(_) | Kind::Vector)
 }
 
-fn readouts(current: &OsStr) -> Vec<CompletionCandidate> {
-    let readouts = READOUTS.iter();
-    named(
-        current,
-        readouts.map(|readout| (readout.name, readout.meaning)),
-    )
-}
-
-/// The kinds of figures; columns behind those that are typed with commas between them.
-fn kinds(current: &OsStr) -> Vec<CompletionCandidate> {
-    let text = current.to_string_lossy();
-    let (typed, begin) = behind_comma(&text);
-    let mut names: Vec<_> = COLUMNS.iter().map(|of| (of.name, of.about)).collect();
-    let others = QUANTITIES.iter().filter(|quantity| !quantity.is_column());
-    names.extend(others.map(|quantity| (quantity.name, "")));
-    if typed.is_empty() {
-        names.extend(kind::NAMES.map(|name| (name, "")));
-    }
-    let fitting = names.iter().filter(|(name, _)| name.starts_with(begin));
-    fitting
-        .map(|(name, about)| candidate(&format!("{typed}{name}"), about))
-        .collect()
-}
-
-/// `text` up to its last comma, and what is behind it.
-fn behind_comma(text: &str) -> (&str, &str) {
-    text.split_at(text.rfind(',').map_or(0, |comma| comma + 1))
-}
-
-fn topics(current: &OsStr) -> Vec<CompletionCandidate> {
-    let topics = names_and_commands(&command());
-    named(current, topics.iter().map(|name| (name.as_str(), "")))
+/// The key `path` with a number for each `*`: the one that stands there in `typed`, or else 0.
+fn instance(path: &str, typed: &str) -> String {
+    let mut typed = typed.split('.');
+    let part = |part| {
+        let number = typed.next().filter(|typed| typed.parse::<usize>().is_ok());
+        if part == "*" {
+            number.unwrap_or("0")
+        } else {
+            part
+        }
+    };
+    path.split('.').map(part).collect::<Vec<_>>().join(".")
 }

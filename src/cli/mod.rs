@@ -16,7 +16,6 @@ mod lesson;
 mod manual;
 mod new_lab;
 mod notes;
-mod pager;
 mod played;
 mod progress;
 mod run;

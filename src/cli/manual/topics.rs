@@ -1,7 +1,6 @@
-//! The topics of the manual, plain text. What the program has in a table stands in a topic as the name of that table in
-//! braces.
+//! The topics of the manual, plain text. The name of a table in braces is replaced by the table.
 
-use super::plain::WIDTH;
+use super::WIDTH;
 use crate::cli::info;
 use crate::export::columns::{COLUMNS, OPTIONAL_COLUMNS};
 use crate::export::points::POINT_COLUMNS;
@@ -54,7 +53,7 @@ pub(super) fn text(name: &str) -> Result<Option<String>, fmt::Error> {
     Ok(Some(text))
 }
 
-/// The lines of a table, of which those that are too long go on below the beginning of their last column.
+/// The lines of a table. A line that is too long goes on below the beginning of its last column.
 fn in_width(table: &str) -> String {
     let lines = table.lines().map(|line| {
         if columns(line) <= WIDTH {
@@ -74,24 +73,12 @@ fn in_width(table: &str) -> String {
 type Table = (&'static str, fn() -> Result<String, fmt::Error>);
 
 const TABLES: [Table; 6] = [
-    ("{COLUMNS}", || {
-        Ok(list(
-            COLUMNS.iter().map(|column| (column.name, column.about)),
-        ))
-    }),
+    ("{COLUMNS}", || Ok(list(COLUMNS, |it| (it.name, it.about)))),
     ("{COLUMNS ON REQUEST}", || {
-        Ok(list(
-            OPTIONAL_COLUMNS
-                .iter()
-                .map(|column| (column.name, column.about)),
-        ))
+        Ok(list(&OPTIONAL_COLUMNS, |it| (it.name, it.about)))
     }),
     ("{COLUMNS OF POINTS}", || {
-        Ok(list(
-            POINT_COLUMNS
-                .iter()
-                .map(|column| (column.name, column.about)),
-        ))
+        Ok(list(POINT_COLUMNS, |it| (it.name, it.about)))
     }),
     ("{KEYS}", info::key_list),
     ("{READOUTS}", info::readout_list),
@@ -99,7 +86,8 @@ const TABLES: [Table; 6] = [
 ];
 
 /// Two columns of text.
-fn list(rows: impl Iterator<Item = (&'static str, &'static str)>) -> String {
+fn list<T>(rows: &[T], row: fn(&T) -> (&'static str, &'static str)) -> String {
+    let rows = rows.iter().map(row);
     rows.map(|(name, about)| format!("  {name:<14} {about}\n"))
         .collect()
 }
