@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-/// What stands for a number that there is not.
+/// In place of a number that there is not.
 pub const NONE: &str = "n/a";
 
 /// From this size on a number is written with an exponent: digits before the point are no longer read.
@@ -194,6 +194,14 @@ impl fmt::Display for Uncertain {
             0 => f.write_str(&self.digits),
             power => write!(f, "{}e{power}", self.digits),
         }
+    }
+}
+
+/// `1 row`, `2 rows`.
+pub fn counted(count: u64, one: &str) -> String {
+    match count {
+        1 => format!("1 {one}"),
+        _ => format!("{count} {one}s"),
     }
 }
 

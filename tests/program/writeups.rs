@@ -55,7 +55,7 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
     }
     for words in [
         "# The wobble push",
-        "(0, 0, -50) N on the point top on 200 time steps from step 1 on",
+        "force_N = [0.0, 0.0, -50.0]\nfirst_step = 1\nsteps = 200",
         "700 of 0.1 s",
         "Do not believe this run",
         "\n\nSource: report, section 4, the extra force on the axle top; changed since\n\n",
@@ -73,14 +73,6 @@ fn the_folder_says_what_was_run_and_makes_it_again() {
     assert!(!page.contains(own), "{page}");
     done(lab.run(&["writeup", "wobble-push", "--steps", "20", "-o", "own"]));
     assert!(lab.read("own/README.md").contains(own));
-    // The lines for other programs count the lines above the rows.
-    let csv = lab.read("run.csv");
-    let header = csv.lines().take_while(|line| line.starts_with('#')).count();
-    assert!(page.contains(&format!("skiprows={header})")), "{page}");
-    assert!(
-        page.contains(&format!("\",\", {}, 0)", header + 1)),
-        "{page}"
-    );
 }
 
 #[test]
@@ -167,10 +159,6 @@ fn the_numbers_of_the_page_are_those_of_the_summary() {
     let readouts: serde_json::Value = serde_json::from_str(&lab.read("w/readouts.json")).unwrap();
     assert_eq!(readouts["measured_precession_rad_per_s"], measured);
     assert!(readouts.get("wall_s").is_none() && json.get("wall_s").is_some());
-    let latex = lab.read("w/readouts.tex");
-    assert!(latex.contains(&format!("${}$", row[2])), "{latex}");
-    let caption = r"\caption{Cusps. Scheme rk4, time steps: 10000 of 0.001 s. The numbers hold:";
-    assert!(latex.contains(caption), "{latex}");
 }
 
 #[test]
@@ -247,36 +235,6 @@ fn theory_of_the_extremes_is_of_the_whole_run() {
         page.contains("![Tilt from 20 s, when the forces last changed, to 20."),
         "{page}"
     );
-}
-
-/// The row of `name` in the table of what was run.
-fn what_was_run(lab: &Ground, scenario: &str, name: &str) -> String {
-    done(lab.run(&["writeup", scenario, "--steps", "5", "-o", scenario]));
-    let page = lab.read(&format!("{scenario}/README.md"));
-    let begin = format!("| {name} | ");
-    let row = page.lines().find_map(|line| line.strip_prefix(&begin));
-    row.unwrap_or_else(|| panic!("no {name}: {page}"))
-        .to_owned()
-}
-
-#[test]
-fn body_rotor_and_friction_stand_as_the_scenario_has_them() {
-    let lab = Ground::new();
-    let says = |scenario: &str, name: &str, words: &[&str]| {
-        let row = what_was_run(&lab, scenario, name);
-        for words in words {
-            assert!(row.contains(words), "{words}: {row}");
-        }
-        fs::remove_dir_all(lab.file(scenario)).unwrap();
-    };
-    says(
-        "method-1",
-        "body",
-        &["10 masses of", "on a rim of radius 0.8 m", "5 kg together"],
-    );
-    says("lab-gyroscope", "body", &["wheel (cylinder, "]);
-    says("lab-gyroscope", "rotor", &["it spins, the rest does not"]);
-    says("first-dip", "friction", &[" N m"]);
 }
 
 #[test]
@@ -357,9 +315,8 @@ fn a_figure_that_is_covered_says_so_and_names_a_stretch_that_is_not() {
     let lab = Ground::new();
     done(lab.run(&["writeup", "method-1", "-o", "w"]));
     let page = lab.read("w/README.md");
-    let begin = "On 86 mm about 203 swings cover the paper: none is told from the next";
+    let begin = "In this figure, on 86 mm about 203 swings cover the paper, ";
     let remark = page.lines().find(|line| line.starts_with(begin)).unwrap();
-    assert!(remark.contains("`swings.pdf` shows a few"), "{remark}");
     // The command is one that works.
     let command = remark.split('`').find(|part| part.starts_with("gyrolab "));
     let words: Vec<_> = command.unwrap().split(' ').skip(1).collect();
@@ -391,18 +348,4 @@ fn a_run_of_the_exact_motion_is_said_to_be_it() {
         !page.contains("dashed") && !page.contains("cover the paper"),
         "{page}"
     );
-}
-
-#[test]
-fn labels_of_the_latex_table_are_short() {
-    let lab = Ground::new();
-    done(lab.run(&["writeup", "cusps", "--steps", "300", "-o", "w"]));
-    let table = lab.read("w/readouts.tex");
-    let labels = table
-        .lines()
-        .filter_map(|line| line.strip_prefix("\\raggedright "));
-    let labels: Vec<_> = labels.filter_map(|line| line.split('~').next()).collect();
-    assert!(labels.contains(&"precession"), "{labels:?}");
-    assert!(labels.iter().all(|label| label.len() < 20), "{labels:?}");
-    assert!(table.contains("% precession: mean precession about +z; none under friction"));
 }

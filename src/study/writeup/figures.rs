@@ -4,10 +4,10 @@ use super::{Beside, RUN_FILE};
 use crate::analysis::Readouts;
 use crate::analysis::cost::is_affordable;
 use crate::figure::course::{Recorded, Recorder, Wanted};
-use crate::figure::dense::Dense;
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Figure, Known, Request, Run};
 use crate::figure::{COLUMN_PT, Scene};
+use crate::measured::Measured;
 use crate::run::Clock;
 use crate::scenario::Scenario;
 use crate::scenario::screen::{ABOVE, THREE_D, TRACES};
@@ -15,34 +15,30 @@ use crate::text::number::{rounded, significant};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// A figure of a write-up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
     /// The name of its files, without their endings.
     pub name: &'static str,
-    /// What is to be seen.
     pub caption: String,
     /// What its reader must know of it besides, as a sentence.
     pub remark: Option<String>,
-    /// The page.
     pub scene: Scene,
 }
 
 /// The figures of what was measured, and of measured less run.
 const MEASURED: &str = "measured";
 const RESIDUALS: &str = "residuals";
-/// That of the first swings of a run of many.
+/// The figure of the first swings of a run.
 const SWINGS: &str = "swings";
-/// A run has it where it has more swings than this.
+/// Least number of swings of a run that has this figure.
 const MANY_SWINGS: f64 = 15.0;
-/// So many swings are in it.
+/// Number of swings in it.
 const FEW_SWINGS: f64 = 8.0;
-/// Fewer steps a swing make a curve with corners.
+/// Least number of steps a swing of a curve without corners.
 const SMOOTH: f64 = 40.0;
 /// Figures of measured data end where the data do, and this factor later.
 const BEYOND_DATA: f64 = 1.05;
 
-/// A figure that is to be drawn.
 struct Planned {
     name: &'static str,
     kind: Kind,
@@ -101,39 +97,88 @@ pub fn figures(
     }];
     let is_exact = of_runs::is_exact(scenario);
     let exact = is_affordable(scenario) && !is_exact;
+    let measured = beside.map(Beside::reached);
+    let mut planned = Vec::new();
+    let also = also(scenario, readouts, is_exact, exact);
+    if let (Some(beside), Some(measured)) = (beside, &measured) {
+        planned.extend(of_data(beside, measured, &also));
+    }
+    planned.extend(of_run(scenario, readouts, &also)?);
+    let places = beside.is_some_and(|beside| !beside.compared.places.is_empty());
+    let request = |planned: &Planned| Request {
+        kind: planned.kind.clone(),
+        from_s: planned.from_s,
+        to_s: planned.to_s,
+        // A run of the exact motion is drawn once, with the circles that bound it.
+        exact: exact || is_exact,
+        measured: measured
+            .clone()
+            .filter(|_| planned.shows_measured || (places && planned.name == ABOVE)),
+        width_pt: COLUMN_PT,
+    };
+    let requests: Vec<_> = planned.iter().map(request).collect();
+    let known = Known {
+        recorded: Some(recorded),
+        said: beside.map(|beside| beside.said.clone()),
+    };
+    let drawn = of_runs::figures(&runs, &requests, &known, watch)?;
+    let drawing = |(planned, figure): (Planned, Figure)| {
+        Drawing {
+        remark: figure.dense.map(|dense| {
+            let exact = if exact { " --exact" } else { "" };
+            let (kind, part) = (planned.kind.name(), dense.options());
+            format!(
+                "In this figure, {dense}: `gyrolab figure {RUN_FILE} --kind {kind}{exact} {part} -o part.pdf`."
+            )
+        }),
+        name: planned.name,
+        caption: planned.caption,
+        scene: figure.scene,
+    }
+    };
+    Ok(drawn.map(|drawn| planned.into_iter().zip(drawn).map(drawing).collect()))
+}
+
+/// What captions say of the exact motion and of the lines that join the steps.
+fn also(scenario: &Scenario, readouts: &Readouts, is_exact: bool, exact: bool) -> String {
     let dashed = match (exact, is_exact) {
         (true, _) => ", the exact motion dashed",
         (_, true) => "; the run is the exact motion itself",
         _ => "",
     };
-    let joined = readouts
+    let steps = readouts
         .swing_s()
-        .map(|swing_s| swing_s / scenario.motion.time_step_s)
+        .map(|swing_s| swing_s / scenario.motion.time_step_s);
+    let joined = steps
         .filter(|steps| *steps < SMOOTH)
         .map(|steps| format!("; straight lines join the run's steps, about {steps:.0} a swing"));
-    let also = format!("{dashed}{}", joined.unwrap_or_default());
-    let has_places = beside.is_some_and(|beside| !beside.compared.places.is_empty());
-    let measured = beside.map(|beside| (beside.reached(), beside.end_s));
-    let mut planned = Vec::new();
-    if let Some((measured, end_s)) = &measured
-        && measured.count() > 0
-        && let Ok(series) = measured.series()
-    {
-        let last_s = series.times_s.last().copied().unwrap_or_default();
-        let end_s = end_s.min(BEYOND_DATA * last_s);
-        let name = &measured.origin;
-        let over_time = format!("What was measured, `{name}`, and the run{also}");
-        let less = format!("What was measured, `{name}`, less what the run says");
-        let of_data = |name, kind, caption| Planned {
-            to_s: Some(end_s),
-            shows_measured: true,
-            ..Planned::whole(name, kind, caption)
-        };
-        planned.push(of_data(MEASURED, Kind::measured(series), over_time));
-        planned.push(of_data(RESIDUALS, Kind::Residuals, less));
-    }
-    let caption = format!("x, y and z of the traced point over time{also}");
-    planned.push(Planned::whole(TRACES, Kind::traces(), caption));
+    format!("{dashed}{}", joined.unwrap_or_default())
+}
+
+/// The figures of what was measured, and of measured less run.
+fn of_data(beside: &Beside, measured: &Measured, also: &str) -> Vec<Planned> {
+    let Some(series) = measured.series().ok().filter(|_| measured.count() > 0) else {
+        return Vec::new();
+    };
+    let last_s = series.times_s.last().copied().unwrap_or_default();
+    let name = &measured.origin;
+    let of_data = |name, kind, caption| Planned {
+        to_s: Some(beside.end_s.min(BEYOND_DATA * last_s)),
+        shows_measured: true,
+        ..Planned::whole(name, kind, caption)
+    };
+    let over_time = format!("What was measured, `{name}`, and the run{also}");
+    let less = format!("What was measured, `{name}`, less what the run says");
+    vec![
+        of_data(MEASURED, Kind::measured(series), over_time),
+        of_data(RESIDUALS, Kind::Residuals, less),
+    ]
+}
+
+fn of_run(scenario: &Scenario, readouts: &Readouts, also: &str) -> Result<Vec<Planned>, String> {
+    let whole = |name, kind, caption: &str| Planned::whole(name, kind, format!("{caption}{also}"));
+    let over_time = "x, y and z of the traced point over time";
+    let mut planned = vec![whole(TRACES, Kind::traces(), over_time)];
     if let Some((from_s, to_s)) = few_swings_s(scenario, readouts) {
         let to = significant(to_s, 9);
         let tilt = if from_s > 0.0 {
@@ -145,71 +190,14 @@ pub fn figures(
         planned.push(Planned {
             from_s,
             to_s: Some(to_s),
-            ..Planned::whole(SWINGS, Kind::named("tilt_deg")?, tilt + &also)
+            ..whole(SWINGS, Kind::named("tilt_deg")?, &tilt)
         });
     }
-    let caption = format!("Path of the traced point from above{also}");
-    planned.push(Planned {
-        shows_measured: has_places,
-        ..Planned::whole(ABOVE, Kind::Above, caption)
-    });
-    let caption = format!("Path of the traced point in space{also}");
-    planned.push(Planned::whole(THREE_D, Kind::ThreeD, caption));
-    let requests = planned.iter().map(|planned| Request {
-        kind: planned.kind.clone(),
-        from_s: planned.from_s,
-        to_s: planned.to_s,
-        // A run of the exact motion is drawn once, with the circles that bound it.
-        exact: exact || is_exact,
-        measured: measured
-            .as_ref()
-            .filter(|_| planned.shows_measured)
-            .map(|(measured, _)| Arc::clone(measured)),
-        width_pt: COLUMN_PT,
-    });
-    let requests: Vec<_> = requests.collect();
-    let known = Known {
-        recorded: Some(recorded),
-        said: beside.map(|beside| beside.said.clone()),
-    };
-    let drawn = of_runs::figures(&runs, &requests, &known, watch)?;
-    let has_swings = planned.iter().any(|planned| planned.name == SWINGS);
-    let drawings = |drawn: Vec<Figure>| {
-        let each = planned.into_iter().zip(drawn);
-        each.map(|(planned, figure)| Drawing {
-            remark: figure
-                .dense
-                .map(|dense| crowded(&dense, &planned.kind, exact, has_swings)),
-            name: planned.name,
-            caption: planned.caption,
-            scene: figure.scene,
-        })
-        .collect()
-    };
-    Ok(drawn.map(drawings))
-}
-
-/// What is said of a figure of that kind in which something covers the paper.
-fn crowded(dense: &Dense, kind: &Kind, exact: bool, has_swings: bool) -> String {
-    let hidden = if exact {
-        ", and the exact motion hides the run below it"
-    } else {
-        ""
-    };
-    let swings = if has_swings && matches!(kind, Kind::OverTime(_)) {
-        format!("`{SWINGS}.pdf` shows a few of them; ")
-    } else {
-        String::new()
-    };
-    format!(
-        "On {} mm {} cover the paper: none is told from the next{hidden}. {swings}`gyrolab figure {RUN_FILE} --kind {}{} {} -o part.pdf` \
-         draws a part of the run.",
-        dense.width_mm,
-        dense.what,
-        kind.name(),
-        if exact { " --exact" } else { "" },
-        dense.options(),
-    )
+    planned.extend([
+        whole(ABOVE, Kind::Above, "Path of the traced point from above"),
+        whole(THREE_D, Kind::ThreeD, "Path of the traced point in space"),
+    ]);
+    Ok(planned)
 }
 
 /// Where the run has many swings, the begin and the end of a few of them, s: of the first after the forces last changed, if that

@@ -1,32 +1,31 @@
 //! Measured data in a write-up: their file, and how far the run is from them.
 
-use super::{AGAIN, CSV, LATEX, PAGE, READOUTS_FILE, RUN_FILE};
+use super::{AGAIN, CSV, PAGE, READOUTS_FILE, RUN_FILE};
 use crate::measured::compared::{Compared, Sum};
 use crate::measured::{Measured, Quantity, Series, at_times};
 use crate::scenario::Scenario;
-use crate::text::number::{NONE, shortest, significant};
+use crate::text::number::{NONE, counted, shortest, significant};
 use serde_json::{Value, json};
 use std::fmt::{self, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Measured data beside the run of a write-up.
 #[derive(Clone, Debug)]
 pub struct Beside {
     /// The data; their origin is the name of their copy in the folder.
     pub measured: Arc<Measured>,
-    /// The text of the file, of which the folder has a copy.
+    /// The text of the file; the folder has a copy.
     pub text: String,
     /// What the run says of those that it reached: of each column a value for every point.
     pub said: Vec<Vec<f64>>,
-    /// The data held against that.
+    /// The data compared with the run.
     pub compared: Compared,
     /// The end of the run, s.
     pub end_s: f64,
 }
 
 impl Beside {
-    /// `measured`, which was read from `text`, of which nothing has been held against a run.
+    /// `measured`, read from `text`, before the comparison with a run.
     pub fn new(measured: Measured, text: String) -> Self {
         Self {
             measured: Arc::new(Measured {
@@ -93,9 +92,6 @@ impl Beside {
     }
 
     /// Writes the section of the page.
-    ///
-    /// # Errors
-    /// None: a `String` takes what is written to it.
     pub(super) fn write(&self, page: &mut String) -> fmt::Result {
         let (sum, name) = (&self.compared.sum, self.name());
         let measured = match sum.points - sum.compared {
@@ -112,25 +108,7 @@ impl Beside {
         )?;
         writeln!(page, "| --- | --- | --- | --- | --- | --- |")?;
         for (name, own) in self.rows() {
-            let chi_squared = (own.weighed > 0).then(|| significant(own.chi_squared, 4));
-            let largest = own.largest.map(|largest| {
-                format!(
-                    "{} at {} s",
-                    significant(largest.sigmas, 3),
-                    significant(largest.time_s, 9)
-                )
-            });
-            let rms = own
-                .scatter
-                .first()
-                .map(|(quantity, rms)| format!("{} {}", significant(*rms, 3), quantity.unit()));
-            let [chi_squared, largest, rms] =
-                [chi_squared, largest, rms].map(|text| text.unwrap_or(NONE.to_owned()));
-            writeln!(
-                page,
-                "| `{name}` | {} of {} | {chi_squared} | {} | {largest} | {rms} |",
-                own.compared, own.points, own.weighed
-            )?;
+            write_row(page, name, own)?;
         }
         if sum.weighed > 0 {
             writeln!(
@@ -162,6 +140,27 @@ impl Beside {
     }
 }
 
+/// The row of the column `name` in the table of the page.
+fn write_row(page: &mut String, name: &str, own: &Sum) -> fmt::Result {
+    let chi_squared = (own.weighed > 0).then(|| significant(own.chi_squared, 4));
+    let largest = own.largest.map(|largest| {
+        let (sigmas, time_s) = (
+            significant(largest.sigmas, 3),
+            significant(largest.time_s, 9),
+        );
+        format!("{sigmas} at {time_s} s")
+    });
+    let rms = own.scatter.first();
+    let rms = rms.map(|(quantity, rms)| format!("{} {}", significant(*rms, 3), quantity.unit()));
+    let [chi_squared, largest, rms] =
+        [chi_squared, largest, rms].map(|text| text.unwrap_or(NONE.to_owned()));
+    writeln!(
+        page,
+        "| `{name}` | {} of {} | {chi_squared} | {} | {largest} | {rms} |",
+        own.compared, own.points, own.weighed
+    )
+}
+
 /// The numbers of `sum`; null where there is none.
 fn of(sum: &Sum) -> Value {
     json!({
@@ -173,13 +172,10 @@ fn of(sum: &Sum) -> Value {
 }
 
 fn points(count: usize) -> String {
-    match count {
-        1 => "1 measured value".to_owned(),
-        count => format!("{count} measured values"),
-    }
+    counted(count as u64, "measured value")
 }
 
-/// The name of the copy of the data `origin`: that of the file, where a shell and Markdown take it as it is and no other
+/// The name of the copy of the data `origin`: the name of the file, where a shell and Markdown take it as it is and no other
 /// file of the folder has it.
 fn name_of_copy(origin: &str) -> String {
     const OTHERWISE: &str = "measured.csv";
@@ -187,8 +183,7 @@ fn name_of_copy(origin: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
     let stem = stem.filter(|stem| stem.chars().all(is_plain) && !stem.starts_with(['-', '.']));
     let name = stem.map(|stem| format!("{stem}.csv"));
-    let is_taken =
-        |name: &String| [CSV, RUN_FILE, PAGE, LATEX, READOUTS_FILE, AGAIN].contains(&&**name);
+    let is_taken = |name: &String| [CSV, RUN_FILE, PAGE, READOUTS_FILE, AGAIN].contains(&&**name);
     name.filter(|name| !is_taken(name))
         .unwrap_or_else(|| OTHERWISE.to_owned())
 }

@@ -5,24 +5,17 @@
 
 mod exact_range;
 pub mod figures;
-mod languages;
-mod latex;
-mod markdown;
 pub mod measured;
 mod page;
 mod quantities;
-mod setup;
 
 use self::exact_range::ExactRange;
 use crate::analysis::Readouts;
 use crate::analysis::readouts::{READOUTS, Source};
-use crate::export::columns::COLUMNS;
-use crate::export::summary::steps_in_words;
 use crate::figure::{self, Format, Unwritable};
 use crate::run::NotFinite;
 use crate::scenario::Scenario;
 pub use figures::Drawing;
-pub use languages::Lines;
 pub use measured::Beside;
 pub use quantities::Quantity;
 use serde_json::{Map, Value};
@@ -32,11 +25,7 @@ use std::sync::Arc;
 pub const CSV: &str = "run.csv";
 /// The scenario with its edits, from which the rows are computed.
 pub const RUN_FILE: &str = "run.toml";
-/// The first page.
 pub const PAGE: &str = "README.md";
-/// The measured numbers beside theory, for LaTeX.
-pub const LATEX: &str = "readouts.tex";
-/// Every readout.
 pub const READOUTS_FILE: &str = "readouts.json";
 /// The CSV that the page's commands write beside the others.
 const AGAIN: &str = "again.csv";
@@ -44,20 +33,15 @@ const AGAIN: &str = "again.csv";
 /// The name, among the readouts, of what was measured.
 const MEASURED_DATA: &str = "measured_data";
 
-/// What a write-up is made of.
 #[derive(Clone, Debug)]
 pub struct Writeup {
-    /// The run.
     pub scenario: Arc<Scenario>,
-    /// What was read off it.
     pub readouts: Readouts,
     /// Why it ended before its last step, where it did.
     pub broken: Option<NotFinite>,
-    /// The measured numbers beside theory.
     pub quantities: Vec<Quantity>,
     /// Measured data beside the run, where there are some.
     pub beside: Option<Beside>,
-    /// The figures, in the order in which the page shows them.
     pub drawings: Vec<Drawing>,
 }
 
@@ -91,17 +75,9 @@ impl Writeup {
     /// When a figure is too large for its form.
     pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Unwritable> {
         let page = page::page(self).unwrap_or_default(); // a String takes what is written to it
-        let caption = format!(
-            "{}. Scheme {}, time steps: {}.",
-            self.readouts.title,
-            self.readouts.scheme,
-            steps_in_words(&self.scenario, self.readouts.sample.step)
-        );
-        let verdict = self.readouts.health.sentence(self.readouts.advice.as_ref());
         let texts = [
             (RUN_FILE, self.scenario.to_toml()),
             (READOUTS_FILE, self.readouts_json()),
-            (LATEX, latex::table(&self.quantities, &caption, &verdict)),
             (PAGE, page),
         ];
         let mut files: Vec<_> = texts
@@ -121,19 +97,7 @@ impl Writeup {
         Ok(files)
     }
 
-    /// Lines that read the CSV.
-    pub fn languages(&self) -> [Lines; 4] {
-        let header = self.scenario.to_toml().lines().count();
-        let column = |name| {
-            1 + COLUMNS
-                .iter()
-                .take_while(|column| column.name != name)
-                .count()
-        };
-        languages::lines(CSV, header, column("t_s"), column("z_m"))
-    }
-
-    /// The readouts but for those of the clock, one object.
+    /// The readouts without the times by the clock, one object.
     fn readouts_json(&self) -> String {
         let lasting = READOUTS
             .iter()
@@ -148,15 +112,5 @@ impl Writeup {
             object.insert(MEASURED_DATA.to_owned(), beside.json());
         }
         format!("{:#}\n", Value::Object(object))
-    }
-
-    /// The name of the point with that index.
-    fn name_of(&self, point: usize) -> String {
-        let body = &self.scenario.body;
-        let name = body
-            .names()
-            .into_iter()
-            .find(|name| body.point(name) == Some(point));
-        name.map_or_else(|| format!("number {point}"), str::to_owned)
     }
 }

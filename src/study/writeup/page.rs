@@ -1,19 +1,25 @@
 //! The first page of a write-up, `README.md`: what was run, what came out, whether to believe it, how to make it again.
 
-use super::languages::Lines;
-use super::markdown::escaped;
 use super::quantities::Quantity;
-use super::{AGAIN, Beside, CSV, Drawing, RUN_FILE, Writeup, setup};
-use crate::text::number::NONE;
+use super::{AGAIN, Beside, CSV, Drawing, READOUTS_FILE, RUN_FILE, Writeup};
+use crate::export::summary::steps_in_words;
+use crate::physics::{SchemeInfo, SymmetricTop};
+use crate::scenario::Scenario;
+use crate::text::number::{NONE, fixed, shortest, significant};
 use std::fmt::{self, Write};
 
+const HOW_TO_READ_QUANTITIES: &str = "Measured means read off the steps of this run; theory is that of the exact motion \
+    under the forces at the end of the run. Digits in parentheses are one standard error of reading the number off the \
+    steps, in units of the last digits: 0.886033(24) is 0.886033 ± 0.000024. \"In errors\" is the difference in standard \
+    errors. Up to about 3 of them, reading alone explains it (exactly ±1.00: the reading's own known error, stated and not \
+    taken away). What is more is the doing of the scheme and its time step, which the standard error does not hold: where \
+    the numbers hold, it may be many errors and still be tiny. The least and the greatest values are those of the whole \
+    run, in theory too.";
 /// A longer run file is not printed on the page.
 const MOST_LINES: usize = 120;
+/// A part of L that is smaller than this part of |L| is zero.
+const ROUNDING: f64 = 1e-14;
 
-/// The whole page as Markdown.
-///
-/// # Errors
-/// None: a `String` takes what is written to it.
 pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     let mut page = String::new();
     let readouts = &writeup.readouts;
@@ -28,7 +34,7 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
         writeln!(page, "Source: {}\n", escaped(source))?;
     }
     writeln!(page, "## What was run\n")?;
-    setup::write(&mut page, writeup)?;
+    write_setup(&mut page, writeup)?;
     writeln!(page, "\n## Are the numbers to be believed?\n")?;
     if let Some(broken) = &writeup.broken {
         writeln!(page, "{}.\n", escaped(&sentence(&broken.to_string())))?;
@@ -48,12 +54,74 @@ pub fn page(writeup: &Writeup) -> Result<String, fmt::Error> {
     write_drawings(&mut page, &writeup.drawings)?;
     writeln!(page, "## How to make it again\n")?;
     write_again(&mut page, writeup.beside.as_ref())?;
-    writeln!(page, "## How to read the CSV\n")?;
-    write_languages(&mut page, &writeup.languages())?;
-    writeln!(page, "## How to cite\n")?;
-    write_citation(&mut page)?;
     write_run_file(&mut page, &writeup.scenario.to_toml())?;
     Ok(page)
+}
+
+/// The table of what was run: body, start, scheme and length. Forces and edits stand in the run file.
+fn write_setup(page: &mut String, writeup: &Writeup) -> fmt::Result {
+    let scenario = &writeup.scenario;
+    let mut row = |name: &str, text: &str| writeln!(page, "| {name} | {} |", escaped(text));
+    row("", "")?;
+    row("---", "---")?;
+    let body = &scenario.body.mechanics;
+    let mass = significant(body.mass(), 6);
+    let centre = significant(body.first_moment().norm() / body.mass(), 6);
+    row(
+        "body",
+        &format!("{mass} kg; centre of mass {centre} m from the pivot"),
+    )?;
+    row("moments of inertia about the pivot", &moments(scenario))?;
+    let name = scenario.file.trace.as_deref().unwrap_or("top");
+    let from_pivot = significant(body.points()[scenario.trace].at.norm(), 6);
+    row(
+        "traced point",
+        &format!("{name}, {from_pivot} m from the pivot"),
+    )?;
+    row("start", &start(scenario))?;
+    let gravity = shortest(scenario.motion.gravity);
+    row("gravity", &format!("{gravity} m/s^2"))?;
+    let SchemeInfo { name, about, .. } = scenario.motion.scheme;
+    row("scheme", &format!("{name}: {about}"))?;
+    let steps = steps_in_words(scenario, writeup.readouts.sample.step);
+    row("time steps", &steps)?;
+    writeln!(
+        page,
+        "\nIts parts, pushes, friction and edits stand in the run file, `{RUN_FILE}`."
+    )
+}
+
+fn moments(scenario: &Scenario) -> String {
+    let Some(top) = SymmetricTop::of(&scenario.body.mechanics) else {
+        return "lopsided: not symmetric about the axle".to_owned();
+    };
+    let of = if scenario.rotor().is_some() {
+        "of the rotor"
+    } else {
+        "about it"
+    };
+    format!(
+        "I1 = {} kg m^2 across the axle, I3 = {} kg m^2 {of}, kappa = I3/I1 = {}",
+        significant(top.across, 6),
+        significant(top.along, 6),
+        significant(top.kappa(), 6)
+    )
+}
+
+fn start(scenario: &Scenario) -> String {
+    let tilt_deg = libm::acos(scenario.start.axle().z.clamp(-1.0, 1.0)).to_degrees();
+    let momentum = &scenario.start.momentum;
+    // What is left of a zero by the turn from the body frame is rounding.
+    let rounding = ROUNDING * momentum.norm();
+    let part = |axis: usize| match momentum[axis] {
+        part if part.abs() < rounding => 0.0,
+        part => part,
+    };
+    let [x, y, z] = [0, 1, 2].map(|axis| significant(part(axis), 9));
+    format!(
+        "axle tilted by {} degrees, L = ({x}, {y}, {z}) J s in the world frame",
+        fixed(tilt_deg, 4)
+    )
 }
 
 fn write_quantities(page: &mut String, quantities: &[Quantity]) -> fmt::Result {
@@ -92,16 +160,8 @@ fn write_quantities(page: &mut String, quantities: &[Quantity]) -> fmt::Result {
     }
     writeln!(
         page,
-        "\nMeasured means read off the steps of this run; theory is that of the exact motion under the forces at the end of \
-         the run. Digits in parentheses are one standard error of reading the number off the steps, in units of the last \
-         digits: 0.886033(24) is 0.886033 ± 0.000024. \"In errors\" is the difference in standard errors. Up to about 3 of \
-         them, reading alone explains it (exactly ±1.00: the reading's own known error, stated and not taken away). What is \
-         more is the doing of the scheme and its time step, which the standard error does not hold: where the numbers hold, it \
-         may be many errors and still be tiny. The least and the greatest values are those of the whole run, in \
-         theory too. {NONE}: there is no such number, or none that can be \
-         stated. The same table for LaTeX is in `{}`, every readout in `{}`.",
-        super::LATEX,
-        super::READOUTS_FILE
+        "\n{HOW_TO_READ_QUANTITIES} {NONE}: there is no such number, or none that can be stated. Every readout is in \
+         `{READOUTS_FILE}`."
     )
 }
 
@@ -148,29 +208,11 @@ fn write_again(page: &mut String, beside: Option<&Beside>) -> fmt::Result {
     for (command, what) in commands {
         writeln!(page, "gyrolab {command:width$}   # {what}")?;
     }
-    writeln!(page, "```\n")
-}
-
-fn write_languages(page: &mut String, languages: &[Lines]) -> fmt::Result {
-    for Lines {
-        language,
-        tag,
-        code,
-    } in languages
-    {
-        writeln!(page, "{language}:\n\n```{tag}\n{code}```\n")?;
-    }
-    Ok(())
-}
-
-fn write_citation(page: &mut String) -> fmt::Result {
-    let (version, (year, authors)) = (env!("CARGO_PKG_VERSION"), copyright());
+    let (year, authors) = copyright();
     writeln!(
         page,
-        "{authors}, *gyrolab*, version {version} ({year}): {}.\n\n\
-         ```bibtex\n\
-         @software{{gyrolab,\n  title = {{gyrolab}},\n  author = {{{{{authors}}}}},\n  version = {{{version}}},\n  year = {{{year}}}\n}}\n\
-         ```\n",
+        "```\n\nTo cite it: {authors}, *gyrolab*, version {version} ({year}): {}. \
+         `gyrolab man csv` has lines that read the CSV in Python, R, MATLAB and Octave.\n",
         env!("CARGO_PKG_DESCRIPTION")
     )
 }
@@ -203,4 +245,19 @@ fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(char::to_uppercase);
     first.into_iter().flatten().chain(letters).collect()
+}
+
+/// `text` so that Markdown shows it as it stands, in a table too.
+fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' => out.push(' '),
+            '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '#' | '|' | '~' | '&' | '$' => {
+                out.extend(['\\', c]);
+            }
+            c => out.push(c),
+        }
+    }
+    out
 }

@@ -1,4 +1,4 @@
-//! The measured numbers of a run beside those of theory.
+//! The measured numbers of a run beside the numbers of theory.
 
 use super::exact_range::ExactRange;
 use crate::analysis::Readouts;
@@ -33,64 +33,71 @@ const NUTATION: &str = "measured_nutation_period_s";
 /// How the names of measured numbers begin.
 const MEASURED: &str = "measured_";
 
-/// The number of which theory is the difference of two others.
+/// The number whose theory is the difference of two others.
 const SWING: &str = "measured_tilt_swing_deg";
 
 /// Digits after the point of a number that has no uncertainty.
 const DECIMALS: usize = 6;
 
 /// Every measured number of the table of readouts that `readouts`, of the run of `scenario`, has a value of, or theory; `range`
-/// is that of the exact motion beside it.
+/// is the one of the exact motion beside it.
 pub fn quantities(
     scenario: &Scenario,
     readouts: &Readouts,
     range: Option<ExactRange>,
 ) -> Vec<Quantity> {
-    let since = readouts.since;
     // The first step under other forces: they changed where it began.
-    let changed = since.checked_sub(1).filter(|step| *step > 0);
+    let changed = readouts.since.checked_sub(1).filter(|step| *step > 0);
     let since_s = changed.map(|step| Clock::at(scenario, step).time_s(step));
-    let is_strobed = readouts.nutation_is_resolved() == Some(false);
     let measured = READOUTS
         .iter()
         .filter(|readout| readout.name.starts_with(MEASURED) && !readout.is_uncertainty());
-    let quantities = measured.map(|readout| {
-        let number = |readout: Option<&Readout>| readout.and_then(|it| it.of(readouts).number());
-        // Of the swing that the report's scheme makes there is a formula, which is no theory of the exact motion.
-        let predicted = readout.predicted().filter(|it| it.source == Source::Theory);
-        let uncertainty = readout.uncertainty().filter(|_| predicted.is_some());
-        let (measured, predicted) = match readout.name {
-            SWING => (number(Some(readout)), swing_by_theory(readouts)),
-            name if readout.source == Source::EveryStep => {
-                // What theory says of the motion since the forces last changed says nothing of the run before.
-                let by_formula = number(predicted).filter(|_| since_s.is_none());
-                let seen = range.and_then(|range| range.of(name));
-                (number(Some(readout)), by_formula.or(seen))
-            }
-            _ => (number(Some(readout)), number(predicted)),
-        };
-        let is_since = readout.source == Source::Measured;
-        let is_strobed = is_strobed && readout.name == NUTATION;
-        let difference = measured
-            .zip(predicted)
-            .map(|(measured, predicted)| measured - predicted);
-        Quantity {
-            readout,
-            measured,
-            uncertainty: number(uncertainty),
-            predicted,
-            difference: difference.filter(|_| !is_strobed),
-            since_s: since_s.filter(|_| is_since),
-            is_strobed,
-        }
-    });
+    let quantities = measured.map(|readout| Quantity::new(readout, readouts, since_s, range));
     quantities
         .filter(|it| it.measured.is_some() || it.predicted.is_some())
         .collect()
 }
 
 impl Quantity {
-    /// Its short name: "tilt swing".
+    fn new(
+        readout: &'static Readout,
+        readouts: &Readouts,
+        since_s: Option<f64>,
+        range: Option<ExactRange>,
+    ) -> Self {
+        let number = |readout: Option<&Readout>| readout.and_then(|it| it.of(readouts).number());
+        // Of the swing that the report's scheme makes there is a formula, which is no theory of the exact motion.
+        let theory = readout.predicted().filter(|it| it.source == Source::Theory);
+        let uncertainty = readout.uncertainty().filter(|_| theory.is_some());
+        let predicted = match readout.name {
+            SWING => swing_by_theory(readouts),
+            name if readout.source == Source::EveryStep => {
+                // What theory says of the motion since the forces last changed says nothing of the run before.
+                let by_formula = number(theory).filter(|_| since_s.is_none());
+                by_formula.or(range.and_then(|range| match name {
+                    "measured_lowest_tilt_deg" => Some(range.tilt_deg.0),
+                    "measured_highest_tilt_deg" => Some(range.tilt_deg.1),
+                    "measured_lowest_z_m" => Some(range.z_m.0),
+                    "measured_highest_z_m" => Some(range.z_m.1),
+                    _ => None,
+                }))
+            }
+            _ => number(theory),
+        };
+        let measured = number(Some(readout));
+        let is_strobed = readout.name == NUTATION && readouts.nutation_is_resolved() == Some(false);
+        let both = measured.zip(predicted).filter(|_| !is_strobed);
+        Self {
+            readout,
+            measured,
+            uncertainty: number(uncertainty),
+            predicted,
+            difference: both.map(|(measured, predicted)| measured - predicted),
+            since_s: since_s.filter(|_| readout.source == Source::Measured),
+            is_strobed,
+        }
+    }
+
     pub fn name(&self) -> String {
         let name = self.readout.name;
         let bare = name.strip_prefix(MEASURED).unwrap_or(name);
@@ -107,7 +114,6 @@ impl Quantity {
         self.name() + strobed + &since.unwrap_or_default()
     }
 
-    /// What it is.
     pub fn meaning(&self) -> String {
         let mut meaning = self.readout.meaning.to_owned();
         if let Some(since_s) = self.since_s {
@@ -166,7 +172,7 @@ fn swing_by_theory(readouts: &Readouts) -> Option<f64> {
     Some(of("predicted_highest_tilt_deg")? - of("predicted_lowest_tilt_deg")?)
 }
 
-/// `size`, which is written without a sign, with that of `number`.
+/// `size`, written without a sign, with the sign of `number`.
 fn with_sign(number: f64, size: &str) -> String {
     match number {
         number if number < 0.0 => format!("-{size}"),
