@@ -1,13 +1,15 @@
 //! Arguments that several commands have, and those that several files read.
 
 use super::values::{frames, length, one_or_more, positive, setting, steps};
+use crate::lab::view::markers::Marker;
+use crate::lab::view::theme::Background;
 use crate::physics::scheme;
-use clap::builder::PossibleValuesParser;
+use crate::tui::surroundings::ColourChoice;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
 use std::num::NonZeroU64;
 use std::path::PathBuf;
 
-/// What is run, and what is changed in it first.
 #[derive(Debug, Args)]
 pub(super) struct ScenarioArgs {
     /// A preset's name, or a file (.toml or .csv): a scenario, a run file, or a CSV that gyrolab wrote
@@ -17,7 +19,6 @@ pub(super) struct ScenarioArgs {
     pub(super) changes: Changes,
 }
 
-/// What is changed in a scenario before it is run.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct Changes {
     /// Change a value first, such as start.tilt_deg=30 or push.0.force_N=[0,0,-50]; may be repeated
@@ -34,13 +35,11 @@ pub(super) struct Changes {
 }
 
 impl Changes {
-    /// Whether anything is changed.
     pub(super) fn is_some(&self) -> bool {
         !self.set.is_empty() || self.time_step.is_some() || self.scheme.is_some()
     }
 }
 
-/// How the lab is opened.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct WorkbenchArgs {
     /// A preset's name, or a file (.toml or .csv): a scenario, a run file, or a CSV that gyrolab wrote [default: method-2]
@@ -84,51 +83,59 @@ pub(super) struct WorkbenchArgs {
     pub(super) fps: Option<u32>,
 }
 
-/// What the lab looks like.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(super) struct Look {
     /// Colours: auto honours NO_COLOR [default: as chosen last in the lab, or auto]
     #[arg(long, alias = "colour", value_enum, value_name = "WHEN")]
-    pub(super) color: Option<Color>,
+    pub(super) color: Option<ColourChoice>,
 
     /// What the colours are for [default: as chosen last, or as COLORFGBG says, or dark]
     #[arg(long, value_enum, value_name = "SCREEN")]
-    pub(super) background: Option<Screen>,
+    pub(super) background: Option<Background>,
 
     /// What dots are made of [default: as chosen last, or by locale and terminal]
     #[arg(long, value_enum, value_name = "KIND")]
-    pub(super) markers: Option<Markers>,
+    pub(super) markers: Option<Marker>,
 
     /// Leave the mouse to the terminal, to select text; the key M takes it
     #[arg(long)]
     pub(super) no_mouse: bool,
 }
 
-/// `--background`
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum Screen {
-    Dark,
-    Light,
+impl ValueEnum for ColourChoice {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Auto, Self::Always, Self::Never]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(match self {
+            Self::Auto => "auto",
+            Self::Always => "always",
+            Self::Never => "never",
+        }))
+    }
 }
 
-/// `--color`
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum Color {
-    Auto,
-    Always,
-    Never,
+impl ValueEnum for Background {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Dark, Self::Light]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name()))
+    }
 }
 
-/// `--markers`
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum Markers {
-    Braille,
-    HalfBlock,
-    Dot,
-    Ascii,
+impl ValueEnum for Marker {
+    fn value_variants<'a>() -> &'a [Self] {
+        &Self::ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name()))
+    }
 }
 
-/// How long a run is.
 #[derive(Debug, Args)]
 pub(super) struct LengthArgs {
     /// Length of the run in time steps [default: the scenario's]
@@ -141,7 +148,6 @@ pub(super) struct LengthArgs {
 }
 
 impl LengthArgs {
-    /// Whether a length is given.
     pub(super) fn is_some(&self) -> bool {
         self.steps.is_some() || self.duration.is_some()
     }

@@ -3,14 +3,16 @@
 //! The lab's own clock tells the time: it goes on by the same step from picture to picture, however long the computer needs
 //! for one. Neither settings nor the environment are read, so that a file of commands has one recording.
 
-use super::args::{Changes, Markers};
+use super::args::Changes;
 use super::new_lab::{DEFAULT, lab};
-use super::progress::{self, Interruption};
+use super::progress::{self, Interrupted, Interruption};
+use super::tell;
 use super::values::size;
-use super::{INTERRUPTED, tell};
 use crate::lab::Lab;
 use crate::lab::command;
+use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::{Background, Theme};
+use crate::text::number::counted;
 use crate::text::printable::{Shown, printable};
 use crate::tui::recorder::Recorder;
 use anyhow::{bail, ensure};
@@ -21,9 +23,8 @@ use std::process::ExitCode;
 use std::thread;
 use std::time::Duration;
 
-/// From picture to picture.
 const FRAME: Duration = Duration::from_millis(50);
-/// The longest recording: nobody watches more, and a slip in a number shall not fill the disk.
+/// The longest recording: a slip in a number must not fill the disk.
 const LONGEST: Duration = Duration::from_secs(3600);
 /// How often to look whether an export is complete: the recording's clock stands still meanwhile.
 const LOOK: Duration = Duration::from_millis(2);
@@ -68,27 +69,20 @@ pub(super) fn cast(args: &CastArgs) -> anyhow::Result<ExitCode> {
     let mut lab = lab(
         DEFAULT,
         &Changes::default(),
-        Some(Markers::Braille),
+        Some(Marker::Braille),
         theme,
         false,
     )?;
-    let (output, interruption) = progress::open(Some(&args.output), args.force)?;
-    let Some(output) = output else {
-        return Ok(ExitCode::FAILURE); // a path that is given is opened, or an error
-    };
+    let (output, interruption) = progress::open_for(&args.output, args.force)?;
     let mut cast = Cast::begin(args, &mut lab)?;
     lab.take_commands(commands);
-    if !cast.record(&mut lab, &interruption)? {
-        return Ok(ExitCode::from(INTERRUPTED));
-    }
+    cast.record(&mut lab, &interruption)?;
     let (length, markers) = (cast.now.as_secs_f64(), cast.markers);
     output.write_and_keep(cast.text.as_bytes())?;
-    if interruption.may_act_at_once() {
-        return Ok(ExitCode::from(INTERRUPTED));
-    }
+    interruption.may_act_at_once()?;
     tell(format_args!(
-        "gyrolab: {length:.1} s with {markers} {} in {}",
-        if markers == 1 { "chapter" } else { "chapters" },
+        "gyrolab: {length:.1} s with {} in {}",
+        counted(markers, "chapter"),
         Shown(&args.output)
     ));
     Ok(ExitCode::SUCCESS)
@@ -101,7 +95,7 @@ struct Cast {
     now: Duration,
     /// The time of the last event.
     written: Duration,
-    markers: usize,
+    markers: u64,
 }
 
 impl Cast {
@@ -123,19 +117,19 @@ impl Cast {
         })
     }
 
-    /// Lets time pass until all commands are carried out; false where a signal has ended it.
-    fn record(&mut self, lab: &mut Lab, interruption: &Interruption) -> anyhow::Result<bool> {
+    /// Lets time pass until all commands are carried out.
+    fn record(&mut self, lab: &mut Lab, interruption: &Interruption) -> anyhow::Result<()> {
         loop {
             self.look(lab)?;
             if interruption.has_come() {
-                return Ok(false);
+                bail!(Interrupted);
             }
             if let Some(failure) = lab.script().failure() {
                 bail!("{}", printable(failure));
             }
             if lab.script().is_done() {
                 self.event("x", "0");
-                return Ok(true);
+                return Ok(());
             }
             ensure!(
                 self.now < LONGEST,

@@ -1,10 +1,10 @@
 //! `gyrolab compare`: schemes and time steps against the exact motion.
 
 use super::args::{LengthArgs, ScenarioArgs};
-use super::progress::{self, Meter};
+use super::progress::{self, Interrupted};
 use super::scenario::scenario_of;
 use super::values::positive;
-use super::{INTERRUPTED, one_on_stdout, print};
+use super::{one_on_stdout, print};
 use crate::analysis::compare::{ComparisonRow, Table, compare as table_of};
 use crate::analysis::cost;
 use crate::export::Destination;
@@ -20,7 +20,7 @@ use clap::builder::PossibleValuesParser;
 use std::collections::HashSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 #[derive(Debug, Args)]
 pub(super) struct CompareArgs {
@@ -63,27 +63,15 @@ pub(super) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let schemes = schemes(args, &scenario)?;
     let time_steps = time_steps(args, &scenario)?;
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
-    let meter = Mutex::new(Meter::new());
-    let rows = table_of(&scenario, &schemes, &time_steps, |taken, total| {
-        meter
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .show(taken, total);
-        interruption.go_on()
-    });
-    meter.lock().unwrap_or_else(PoisonError::into_inner).clear();
-    let Some(rows) = rows else {
-        return Ok(ExitCode::from(INTERRUPTED));
-    };
+    let rows = table_of(&scenario, &schemes, &time_steps, interruption.meter());
+    let rows = rows.ok_or(Interrupted)?;
     if let Some(output) = output {
         write_csv(output, &scenario, &rows)?;
     }
     if on_stdout {
         return Ok(ExitCode::SUCCESS);
     }
-    if interruption.may_act_at_once() {
-        return Ok(ExitCode::from(INTERRUPTED));
-    }
+    interruption.may_act_at_once()?;
     let table = Table {
         rows: &rows,
         energy_unit: EnergyScale::of(&scenario).map(|scale| scale.unit),

@@ -2,10 +2,10 @@
 
 use super::args::{Changes, LengthArgs, ScenarioArgs};
 use super::layout::time;
-use super::progress::{self, Interruption, Meter};
+use super::progress::{self, Interrupted, Interruption};
 use super::scenario::scenario_of;
 use super::values::positive;
-use super::{INTERRUPTED, complain, refuse, tell};
+use super::{complain, refuse, tell};
 use crate::analysis::cost;
 use crate::figure::kind::Kind;
 use crate::figure::of_runs::{self, Figure, Request, Run};
@@ -97,18 +97,11 @@ fn width(text: &str) -> Result<f64, String> {
 pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     let format = Format::of(&args.output)?;
     let subject = subject(args)?;
-    let (output, interruption) = progress::open(Some(&args.output), args.force)?;
-    let Some(output) = output else {
-        return Ok(ExitCode::FAILURE); // a path that is given is opened, or an error
-    };
-    let Some(figure) = drawn(&subject, args, &interruption)? else {
-        return Ok(ExitCode::from(INTERRUPTED));
-    };
+    let (output, interruption) = progress::open_for(&args.output, args.force)?;
+    let figure = drawn(&subject, args, &interruption)?;
     let bytes = figure::write(&figure.scene, format)?;
     output.write_and_keep(&bytes)?;
-    if interruption.may_act_at_once() {
-        return Ok(ExitCode::from(INTERRUPTED));
-    }
+    interruption.may_act_at_once()?;
     for warning in figure.told() {
         tell(format_args!("gyrolab: {warning}"));
     }
@@ -128,7 +121,6 @@ pub(super) fn figure(args: &FigureArgs) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// What is drawn.
 enum Subject {
     Runs(Vec<Run>, Kind, Option<Arc<Measured>>),
     Table(Table),
@@ -216,7 +208,7 @@ fn drawn(
     subject: &Subject,
     args: &FigureArgs,
     interruption: &Interruption,
-) -> anyhow::Result<Option<Figure>> {
+) -> anyhow::Result<Figure> {
     let (runs, kind, measured) = match subject {
         Subject::Runs(runs, kind, measured) => (runs, kind, measured),
         Subject::Table(table) => {
@@ -228,12 +220,12 @@ fn drawn(
             let columns: Vec<_> = columns.collect();
             let chart = of_table::chart(table, &columns, args.width * PT_PER_MM);
             let chart = chart.map_err(|refusal| anyhow::anyhow!("{}: {refusal}", args.runs[0]))?;
-            return Ok(Some(Figure {
+            return Ok(Figure {
                 scene: chart.scene(),
                 warnings: of_table::warnings(table, &columns),
                 dense: None,
                 broke: None,
-            }));
+            });
         }
     };
     let request = Request {
@@ -251,11 +243,6 @@ fn drawn(
             run.scenario.steps
         ));
     }
-    let mut meter = Meter::new();
-    let figure = of_runs::figure(runs, &request, |step, of| {
-        meter.show(step, of);
-        interruption.go_on()
-    });
-    meter.clear();
-    figure.map_err(anyhow::Error::msg)
+    let figure = of_runs::figure(runs, &request, interruption.meter());
+    Ok(figure.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?)
 }

@@ -2,9 +2,9 @@
 
 use super::args::Changes;
 use super::commands::{Cli, Command};
-use super::progress::{self, Interruption, Ticker};
+use super::progress::{self, Interrupted, Interruption, Meter};
 use super::scenario::change;
-use super::{INTERRUPTED, one_on_stdout, print_result, tell};
+use super::{one_on_stdout, print_result, tell};
 use crate::export::Destination;
 use crate::measured::{self, Measured};
 use crate::physics::SchemeInfo;
@@ -14,14 +14,13 @@ use crate::study::fit::report::Report;
 use crate::study::fit::table::{self, Asked};
 use crate::study::fit::{Fit, Free, Model, NoFit, fit as fitted, free};
 use crate::study::verify::Unverified;
-use crate::text::number::{NONE, shortest, significant};
+use crate::text::number::{counted, shortest, significant};
 use crate::text::printable::{Shown, brief};
-use anyhow::{Context, anyhow};
+use anyhow::{Context, anyhow, bail};
 use clap::{Args, Parser};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::{Mutex, PoisonError};
 use toml::Value;
 
 #[derive(Debug, Args)]
@@ -95,36 +94,16 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
     one_on_stdout("fit", args.output.as_deref(), args.json);
     let (model, scheme, own) = model(args)?;
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
-    let ticker = Mutex::new((Ticker::new(), String::new()));
-    let tick = |now: Option<String>| {
-        // Of several that have something to tell at once, one does.
-        if let Ok(mut locked) = ticker.try_lock() {
-            let (ticker, step) = &mut *locked;
-            *step = now.unwrap_or_else(|| std::mem::take(step));
-            ticker.show(&format!("{} runs{step}", model.runs()));
-        }
-    };
+    let meter = Meter::counting("run");
     let told = |step: u64, sum: f64| {
-        let sum = if sum.is_finite() {
-            significant(sum, 4)
-        } else {
-            NONE.to_owned()
-        };
-        tick(Some(format!(", step {step}, chi^2 {sum}")));
+        let (runs, sum) = (model.runs(), significant(sum, 4));
+        meter.say(format!("{runs} runs, step {step}, chi^2 {sum}"));
     };
-    let goes_on = || {
-        tick(None);
-        !interruption.has_come()
-    };
-    let found = fitted(&model, &goes_on, &told);
-    ticker
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .0
-        .clear();
+    let found = fitted(&model, &|| !interruption.has_come(), &told);
+    drop(meter);
     let found = match found {
         Ok(found) => found,
-        Err(NoFit::Interrupted) => return Ok(ExitCode::from(INTERRUPTED)),
+        Err(NoFit::Interrupted) => bail!(Interrupted),
         Err(error) => {
             let what = format!("{} in {}", args.measured, args.scenario);
             return Err(anyhow::Error::new(error).context(what));
@@ -141,16 +120,11 @@ pub(super) fn fit(args: &FitArgs) -> anyhow::Result<ExitCode> {
         let written = write(&mut output, &report, args).and_then(|()| Ok(output.keep()?));
         written.with_context(|| format!("cannot write {}", Shown(path)))?;
     }
-    if interruption.may_act_at_once() {
-        return Ok(ExitCode::from(INTERRUPTED));
-    }
+    interruption.may_act_at_once()?;
     tell_of(&report, args)
 }
 
 /// The CSV of the fit that the command line `command` makes.
-///
-/// # Errors
-/// When it is none of a fit, or the fit cannot be made: its data may be in another place.
 pub(super) fn again(command: &str, interruption: &Interruption) -> Result<Vec<u8>, Unverified> {
     let cannot = |why: String| Unverified::from(format!("cannot be recomputed: {why}"));
     let words = shlex::split(command).unwrap_or_default();
@@ -267,7 +241,6 @@ fn command(args: &FitArgs) -> String {
     shlex::try_join(words).unwrap_or_default()
 }
 
-/// Writes the CSV of a fit.
 fn write(output: impl Write, report: &Report<'_>, args: &FitArgs) -> anyhow::Result<()> {
     let Fit { keys, quality, .. } = report.fit;
     let values: Vec<f64> = keys.iter().map(|key| key.value).collect();
@@ -296,12 +269,8 @@ fn tell_of(report: &Report<'_>, args: &FitArgs) -> anyhow::Result<ExitCode> {
         .as_deref()
         .filter(|path| !Destination::is_for_stdout(path))
     {
-        let rows = report.fit.residuals.len();
-        let plural = if rows == 1 { "" } else { "s" };
-        tell(format_args!(
-            "gyrolab: {rows} row{plural} in {}",
-            Shown(path)
-        ));
+        let rows = counted(report.fit.residuals.len() as u64, "row");
+        tell(format_args!("gyrolab: {rows} in {}", Shown(path)));
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -13,7 +13,7 @@ use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problems, Scenario, Window};
 use crate::study::sweep::{Sweep, shipped as sweeps};
 use crate::teach::shipped;
-use crate::text::number::{decimal, shortest};
+use crate::text::number::{counted, decimal, shortest};
 use crate::text::printable::{Shown, printable, printable_lines};
 use crate::work::changed::Original;
 use anyhow::bail;
@@ -55,10 +55,6 @@ fn preset_list() -> anyhow::Result<String> {
     Ok(text)
 }
 
-pub(super) fn schemes() -> anyhow::Result<ExitCode> {
-    print(&scheme_list()?)
-}
-
 pub(super) fn scheme_list() -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     for scheme in SCHEMES {
@@ -69,10 +65,6 @@ pub(super) fn scheme_list() -> Result<String, std::fmt::Error> {
         writeln!(text, "{:<17} {}", "", scheme.source)?;
     }
     Ok(text)
-}
-
-pub(super) fn keys() -> anyhow::Result<ExitCode> {
-    print(&key_list()?)
 }
 
 pub(super) fn key_list() -> Result<String, std::fmt::Error> {
@@ -95,10 +87,6 @@ pub(super) fn key_list() -> Result<String, std::fmt::Error> {
     text.push_str("\nA * stands for a number from 0: [[body.point]], [[body.part]], [[push]], [[expected]] and [[edit]] may be repeated.\n");
     text.push_str("A table may be left out whole where none of its keys is wanted, but [start] and [motion].\n");
     Ok(text)
-}
-
-pub(super) fn readouts() -> anyhow::Result<ExitCode> {
-    print(&readout_list()?)
 }
 
 pub(super) fn readout_list() -> Result<String, std::fmt::Error> {
@@ -160,9 +148,8 @@ fn hint_of_preset(file: &Path) -> Option<String> {
 /// What is in `document`, in words: commands, or else a scenario.
 fn checked(document: &Document) -> Result<String, Problems> {
     if command::is_file_of_commands(document) {
-        let commands = command::read(document)?.list.len();
-        let plural = if commands == 1 { "" } else { "s" };
-        return Ok(format!("good: {commands} command{plural}"));
+        let commands = command::read(document)?.list.len() as u64;
+        return Ok(format!("good: {}", counted(commands, "command")));
     }
     if document.is_sweep() {
         return Sweep::open(document).map(|sweep| described_sweep(&sweep));
@@ -191,18 +178,15 @@ fn described_sweep(sweep: &Sweep) -> String {
 fn described(scenario: &Scenario) -> String {
     let edits = match scenario.edits.len() {
         0 => String::new(),
-        1 => ", 1 edit".to_owned(),
-        more => format!(", {more} edits"),
+        edits => format!(", {}", counted(edits as u64, "edit")),
     };
-    let points = scenario.body.points_before_parts();
-    let plural = if points == 1 { "" } else { "s" };
+    let points = counted(scenario.body.points_before_parts() as u64, "point");
     let parts = match scenario.body.parts.len() {
         0 => String::new(),
-        1 => "1 part and ".to_owned(),
-        more => format!("{more} parts and "),
+        parts => counted(parts as u64, "part") + " and ",
     };
     format!(
-        "good: \"{}\", {parts}{points} point{plural}, scheme {}, steps: {}{edits}{}",
+        "good: \"{}\", {parts}{points}, scheme {}, steps: {}{edits}{}",
         scenario.file.title,
         scenario.motion.scheme.name,
         steps_in_words(scenario, scenario.steps),

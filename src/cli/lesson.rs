@@ -2,11 +2,12 @@
 
 use super::args::{LessonArgs, Look};
 use super::played::{new_lab, refused, watched, write};
-use super::{INTERRUPTED, notes, print, progress, tell, workbench};
+use super::{notes, print, progress, tell, workbench};
 use crate::lab::Lab;
 use crate::scenario::Problems;
 use crate::teach::play::{self, Walk};
 use crate::teach::{Lesson, Page, handout, reading, shipped};
+use crate::text::number::counted;
 use crate::text::printable::printable_lines;
 use anyhow::Context;
 use std::io::{self, IsTerminal};
@@ -16,7 +17,6 @@ use std::process::ExitCode;
 /// Columns and lines of the pictures.
 const PICTURE: (u16, u16) = (80, 24);
 
-/// What is asked of a lesson.
 pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
     if let Some(session) = &args.notes {
         return notes::notes(session);
@@ -48,18 +48,15 @@ pub(super) fn lesson(args: &LessonArgs) -> anyhow::Result<ExitCode> {
         page.number,
         lesson.pages.len()
     ));
-    let (_, interruption) = progress::open(None, false)?;
+    let interruption = progress::interruption()?;
     let text = watched(&interruption, |go_on| {
         let mut walk = Walk::new(&lesson, new_lab(args.look)?);
         walk.jump(page, go_on)
             .map_err(|problem| refused(&lesson, problem))?;
         Ok(handout::page(page, &walk, &picture))
     })?;
-    if interruption.may_act_at_once() {
-        Ok(ExitCode::from(INTERRUPTED))
-    } else {
-        print(&text)
-    }
+    interruption.may_act_at_once()?;
+    print(&text)
 }
 
 /// A line for each shipped lesson: its name and its title.
@@ -105,12 +102,10 @@ pub(super) fn checked(file: &Path) -> anyhow::Result<Result<String, Problems>> {
         Ok(lesson) => lesson,
         Err(problems) => return Ok(Err(problems)),
     };
-    let (_, interruption) = progress::open(None, false)?;
+    let interruption = progress::interruption()?;
     let lab = new_lab(Look::default())?;
     let played = watched(&interruption, |go_on| Ok(play::check(&lesson, lab, go_on)))?;
-    if interruption.may_act_at_once() {
-        std::process::exit(INTERRUPTED.into());
-    }
+    interruption.may_act_at_once()?;
     Ok(played.map(|played| {
         for problem in played.unstated {
             let told = Problems::one(lesson.origin.clone(), problem).to_string();
@@ -121,16 +116,14 @@ pub(super) fn checked(file: &Path) -> anyhow::Result<Result<String, Problems>> {
 }
 
 fn described(lesson: &Lesson) -> String {
-    let count = |number: usize, one: &str| match number {
-        1 => format!("1 {one}"),
-        number => format!("{number} {one}s"),
-    };
-    let of_pages = |count: fn(&Page) -> usize| lesson.pages.iter().map(count).sum();
+    let pages = lesson.pages.iter();
+    let predictions: usize = pages.clone().map(|page| page.predicts().count()).sum();
+    let checks: usize = pages.clone().map(|page| page.checks().count()).sum();
     format!(
         "good: \"{}\", {}, {}, {}",
         lesson.title,
-        count(lesson.pages.len(), "page"),
-        count(of_pages(|page| page.predicts().count()), "prediction"),
-        count(of_pages(|page| page.checks().count()), "check"),
+        counted(pages.len() as u64, "page"),
+        counted(predictions as u64, "prediction"),
+        counted(checks as u64, "check"),
     )
 }

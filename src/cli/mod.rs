@@ -39,6 +39,7 @@ use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches};
 use commands::{Cli, Command};
+use progress::Interrupted;
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Display;
@@ -49,22 +50,28 @@ use std::process::ExitCode;
 /// Ended by the user's Ctrl-C, as shells count it.
 const INTERRUPTED: u8 = 130;
 
-/// Runs the command line of this process.
 pub fn main() -> ExitCode {
     match complete::answered() {
         Ok(false) => {}
         Ok(true) => return ExitCode::SUCCESS,
-        Err(error) => return misused(Refused::ByClap(error)),
+        Err(error) => return misused(&error),
     }
     let parsed = command().try_get_matches();
     let parsed = parsed.and_then(|matches| Cli::from_arg_matches(&matches));
     let cli = match parsed {
         Ok(cli) => cli,
-        Err(error) => return misused(explained(error)),
+        Err(error) => match explained(error) {
+            Ok(error) => return misused(&error),
+            Err(meant) => {
+                tell(format_args!("gyrolab: {}", printable_lines(&meant)));
+                return ExitCode::from(MISUSED);
+            }
+        },
     };
     match execute(cli) {
         Ok(code) => code,
         Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) if error.is::<Interrupted>() => ExitCode::from(INTERRUPTED),
         Err(error) => {
             complain(&error);
             ExitCode::FAILURE
@@ -92,9 +99,9 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Cast(args) => cast::cast(&args),
         Command::Presets { name } => info::presets(name.as_deref()),
         Command::Sessions { folder } => sessions::list(folder.as_deref()),
-        Command::Schemes => info::schemes(),
-        Command::Keys => info::keys(),
-        Command::Readouts => info::readouts(),
+        Command::Schemes => print(&info::scheme_list()?),
+        Command::Keys => print(&info::key_list()?),
+        Command::Readouts => print(&info::readout_list()?),
         Command::Writeup(args) => writeup::writeup(&args),
         Command::Lesson(args) => lesson::lesson(&args),
         Command::Check { files } => info::check(&files),
@@ -103,7 +110,7 @@ fn execute(cli: Cli) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Opens the lab, unless a command's name stands behind options, where clap takes it for a scenario's.
+/// Opens the lab. A command's name behind options is refused: clap takes it for the name of a scenario.
 fn open_lab(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     let name = args.scenario.as_deref().unwrap_or_default();
     anyhow::ensure!(
@@ -113,31 +120,14 @@ fn open_lab(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     workbench::open(args)
 }
 
-/// Wrong usage, as clap counts it.
 const MISUSED: u8 = 2;
 
-/// Why arguments were refused.
-enum Refused {
-    /// For a reason that clap does not know.
-    Named(String),
-    /// As clap has it.
-    ByClap(clap::Error),
-}
-
-/// `error` with what a user may have meant: a command whose name is misspelt, an option of another command.
-fn explained(mut error: clap::Error) -> Refused {
-    if let Some(text) = command_behind_options(&error) {
-        return Refused::Named(text);
-    }
-    if error.kind() == ErrorKind::ArgumentConflict {
-        let typed = std::env::args_os().nth(1);
-        let typed = typed.and_then(|typed| typed.into_string().ok());
-        if let Some(near) = typed.as_deref().and_then(command_near) {
-            let typed = printable(typed.as_deref().unwrap_or_default()).into_owned();
-            return Refused::Named(format!(
-                "there is no command {typed}: did you mean gyrolab {near}?"
-            ));
-        }
+/// `error` with the option of another command that a user may have meant; or, instead of it, which command.
+fn explained(mut error: clap::Error) -> Result<clap::Error, String> {
+    if error.kind() == ErrorKind::ArgumentConflict
+        && let Some(meant) = command_behind_options().or_else(misspelt_command)
+    {
+        return Err(meant);
     }
     let unknown = match (error.kind(), error.get(ContextKind::InvalidArg)) {
         (ErrorKind::UnknownArgument, Some(ContextValue::String(argument))) => argument.as_str(),
@@ -149,20 +139,17 @@ fn explained(mut error: clap::Error) -> Refused {
         let tip = StyledStr::from(tip.to_owned());
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
     }
-    Refused::ByClap(error)
+    Ok(error)
 }
 
-/// What is said where options of the lab stand before a command, which clap then takes for a scenario.
-fn command_behind_options(error: &clap::Error) -> Option<String> {
-    if error.kind() != ErrorKind::ArgumentConflict {
-        return None;
-    }
+/// The refusal of options of the lab before a command, which clap then takes for a scenario.
+fn command_behind_options() -> Option<String> {
     let typed = std::env::args_os().skip(1);
     let mut typed = typed.map_while(|word| word.into_string().ok());
     let first = typed.next().filter(|first| first.starts_with('-'))?;
     let command = Cli::command();
     let name = typed.find(|word| command.find_subcommand(word).is_some())?;
-    let first = printable(&first).into_owned();
+    let first = printable(&first);
     Some(format!(
         "{name} is a command, and commands come before their options: gyrolab {name} ...; {first} is an option of the lab"
     ))
@@ -184,29 +171,25 @@ fn tip_for(unknown: &str) -> Option<&'static str> {
     }
 }
 
-/// The command whose name is one or two letters off `typed`, if `typed` is none and no scenario.
-fn command_near(typed: &str) -> Option<String> {
-    let is_name = !typed.starts_with('-') && !typed.contains(['/', '.']);
-    if !is_name || presets::find(typed).is_some() {
+/// What is said where the first word is one or two letters off a command's name, and no scenario.
+fn misspelt_command() -> Option<String> {
+    let typed = std::env::args_os().nth(1)?.into_string().ok()?;
+    if typed.starts_with('-') || typed.contains(['/', '.']) || presets::find(&typed).is_some() {
         return None;
     }
     let command = Cli::command();
     let names = command.get_subcommands().map(clap::Command::get_name);
-    let near = names.map(|name| (strsim::damerau_levenshtein(typed, name), name));
-    let (distance, name) = near.min_by_key(|(distance, _)| *distance)?;
-    (1..=2).contains(&distance).then(|| name.to_owned())
+    let near = names.map(|name| (strsim::damerau_levenshtein(&typed, name), name));
+    let (distance, near) = near.min_by_key(|(distance, _)| *distance)?;
+    let typed = printable(&typed);
+    (1..=2)
+        .contains(&distance)
+        .then(|| format!("there is no command {typed}: did you mean gyrolab {near}?"))
 }
 
 /// Prints what clap has to say instead of going on: help, or why it takes no such arguments. clap repeats the arguments
 /// as they are: where one holds a character that could steer a terminal, the text is printed escaped and without colours.
-fn misused(error: Refused) -> ExitCode {
-    let error = match error {
-        Refused::Named(text) => {
-            tell(format_args!("gyrolab: {}", printable_lines(&text)));
-            return ExitCode::from(MISUSED);
-        }
-        Refused::ByClap(error) => error,
-    };
+fn misused(error: &clap::Error) -> ExitCode {
     let is_hostile = |argument: OsString| argument.to_string_lossy().contains(is_steering);
     let text = error.render().to_string();
     let plain = printable_lines(&text);
@@ -251,9 +234,6 @@ fn refuse(name: &str, kind: ErrorKind, message: &str) -> ! {
 const NO_STDOUT: &str = "cannot write to stdout";
 
 /// Prints `text` on stdout.
-///
-/// # Errors
-/// When it cannot be written; that a reader has gone is the caller's to forgive.
 fn print(text: &str) -> anyhow::Result<ExitCode> {
     let mut stdout = io::stdout().lock();
     let printed = stdout.write_all(text.as_bytes());
@@ -263,9 +243,6 @@ fn print(text: &str) -> anyhow::Result<ExitCode> {
 
 /// Prints what came out: on stdout, with `json` as one object; and as text on stderr where stdout or a file, `output`, has
 /// the rows.
-///
-/// # Errors
-/// As [`print`].
 fn print_result<T: Display + Serialize>(
     result: &T,
     output: Option<&Path>,
@@ -282,8 +259,7 @@ fn print_result<T: Display + Serialize>(
     Ok(())
 }
 
-/// Says `text` on stderr. Where that cannot be written there is nobody to tell, and what was to be done is done all the
-/// same.
+/// Prints `text` on stderr; a stderr that cannot be written ends nothing.
 fn tell(text: impl Display) {
     let _ = writeln!(io::stderr(), "{text}");
 }

@@ -1,6 +1,6 @@
 //! A new lab, with the scenario, the colours and the dots that the command line asks for.
 
-use super::args::{Changes, Color, Look, Markers, Screen};
+use super::args::{Changes, Look};
 use super::scenario::change;
 use crate::lab::Lab;
 use crate::lab::view::View;
@@ -8,7 +8,7 @@ use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use crate::scenario::Document;
 use crate::tui::panes;
-use crate::tui::surroundings::{self, ColourChoice};
+use crate::tui::surroundings;
 use std::sync::Arc;
 
 /// What is opened where nothing is named.
@@ -18,7 +18,7 @@ pub(super) const DEFAULT: &str = "method-2";
 pub(super) fn lab(
     name: &str,
     changes: &Changes,
-    markers: Option<Markers>,
+    markers: Option<Marker>,
     theme: Theme,
     running: bool,
 ) -> anyhow::Result<Lab> {
@@ -43,30 +43,27 @@ pub(super) fn variable(name: &str) -> Option<String> {
 
 /// The colours that `look` asks for, or that suit the terminal.
 pub(super) fn theme(look: Look) -> Theme {
-    let choice = match look.color {
-        None | Some(Color::Auto) => ColourChoice::Auto,
-        Some(Color::Always) => ColourChoice::Always,
-        Some(Color::Never) => ColourChoice::Never,
-    };
-    let theme = surroundings::theme(choice, variable);
-    let background = match look.background {
-        None => theme.background,
-        Some(Screen::Dark) => Background::Dark,
-        Some(Screen::Light) => Background::Light,
-    };
+    let theme = surroundings::theme(look.color.unwrap_or_default(), variable);
     Theme {
-        background,
+        background: look.background.unwrap_or(theme.background),
         ..theme
     }
 }
 
 /// The dots that are asked for, or that suit locale and terminal.
-pub(super) fn marker(markers: Option<Markers>) -> Marker {
-    match markers {
-        None => surroundings::marker(variable),
-        Some(Markers::Braille) => Marker::Braille,
-        Some(Markers::HalfBlock) => Marker::HalfBlock,
-        Some(Markers::Dot) => Marker::Dot,
-        Some(Markers::Ascii) => Marker::Ascii,
-    }
+pub(super) fn marker(markers: Option<Marker>) -> Marker {
+    markers.unwrap_or_else(|| surroundings::marker(variable))
+}
+
+/// A lab without colours, for pictures as plain text.
+pub(super) fn plain_lab(
+    name: &str,
+    changes: &Changes,
+    markers: Option<Marker>,
+) -> anyhow::Result<Lab> {
+    let plain = Theme {
+        colour: false,
+        background: Background::Dark,
+    };
+    lab(name, changes, markers, plain, false)
 }

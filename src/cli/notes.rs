@@ -3,8 +3,8 @@
 
 use super::args::LessonArgs;
 use super::played::{new_lab, refused, watched, write};
-use super::progress::{self, Interruption};
-use super::{INTERRUPTED, sessions};
+use super::progress::{self, Interrupted, Interruption};
+use super::sessions;
 use crate::lab::Lab;
 use crate::storage::session::{self, Listed};
 use crate::teach::class::KeptLessons;
@@ -57,7 +57,7 @@ pub(super) fn answers(args: &LessonArgs, name: &str) -> anyhow::Result<ExitCode>
 /// with an open lesson if that is empty, and goes on with the next page until Ctrl-C.
 pub(super) fn notes(name: &str) -> anyhow::Result<ExitCode> {
     let folder = folder()?;
-    let (_, interruption) = progress::open(None, false)?;
+    let interruption = progress::interruption()?;
     let followed = match find(&folder, name)? {
         Some(found) => found,
         None if name.is_empty() => {
@@ -71,12 +71,8 @@ pub(super) fn notes(name: &str) -> anyhow::Result<ExitCode> {
     let line = live_line();
     let followed = follow(&folder, &followed, &line, &interruption);
     line.finish_and_clear();
-    match followed {
-        // Nobody reads on.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(ExitCode::SUCCESS),
-        Err(error) => Err(error.into()),
-        Ok(()) => Ok(ExitCode::from(INTERRUPTED)),
-    }
+    followed?;
+    bail!(Interrupted)
 }
 
 fn folder() -> anyhow::Result<PathBuf> {
@@ -102,7 +98,7 @@ fn lessons_of(session: &Listed) -> Option<KeptLessons> {
     KeptLessons::read(&Lab::lessons_in(content)?).ok()
 }
 
-/// The lesson that is open in `session`, and where it stands.
+/// The lesson that is open in `session`, and its page.
 fn open_in(session: &Listed) -> Option<(String, Place)> {
     let mut lessons = lessons_of(session)?;
     let open = lessons.open?;
@@ -173,7 +169,6 @@ fn tell(line: &ProgressBar, text: &str) -> io::Result<()> {
     stdout.flush()
 }
 
-/// The notes of a page, and what comes next.
 fn told(lesson: &Lesson, number: usize) -> String {
     let mut text = format!("\n== {number} of {} · {}", lesson.pages.len(), lesson.title);
     let page = lesson.page(number);
@@ -198,7 +193,6 @@ fn told(lesson: &Lesson, number: usize) -> String {
     }
 }
 
-/// The clocks: up, down, and the time of the day.
 fn times(lesson: &Lesson, place: &Place) -> String {
     let since = Duration::from_secs(clock::unix_s().saturating_sub(place.began_unix_s));
     // A session of an earlier version does not know when the lesson began.

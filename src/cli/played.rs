@@ -1,23 +1,19 @@
 //! A lesson that a command plays without a terminal, and where what comes of it is written.
 
 use super::args::{Changes, LessonArgs, Look};
-use super::new_lab::{DEFAULT, lab};
-use super::progress::{self, Interruption, Meter};
-use super::{INTERRUPTED, print};
+use super::new_lab::{DEFAULT, plain_lab};
+use super::print;
+use super::progress::{self, Interrupted, Interruption};
 use crate::export::Destination;
 use crate::lab::Lab;
-use crate::lab::view::theme::{Background, Theme};
 use crate::scenario::{Problem, Problems};
 use crate::teach::{Lesson, play};
+use anyhow::bail;
 use std::process::ExitCode;
 
-/// A new lab, of which nothing but the pictures will be seen.
+/// A new lab for pictures.
 pub(super) fn new_lab(look: Look) -> anyhow::Result<Lab> {
-    let plain = Theme {
-        colour: false,
-        background: Background::Dark,
-    };
-    lab(DEFAULT, &Changes::default(), look.markers, plain, false)
+    plain_lab(DEFAULT, &Changes::default(), look.markers)
 }
 
 pub(super) fn refused(lesson: &Lesson, problem: Problem) -> anyhow::Error {
@@ -29,13 +25,7 @@ pub(super) fn watched<T>(
     interruption: &Interruption,
     what: impl FnOnce(play::GoOn<'_>) -> anyhow::Result<T>,
 ) -> anyhow::Result<T> {
-    let mut meter = Meter::new();
-    let done = what(&mut |step, of| {
-        meter.show(step, of);
-        interruption.go_on()
-    });
-    meter.clear();
-    done
+    what(&mut interruption.meter())
 }
 
 /// Writes what `make` makes to the file that is asked for, or prints it.
@@ -46,7 +36,7 @@ pub(super) fn write(
     let (output, interruption) = progress::open(args.output.as_deref(), args.force)?;
     let text = make(&interruption);
     if interruption.has_come() {
-        return Ok(ExitCode::from(INTERRUPTED));
+        bail!(Interrupted);
     }
     match output {
         None | Some(Destination::Stdout(_)) => print(&text?),

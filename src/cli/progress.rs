@@ -1,8 +1,7 @@
-//! What stands between a long command and its user: progress on stderr, and signals that end it.
+//! Progress of a long command on stderr, and the signals that end it.
 
 use super::INTERRUPTED;
 use crate::export::Destination;
-use crate::export::destination::DestinationError;
 use crate::export::temporary;
 use indicatif::{
     HumanCount, HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle,
@@ -14,13 +13,13 @@ use std::fmt;
 use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// What a signal to end does: it raises a flag, and ends the process where that has not been seen after a while.
-#[derive(Clone, Debug)]
+/// A signal to end raises a flag; where the command has not ended after a while, the process ends.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Interruption {
     has_come: Arc<AtomicBool>,
     at_once: Arc<AtomicBool>,
@@ -41,15 +40,35 @@ impl Interruption {
         }
     }
 
-    /// From now on, with no file to clear away, the first signal ends the process on the spot. Gives whether one has
-    /// come before.
-    pub(super) fn may_act_at_once(&self) -> bool {
+    /// From now on, with no file to clear away, the first signal ends the process on the spot.
+    ///
+    /// # Errors
+    /// When one has come before.
+    pub(super) fn may_act_at_once(&self) -> Result<(), Interrupted> {
         self.at_once.store(true, Ordering::SeqCst);
-        self.has_come()
+        if self.has_come() {
+            Err(Interrupted)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Shows the step reached and the last one, and says whether to go on; for work that is long in the whole.
+    pub(super) fn meter(&self) -> impl Fn(u64, u64) -> ControlFlow<()> + Sync {
+        let meter = Meter::counting("step");
+        move |step, steps| {
+            meter.show(step, steps);
+            self.go_on()
+        }
     }
 }
 
-/// How long after a signal the process may go on: a command that has not ended by then computes something that asks nobody.
+/// A signal has ended the command; what it was writing is gone with its temporary name.
+#[derive(Debug, thiserror::Error)]
+#[error("interrupted")]
+pub(super) struct Interrupted;
+
+/// The longest time from a signal to the end of the process: some computations do not look at the flag.
 const PATIENCE: Duration = Duration::from_millis(1500);
 
 impl Interruption {
@@ -65,60 +84,49 @@ impl Interruption {
         temporary::remove_own();
         signal_hook::low_level::exit(INTERRUPTED.into());
     }
-
-    /// The same in the handlers of `signals` themselves, where every second signal ends the process.
-    fn listen_without_thread(&self, signals: &[i32]) -> io::Result<()> {
-        for &signal in signals {
-            for condition in [&self.has_come, &self.at_once] {
-                let condition = Arc::clone(condition);
-                flag::register_conditional_shutdown(signal, INTERRUPTED.into(), condition)?;
-            }
-            flag::register(signal, Arc::clone(&self.has_come))?;
-        }
-        Ok(())
-    }
 }
 
 /// Opens `path` for writing, if there is one to open, and has signals end what follows.
-///
-/// The signals must have their handlers before there is a temporary file that one of them could leave behind. But a FIFO
-/// is opened first: that may wait for ever, and a signal shall end the wait.
 pub(super) fn open(
     path: Option<&Path>,
     replace: bool,
 ) -> anyhow::Result<(Option<Destination>, Interruption)> {
-    let open = || -> Result<_, DestinationError> {
-        path.map(|path| Destination::open(path, replace))
-            .transpose()
+    let Some(path) = path else {
+        return Ok((None, interruption()?));
     };
-    if path.is_some_and(Destination::may_wait) {
-        let output = open()?;
+    let (output, interruption) = open_for(path, replace)?;
+    Ok((Some(output), interruption))
+}
+
+/// Opens `path` for writing, and has signals end what follows.
+///
+/// The signals must have their handlers before there is a temporary file that one of them could leave behind. But a FIFO
+/// is opened first: that may wait for ever, and a signal shall end the wait.
+pub(super) fn open_for(path: &Path, replace: bool) -> anyhow::Result<(Destination, Interruption)> {
+    if Destination::may_wait(path) {
+        let output = Destination::open(path, replace)?;
         return Ok((output, interruption()?));
     }
     let interruption = interruption()?;
-    Ok((open()?, interruption))
+    Ok((Destination::open(path, replace)?, interruption))
 }
 
-/// Has signals raise the flag: on a thread of its own, or without it where the system gives no thread.
+/// Has signals raise the flag, on a thread of its own. Where the system gives no thread, a signal ends the process at once.
 ///
 /// A write past the limit on a file's size (`ulimit -f`) fails like one to a full disk: its signal, left to itself,
 /// would end the process with the temporary file still there.
 pub(super) fn interruption() -> io::Result<Interruption> {
-    let interruption = Interruption {
-        has_come: Arc::default(),
-        at_once: Arc::default(),
-    };
+    let interruption = Interruption::default();
     let hangup = (!hangup_is_ignored()).then_some(SIGHUP);
     let ends: Vec<_> = TERM_SIGNALS.iter().copied().chain(hangup).collect();
     let mut signals = Signals::new(&ends)?;
-    let handle = signals.handle();
     let heard = interruption.clone();
     let listener = thread::Builder::new().name("signals".to_owned());
     if listener.spawn(move || heard.listen(&mut signals)).is_err() {
-        handle.close();
-        interruption.listen_without_thread(&ends)?;
+        for signal in ends {
+            flag::register_conditional_shutdown(signal, INTERRUPTED.into(), Arc::new(true.into()))?;
+        }
     }
-    #[cfg(unix)]
     flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
     Ok(interruption)
 }
@@ -132,83 +140,59 @@ fn hangup_is_ignored() -> bool {
     mask.is_none_or(|mask| mask & (1 << (SIGHUP - 1)) != 0)
 }
 
-/// What is going on, on stderr, for work of which nobody knows how much there is: after a second, for somebody who watches.
-pub(super) struct Ticker {
-    begin: Instant,
-    bar: Option<ProgressBar>,
-}
+/// After this time a command says how far it is.
+const QUIET: Duration = Duration::from_secs(1);
 
-impl Ticker {
-    pub(super) fn new() -> Self {
-        Self {
-            begin: Instant::now(),
-            bar: None,
-        }
-    }
-
-    pub(super) fn show(&mut self, text: &str) {
-        if self.begin.elapsed() < Meter::QUIET || !io::stderr().is_terminal() {
-            return;
-        }
-        let bar = self.bar.get_or_insert_with(|| {
-            let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(4));
-            bar.enable_steady_tick(Duration::from_millis(250));
-            bar
-        });
-        bar.set_message(text.to_owned());
-    }
-
-    pub(super) fn clear(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
-    }
-}
-
-/// Steps, rate and time left on stderr, for runs that take more than a second and have somebody to watch them.
+/// What is going on, on stderr: after a second, for somebody who watches.
 pub(super) struct Meter {
     /// What is counted.
     of: &'static str,
     begin: Instant,
-    bar: Option<ProgressBar>,
+    bar: OnceLock<ProgressBar>,
 }
 
 impl Meter {
-    const QUIET: Duration = Duration::from_secs(1);
-
-    pub(super) fn new() -> Self {
-        Self::counting("step")
-    }
-
-    /// A meter of other things than steps.
+    /// A meter of steps, rows and the like.
     pub(super) fn counting(of: &'static str) -> Self {
         Self {
             of,
             begin: Instant::now(),
-            bar: None,
+            bar: OnceLock::new(),
         }
     }
 
     /// Shows at once that there are `steps` to come, and none done.
-    pub(super) fn begin(&mut self, steps: u64) {
+    pub(super) fn begin(&self, steps: u64) {
         if io::stderr().is_terminal() {
             self.bar(steps).tick();
         }
     }
 
-    pub(super) fn show(&mut self, step: u64, steps: u64) {
-        let is_early = self.bar.is_none() && self.begin.elapsed() < Self::QUIET;
-        if is_early || !io::stderr().is_terminal() {
-            return;
+    /// Shows how many there are, with rate and time left.
+    pub(super) fn show(&self, step: u64, steps: u64) {
+        if self.is_wanted() {
+            let bar = self.bar(steps);
+            bar.set_length(steps); // a file of commands goes to one step after the other
+            bar.set_position(step);
         }
-        let bar = self.bar(steps);
-        bar.set_length(steps); // a file of commands goes to one step after the other
-        bar.set_position(step);
     }
 
-    fn bar(&mut self, steps: u64) -> &ProgressBar {
+    /// Shows `text`; for work of unknown length.
+    pub(super) fn say(&self, text: String) {
+        if self.is_wanted() {
+            let new = || ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(4));
+            self.bar.get_or_init(new).set_message(text);
+        }
+    }
+
+    fn is_wanted(&self) -> bool {
+        let is_late = self.bar.get().is_some() || self.begin.elapsed() >= QUIET;
+        is_late && io::stderr().is_terminal()
+    }
+
+    fn bar(&self, steps: u64) -> &ProgressBar {
         let (of, begin) = (self.of, self.begin);
-        self.bar.get_or_insert_with(|| {
+        self.bar.get_or_init(|| {
             let bar =
                 ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr_with_hz(4));
             let template = format!("{{wide_bar}} {of} {{human_pos}} of {{human_len}}{{pace}}");
@@ -223,11 +207,11 @@ impl Meter {
             bar.with_style(style).with_elapsed(begin.elapsed())
         })
     }
+}
 
-    pub(super) fn clear(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
+impl Drop for Meter {
+    fn drop(&mut self) {
+        self.bar.get().iter().for_each(|bar| bar.finish_and_clear());
     }
 }
 
@@ -235,7 +219,7 @@ impl Meter {
 /// rate of the last moments would be wrong at first. Nothing before something is done; seconds for each where they are
 /// more than one.
 fn pace(of: &str, done: u64, left: u64, elapsed: Duration) -> String {
-    /// No time left is told to be longer, s: ten years.
+    /// The longest time left that is shown, s: ten years.
     const MOST_S: f64 = 3e8;
     if done == 0 {
         return String::new();

@@ -2,16 +2,16 @@
 
 use super::args::{LengthArgs, ScenarioArgs};
 use super::layout::LayoutArgs;
-use super::progress::{self, Interruption, Meter};
+use super::progress::{self, Interrupted, Interruption};
 use super::scenario::scenario_of;
-use super::{INTERRUPTED, complain, one_on_stdout, print_result, tell};
+use super::{complain, one_on_stdout, print_result, tell};
 use crate::analysis::health::{Advice, advise};
 use crate::analysis::{Health, Monitor, Readouts};
 use crate::export::stream::{self, Ended};
 use crate::export::{CsvWriter, Summary};
 use crate::run::{Clock, Simulation, Step};
 use crate::scenario::Scenario;
-use crate::text::number::shortest;
+use crate::text::number::{counted, shortest};
 use crate::text::printable::Shown;
 use crate::text::unwritten::advised;
 use anyhow::{Context, bail};
@@ -64,7 +64,7 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let played = played(&scenario, csv, |_| {}, &interruption);
     let mut played = played.with_context(|| cannot_write(output_path))?;
     if played.ended == Ended::Stopped {
-        return Ok(ExitCode::from(INTERRUPTED)); // what was written so far goes with its temporary name
+        bail!(Interrupted);
     }
     if played.rows == Some(0) && played.ended == Ended::Done {
         bail!("no row lies between --from and --to: they are closer than the rows");
@@ -72,17 +72,12 @@ pub(super) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     if let Some(output) = played.output.take() {
         output.keep()?;
     }
-    if interruption.may_act_at_once() {
-        return Ok(ExitCode::from(INTERRUPTED));
-    }
+    interruption.may_act_at_once()?;
     let summary = Summary::new(played.readouts(), played.wall).with_time_steps_of(&scenario);
     print_result(&summary, args.output.as_deref(), args.json)?;
     if let Some(rows) = played.rows.filter(|_| !to_stdout) {
-        let plural = if rows == 1 { "" } else { "s" };
-        tell(format_args!(
-            "gyrolab: {rows} row{plural} in {}",
-            Shown(output_path)
-        ));
+        let rows = counted(rows, "row");
+        tell(format_args!("gyrolab: {rows} in {}", Shown(output_path)));
     }
     match played.ended {
         Ended::NotFinite(error) => {
@@ -103,7 +98,6 @@ fn cannot_write(path: &Path) -> String {
 
 /// A run that was played to its end.
 pub(super) struct Played<W> {
-    /// How it ended.
     pub(super) ended: Ended,
     /// Time spent on stepping alone.
     pub(super) wall: Duration,
@@ -131,9 +125,6 @@ impl<W> Played<W> {
 }
 
 /// Plays the run of `scenario` to its end and writes its rows to `csv`; `also` is shown the start and every step.
-///
-/// # Errors
-/// When `csv` cannot be written.
 pub(super) fn played<W: Write>(
     scenario: &Arc<Scenario>,
     mut csv: Option<CsvWriter<W>>,
@@ -143,25 +134,18 @@ pub(super) fn played<W: Write>(
     let mut simulation = Simulation::new(Arc::clone(scenario));
     let monitor = RefCell::new(Monitor::new(simulation.now()));
     also(simulation.now());
-    // Each step is followed at once and held against the exact motion after its block: that is no stepping.
+    // Each step is followed at once; the exact motion is computed after the block, outside the time of stepping.
     let each = |step: &Step| {
         monitor.borrow_mut().follow_ahead(step);
         also(step);
     };
-    let mut meter = Meter::new();
-    // Under the user's eyes: progress on stderr, a signal ends it.
-    let ended = stream::play(
-        &mut simulation,
-        scenario.steps,
-        csv.as_mut(),
-        each,
-        |progress| {
-            monitor.borrow_mut().catch_up();
-            meter.show(progress.step, progress.steps);
-            interruption.go_on()
-        },
-    );
-    meter.clear();
+    let meter = interruption.meter();
+    let watch = |step, steps| {
+        monitor.borrow_mut().catch_up();
+        meter(step, steps)
+    };
+    let ended = stream::play(&mut simulation, scenario.steps, csv.as_mut(), each, watch);
+    drop(meter);
     let (ended, wall) = ended.map_err(advised)?;
     let rows = csv.as_ref().map(CsvWriter::count);
     let output = csv.map(CsvWriter::finish).transpose().map_err(advised)?;

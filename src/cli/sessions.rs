@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, SystemTime};
 
-/// Prints the sessions, a line each.
 pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
     let confined = folder.map(within).transpose()?;
     let folder = folder_of(confined.as_ref()).map_err(anyhow::Error::msg)?;
@@ -42,7 +41,7 @@ pub(super) fn list(folder: Option<&Path>) -> anyhow::Result<ExitCode> {
     print(&text)
 }
 
-/// Where sessions are kept: the user's own, or those of a confined lab.
+/// The folder of the sessions: of the user, or of a confined lab.
 pub(super) fn folder_of(confined: Option<&Confined>) -> Result<PathBuf, String> {
     match confined {
         Some(confined) => confined.sessions(),

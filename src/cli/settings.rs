@@ -13,11 +13,8 @@ use crate::tui::surroundings;
 use clap::ValueEnum;
 use std::path::Path;
 
-/// What the files of settings hold.
 pub(super) struct Chosen {
-    /// The user's file.
     config: Read,
-    /// What the program has remembered.
     remembered: Read,
 }
 
@@ -99,31 +96,24 @@ fn option<T: ValueEnum>(name: Option<String>) -> Option<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::args::{Color, Markers, Screen};
     use super::*;
     use crate::lab::view::theme::Background;
     use crate::scenario::keys::Kind;
+    use crate::tui::surroundings::ColourChoice;
+
+    fn are_options<T: ValueEnum>(wanted: &str) -> bool {
+        let row = settings::KEYS.iter().find(|(key, ..)| *key == wanted);
+        let Some((_, Kind::OneOf(words), _)) = row else {
+            return false;
+        };
+        let is_option = |word: &&str| option::<T>(Some((*word).to_owned())).is_some();
+        words.iter().all(is_option) && words.len() == T::value_variants().len()
+    }
 
     #[test]
     fn every_word_of_the_table_is_an_option_and_a_choice_of_the_lab() {
-        let words = |wanted: &str| {
-            let row = settings::KEYS.iter().find(|(key, ..)| *key == wanted);
-            match row.unwrap().1 {
-                Kind::OneOf(words) => words.to_vec(),
-                other => panic!("{other:?}"),
-            }
-        };
-        let is_option = |word: &&str| option::<Markers>(Some((*word).to_owned())).is_some();
-        assert!(words("marker").iter().all(is_option));
-        let names: Vec<_> = Marker::ALL.iter().map(|marker| marker.name()).collect();
-        assert_eq!(words("marker"), names);
-        for word in words("colour") {
-            assert!(option::<Color>(Some(word.to_owned())).is_some(), "{word}");
-        }
-        for background in [Background::Dark, Background::Light] {
-            let word = background.name();
-            assert!(words("background").contains(&word));
-            assert!(option::<Screen>(Some(word.to_owned())).is_some());
-        }
+        assert!(are_options::<Marker>("marker"));
+        assert!(are_options::<ColourChoice>("colour"));
+        assert!(are_options::<Background>("background"));
     }
 }

@@ -1,20 +1,19 @@
 //! `gyrolab show`: the lab's picture as plain text, at one step or after commands.
 
-use super::args::{Changes, Markers};
-use super::new_lab::{DEFAULT, lab};
-use super::progress::{self, Meter};
+use super::args::Changes;
+use super::new_lab::{DEFAULT, plain_lab};
+use super::progress::{self, Interruption};
 use super::values::{size, steps};
-use super::{INTERRUPTED, print, tell};
+use super::{print, tell};
 use crate::lab::Lab;
 use crate::lab::command;
-use crate::lab::view::theme::{Background, Theme};
+use crate::lab::view::markers::Marker;
 use crate::run::NotFinite;
 use crate::storage::confined::Confined;
 use crate::tui::screen;
 use anyhow::Context;
 use clap::Args;
-use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -46,103 +45,67 @@ pub(super) struct ShowArgs {
 
     /// What dots are made of [default: by locale and terminal]
     #[arg(long, value_enum, value_name = "KIND")]
-    pub(super) markers: Option<Markers>,
+    pub(super) markers: Option<Marker>,
 }
 
-/// Prints the lab's picture at the end of a run, or after commands.
 pub(super) fn show(args: &ShowArgs) -> anyhow::Result<ExitCode> {
-    print_picture(Picture {
-        why: None,
-        confined: None,
-        name: args.scenario.as_deref().unwrap_or(DEFAULT),
-        changes: &args.changes,
-        at: args.at,
-        commands: args.commands.as_deref(),
-        measured: args.measured.as_deref(),
-        size: args.size,
-        markers: args.markers,
-    })
+    print_picture(args, None, None)
 }
 
-/// What a picture is to show.
-pub(super) struct Picture<'a> {
-    /// Why there is a picture and not the lab, where that is to be said.
-    pub(super) why: Option<String>,
-    /// The folder that its commands do not leave, if there is one.
-    pub(super) confined: Option<Confined>,
-    pub(super) name: &'a str,
-    pub(super) changes: &'a Changes,
-    pub(super) at: Option<u64>,
-    pub(super) commands: Option<&'a Path>,
-    /// Measured data beside the run.
-    pub(super) measured: Option<&'a str>,
-    /// Columns and lines.
-    pub(super) size: (u16, u16),
-    pub(super) markers: Option<Markers>,
-}
-
-pub(super) fn print_picture(wanted: Picture<'_>) -> anyhow::Result<ExitCode> {
-    let plain = Theme {
-        colour: false,
-        background: Background::Dark,
-    };
-    let mut lab = lab(wanted.name, wanted.changes, wanted.markers, plain, false)?;
-    if let Some(folder) = wanted.confined {
+/// Prints the lab's picture at the end of a run, or after commands, which do not leave the folder `confined`; `why` says
+/// why there is a picture and not the lab.
+pub(super) fn print_picture(
+    args: &ShowArgs,
+    why: Option<&str>,
+    confined: Option<Confined>,
+) -> anyhow::Result<ExitCode> {
+    let name = args.scenario.as_deref().unwrap_or(DEFAULT);
+    let mut lab = plain_lab(name, &args.changes, args.markers)?;
+    if let Some(folder) = confined {
         lab.files_mut().confine(folder);
     }
-    lab.begin_with_measured(wanted.measured)?;
+    lab.begin_with_measured(args.measured.as_deref())?;
     // What is not there is refused before a picture is promised; commands on stdin are waited for.
-    wanted.why.iter().for_each(tell);
-    let commands = wanted.commands.map(command::open).transpose()?;
+    why.iter().for_each(tell);
+    let commands = args.commands.as_deref().map(command::open).transpose()?;
     let end = match commands {
         Some(_) => 0,
         None => lab.player().run().scenario().steps,
     };
-    let (_, interruption) = progress::open(None, false)?;
-    let go_on = |_, _| interruption.go_on();
-    let ended = go_to(&mut lab, wanted.at.unwrap_or(end), go_on);
+    let interruption = progress::interruption()?;
+    let ended = go_to(&mut lab, args.at.unwrap_or(end), &interruption);
     let mut done = Ok(());
     if let (Ok(()), Some(commands)) = (&ended, commands) {
         lab.take_commands(commands);
-        let mut meter = Meter::new();
-        done = lab.finish_script_while(|step, of| {
-            meter.show(step, of);
-            go_on(step, of)
-        });
-        meter.clear();
+        done = lab.finish_script_while(interruption.meter());
     }
-    if interruption.may_act_at_once() {
-        return Ok(ExitCode::from(INTERRUPTED));
-    }
-    let picture = screen::text(&lab, false, wanted.size);
+    interruption.may_act_at_once()?;
+    let picture = screen::text(&lab, false, args.size);
     print(&picture)?;
-    ended.with_context(|| wanted.name.to_owned())?; // the picture up to there is shown all the same
+    ended.with_context(|| name.to_owned())?; // the picture up to there is shown all the same
     done.map_err(anyhow::Error::msg)?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// Plays from the start to `step`, a part at a time and while `go_on` says so, with progress where that takes long and
-/// stderr is a terminal.
+/// Plays from the start to `step`, a part at a time, until a signal comes.
 ///
 /// # Errors
 /// Where the numbers stop being finite on the way.
 pub(super) fn go_to(
     lab: &mut Lab,
     step: u64,
-    mut go_on: impl FnMut(u64, u64) -> ControlFlow<()>,
+    interruption: &Interruption,
 ) -> Result<(), NotFinite> {
     const LOOK: Duration = Duration::from_millis(100);
-    let mut meter = Meter::new();
+    let watch = interruption.meter();
     let mut part = 1_u64;
     loop {
         let (here, begin) = (lab.player().playback().step_number(), Instant::now());
         let arrived = lab.begin_at(here.saturating_add(part).min(step));
         let here = lab.player().playback().step_number();
-        if arrived.is_err() || here >= step || go_on(here, step).is_break() {
-            meter.clear();
+        if arrived.is_err() || here >= step || watch(here, step).is_break() {
             return arrived;
         }
-        meter.show(here, step);
         part = if begin.elapsed() < LOOK {
             part.saturating_mul(2)
         } else {

@@ -3,9 +3,9 @@
 mod empty_rows;
 
 use super::args::Changes;
-use super::progress::{self, Interruption, Meter};
+use super::progress::{self, Interrupted, Interruption, Meter};
 use super::scenario::change;
-use super::{INTERRUPTED, print, tell};
+use super::{print, tell};
 use crate::scenario::presets::{self, PRESETS};
 use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
@@ -14,7 +14,9 @@ use crate::study::sweep::join::join;
 use crate::study::sweep::part::{Opened, PartError, PartFile};
 use crate::study::sweep::shipped::{self, SWEEPS};
 use crate::study::sweep::{Shard, Sweep, SweepFile, axis};
+use crate::text::number::counted;
 use crate::text::printable::Shown;
+use anyhow::bail;
 use clap::Args;
 use empty_rows::EmptyRows;
 use std::fmt::Write as _;
@@ -68,7 +70,7 @@ pub(super) fn sweep(args: &SweepArgs) -> anyhow::Result<ExitCode> {
         (Some(name), Some(output)) => run(&sweep_of(name, args)?, output, args.force),
         (None, Some(output)) if !args.join.is_empty() => {
             let (sweep, rows) = join(&args.join, output, args.force)?;
-            EmptyRows::of_file(rows).tell(&sweep, &progress::interruption()?);
+            EmptyRows::of_file(rows).tell(&sweep);
             tell_of_rows(&sweep, output);
             Ok(ExitCode::SUCCESS)
         }
@@ -76,7 +78,6 @@ pub(super) fn sweep(args: &SweepArgs) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// The shipped sweeps.
 fn list() -> anyhow::Result<String> {
     let mut text = String::new();
     for shipped in SWEEPS {
@@ -189,8 +190,8 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
     let interruption = progress::interruption()?;
     let mut part = match PartFile::open(output, sweep, may_replace)? {
         Opened::Whole(there) => {
-            EmptyRows::of_file(there).tell(sweep, &interruption);
-            let rows = plural(sweep.rows(), "row");
+            EmptyRows::of_file(there).tell(sweep);
+            let rows = counted(sweep.rows(), "row");
             tell(format_args!(
                 "gyrolab: {} is whole, {rows} of this very sweep",
                 Shown(output)
@@ -199,61 +200,62 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
         }
         Opened::Part(part) => part,
     };
-    let begin = part.rows();
-    if begin > 0 {
-        let empty = match part.found().empty() {
-            0 => String::new(),
-            empty => format!(", {empty} of them without readouts"),
-        };
-        let (there, all) = (part.path(), sweep.rows());
-        tell(format_args!(
-            "gyrolab: going on behind {begin} of {all} rows in {}{empty}",
-            Shown(there)
-        ));
-    }
+    tell_of_part(sweep, &part);
     let mut empty = EmptyRows::of_file(part.found().clone());
-    let mut failed = None;
-    add_rows(sweep, &mut part, &interruption, &mut empty, &mut failed);
+    let added = add_rows(sweep, &mut part, &interruption, &mut empty);
     let (rows, all) = (part.rows(), sweep.rows());
-    let kept = format!(
-        "{rows} of {} are in {}: the same command goes on behind them",
-        plural(all, "row"),
-        Shown(part.path())
-    );
-    empty.tell(sweep, &interruption);
-    if let Some(error) = failed {
-        tell(format_args!("gyrolab: {kept}"));
-        return Err(error.into());
-    }
-    if rows < all {
-        tell(format_args!("gyrolab: {kept}"));
-        return Ok(ExitCode::from(INTERRUPTED));
+    empty.tell(sweep);
+    if added.is_err() || rows < all {
+        tell(format_args!(
+            "gyrolab: {rows} of {} are in {}: the same command goes on behind them",
+            counted(all, "row"),
+            Shown(part.path())
+        ));
+        added?;
+        bail!(Interrupted);
     }
     part.keep()?;
     tell_of_rows(sweep, output);
     Ok(ExitCode::SUCCESS)
 }
 
+/// Says how many rows an earlier command has left.
+fn tell_of_part(sweep: &Sweep, part: &PartFile) {
+    if part.rows() == 0 {
+        return;
+    }
+    let empty = match part.found().empty() {
+        0 => String::new(),
+        empty => format!(", {empty} of them without readouts"),
+    };
+    tell(format_args!(
+        "gyrolab: going on behind {} of {} rows in {}{empty}",
+        part.rows(),
+        sweep.rows(),
+        Shown(part.path())
+    ));
+}
+
 /// Says that all rows are in the file.
 fn tell_of_rows(sweep: &Sweep, output: &Path) {
-    let rows = plural(sweep.rows(), "row");
+    let rows = counted(sweep.rows(), "row");
     tell(format_args!("gyrolab: {rows} in {}", Shown(output)));
 }
 
-/// Computes the rows that are not there yet and adds them to `part`.
+/// Computes the rows that are not there yet and adds them to `part`, until a signal comes.
 fn add_rows(
     sweep: &Sweep,
     part: &mut PartFile,
     interruption: &Interruption,
     empty: &mut EmptyRows,
-    failed: &mut Option<PartError>,
-) {
+) -> Result<(), PartError> {
     let (begin, all) = (part.rows(), sweep.rows());
-    let mut meter = Meter::counting("row");
+    let meter = Meter::counting("row");
     meter.begin(all - begin);
     let row = |row: u64, goes_on: &dyn Fn() -> bool| {
         sweep.row(row, &|| goes_on() && !interruption.has_come())
     };
+    let mut added = Ok(());
     in_order(begin..all, row, |rows| {
         let mut lines = String::new();
         let first = part.rows();
@@ -262,20 +264,13 @@ fn add_rows(
             lines += &row.line;
             empty.add(sweep, index, &row);
         }
-        if let Err(error) = part.add(&lines, count) {
-            *failed = Some(error);
+        added = part.add(&lines, count);
+        if added.is_err() {
             return ControlFlow::Break(());
         }
         // The rows of an earlier command say nothing about the time that the others take.
         meter.show(part.rows() - begin, all - begin);
         interruption.go_on()
     });
-    meter.clear();
-}
-
-fn plural(count: u64, what: &str) -> String {
-    match count {
-        1 => format!("1 {what}"),
-        _ => format!("{count} {what}s"),
-    }
+    added
 }

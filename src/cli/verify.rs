@@ -1,13 +1,13 @@
 //! `gyrolab verify`: whether a CSV is what its header says.
 
-use super::progress::{self, Meter};
-use super::{INTERRUPTED, fit, print, tell};
+use super::progress::{self, Interrupted};
+use super::{fit, print, tell};
 use crate::study::verify::{Unverified, Verified, verify as verified};
 use crate::text::printable::{Shown, printable_lines};
+use anyhow::bail;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::{Mutex, PoisonError};
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArgs {
@@ -17,27 +17,18 @@ pub(super) struct VerifyArgs {
 }
 
 pub(super) fn verify(args: &VerifyArgs) -> anyhow::Result<ExitCode> {
-    let (_, interruption) = progress::open(None, false)?;
+    let interruption = progress::interruption()?;
     let mut code = ExitCode::SUCCESS;
     for file in &args.files {
-        let meter = Mutex::new(Meter::new());
         let fit = |command: &str| fit::again(command, &interruption);
-        let result = verified(file, fit, |step, steps| {
-            let meter = meter.lock();
-            meter
-                .unwrap_or_else(PoisonError::into_inner)
-                .show(step, steps);
-            interruption.go_on()
-        });
-        meter.lock().unwrap_or_else(PoisonError::into_inner).clear();
-        match result {
+        match verified(file, fit, interruption.meter()) {
             Ok(result) => {
                 if result.difference.is_some() {
                     code = ExitCode::FAILURE;
                 }
                 print(&told(file, &result))?;
             }
-            Err(Unverified::Stopped) => return Ok(ExitCode::from(INTERRUPTED)),
+            Err(Unverified::Stopped) => bail!(Interrupted),
             Err(Unverified::Refused(problems)) => {
                 tell(printable_lines(&problems.to_string()));
                 code = ExitCode::FAILURE;

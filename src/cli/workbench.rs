@@ -4,7 +4,8 @@ mod resuming;
 
 use super::args::{Look, WorkbenchArgs};
 use super::new_lab::{DEFAULT, lab, theme, variable};
-use super::show::{Picture, go_to, print_picture};
+use super::progress::Interruption;
+use super::show::{ShowArgs, go_to, print_picture};
 use super::{sessions, settings, tell};
 use crate::lab::Lab;
 use crate::lab::command;
@@ -20,7 +21,6 @@ use anyhow::Context;
 use resuming::{begun, come_back, come_back_to, tell_of_session};
 use std::fs;
 use std::io::{self, IsTerminal, Write};
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -38,7 +38,6 @@ pub(super) fn open_lesson(lesson: &Lesson, page: &Page, look: Look) -> anyhow::R
     open_at(&args, DEFAULT, None, Some((lesson, page)))
 }
 
-/// Opens the lab; without a terminal shows its picture instead.
 pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
     let name = args.scenario.as_deref().unwrap_or(DEFAULT);
     let confined = args.folder.as_deref().map(confined_to).transpose()?;
@@ -63,17 +62,16 @@ pub(super) fn open(args: &WorkbenchArgs) -> anyhow::Result<ExitCode> {
             "gyrolab: there is no terminal to open the lab on, so its picture {} is printed",
             moment(args)
         );
-        return print_picture(Picture {
-            why: Some(why),
-            confined,
-            name,
-            changes: &args.changes,
+        let picture = ShowArgs {
+            scenario: args.scenario.clone(),
+            changes: args.changes.clone(),
             at: args.at,
-            commands: args.commands.as_deref(),
-            measured: args.measured.as_deref(),
+            commands: args.commands.clone(),
+            measured: args.measured.clone(),
             size: (80, 24),
             markers: args.look.markers,
-        });
+        };
+        return print_picture(&picture, Some(&why), confined);
     }
     open_at(args, name, confined, None)
 }
@@ -105,20 +103,8 @@ fn open_at(
     if let Some(keeper) = folder.ok().and_then(|folder| Keeper::new(folder).ok()) {
         lab.remember_with(keeper);
     }
-    if let Some(folder) = confined {
-        lab.files_mut().confine(folder);
-    }
-    if args.resume.is_none() || args.measured.is_some() {
-        lab.begin_with_measured(args.measured.as_deref())?;
-    }
-    lab.set_mouse(!args.look.no_mouse);
-    lab.set_fps(args.fps.unwrap_or(FPS));
-    lab.set_usual_colour(surroundings::theme(ColourChoice::Auto, variable).colour);
-    if lesson.is_none()
-        && args.scenario.is_none()
-        && args.resume.is_none()
-        && args.commands.is_none()
-    {
+    furnish(&mut lab, args, confined)?;
+    if lesson.is_none() && commands.is_none() && args.scenario.is_none() && args.resume.is_none() {
         lab.play_on();
     }
     lab.set_trouble(session.as_ref().err().cloned());
@@ -126,15 +112,7 @@ fn open_at(
     if let Some(commands) = commands {
         lab.take_commands(commands);
     }
-    let (mut class, taken) = Class::resumed(&mut lab);
-    if let Err(reason) = taken {
-        lab.tell(format!("the lesson cannot be taken again: {reason}"));
-    }
-    if let Some((lesson, page)) = lesson {
-        class
-            .open(&lesson.name, Some(page.number), &mut lab)
-            .map_err(anyhow::Error::msg)?;
-    }
+    let mut class = class(&mut lab, lesson)?;
     app::run(&mut lab, &mut class, session.as_ref().ok()).context("the terminal cannot be used")?;
     if let Some(trouble) = lab.take_keeper().and_then(|keeper| keeper.close(PATIENCE)) {
         tell(format_args!("gyrolab: {}", printable(&trouble)));
@@ -144,7 +122,33 @@ fn open_at(
     Ok(ExitCode::SUCCESS)
 }
 
-/// Which moment of the run a picture shows.
+/// Gives `lab` its folder, its measured data, and what the terminal can do.
+fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> anyhow::Result<()> {
+    if let Some(folder) = confined {
+        lab.files_mut().confine(folder);
+    }
+    if args.resume.is_none() || args.measured.is_some() {
+        lab.begin_with_measured(args.measured.as_deref())?;
+    }
+    lab.set_mouse(!args.look.no_mouse);
+    lab.set_fps(args.fps.unwrap_or(FPS));
+    lab.set_usual_colour(surroundings::theme(ColourChoice::Auto, variable).colour);
+    Ok(())
+}
+
+/// The lesson that the session of `lab` holds, or the page of one that is asked for.
+fn class(lab: &mut Lab, lesson: Option<(&Lesson, &Page)>) -> anyhow::Result<Class> {
+    let (mut class, taken) = Class::resumed(lab);
+    if let Err(reason) = taken {
+        lab.tell(format!("the lesson cannot be taken again: {reason}"));
+    }
+    if let Some((lesson, page)) = lesson {
+        let opened = class.open(&lesson.name, Some(page.number), lab);
+        opened.map_err(anyhow::Error::msg)?;
+    }
+    Ok(class)
+}
+
 fn moment(args: &WorkbenchArgs) -> String {
     match (&args.commands, args.at) {
         (Some(file), _) if file == Path::new("-") => "after the commands on stdin".to_owned(),
@@ -164,7 +168,7 @@ fn new(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
     let mut lab = lab(name, &args.changes, args.look.markers, theme, !args.paused)?;
     if let Some(step) = args.at {
         // No signal is caught yet: one that ends the process here has nothing to put right.
-        let arrived = go_to(&mut lab, step, |_, _| ControlFlow::Continue(()));
+        let arrived = go_to(&mut lab, step, &Interruption::default());
         arrived.with_context(|| name.to_owned())?;
     }
     Ok(lab)

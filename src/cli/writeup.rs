@@ -1,10 +1,10 @@
 //! `gyrolab writeup`: a run as a folder of files for a write-up.
 
 use super::args::{LengthArgs, ScenarioArgs};
-use super::progress::{self, Meter};
+use super::progress::{self, Interrupted};
 use super::run::played;
 use super::scenario::scenario_of;
-use super::{INTERRUPTED, complain, tell};
+use super::{complain, tell};
 use crate::export::stream::Ended;
 use crate::export::{CsvWriter, Folder};
 use crate::measured;
@@ -15,7 +15,7 @@ use crate::study::writeup::{Beside, CSV, Writeup};
 use crate::text::printable::{Shown, printable};
 use crate::text::unwritten::advised;
 use crate::work::changed::Original;
-use anyhow::Context;
+use anyhow::{Context, bail, ensure};
 use clap::Args;
 use std::fs::{self, File};
 use std::path::PathBuf;
@@ -48,7 +48,7 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let scenario = scenario_of(&args.scenario, &args.length)?;
     let scenario = marked(scenario, &args.scenario.scenario);
     let mut beside = args.measured.as_deref().map(beside).transpose()?;
-    let (_, interruption) = progress::open(None, false)?;
+    let interruption = progress::interruption()?;
     let folder = Folder::begin(&args.output, args.force)?;
     let cannot_write = || format!("cannot write {}", Shown(&args.output));
     let csv = File::create(folder.path().join(CSV)).with_context(cannot_write)?;
@@ -57,45 +57,27 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let also = |step: &Step| recorder.follow(step);
     let played = played(&scenario, Some(csv), also, &interruption);
     let mut played = played.with_context(cannot_write)?;
-    if played.ended == Ended::Stopped {
-        return Ok(ExitCode::from(INTERRUPTED)); // the folder goes with its temporary name
-    }
     let broken = match played.ended {
         Ended::NotFinite(error) => Some(error),
-        Ended::Done | Ended::Stopped => None,
+        Ended::Done => None,
+        Ended::Stopped => bail!(Interrupted),
     };
     let readouts = played.readouts();
-    let mut meter = Meter::new();
     if let Some(beside) = &mut beside {
         let end_s = readouts.sample.time_s;
         let held = beside.hold(&scenario, end_s, &|| !interruption.has_come());
-        if !held.map_err(anyhow::Error::msg)? {
-            return Ok(ExitCode::from(INTERRUPTED));
-        }
+        ensure!(held.map_err(anyhow::Error::msg)?, Interrupted);
     }
     let recorded = recorder.end(broken);
-    let drawings = figures(
-        &scenario,
-        &readouts,
-        recorded,
-        beside.as_ref(),
-        |step, of| {
-            meter.show(step, of);
-            interruption.go_on()
-        },
-    );
-    meter.clear();
-    let Some(drawings) = drawings.map_err(anyhow::Error::msg)? else {
-        return Ok(ExitCode::from(INTERRUPTED));
-    };
+    let meter = interruption.meter();
+    let drawings = figures(&scenario, &readouts, recorded, beside.as_ref(), meter);
+    let drawings = drawings.map_err(anyhow::Error::msg)?.ok_or(Interrupted)?;
     let writeup = Writeup::new(scenario, readouts, broken, beside, drawings);
     for (name, bytes) in writeup.files()? {
         let written = fs::write(folder.path().join(name), bytes);
         written.map_err(advised).with_context(cannot_write)?;
     }
-    if interruption.may_act_at_once() {
-        return Ok(ExitCode::from(INTERRUPTED));
-    }
+    interruption.may_act_at_once()?;
     let others = folder.keep()?;
     tell(format_args!(
         "gyrolab: the write-up is in {}; begin with README.md",

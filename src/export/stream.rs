@@ -10,41 +10,25 @@ use std::time::{Duration, Instant};
 /// are asked once per block.
 const BLOCK: usize = 1 << 18;
 
-/// The progress of a stream.
-#[derive(Clone, Copy, Debug)]
-pub struct Progress {
-    /// The present step.
-    pub step: u64,
-    /// The last step.
-    pub steps: u64,
-    /// Time spent on stepping alone.
-    pub stepping: Duration,
-}
-
-/// How a stream ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
-    /// It reached its last step.
     Done,
-    /// The watcher stopped it.
     Stopped,
     /// The numbers stopped being finite; the rows before that are written.
     NotFinite(NotFinite),
 }
 
 /// Plays `simulation` to the step `steps`. To `csv`, if given, it writes the rows that the layout of the CSV asks for, from
-/// the present step on. It calls `each` with every step, and `watch` after each block of steps; `watch` may stop it.
+/// the present step on. It calls `each` with every step, and `watch` with the step reached and the last one after each block of
+/// steps; `watch` may stop it.
 ///
 /// Returns how the stream ended, and the time spent on stepping alone.
-///
-/// # Errors
-/// When a row cannot be written.
 pub fn play<W: Write>(
     simulation: &mut Simulation,
     steps: u64,
     mut csv: Option<&mut CsvWriter<W>>,
     mut each: impl FnMut(&Step),
-    mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
+    mut watch: impl FnMut(u64, u64) -> ControlFlow<()>,
 ) -> io::Result<(Ended, Duration)> {
     let points = simulation.scenario().body.mechanics.points().len();
     let block = (BLOCK / points).clamp(16, 4096);
@@ -78,12 +62,8 @@ pub fn play<W: Write>(
             }
             Ok(()) if simulation.step_number() >= steps => Some(Ended::Done),
             Ok(()) => {
-                let progress = Progress {
-                    step: simulation.step_number(),
-                    steps,
-                    stepping,
-                };
-                watch(&progress).is_break().then_some(Ended::Stopped)
+                let step = simulation.step_number();
+                watch(step, steps).is_break().then_some(Ended::Stopped)
             }
         };
         rows.clear();

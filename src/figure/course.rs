@@ -203,8 +203,8 @@ pub fn play(
         recorder.follow(step);
         beside.hold(step.after());
     };
-    let ended = stream::play::<io::Sink>(&mut simulation, last, None, each, |progress| {
-        watch(progress.step, progress.steps)
+    let ended = stream::play::<io::Sink>(&mut simulation, last, None, each, |step, last| {
+        watch(step, last)
     });
     let broke = match ended {
         Ok((Ended::Stopped, _)) => return None,

@@ -182,8 +182,8 @@ impl Job {
     fn write(mut self, shared: &Shared) -> Result<Written, String> {
         let mut simulation = Simulation::new(self.scenario);
         let csv = Some(&mut self.csv);
-        let watch = |progress: &stream::Progress| {
-            shared.step.store(progress.step, Ordering::Relaxed);
+        let watch = |step, _| {
+            shared.step.store(step, Ordering::Relaxed);
             if shared.is_cancelled() {
                 ControlFlow::Break(())
             } else {

@@ -143,7 +143,7 @@ fn verified(
         notes = Vec::from_iter((failures > 0).then_some(note));
     } else {
         let layout = Layout::read(&text).map_err(|error| format!("{error} (in its header)"))?;
-        against = Against::new(&head, file, layout.delimiter(), 1);
+        against = Against::new(&head, file, if layout.file().excel { ';' } else { ',' }, 1);
         let scenario = Arc::new(document.scenario()?);
         notes = play_run(&scenario, layout, &mut against, watch)?;
         is_run = true;
@@ -199,10 +199,10 @@ fn play_run(
         scenario.steps,
         Some(&mut csv),
         each,
-        |progress| {
+        |step, steps| {
             monitor.borrow_mut().catch_up();
-            watch(progress.step, progress.steps)?;
-            left.set(progress.steps.saturating_sub(progress.step));
+            watch(step, steps)?;
+            left.set(steps.saturating_sub(step));
             if differs.get() && left.get() > MOST_FOR_VERDICT {
                 return ControlFlow::Break(());
             }

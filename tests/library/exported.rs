@@ -20,7 +20,7 @@ fn csv(scenario: &Scenario, file: LayoutFile) -> Vec<u8> {
     let layout = file.check().unwrap();
     let mut csv = CsvWriter::with_layout(Vec::new(), &scenario, layout).unwrap();
     let mut run = Simulation::new(Arc::clone(&scenario));
-    let go_on = |_: &stream::Progress| ControlFlow::Continue(());
+    let go_on = |_, _| ControlFlow::Continue(());
     stream::play(&mut run, scenario.steps, Some(&mut csv), |_| {}, go_on).unwrap();
     csv.finish().unwrap()
 }

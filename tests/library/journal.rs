@@ -353,7 +353,7 @@ fn the_azimuth_counts_every_turn_however_few_rows_there_are() {
             4000,
             Some(&mut csv),
             |_| {},
-            |_| ControlFlow::Continue(()),
+            |_, _| ControlFlow::Continue(()),
         )
         .unwrap();
         let bytes = csv.finish().unwrap();

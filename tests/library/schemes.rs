@@ -278,7 +278,7 @@ fn a_scheme_takes_over_where_another_left_off() {
 fn csv(simulation: &mut Simulation) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut writer = CsvWriter::new(&mut bytes, simulation.scenario()).unwrap();
-    let watch = |_: &stream::Progress| ControlFlow::Continue(());
+    let watch = |_, _| ControlFlow::Continue(());
     stream::play(simulation, 300, Some(&mut writer), |_| (), watch).unwrap();
     writer.finish().unwrap();
     bytes

@@ -176,7 +176,7 @@ fn the_numbers_of_a_step_are_those_of_a_hand() {
     let scenario = Arc::new(preset("method-2", &["motion.steps=1"]));
     let mut run = Simulation::new(Arc::clone(&scenario));
     let mut csv = CsvWriter::new(Vec::new(), &scenario).unwrap();
-    let watch = |_: &stream::Progress| ControlFlow::Continue(());
+    let watch = |_, _| ControlFlow::Continue(());
     stream::play(&mut run, 1, Some(&mut csv), |_| (), watch).unwrap();
     let text = String::from_utf8(csv.finish().unwrap()).unwrap();
     let row: Vec<f64> = text

@@ -31,7 +31,7 @@ fn bytes(scenario: &Arc<Scenario>, every: u64) -> Vec<u8> {
     let layout = Layout::every(NonZeroU64::new(every).unwrap());
     let mut csv = CsvWriter::with_layout(Vec::new(), scenario, layout).unwrap();
     let mut simulation = Simulation::new(Arc::clone(scenario));
-    let go_on = |_: &stream::Progress| ControlFlow::Continue(());
+    let go_on = |_, _| ControlFlow::Continue(());
     let steps = scenario.steps;
     stream::play(&mut simulation, steps, Some(&mut csv), |_| {}, go_on).unwrap();
     csv.finish().unwrap()

@@ -1,20 +1,16 @@
-//! The rows of a sweep that hold no readouts, and why: told at the end of every command that makes the file or finds it.
+//! The rows of a sweep without readouts, with the reasons: printed at the end of every command that writes or finds the file.
 
-use crate::cli::progress::Interruption;
 use crate::cli::tell;
 use crate::study::sweep::{RowsThere, Sweep, SweepRow};
 use crate::text::printable::printable_lines;
-use std::time::{Duration, Instant};
 
-/// So many rows are told one by one.
+/// At most this many rows are named.
 const MOST: usize = 8;
-/// A file does not say why a row is empty. So much time is spent on finding out.
-const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Where a run went well but none of the wanted numbers can be stated.
 const NOTHING_STATED: &str = "none of its readouts can be stated";
-/// Where the time was not enough to find out.
-const NOT_FOUND_OUT: &str = "gyrolab run with these values says why";
+/// Of a row that an earlier command has computed: a file does not say why a row is empty.
+const NOT_KNOWN: &str = "gyrolab run with these values says why";
 
 /// The rows without readouts: those that a file had before, and those that were computed now.
 #[derive(Debug, Default)]
@@ -26,7 +22,6 @@ pub(super) struct EmptyRows {
 }
 
 impl EmptyRows {
-    /// Those among the rows that stand in a file.
     pub(super) fn of_file(found: RowsThere) -> Self {
         Self {
             found,
@@ -46,7 +41,7 @@ impl EmptyRows {
     }
 
     /// Says how many there are, and of the first few which points they are, and why.
-    pub(super) fn tell(&self, sweep: &Sweep, interruption: &Interruption) {
+    pub(super) fn tell(&self, sweep: &Sweep) {
         let count = self.found.empty() + self.computed;
         if count == 0 {
             return;
@@ -55,27 +50,15 @@ impl EmptyRows {
         tell(format_args!(
             "gyrolab: rows without readouts: {count} of {all}"
         ));
-        let found = self.found_in_words(sweep, interruption);
-        let lines = found.iter().chain(&self.told).take(MOST);
-        let told = lines
-            .map(|line| tell(format_args!("  {}", printable_lines(line))))
-            .count();
-        match count - told as u64 {
-            0 => {}
-            more => tell(format_args!("  and {more} more")),
+        let found = self.found.first_empty().iter();
+        let found = found.map(|row| format!("{}: {NOT_KNOWN}", sweep.point_in_words(*row)));
+        let named: Vec<_> = found.chain(self.told.iter().cloned()).take(MOST).collect();
+        for line in &named {
+            tell(format_args!("  {}", printable_lines(line)));
         }
-    }
-
-    /// The first few that were in the file, computed again for their reasons as far as there is time.
-    fn found_in_words(&self, sweep: &Sweep, interruption: &Interruption) -> Vec<String> {
-        let begin = Instant::now();
-        let goes_on = || begin.elapsed() < PATIENCE && !interruption.has_come();
-        let numbers = self.found.first_empty().iter().take(MOST);
-        let line = |&number: &u64| match goes_on().then(|| sweep.row(number, &goes_on)).flatten() {
-            Some(row) => in_words(sweep, number, &row),
-            None => format!("{}: {NOT_FOUND_OUT}", sweep.point_in_words(number)),
-        };
-        numbers.map(line).collect()
+        if count > named.len() as u64 {
+            tell(format_args!("  and {} more", count - named.len() as u64));
+        }
     }
 }
 

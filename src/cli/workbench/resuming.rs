@@ -8,10 +8,10 @@ use crate::lab::view::View;
 use crate::lab::{Lab, Summary};
 use crate::scenario::Scenario;
 use crate::storage::confined::Confined;
-use crate::storage::session::{self, KeptAside, Session};
+use crate::storage::session::{self, Found, Session};
 use crate::text::printable::{Shown, printable};
 use crate::tui::panes;
-use anyhow::Context;
+use anyhow::{Context, bail};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -70,32 +70,29 @@ pub(super) fn come_back_to(
     folder: Result<PathBuf, String>,
 ) -> anyhow::Result<(Lab, Result<Session, String>)> {
     let folder = folder.map_err(anyhow::Error::msg)?;
-    let shown = printable(name);
-    let found = session::resume_named(&folder, name, |content| {
-        resumed(content, args.look, confined)
-    })
-    .with_context(|| format!("--resume {shown} (gyrolab sessions lists what there is)"))?;
-    let aside = put_aside(&found.kept_aside) + &left_alone(&found.left_alone);
-    if let Some(resumed) = found.resumed {
-        let mut lab = resumed.what;
-        if !aside.is_empty() {
-            lab.tell_first(&aside);
+    let name_shown = printable(name);
+    let read = |content: &session::Content| resumed(content, args.look, confined);
+    let found = session::resume_named(&folder, name, read)
+        .with_context(|| format!("--resume {name_shown} (gyrolab sessions lists what there is)"))?;
+    let passed_over = passed_over(&found);
+    match (found.resumed, found.in_use_by.first()) {
+        (Some(resumed), _) => {
+            let mut lab = resumed.what;
+            if !passed_over.is_empty() {
+                lab.tell_first(&passed_over);
+            }
+            Ok((lab, Ok(resumed.session)))
         }
-        return Ok((lab, Ok(resumed.session)));
-    }
-    if aside.is_empty() {
-        anyhow::bail!(
-            "--resume {shown}: it is open in another lab{}",
-            found
-                .in_use_by
-                .first()
-                .map_or(String::new(), |process| format!(", process {process}"))
-        )
-    } else {
-        anyhow::bail!(
-            "--resume {shown}: {}",
-            printable(aside.trim_end_matches("; "))
-        )
+        (None, Some(process)) => {
+            bail!("--resume {name_shown}: it is open in another lab, process {process}")
+        }
+        (None, None) if passed_over.is_empty() => {
+            bail!("--resume {name_shown}: it is open in another lab")
+        }
+        (None, None) => bail!(
+            "--resume {name_shown}: {}",
+            printable(passed_over.trim_end_matches("; "))
+        ),
     }
 }
 
@@ -110,11 +107,9 @@ pub(super) fn come_back(
     let found = folder
         .clone()
         .and_then(|folder| session::resume(&folder, read).map_err(told));
-    let (aside, none) = match found {
+    let why_none = match found {
         Ok(found) => {
-            let passed_over = put_aside(&found.kept_aside)
-                + &left_alone(&found.left_alone)
-                + &in_use(&found.in_use_by);
+            let passed_over = passed_over(&found) + &in_use(&found.in_use_by);
             if let Some(resumed) = found.resumed {
                 let (mut lab, session) = (resumed.what, Ok(resumed.session));
                 if !passed_over.is_empty() {
@@ -123,36 +118,30 @@ pub(super) fn come_back(
                 return Ok((lab, session));
             }
             let none = if found.in_use_by.is_empty() {
-                "no session to come back to: this is a new one"
+                "no session to come back to: "
             } else {
-                "this is a new one"
+                ""
             };
-            (passed_over, none.to_owned())
+            format!("{passed_over}{none}this is a new one")
         }
-        Err(trouble) => (String::new(), trouble),
+        Err(trouble) => trouble,
     };
     let mut lab = new(args, DEFAULT)?;
-    lab.tell(format!("{aside}{none}"));
+    lab.tell(why_none);
     Ok((lab, folder.and_then(|folder| begun(&folder))))
 }
 
 /// Says that newer sessions are open in other labs, of the processes `owners`. A line that has died without a word keeps
 /// its lab alive for as long as the system believes in it.
 fn in_use(owners: &[u32]) -> String {
-    let numbers = owners
-        .iter()
-        .map(ToString::to_string)
-        .collect::<Vec<_>>()
-        .join(" ");
-    match owners {
-        [] => String::new(),
-        [_] => format!(
-            "the newest session is open in another lab (if its line is dead, kill {numbers} frees it for --resume); "
-        ),
-        _ => format!(
-            "newer sessions are open in other labs (where the line is dead, kill frees them: {numbers}); "
-        ),
+    if owners.is_empty() {
+        return String::new();
     }
+    let numbers: Vec<_> = owners.iter().map(ToString::to_string).collect();
+    format!(
+        "newer sessions are open in other labs (where the line is dead, kill frees them: {}); ",
+        numbers.join(" ")
+    )
 }
 
 pub(super) fn begun(folder: &Path) -> Result<Session, String> {
@@ -163,20 +152,16 @@ fn told(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
 
-fn put_aside(damaged: &[KeptAside]) -> String {
-    let names = damaged.iter().map(|one| {
+/// The sessions that cannot be come back to, and why.
+fn passed_over<T>(found: &Found<T>) -> String {
+    let aside = found.kept_aside.iter().map(|one| {
+        let path = Shown(&one.path);
         format!(
-            "a damaged session is put aside as {} ({}); ",
-            Shown(&one.path),
+            "a damaged session is put aside as {path} ({}); ",
             one.reason
         )
     });
-    names.collect()
-}
-
-fn left_alone(sessions: &[KeptAside]) -> String {
-    let names = sessions
-        .iter()
-        .map(|one| format!("{} is left alone ({}); ", Shown(&one.path), one.reason));
-    names.collect()
+    let alone = found.left_alone.iter();
+    let alone = alone.map(|one| format!("{} is left alone ({}); ", Shown(&one.path), one.reason));
+    aside.chain(alone).collect()
 }
