@@ -4,93 +4,56 @@ use crate::physics::State;
 use crate::run::Sample;
 use crate::scenario::{Scenario, start};
 
-/// A column of the CSV.
 #[derive(Debug)]
 pub struct Column {
     /// Name with its unit, as in the header line.
     pub name: &'static str,
-    /// What it holds, in one line.
     pub about: &'static str,
     value: fn(&Sample) -> Value,
 }
 
-/// What stands in one field of a CSV.
+/// One field of a CSV.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cell<'a> {
-    /// A number.
     Number(Value),
-    /// A text, such as the name of a point.
     Text(&'a str),
 }
 
 /// A number as it is written: a count without a decimal point, any other number so that it reads back as the same f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
-    /// A count.
     Whole(u64),
-    /// A measured number.
     Number(f64),
 }
 
 use Value::{Number, Whole};
 
-/// Every column, in the order of the CSV.
+const TRACED: &str = "traced point, world frame";
+const MOMENTUM: &str = "angular momentum about the pivot, world frame";
+const OMEGA: &str = "angular velocity I^-1 L at this step, world frame";
+const TILT: &str = "angle of the axle from +z";
+const AZIMUTH: &str = "azimuth of the axle, counted on through full turns";
+const ENERGY: &str = "kinetic energy, and that of the weight from the pivot";
+pub(super) const SEGMENT: &str = "edits of time step, scheme or gravity before this step";
+
 pub const COLUMNS: &[Column] = &[
     column("step", "number of the time step, 0 at the start", |s| {
         Whole(s.step)
     }),
     column("t_s", "time", |s| Number(s.time_s)),
-    column("x_m", "traced point, world frame", |s| Number(s.position.x)),
-    column("y_m", "traced point, world frame", |s| Number(s.position.y)),
-    column("z_m", "traced point, world frame", |s| Number(s.position.z)),
-    column(
-        "Lx_Js",
-        "angular momentum about the pivot, world frame",
-        |s| Number(s.momentum.x),
-    ),
-    column(
-        "Ly_Js",
-        "angular momentum about the pivot, world frame",
-        |s| Number(s.momentum.y),
-    ),
-    column(
-        "Lz_Js",
-        "angular momentum about the pivot, world frame",
-        |s| Number(s.momentum.z),
-    ),
-    column(
-        "wx_rad_per_s",
-        "angular velocity I^-1 L at this step, world frame",
-        |s| Number(s.angular_velocity.x),
-    ),
-    column(
-        "wy_rad_per_s",
-        "angular velocity I^-1 L at this step, world frame",
-        |s| Number(s.angular_velocity.y),
-    ),
-    column(
-        "wz_rad_per_s",
-        "angular velocity I^-1 L at this step, world frame",
-        |s| Number(s.angular_velocity.z),
-    ),
-    column("tilt_deg", "angle of the axle from +z", |s| {
-        Number(s.tilt_deg)
-    }),
-    column(
-        "azimuth_deg",
-        "azimuth of the axle, counted on through full turns",
-        |s| Number(s.azimuth_deg),
-    ),
-    column(
-        "energy_J",
-        "kinetic energy, and that of the weight from the pivot",
-        |s| Number(s.energy),
-    ),
-    column(
-        "segment",
-        "edits of time step, scheme or gravity before this step",
-        |s| Whole(s.segment),
-    ),
+    column("x_m", TRACED, |s| Number(s.position.x)),
+    column("y_m", TRACED, |s| Number(s.position.y)),
+    column("z_m", TRACED, |s| Number(s.position.z)),
+    column("Lx_Js", MOMENTUM, |s| Number(s.momentum.x)),
+    column("Ly_Js", MOMENTUM, |s| Number(s.momentum.y)),
+    column("Lz_Js", MOMENTUM, |s| Number(s.momentum.z)),
+    column("wx_rad_per_s", OMEGA, |s| Number(s.angular_velocity.x)),
+    column("wy_rad_per_s", OMEGA, |s| Number(s.angular_velocity.y)),
+    column("wz_rad_per_s", OMEGA, |s| Number(s.angular_velocity.z)),
+    column("tilt_deg", TILT, |s| Number(s.tilt_deg)),
+    column("azimuth_deg", AZIMUTH, |s| Number(s.azimuth_deg)),
+    column("energy_J", ENERGY, |s| Number(s.energy)),
+    column("segment", SEGMENT, |s| Whole(s.segment)),
 ];
 
 /// A column that a CSV has where it is asked for: not every run has a use for it.
@@ -98,28 +61,24 @@ pub const COLUMNS: &[Column] = &[
 pub struct OptionalColumn {
     /// Name with its unit, as in the header line.
     pub name: &'static str,
-    /// What it holds, in one line.
     pub about: &'static str,
     value: fn(&Scenario, &State) -> f64,
 }
 
-/// Every column on request.
-pub static OPTIONAL_COLUMNS: [OptionalColumn; 2] = [SPIN, L_AXLE];
-
-const SPIN: OptionalColumn = OptionalColumn {
-    name: "spin_rpm",
-    about: "rate of the spin about the axle",
-    value: |scenario, state| start::rpm(scenario.spin_rad_per_s(state)),
-};
-
-const L_AXLE: OptionalColumn = OptionalColumn {
-    name: "L_axle_Js",
-    about: "angular momentum along the axle",
-    value: |_, state| state.momentum.dot(&state.axle()),
-};
+pub static OPTIONAL_COLUMNS: [OptionalColumn; 2] = [
+    OptionalColumn {
+        name: "spin_rpm",
+        about: "rate of the spin about the axle",
+        value: |scenario, state| start::rpm(scenario.spin_rad_per_s(state)),
+    },
+    OptionalColumn {
+        name: "L_axle_Js",
+        about: "angular momentum along the axle",
+        value: |_, state| state.momentum.dot(&state.axle()),
+    },
+];
 
 impl OptionalColumn {
-    /// The column of that name.
     pub fn find(name: &str) -> Option<&'static Self> {
         OPTIONAL_COLUMNS.iter().find(|column| column.name == name)
     }
@@ -154,7 +113,6 @@ impl Chosen {
         usual.chain(OPTIONAL_COLUMNS.iter().map(|column| column.name))
     }
 
-    /// The column of that name.
     pub(super) fn find(name: &str) -> Option<Self> {
         let optional = || OptionalColumn::find(name).map(Self::Optional);
         Column::find(name).map(Self::Usual).or_else(optional)
@@ -181,7 +139,6 @@ const fn column(name: &'static str, about: &'static str, value: fn(&Sample) -> V
 }
 
 impl Column {
-    /// The column of that name.
     pub fn find(name: &str) -> Option<&'static Self> {
         COLUMNS.iter().find(|column| column.name == name)
     }

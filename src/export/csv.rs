@@ -18,7 +18,6 @@ const BYTE_ORDER_MARK: &str = "\u{feff}";
 pub struct CsvWriter<W: Write> {
     rows: Rows<W>,
     layout: Layout,
-    /// The scenario of the run.
     scenario: Scenario,
     /// The points of the body, where each of them has a row.
     points: Vec<NamedPoint>,
@@ -26,41 +25,31 @@ pub struct CsvWriter<W: Write> {
 
 impl<W: Write> CsvWriter<W> {
     /// Begins a CSV of every row and column on `out` with the run file of `scenario` and the header line.
-    ///
-    /// # Errors
-    /// When `out` cannot be written.
     pub fn new(out: W, scenario: &Scenario) -> io::Result<Self> {
         Self::with_layout(out, scenario, Layout::default())
     }
 
     /// Begins a CSV as `layout` says on `out`.
-    ///
-    /// # Errors
-    /// When `out` cannot be written.
     pub fn with_layout(out: W, scenario: &Scenario, layout: Layout) -> io::Result<Self> {
         let mut out = BufWriter::new(out);
-        if layout.has_decimal_comma() {
-            out.write_all(BYTE_ORDER_MARK.as_bytes())?;
-        }
-        out.write_all(layout.comments().as_bytes())?;
-        out.write_all(commented(&scenario.to_toml()).as_bytes())?;
-        out.write_all(
-            layout
-                .names()
-                .join(&layout.delimiter().to_string())
-                .as_bytes(),
-        )?;
-        out.write_all(b"\n")?;
-        let points = if layout.is_of_points() {
-            NamedPoint::all_of(scenario, |name| field(name, layout.delimiter() as u8))
+        let (delimiter, mark) = if layout.file().excel {
+            (';', BYTE_ORDER_MARK)
         } else {
-            Vec::new()
+            (',', "")
+        };
+        let (above, run_file) = (layout.comments(), commented(&scenario.to_toml()));
+        let names = layout.names().join(&delimiter.to_string());
+        writeln!(out, "{mark}{above}{run_file}{names}")?;
+        let delimiter = delimiter as u8;
+        let points = match layout.shape() {
+            Shape::Points(_) => NamedPoint::all_of(scenario, |name| field(name, delimiter)),
+            _ => Vec::new(),
         };
         Ok(Self {
             rows: Rows {
                 out,
-                delimiter: layout.delimiter() as u8,
-                decimal: layout.has_decimal_comma().then_some(b','),
+                delimiter,
+                decimal: layout.file().excel.then_some(b','),
                 line: Vec::new(),
                 count: 0,
             },
@@ -70,16 +59,12 @@ impl<W: Write> CsvWriter<W> {
         })
     }
 
-    /// Which rows and columns it has.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
 
     /// Adds the row of `sample`, or its rows where every point has one. The caller
     /// has asked the layout whether there is one.
-    ///
-    /// # Errors
-    /// When the row cannot be written.
     pub fn write(&mut self, sample: &Sample) -> io::Result<()> {
         let rows = &mut self.rows;
         match self.layout.shape() {
@@ -98,15 +83,11 @@ impl<W: Write> CsvWriter<W> {
         }
     }
 
-    /// How many rows have been added.
     pub fn count(&self) -> u64 {
         self.rows.count
     }
 
     /// Writes what is still buffered, and returns the output.
-    ///
-    /// # Errors
-    /// When the output cannot be written.
     pub fn finish(self) -> io::Result<W> {
         let whole = self.rows.out.into_inner();
         whole.map_err(io::IntoInnerError::into_error)
@@ -118,9 +99,8 @@ impl<W: Write> CsvWriter<W> {
 struct Rows<W: Write> {
     out: BufWriter<W>,
     delimiter: u8,
-    /// What stands for the decimal point.
+    /// The decimal mark, where it is no point.
     decimal: Option<u8>,
-    /// The row that is being written.
     line: Vec<u8>,
     count: u64,
 }

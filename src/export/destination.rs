@@ -3,22 +3,20 @@
 use super::temporary;
 use crate::text::printable::Shown;
 use crate::text::unwritten;
+use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
-use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// An output that is being written.
 #[derive(Debug)]
 pub enum Destination {
-    /// Standard output.
     Stdout(io::Stdout),
     /// A device, FIFO or socket, which is written to directly.
     Stream(File, PathBuf),
     /// A regular file, which has a temporary name in the same folder until it is complete.
     File {
-        /// The temporary file.
         temporary: NamedTempFile,
         /// The path that the complete file will have.
         path: PathBuf,
@@ -27,46 +25,34 @@ pub enum Destination {
     },
 }
 
-/// Why an output cannot be opened or written.
 #[derive(Debug, thiserror::Error)]
 pub enum DestinationError {
-    /// The file exists and may not be replaced.
     #[error("{} exists; --force replaces it", Shown(.0))]
     Exists(PathBuf),
-    /// The name is that of a workbook.
     #[error("{}: gyrolab writes CSV, and no workbook: let the name end in .csv (--excel makes it one that a double click opens)", Shown(.0))]
     Workbook(PathBuf),
-    /// The path is a folder.
     #[error("{} is a folder: name a file in it", Shown(.0))]
     Folder(PathBuf),
-    /// The path is no folder, where one is to be written.
     #[error("{} is not a folder: name one that is empty or new", Shown(.0))]
     NotAFolder(PathBuf),
-    /// The folder holds files, which may not be replaced.
     #[error("{} holds files; --force replaces those of the same names", Shown(.0))]
     FolderInUse(PathBuf),
-    /// The path is a device, a FIFO or a socket, where only a regular file is allowed.
     #[error("cannot write {}: it is not a regular file but a device, a pipe or a socket, which may block; gyrolab run -o writes to such", Shown(.0))]
     NotAFile(PathBuf),
-    /// The file's folder does not exist.
     #[error("cannot write {}: there is no folder {}", Shown(path), Shown(folder))]
-    NoFolder {
-        /// The path of the file.
-        path: PathBuf,
-        /// The missing folder.
-        folder: PathBuf,
-    },
-    /// The system reported an error.
+    NoFolder { path: PathBuf, folder: PathBuf },
     #[error("cannot write {}: {}", Shown(path), unwritten::why(error))]
-    Refused {
-        /// The path of the output.
-        path: PathBuf,
-        /// The system's error.
-        error: io::Error,
-    },
+    Refused { path: PathBuf, error: io::Error },
 }
 
 impl DestinationError {
+    pub(super) fn refused(path: &Path, error: io::Error) -> Self {
+        Self::Refused {
+            path: path.to_owned(),
+            error,
+        }
+    }
+
     /// The message without the advice that applies to the command line only.
     pub fn fact(&self) -> String {
         match self {
@@ -79,13 +65,8 @@ impl DestinationError {
 /// Whether a file of that name would be taken for a workbook of a spreadsheet program.
 pub fn is_workbook(path: &Path) -> bool {
     const ENDINGS: [&str; 4] = ["xlsx", "xls", "xlsm", "ods"];
-    let is_one = |ending: &str| {
-        ENDINGS
-            .iter()
-            .any(|other| ending.eq_ignore_ascii_case(other))
-    };
-    path.extension()
-        .is_some_and(|ending| is_one(&ending.to_string_lossy()))
+    let ending = path.extension().map(OsStr::to_ascii_lowercase);
+    ending.is_some_and(|ending| ENDINGS.iter().any(|other| ending == *other))
 }
 
 impl Destination {
@@ -112,13 +93,8 @@ impl Destination {
             return Self::open_file(path, replace);
         }
         let opened = options.write(true).open(path);
-        match opened {
-            Ok(file) => Ok(Self::Stream(file, path.to_owned())),
-            Err(error) => Err(DestinationError::Refused {
-                path: path.to_owned(),
-                error,
-            }),
-        }
+        let opened = opened.map_err(|error| DestinationError::refused(path, error))?;
+        Ok(Self::Stream(opened, path.to_owned()))
     }
 
     /// As [`open`](Self::open), but for regular files only: for a caller that must neither wait for a reader nor write to
@@ -128,10 +104,7 @@ impl Destination {
     /// When the file exists and `replace` is false, when `path` is anything but a regular file, or when the system reports
     /// an error.
     pub fn open_file(path: &Path, replace: bool) -> Result<Self, DestinationError> {
-        let refused = |error| DestinationError::Refused {
-            path: path.to_owned(),
-            error,
-        };
+        let refused = |error| DestinationError::refused(path, error);
         match fs::metadata(path) {
             _ if is_workbook(path) => Err(DestinationError::Workbook(path.to_owned())),
             Ok(there) if there.is_dir() => Err(DestinationError::Folder(path.to_owned())),
@@ -167,7 +140,8 @@ impl Destination {
     }
 
     fn file(path: PathBuf, replace: bool) -> io::Result<Self> {
-        let temporary = temporary::file_in(folder_of(&path), &new_permissions())?;
+        let permissions = fs::Permissions::from_mode(0o666); // before the umask
+        let temporary = temporary::file_in(folder_of(&path), &permissions)?;
         if let Ok(there) = fs::metadata(&path) {
             copy_permissions(temporary.as_file(), &there)?;
         }
@@ -179,9 +153,6 @@ impl Destination {
     }
 
     /// The present size of the file, bytes; 0 for a stream.
-    ///
-    /// # Errors
-    /// When the system does not report the size.
     pub fn bytes(&self) -> io::Result<u64> {
         match self {
             Self::File { temporary, .. } => Ok(temporary.as_file().metadata()?.len()),
@@ -190,9 +161,6 @@ impl Destination {
     }
 
     /// Writes `bytes`, all that there is to write, and [`keep`](Self::keep)s them.
-    ///
-    /// # Errors
-    /// As of `keep`.
     pub fn write_and_keep(mut self, bytes: &[u8]) -> Result<(), DestinationError> {
         let written = self.write_all(bytes);
         written.map_err(|error| self.refused(error))?;
@@ -204,16 +172,10 @@ impl Destination {
             Self::File { path, .. } | Self::Stream(_, path) => path,
             Self::Stdout(_) => Path::new("stdout"),
         };
-        DestinationError::Refused {
-            path: path.to_owned(),
-            error,
-        }
+        DestinationError::refused(path, error)
     }
 
     /// Flushes the output and gives a temporary file its final name.
-    ///
-    /// # Errors
-    /// When the system reports an error, or when a file of that name has been created meanwhile and may not be replaced.
     pub fn keep(mut self) -> Result<(), DestinationError> {
         let flushed = self.flush();
         flushed.map_err(|error| self.refused(error))?;
@@ -230,30 +192,21 @@ impl Destination {
         } else {
             temporary.persist_noclobber(&path)
         };
-        match kept.map_err(|failed| failed.error) {
-            Ok(_) => Ok(()),
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                Err(DestinationError::Exists(path))
-            }
-            Err(error) => Err(DestinationError::Refused { path, error }),
-        }
+        kept.map(|_| ()).map_err(|failed| match failed.error {
+            error if error.kind() == io::ErrorKind::AlreadyExists => DestinationError::Exists(path),
+            error => DestinationError::Refused { path, error },
+        })
     }
 }
 
-/// Gives the new `file` the permissions and group of the file that it replaces (`there`), whatever the umask. The set-ID
-/// and sticky bits are never copied, and nothing is copied from a file of another user.
+/// Gives the new `file` the permissions of the file that it replaces (`there`), whatever the umask, where both have the
+/// same owner and group. The set-ID and sticky bits are never copied.
 fn copy_permissions(file: &File, there: &fs::Metadata) -> io::Result<()> {
     let new = file.metadata()?;
-    if new.uid() != there.uid() {
+    if (new.uid(), new.gid()) != (there.uid(), there.gid()) {
         return Ok(());
     }
-    let mut mode = there.mode() & 0o777;
-    if new.gid() != there.gid() && fchown(file, None, Some(there.gid())).is_err() {
-        // The new file has another group, which gets the permissions of others.
-        let of_others = (mode & 0o007) << 3;
-        mode = mode & 0o707 | mode & of_others;
-    }
-    file.set_permissions(fs::Permissions::from_mode(mode))
+    file.set_permissions(fs::Permissions::from_mode(there.mode() & 0o777))
 }
 
 /// The file descriptor that `path` names, directly or through links, as `/dev/stdout` and `/dev/fd/3` do.
@@ -283,11 +236,6 @@ pub(super) fn folder_of(path: &Path) -> &Path {
     path.parent()
         .filter(|folder| !folder.as_os_str().is_empty())
         .unwrap_or(Path::new("."))
-}
-
-/// The permissions of a new file, before the umask.
-fn new_permissions() -> fs::Permissions {
-    fs::Permissions::from_mode(0o666)
 }
 
 impl Write for Destination {

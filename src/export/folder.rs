@@ -27,7 +27,7 @@ impl Folder {
     /// reports an error.
     pub fn begin(path: &Path, replace: bool) -> Result<Self, DestinationError> {
         let path = without_slash(path);
-        let refused = |error| refused(&path, error);
+        let refused = |error| DestinationError::refused(&path, error);
         let in_folder = folder_of(&path);
         if !in_folder.is_dir() {
             return Err(DestinationError::NoFolder {
@@ -46,7 +46,6 @@ impl Folder {
         })
     }
 
-    /// Where its files are written now.
     pub fn path(&self) -> &Path {
         self.temporary.path()
     }
@@ -57,13 +56,13 @@ impl Folder {
     /// # Errors
     /// When files have come to be there meanwhile that may not be replaced, or when the system reports an error.
     pub fn keep(self) -> Result<Vec<String>, DestinationError> {
-        let refused = |error| refused(&self.path, error);
+        let refused = |error| DestinationError::refused(&self.path, error);
         may_be_written(&self.path, self.replace)?;
         if fs::rename(self.temporary.path(), &self.path).is_ok() {
             let _ = self.temporary.keep(); // its old name is gone already
             return Ok(Vec::new());
         }
-        // There are files: each new one takes the place of that of its name.
+        // There are files: each new one replaces the file of its name.
         fs::create_dir_all(&self.path).map_err(refused)?;
         let names = |folder: &Path| -> io::Result<Vec<OsString>> {
             let files = fs::read_dir(folder)?;
@@ -84,27 +83,19 @@ impl Folder {
     }
 }
 
-/// Whether a folder may be written at `path`.
 fn may_be_written(path: &Path, replace: bool) -> Result<(), DestinationError> {
     let there = match fs::metadata(path) {
         Ok(there) => there,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-        Err(error) => return Err(refused(path, error)),
+        Err(error) => return Err(DestinationError::refused(path, error)),
     };
     if !there.is_dir() {
         return Err(DestinationError::NotAFolder(path.to_owned()));
     }
-    let mut files = fs::read_dir(path).map_err(|error| refused(path, error))?;
+    let mut files = fs::read_dir(path).map_err(|error| DestinationError::refused(path, error))?;
     match files.next() {
         Some(_) if !replace => Err(DestinationError::FolderInUse(path.to_owned())),
         _ => Ok(()),
-    }
-}
-
-fn refused(path: &Path, error: io::Error) -> DestinationError {
-    DestinationError::Refused {
-        path: path.to_owned(),
-        error,
     }
 }
 

@@ -24,9 +24,7 @@ pub struct LayoutFile {
     pub from_s: Option<f64>,
     /// The time of the last row, s; later ones are left out.
     pub to_s: Option<f64>,
-    /// The names of the columns, in their order.
     pub columns: Option<Vec<String>>,
-    /// Whether there is a row for each point of the body.
     #[serde(skip_serializing_if = "is_false")]
     #[serde(default)]
     pub points: bool,
@@ -43,7 +41,6 @@ pub struct Layout {
     shape: Shape,
 }
 
-/// What a row of the CSV is.
 #[derive(Clone, Debug, Default)]
 pub(super) enum Shape {
     /// A step, with every column.
@@ -146,36 +143,18 @@ impl Layout {
         file.check().unwrap_or_default() // only columns and times can be refused
     }
 
-    /// The layout as it stands in a header, from which it can be read again.
     pub fn file(&self) -> &LayoutFile {
         &self.file
     }
 
-    /// How many steps lie between two rows.
     pub fn steps_between(&self) -> u64 {
         self.file.every.map_or(1, NonZeroU64::get)
-    }
-
-    /// Whether there is a row for each point of the body.
-    pub fn is_of_points(&self) -> bool {
-        self.file.points
-    }
-
-    /// Whether numbers have a decimal comma, and fields are parted by semicolons.
-    pub fn has_decimal_comma(&self) -> bool {
-        self.file.excel
-    }
-
-    /// What stands between two fields.
-    pub fn delimiter(&self) -> char {
-        if self.file.excel { ';' } else { ',' }
     }
 
     pub(super) fn shape(&self) -> &Shape {
         &self.shape
     }
 
-    /// The names in the header line.
     pub fn names(&self) -> Vec<&'static str> {
         match &self.shape {
             Shape::Whole => COLUMNS.iter().map(|column| column.name).collect(),

@@ -1,7 +1,7 @@
 //! The columns of a CSV of all points: one row for each point of the body at each step.
 
 use super::columns::{
-    Cell,
+    Cell, SEGMENT,
     Value::{Number, Whole},
 };
 use crate::physics::{PointMass, rotation};
@@ -9,12 +9,10 @@ use crate::run::Sample;
 use crate::scenario::Scenario;
 use nalgebra::Vector3;
 
-/// A column of the CSV of all points.
 #[derive(Debug)]
 pub struct PointColumn {
     /// Name with its unit, as in the header line.
     pub name: &'static str,
-    /// What it holds, in one line.
     pub about: &'static str,
     cell: for<'a> fn(&PlacedPoint<'a>) -> Cell<'a>,
 }
@@ -22,7 +20,7 @@ pub struct PointColumn {
 /// A point of the body under the name that it has in the CSV.
 #[derive(Clone, Debug)]
 pub(super) struct NamedPoint {
-    /// As it stands in the CSV.
+    /// Quoted where the CSV wants it.
     name: String,
     mass: PointMass,
     /// Whether it belongs to what does not spin beside a rotor.
@@ -38,37 +36,29 @@ pub(super) struct PlacedPoint<'a> {
     velocity: Vector3<f64>,
 }
 
-/// Every column of the CSV of all points, in its order.
+const PLACE: &str = "the point, world frame";
+const VELOCITY: &str = "velocity of the point, world frame";
+const POINT: &str =
+    "name of the point; rim.0 is the rim's first, a part's six stand along its own axes: wheel +x";
+
 pub const POINT_COLUMNS: &[PointColumn] = &[
     column("step", "number of the time step", |p| {
         Cell::Number(Whole(p.sample.step))
     }),
     column("t_s", "time", |p| number(p.sample.time_s)),
-    column(
-        "point",
-        "name of the point; rim.0 is the rim's first, a part's six stand along its own axes: wheel +x",
-        |p| Cell::Text(&p.point.name),
-    ),
+    column("point", POINT, |p| Cell::Text(&p.point.name)),
     column("mass_kg", "mass of the point", |p| {
         number(p.point.mass.mass)
     }),
-    column("x_m", "the point, world frame", |p| number(p.position.x)),
-    column("y_m", "the point, world frame", |p| number(p.position.y)),
-    column("z_m", "the point, world frame", |p| number(p.position.z)),
-    column("vx_m_per_s", "velocity of the point, world frame", |p| {
-        number(p.velocity.x)
+    column("x_m", PLACE, |p| number(p.position.x)),
+    column("y_m", PLACE, |p| number(p.position.y)),
+    column("z_m", PLACE, |p| number(p.position.z)),
+    column("vx_m_per_s", VELOCITY, |p| number(p.velocity.x)),
+    column("vy_m_per_s", VELOCITY, |p| number(p.velocity.y)),
+    column("vz_m_per_s", VELOCITY, |p| number(p.velocity.z)),
+    column("segment", SEGMENT, |p| {
+        Cell::Number(Whole(p.sample.segment))
     }),
-    column("vy_m_per_s", "velocity of the point, world frame", |p| {
-        number(p.velocity.y)
-    }),
-    column("vz_m_per_s", "velocity of the point, world frame", |p| {
-        number(p.velocity.z)
-    }),
-    column(
-        "segment",
-        "edits of time step, scheme or gravity before this step",
-        |p| Cell::Number(Whole(p.sample.segment)),
-    ),
 ];
 
 const fn column(
@@ -84,7 +74,6 @@ fn number<'a>(number: f64) -> Cell<'a> {
 }
 
 impl PointColumn {
-    /// The column of that name.
     pub fn find(name: &str) -> Option<&'static Self> {
         POINT_COLUMNS.iter().find(|column| column.name == name)
     }

@@ -150,18 +150,27 @@ impl Summary {
             return writeln!(f, "  steady        {why}");
         }
         let about = about(axis);
-        let [slow, fast] = [theory.slow_precession, theory.fast_precession];
-        let steady = match (slow, fast) {
+        let rate = |rate: Option<f64>| rate.map_or("none".to_owned(), |rate| fixed(rate, 6));
+        let steady = match (theory.slow_precession, theory.fast_precession) {
             (None, None) => {
                 "none at this tilt: the top is too slow for a steady precession".to_owned()
             }
-            _ => {
-                let [slow, fast] =
-                    [slow, fast].map(|rate| rate.map_or("none".to_owned(), |rate| fixed(rate, 6)));
+            (slow, fast) => {
+                let [slow, fast] = [slow, fast].map(rate);
                 format!("precession of {slow} (slow) or {fast} (fast) rad/s at this tilt")
             }
         };
         writeln!(f, "  steady        {steady}{about}")?;
+        self.write_upright(f, theory, &about)
+    }
+
+    /// Whether the axle would sleep upright.
+    fn write_upright(
+        &self,
+        f: &mut fmt::Formatter<'_>,
+        theory: &Theory,
+        about: &str,
+    ) -> fmt::Result {
         let spin = self.readouts.spin;
         let Some(limit) = theory.sleeping_limit else {
             let why = "without spin too: the forces pull the axle up";
@@ -172,14 +181,14 @@ impl Summary {
         } else {
             "it would not"
         };
-        let along = match axis {
-            Axis::Z => "  upright       sleeps".to_owned(),
-            axis => format!("  upright       along {axis} it sleeps"),
+        let along = match &theory.axis {
+            Axis::Z => "sleeps".to_owned(),
+            axis => format!("along {axis} it sleeps"),
         };
         let [limit, spin] = [limit, spin].map(|momentum| fixed(momentum, 3));
         writeln!(
             f,
-            "{along} with L.axle above {limit} J s; with {spin} {sleeps}"
+            "  upright       {along} with L.axle above {limit} J s; with {spin} {sleeps}"
         )
     }
 

@@ -1,6 +1,6 @@
 //! Temporary names of files and folders that are being written, beside the place that they will have.
 //!
-//! What is being written is locked. What nobody has locked was left by a process that was killed, and the next one that
+//! A file that is being written is locked. An unlocked one was left by a process that was killed, and the next one that
 //! writes in the same folder removes it. On a file system without locks it stays.
 
 use std::fs::{self, File, OpenOptions, Permissions, TryLockError};
@@ -11,7 +11,7 @@ use std::sync::{Mutex, PoisonError};
 use tempfile::{Builder, NamedTempFile, TempDir};
 
 const PREFIX: &str = ".gyrolab-";
-/// tempfile draws so many letters and digits, which stand between the two.
+/// Random letters and digits between prefix and suffix.
 const DRAWN: usize = 6;
 const SUFFIX: &str = ".part";
 
@@ -26,9 +26,6 @@ pub fn remove_own() {
 }
 
 /// A new file in `folder` under a temporary name.
-///
-/// # Errors
-/// When it cannot be made.
 pub fn file_in(folder: &Path, permissions: &Permissions) -> io::Result<NamedTempFile> {
     remove_what_was_left(folder);
     loop {
@@ -43,9 +40,6 @@ pub fn file_in(folder: &Path, permissions: &Permissions) -> io::Result<NamedTemp
 }
 
 /// A new folder in `folder` under a temporary name, and what holds its lock.
-///
-/// # Errors
-/// When it cannot be made.
 pub fn folder_in(folder: &Path, permissions: &Permissions) -> io::Result<(TempDir, File)> {
     remove_what_was_left(folder);
     loop {

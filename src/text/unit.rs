@@ -1,6 +1,5 @@
 //! Units as they stand at the end of a name (`tilt_deg`, `time_step_s`): what they are called, and how one becomes another.
 
-/// A unit at the end of a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     /// The end of the name, its underscore included.

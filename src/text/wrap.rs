@@ -3,7 +3,6 @@
 use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 use unicode_width::UnicodeWidthStr;
 
-/// Columns that `text` takes.
 pub fn columns(text: &str) -> usize {
     text.width()
 }
