@@ -146,9 +146,12 @@ pub(super) fn played<W: Write>(
     };
     let ended = stream::play(&mut simulation, scenario.steps, csv.as_mut(), each, watch);
     drop(meter);
-    let (ended, wall) = ended.map_err(advised)?;
+    let (ended, wall) = ended.map_err(|error| advised(&error))?;
     let rows = csv.as_ref().map(CsvWriter::count);
-    let output = csv.map(CsvWriter::finish).transpose().map_err(advised)?;
+    let output = csv
+        .map(CsvWriter::finish)
+        .transpose()
+        .map_err(|error| advised(&error))?;
     Ok(Played {
         ended,
         wall,

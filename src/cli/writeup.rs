@@ -75,7 +75,9 @@ pub(super) fn writeup(args: &WriteupArgs) -> anyhow::Result<ExitCode> {
     let writeup = Writeup::new(scenario, readouts, broken, beside, drawings);
     for (name, bytes) in writeup.files()? {
         let written = fs::write(folder.path().join(name), bytes);
-        written.map_err(advised).with_context(cannot_write)?;
+        written
+            .map_err(|error| advised(&error))
+            .with_context(cannot_write)?;
     }
     interruption.may_act_at_once()?;
     let others = folder.keep()?;

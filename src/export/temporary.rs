@@ -30,7 +30,7 @@ pub fn file_in(folder: &Path, permissions: &Permissions) -> io::Result<NamedTemp
     remove_what_was_left(folder);
     loop {
         let made = builder(permissions).tempfile_in(folder);
-        let file = made.map_err(of_the_system)?;
+        let file = made.map_err(|error| of_the_system(&error))?;
         if is_locked_in_time(file.as_file())? {
             let mut own = OWN.lock().unwrap_or_else(PoisonError::into_inner);
             own.push(file.path().to_owned());
@@ -44,7 +44,7 @@ pub fn folder_in(folder: &Path, permissions: &Permissions) -> io::Result<(TempDi
     remove_what_was_left(folder);
     loop {
         let made = builder(permissions).tempdir_in(folder);
-        let new = made.map_err(of_the_system)?;
+        let new = made.map_err(|error| of_the_system(&error))?;
         let lock = File::open(new.path())?;
         if is_locked_in_time(&lock)? {
             return Ok((new, lock));
@@ -60,7 +60,7 @@ fn builder(permissions: &Permissions) -> Builder<'static, 'static> {
 }
 
 /// The system's own error, without the temporary name that `error` speaks of.
-fn of_the_system(error: io::Error) -> io::Error {
+fn of_the_system(error: &io::Error) -> io::Error {
     let text = error.to_string();
     let own = text.split(" at path \"").next().unwrap_or_default();
     io::Error::new(error.kind(), own)

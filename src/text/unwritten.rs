@@ -18,8 +18,8 @@ pub fn why(error: &Error) -> String {
 }
 
 /// `error` with what would help.
-pub fn advised(error: Error) -> Error {
-    Error::new(error.kind(), why(&error))
+pub fn advised(error: &Error) -> Error {
+    Error::new(error.kind(), why(error))
 }
 
 #[cfg(test)]
