@@ -20,9 +20,6 @@ const ATTENTIVE: Duration = Duration::from_millis(100);
 
 /// Runs `lab` and the lessons of its `class` on the terminal until the user leaves. It saves the lab in `session`, if
 /// given.
-///
-/// # Errors
-/// When there is no terminal, or it has been closed. The terminal has then been given back, if that was possible.
 pub fn run(lab: &mut Lab, class: &mut Class, session: Option<&Session>) -> io::Result<()> {
     let mut screen = Screen::enter()?;
     let mut pacing = Pacing::new(lab.view().fps);

@@ -25,14 +25,11 @@ const BELL: u8 = 0x07;
 const CTRL_C: u8 = 0x03;
 const END_OF_PASTE: &[u8] = b"\x1b[201~";
 
-/// What was typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Typed {
-    /// A key.
     Key(Key),
     /// A text that the terminal says is pasted.
     Paste(String),
-    /// What the mouse did.
     Mouse(Mouse),
 }
 
@@ -47,7 +44,6 @@ pub struct Decoder {
     came: Option<(Instant, Instant)>,
 }
 
-/// An unfinished paste.
 #[derive(Debug, Default)]
 struct Paste {
     bytes: Vec<u8>,
@@ -58,22 +54,17 @@ struct Paste {
 /// What the bytes of a sequence or of a character mean.
 #[derive(Debug, PartialEq, Eq)]
 enum Found {
-    /// Not finished.
     Unfinished,
-    /// A key.
     Key(Key),
-    /// What the mouse did.
     Mouse(Mouse),
     /// Finished, but no key that the lab uses.
     Nothing,
-    /// The beginning of a paste.
     Paste,
     /// The last byte does not belong to it.
     Broken,
 }
 
 impl Decoder {
-    /// Decodes `bytes` that arrived at `now`.
     pub fn feed(&mut self, bytes: &[u8], now: Instant) {
         self.expire(now);
         for &byte in bytes {
@@ -86,12 +77,10 @@ impl Decoder {
         self.came = self.is_waiting().then_some((first, now));
     }
 
-    /// Takes the next finished key or paste.
     pub fn take_typed(&mut self) -> Option<Typed> {
         self.typed.pop_front()
     }
 
-    /// How many keys and pastes are finished and not taken yet.
     pub fn ready(&self) -> usize {
         self.typed.len()
     }
@@ -224,7 +213,6 @@ fn character(bytes: &[u8]) -> Found {
     }
 }
 
-/// What a single byte means.
 fn key_of(byte: u8) -> Key {
     match byte {
         b'\r' => Key::Enter,
@@ -304,7 +292,6 @@ fn mouse(parameters: &[u8], is_down: bool) -> Option<Mouse> {
     Some(Mouse { did, x, y })
 }
 
-/// The meaning of a complete control sequence.
 fn meaning(parameters: &[u8], last: u8) -> Found {
     let text = std::str::from_utf8(parameters).unwrap_or("?");
     // A number may have sub-parameters after a colon.

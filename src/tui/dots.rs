@@ -38,7 +38,6 @@ pub struct Dots {
 }
 
 impl Dots {
-    /// An empty sheet on `area`.
     pub fn new(area: Rect, marker: Marker) -> Self {
         let cells = vec![Cell::default(); area.width as usize * area.height as usize];
         Self {
@@ -114,12 +113,10 @@ impl Dots {
         }
     }
 
-    /// What the dots are made of.
     pub fn marker(&self) -> Marker {
         self.marker
     }
 
-    /// Draws a straight line from one dot to another.
     pub fn line(&mut self, from: (f64, f64), to: (f64, f64), ink: Ink) {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = dx.abs().max(dy.abs()).ceil();
@@ -137,7 +134,6 @@ impl Dots {
         }
     }
 
-    /// Sets every dot of column `x` from row `top` to row `bottom`.
     pub fn column(&mut self, x: usize, top: usize, bottom: usize, ink: Ink) {
         for y in top..=bottom.min(self.height().saturating_sub(1)) {
             self.set(x as f64, y as f64, ink);

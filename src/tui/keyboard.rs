@@ -10,7 +10,6 @@ use std::time::{Duration, Instant};
 
 /// The most keys that are decoded ahead; further bytes stay in the system's buffer.
 const MOST_AHEAD: usize = 256;
-/// Bytes read at once.
 const CHUNK: usize = 4096;
 
 /// Writing to this socket wakes [`Keyboard::wait`].
@@ -32,9 +31,6 @@ pub struct Keyboard {
 
 impl Keyboard {
     /// Call it once per process: [`wake`] wakes only the first keyboard.
-    ///
-    /// # Errors
-    /// When the system has no pipe left.
     pub fn new() -> io::Result<Self> {
         let (ours, others) = UnixStream::pair()?;
         ours.set_nonblocking(true)?;
@@ -46,7 +42,6 @@ impl Keyboard {
         })
     }
 
-    /// Takes the next key or paste, if one has arrived.
     pub fn take_typed(&mut self) -> Option<Typed> {
         self.decoder.take_typed()
     }
@@ -128,7 +123,6 @@ impl Keyboard {
     }
 }
 
-/// The result of a poll.
 #[derive(Clone, Copy, Debug, Default)]
 struct Came {
     typed: bool,

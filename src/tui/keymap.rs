@@ -33,18 +33,14 @@ pub enum Key {
     PageDown,
 }
 
-/// One row of the table.
 #[derive(Debug)]
 pub struct Binding {
-    /// In which modes.
     pub modes: &'static [Mode],
     /// Which keys; the first is the one that is shown.
     pub keys: &'static [Key],
-    /// What they mean.
     pub action: Action,
     /// What the footer says, empty where it says nothing.
     pub footer: &'static str,
-    /// What the help says.
     pub help: &'static str,
     /// Further words by which the help finds it.
     pub search: &'static str,
@@ -58,7 +54,6 @@ pub const ZOOM_KEYS: &[Binding] = &[
     row(&[Lab], &[Home], Action::ZoomToWhole, "", "show the whole of it"),
 ];
 
-/// A row of a table of keys.
 pub const fn row(
     modes: &'static [Mode],
     keys: &'static [Key],

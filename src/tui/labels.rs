@@ -15,7 +15,6 @@ pub struct Labels {
 }
 
 impl Labels {
-    /// Nothing is taken yet in `picture`.
     pub fn new(picture: Rect) -> Self {
         Self {
             width: picture.width,
@@ -24,7 +23,6 @@ impl Labels {
         }
     }
 
-    /// A mark stands at `cell`.
     pub fn take(&mut self, cell: (u16, u16)) {
         self.taken.push((cell, 1));
     }

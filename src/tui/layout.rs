@@ -28,19 +28,16 @@ const TWO_LINES_FROM: u16 = 18;
 /// Where everything stands; what has no place has an empty area.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// The line on top.
     pub title: Rect,
     /// The panes that have a place, from left to right.
     pub panes: Vec<(Pane, Rect)>,
     /// The line of the whole run.
     pub timeline: Rect,
-    /// The line about the measured data beside the run.
     pub measured: Rect,
     /// The line about the numbers' health.
     pub health: Rect,
     /// The lines that say what to look at: one, or two where the screen is narrow.
     pub hint: Rect,
-    /// The line of keys.
     pub keys: Rect,
     /// Whether the screen is too small for the whole lab.
     pub is_cramped: bool,

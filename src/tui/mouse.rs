@@ -27,15 +27,12 @@ const LINES: usize = 3;
 /// What a held button drags.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Held {
-    /// The cursor on the traces.
     Cursor,
-    /// The place on the timeline.
     Place,
     /// The 3-D view, from this cell.
     Camera(Position),
 }
 
-/// The mouse between two of its events.
 #[derive(Debug, Default)]
 pub struct Pointer {
     held: Option<Held>,
@@ -148,7 +145,6 @@ fn press_in_browser(layout: &Layout, at: Position, lab: &mut Lab) -> Option<Requ
     None
 }
 
-/// Scrolls a list, or zooms the pane at `at`.
 fn wheel(layout: &Layout, at: Position, up: bool, lab: &mut Lab) -> Option<Request> {
     let choose = |if_up, if_down| if up { if_up } else { if_down };
     let lines = choose(Action::Move(Direction::Up), Action::Move(Direction::Down));

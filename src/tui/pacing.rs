@@ -14,12 +14,10 @@ const SHARE_OF_CELL: f64 = 0.08;
 /// longer would look like a run that has stopped.
 const LONGEST: Duration = Duration::from_millis(750);
 
-/// Says when the next frame is due.
 #[derive(Clone, Copy, Debug)]
 pub struct Pacing {
     /// The least time between frames that no key asks for.
     frame: Duration,
-    /// When the next of them is due.
     due: Duration,
 }
 
@@ -34,17 +32,14 @@ impl Pacing {
         pacing
     }
 
-    /// From the next frame on draws at `rate` frames a second at most.
     pub fn set_rate(&mut self, rate: u32) {
         self.frame = Duration::from_secs(1) / rate.max(1);
     }
 
-    /// Whether a frame is due at `now`.
     pub fn is_due(&self, now: Duration) -> bool {
         now >= self.due
     }
 
-    /// The time from `now` until a frame is due.
     pub fn wait(&self, now: Duration) -> Duration {
         self.due.saturating_sub(now)
     }

@@ -10,7 +10,6 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 impl Marker {
-    /// What marks a measured point.
     pub fn point(self) -> char {
         match self {
             Self::Ascii => 'X', // the name of an axis is a small one
@@ -57,7 +56,6 @@ pub struct Points {
 pub type Ends = (f64, f64);
 
 impl Points {
-    /// No points on `area`.
     pub fn new(area: Rect, marker: Marker) -> Self {
         let nothing = Cell {
             sign: Sign::Nothing,

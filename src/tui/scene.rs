@@ -32,13 +32,11 @@ pub enum Stroke {
     Heavy,
     /// Every dot, and those beside them.
     Thick,
-    /// Every dot.
     Thin,
     /// One dot of so many. It hides nothing.
     Dotted(u32),
 }
 
-/// A dot of a line.
 struct Speck {
     at: (f64, f64),
     depth: f64,
@@ -120,13 +118,11 @@ impl Scene {
         Some(((x / self.in_cell.0) as u16, (y / self.in_cell.1) as u16))
     }
 
-    /// Whether `point` is on the sheet.
     pub fn shows(&self, point: &Vector3<f64>) -> bool {
         let (x, y) = self.dot(point);
         (0.0..self.size.0 as f64).contains(&x) && (0.0..self.size.1 as f64).contains(&y)
     }
 
-    /// A straight line.
     pub fn line(&mut self, from: &Vector3<f64>, to: &Vector3<f64>, stroke: Stroke, ink: Ink) {
         let depths = (self.camera.depth(from), self.camera.depth(to));
         self.line_of_dots(

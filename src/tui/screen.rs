@@ -99,7 +99,6 @@ fn point_at(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
 }
 
-/// Draws one pane of `lab` on `area`.
 pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
     if let Some(row) = panes::row(pane) {
         (row.draw)(lab, area, buf);
@@ -133,7 +132,6 @@ fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
 }
 
-/// The area of all panes together.
 pub(super) fn body(layout: &Layout) -> Rect {
     layout
         .panes

@@ -9,9 +9,7 @@ pub enum ColourChoice {
     /// Unless NO_COLOR is set or the terminal has none.
     #[default]
     Auto,
-    /// Always.
     Always,
-    /// Never.
     Never,
 }
 

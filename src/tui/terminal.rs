@@ -77,24 +77,17 @@ fn drawn_of(size: Size) -> Rect {
     Rect::new(0, 0, size.width.min(columns), size.height.min(lines))
 }
 
-/// An event from the terminal or a signal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// A key was pressed.
     Key(Key),
-    /// A text was pasted.
     Paste(String),
-    /// The mouse did something.
     Mouse(Mouse),
-    /// The size of the screen has changed.
     Resized,
-    /// The program is asked to suspend.
     Suspend,
     /// The program has been resumed, and the screen may hold anything.
     Resumed,
 }
 
-/// The terminal while this process has taken it over.
 pub struct Screen {
     /// Never dropped, because ratatui's drop prints to a stderr that may be closed.
     terminal: ManuallyDrop<Terminal<CrosstermBackend<Counted<BufWriter<File>>>>>,
@@ -133,9 +126,6 @@ impl Screen {
     }
 
     /// Draws a frame; only what differs from the previous one is sent. Returns how many bytes that were.
-    ///
-    /// # Errors
-    /// When the terminal cannot be written to.
     pub fn draw(&mut self, picture: impl FnOnce(Rect, &mut Buffer)) -> io::Result<usize> {
         let _pen = PEN.lock().unwrap_or_else(PoisonError::into_inner);
         while ENDING.load(Ordering::SeqCst) {
@@ -151,9 +141,6 @@ impl Screen {
     }
 
     /// Asks the terminal for the mouse, or leaves the mouse to it.
-    ///
-    /// # Errors
-    /// When the terminal cannot be written to.
     pub fn set_mouse(&mut self, listens: bool) -> io::Result<()> {
         if MOUSE.load(Ordering::SeqCst) == listens {
             return Ok(());
@@ -167,17 +154,11 @@ impl Screen {
     }
 
     /// The part of the screen that is drawn on, cells.
-    ///
-    /// # Errors
-    /// When the terminal does not tell.
     pub fn size(&self) -> io::Result<Rect> {
         self.terminal.size().map(drawn_of)
     }
 
     /// Makes the next frame be sent completely.
-    ///
-    /// # Errors
-    /// When the terminal cannot be written to.
     pub fn forget(&mut self) -> io::Result<()> {
         let size = self.size()?;
         self.terminal
@@ -187,9 +168,6 @@ impl Screen {
     }
 
     /// Gives the terminal back to the shell until it resumes the program.
-    ///
-    /// # Errors
-    /// When the terminal cannot be taken over again.
     pub fn suspend(&mut self) -> io::Result<()> {
         at_exit::run_hooks(Release::Suspend);
         give_back();
@@ -204,19 +182,12 @@ impl Screen {
         self.resume()
     }
 
-    /// Takes the terminal over again.
-    ///
-    /// # Errors
-    /// When that fails.
     pub fn resume(&mut self) -> io::Result<()> {
         take_over()?;
         self.forget()
     }
 
     /// The events that have arrived; waits for the first at most `wait`.
-    ///
-    /// # Errors
-    /// When the terminal is closed.
     pub fn events(&mut self, wait: Duration) -> io::Result<Vec<Event>> {
         self.keyboard.wait(wait)?;
         listen_without_thread();

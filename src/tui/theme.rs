@@ -19,13 +19,9 @@ pub enum Role {
     Text,
     /// Units, labels and borders, less prominent than values.
     Quiet,
-    /// Headings.
     Heading,
-    /// x of the traced point.
     X,
-    /// y of the traced point.
     Y,
-    /// z of the traced point.
     Z,
     /// Tilt, and the path of the last turn.
     Path,
@@ -37,7 +33,6 @@ pub enum Role {
     Track,
     /// The path before that in space.
     OldTrack,
-    /// The exact motion.
     Exact,
     /// The previous run.
     Ghost,
@@ -49,14 +44,11 @@ pub enum Role {
     Push,
     /// What has the focus.
     Focus,
-    /// What is selected in a list.
     Selected,
-    /// Warnings about the numbers.
     Warning,
 }
 
 impl Theme {
-    /// The style of `role`.
     pub fn style(&self, role: Role) -> Style {
         let style = Style::new().add_modifier(modifier(role));
         if self.colour {

@@ -45,7 +45,6 @@ pub enum Around {
 }
 
 impl Trail {
-    /// An empty trail on the sheet of `dots`.
     pub fn new(dots: &Dots, around: Around) -> Self {
         let (width, height) = (dots.width(), dots.height());
         Self {
@@ -63,7 +62,6 @@ impl Trail {
         inside.then(|| y as usize * self.width + x as usize)
     }
 
-    /// The path goes through this dot.
     pub fn dot(&mut self, at: (f64, f64), age: Age) {
         if let Some(place) = self.place(at) {
             self.ages[place] = self.ages[place].max(Some(age));
@@ -108,7 +106,6 @@ impl Trail {
         }
     }
 
-    /// The point was found at this dot.
     fn count(&mut self, at: (f64, f64)) {
         if let Some(place) = self.place(at) {
             self.counts[place] = self.counts[place].saturating_add(1);
@@ -156,7 +153,6 @@ impl Trail {
         around.into_iter().all(|(x, y)| self.age(x, y).is_some())
     }
 
-    /// Whether a recent dot is next to this one.
     fn is_beside_recent(&self, x: usize, y: usize) -> bool {
         let near = |at: usize| [at.wrapping_sub(1), at, at + 1];
         let mut around = near(y).into_iter().flat_map(|y| near(x).map(|x| (x, y)));

@@ -18,13 +18,10 @@ const TITLE: &str = "open a preset or a file";
 /// Width of the list; the preview has the rest.
 const LIST: u16 = 30;
 
-/// The browser on top of the panes.
 pub struct BrowserPane<'a> {
-    /// Its state.
     pub browser: &'a Browser,
     /// Whether the filter is being typed.
     pub mode: Mode,
-    /// Colours.
     pub theme: &'a Theme,
 }
 
@@ -65,7 +62,6 @@ impl Widget for BrowserPane<'_> {
     }
 }
 
-/// The number of the first entry in a list of `height` lines.
 fn first_shown(browser: &Browser, height: usize) -> usize {
     let selected = browser.selected();
     selected.saturating_sub(height.saturating_sub(1))

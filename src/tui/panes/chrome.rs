@@ -17,7 +17,6 @@ use ratatui::layout::Rect;
 const LEAST_TITLE: usize = 32;
 /// Remarks before what would mend the numbers: the turns in a step and the distance.
 const BEFORE_OFFER: usize = 2;
-/// Between two remarks.
 pub(super) const SEPARATOR: &str = " · ";
 
 /// Title, scheme and time step on the left, what fits of it; time, step and pace on the right, in fixed columns.
@@ -60,7 +59,6 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
 }
 
-/// Title and time.
 fn bare_title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     let digits = digits(lab.player().run().scenario().least_time_step_s());
@@ -165,7 +163,6 @@ pub fn key_at(lab: &Lab, area: Rect, x: u16) -> Option<Key> {
     found.map(|(_, item)| item.key)
 }
 
-/// A key of the line of keys, with its word.
 #[derive(Clone, Copy)]
 struct Item {
     key: Key,
@@ -184,7 +181,6 @@ impl Item {
     }
 }
 
-/// Each key of the line with its column.
 fn placed(lab: &Lab, width: u16) -> Vec<(u16, Item)> {
     let (items, gap) = fitted(footer(lab), width);
     let mut x = 1;
@@ -289,7 +285,6 @@ enum Worth {
     Own,
 }
 
-/// How long the footer names the key of `action`, which every pane has.
 fn worth(action: Action) -> Worth {
     use Action::{
         Accept, Browse, Choose, Export, FillScreen, Help, Lesson, Parameters, Push, Quit, Step,

@@ -9,22 +9,17 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::{Clear, Widget};
 
-/// The widest a form is.
 const WIDTH: u16 = 80;
 /// Below this height or width there is no room for a frame.
 const LEAST_FRAMED: u16 = 3;
-/// The most lines of a complaint.
 const MOST_COMPLAINT: usize = 3;
 
 /// A form on top of the panes, as high as it needs to be, at the bottom of the area it is drawn on.
 pub struct FormPane<'a> {
-    /// Its state.
     pub form: &'a Form,
-    /// Colours.
     pub theme: &'a Theme,
 }
 
-/// One line of a form.
 enum Line<'a> {
     Field(usize, &'a Field),
     Text(String, Role),

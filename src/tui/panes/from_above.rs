@@ -57,7 +57,6 @@ const LARGE_SWING: f64 = 4.0;
 const ROWS_A_LINE: u16 = 5;
 const MOST_LINES: u16 = 3;
 
-/// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
     id: Pane::FROM_ABOVE,
     title: "from above",
@@ -78,17 +77,13 @@ pub const ROW: PaneRow = PaneRow {
     keys: ZOOM_KEYS,
 };
 
-/// The view from above on a run.
 pub struct FromAbove<'a> {
-    /// The run.
     pub run: &'a LiveRun,
     /// The run before, faint under it.
     pub ghost: Option<&'a Ghost>,
     /// The run that was pinned as the reference, unless it is the present one.
     pub pinned: Option<&'a Ghost>,
-    /// The measured data beside the run.
     pub measured: Option<&'a Beside>,
-    /// How it is looked at.
     pub view: &'a View,
     /// The latest reading of the run, if it is read at all: by it the path is recent or old.
     pub reading: Option<&'a Reading>,
@@ -180,7 +175,6 @@ impl FromAbove<'_> {
         (is_steady && is_on_axle(&at) && place.norm() > 0.0).then_some(place)
     }
 
-    /// The ages of the path where a metre is `across` dots.
     fn ages(&self, across: f64) -> Ages {
         let ages = self.reading.map(|reading| Ages::of(&reading.readouts));
         let turn_dots = TAU * self.run.path().radius() * across;
@@ -344,7 +338,6 @@ fn upright((x, y): (u16, u16), up: f64, picture: Rect) -> ((u16, u16), &'static 
 
 /// From metres to dots and cells.
 struct Plan {
-    /// What is in the middle of the picture, m.
     middle: Vector2<f64>,
     width: f64,
     height: f64,
@@ -387,7 +380,6 @@ impl Plan {
         )
     }
 
-    /// Whether this place is in the picture.
     fn shows(&self, x: f64, y: f64) -> bool {
         let (column, row) = self.dot(x, y);
         (0.0..self.width).contains(&column) && (0.0..self.height).contains(&row)

@@ -20,20 +20,16 @@ const NAMES: usize = 2;
 const GAP: usize = 2;
 /// A text that would have fewer columns than this begins right after its key, not in a column of its own.
 const LEAST_TEXT: usize = 40;
-/// What marks the selected entry.
 const SELECTED: &str = "►";
 
-/// Keys and words.
 pub struct Help<'a> {
     /// What is searched for; empty: every entry is shown.
     pub search: &'a str,
     /// The number of the selected entry among those found.
     pub selected: usize,
-    /// Colours.
     pub theme: &'a Theme,
 }
 
-/// The entry that is selected in the help of `lab`, if any is found.
 fn selected(lab: &Lab) -> Option<Entry> {
     let found = found(lab.on_top().help().text());
     found.get(lab.on_top().help().selected()).copied()

@@ -13,7 +13,6 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
-/// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
     id: Pane::LESSON,
     title: "lesson",
@@ -96,10 +95,8 @@ pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
     lab.scroll_sheet(scrolled_by(direction, shown), first, shown, all);
 }
 
-/// A sheet in lines.
 struct Page {
     lines: Vec<Line>,
-    /// The first line that is shown.
     first: usize,
 }
 

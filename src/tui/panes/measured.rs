@@ -12,12 +12,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use std::path::Path;
 
-/// The separator between two parts of the line.
 const SEPARATOR: &str = " · ";
 /// The fewest columns to which a file's name is shortened.
 const LEAST_NAME: usize = 12;
 
-/// Draws the line about the data in `lab`, if there are any.
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let Some(beside) = lab.player().measured() else {
         return;

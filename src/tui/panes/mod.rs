@@ -35,7 +35,6 @@ use std::borrow::Cow;
 /// A row of the table of panes: what the layout, the focus, the footer and the help need to know.
 #[derive(Debug)]
 pub struct PaneRow {
-    /// Its id.
     pub id: Pane,
     /// Its title, in its frame and over its keys in the help; the pane may add words to it.
     pub title: &'static str,
@@ -45,7 +44,6 @@ pub struct PaneRow {
     pub rank: u8,
     /// The fewest columns with which it stands beside others, and the fewest rows with which it shares a column.
     pub least: (u16, u16),
-    /// Draws it.
     pub draw: fn(&Lab, Rect, &mut Buffer),
     /// The keys that are its own while it has the focus; they go before the keys of the lab.
     pub keys: &'static [Binding],
@@ -103,12 +101,10 @@ const _: () = {
     }
 };
 
-/// The row of `pane`.
 pub fn row(pane: Pane) -> Option<&'static PaneRow> {
     PANES.iter().find(|row| row.id == pane)
 }
 
-/// The keys that `pane` adds while it has the focus.
 pub fn keys(pane: Pane) -> &'static [Binding] {
     row(pane).map_or(&[], |row| row.keys)
 }

@@ -40,7 +40,6 @@ const BELOW: &str = "▼";
 /// From this height on there is room for the readouts to watch, below the values.
 const WATCHED_FROM: usize = 8;
 
-/// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
     id: Pane::PARAMETERS,
     title: "parameters",
@@ -67,19 +66,14 @@ const KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::Char('/')], Action::FindValue, "find", "find a value by a part of its name; Esc shows all again"),
 ];
 
-/// The values of a scenario and of its run.
 pub struct Parameters<'a> {
-    /// The scenario.
     pub scenario: &'a Scenario,
     /// Gravity, scheme and time step as they are now: edits may have changed them.
     pub motion: &'a Motion,
-    /// The latest reading of its run.
     pub reading: &'a Reading,
-    /// The values that can be edited.
     pub list: &'a ValueList,
     /// Whether a part of a name is being typed, to find a value.
     pub is_searched: bool,
-    /// How it is looked at.
     pub view: &'a View,
 }
 

@@ -35,7 +35,6 @@ const ASIDE: u8 = 10;
 /// A point of the rim with this number or a larger one is named by its number alone, since there is no room for more.
 const SHORT: usize = 1000;
 
-/// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
     id: Pane::STEP,
     title: "step",
@@ -59,9 +58,7 @@ const KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::PageUp], Action::Move(Direction::PageUp), "", "ten points fewer"),
 ];
 
-/// The time step at which the run of a lab stands.
 pub struct StepPane<'a> {
-    /// The lab.
     pub lab: &'a Lab,
 }
 
@@ -129,7 +126,6 @@ impl StepPane<'_> {
     }
 }
 
-/// The page of one phase.
 struct PhasePage<'a> {
     explained: &'a Explained,
     phase: &'a Phase,

@@ -54,7 +54,6 @@ const ROWS_A_LINE: u16 = 5;
 /// Straight pieces of which a circle is drawn.
 const PARTS: usize = 72;
 
-/// Its row in the table of panes.
 pub const ROW: PaneRow = PaneRow {
     id: Pane::THREE_D,
     title: "3-D",
@@ -75,24 +74,19 @@ pub const ROW: PaneRow = PaneRow {
     keys: ZOOM_KEYS,
 };
 
-/// The scene in space.
 pub struct ThreeD<'a> {
-    /// The run.
     pub run: &'a LiveRun,
-    /// How it is looked at.
     pub view: &'a View,
     /// The latest reading of the run, if it is read at all. The scene and the age of the path are those of its time: a
     /// turning wheel changes most of the picture, which would load a slow line in every frame.
     pub reading: Option<&'a Reading>,
     /// The time step that the step pane takes apart: the scene shows what its page is about.
     pub explained: Option<&'a Explained>,
-    /// The run before.
     pub ghost: Option<&'a Ghost>,
     /// The run that was pinned as the reference, unless it is the present one.
     pub pinned: Option<&'a Ghost>,
 }
 
-/// A letter at a place.
 type Label = (&'static str, Role, Vector3<f64>);
 
 impl Widget for ThreeD<'_> {
@@ -178,7 +172,6 @@ struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    /// What `pane` draws.
     fn of(pane: &ThreeD<'a>) -> Self {
         let run = pane.run;
         let mechanics = &run.scenario().body.mechanics;

@@ -12,19 +12,14 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// Time that the run has not reached.
 const AHEAD: &str = "·";
-/// Time that the run has reached.
 const REACHED: &str = "─";
-/// Time in which a push acts.
 const PUSH: &str = "═";
-/// An edit.
 const EDIT: &str = ":";
 /// The scenario's end, where the run has gone on beyond it.
 const END: &str = "│";
 /// How far the pinned run has been.
 const PINNED: &str = "┤";
-/// Where the run stands.
 const NOW: &str = "█";
 /// The label of the pinned run's sign, and the fewest columns of a line that has it.
 const LEGEND: &str = "┤ pinned  ";
@@ -32,7 +27,6 @@ const LEGEND_FROM: u16 = 60;
 /// Fewest columns of a line that is worth drawing.
 const LEAST: u16 = 16;
 
-/// The times of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timeline {
     /// Where the scenario's run ends, s.
@@ -43,12 +37,10 @@ pub struct Timeline {
     pub furthest_s: f64,
     /// How far the pinned run has been, s; `None` where none is pinned.
     pub pinned_s: Option<f64>,
-    /// Its pushes and edits.
     pub marks: Marks,
 }
 
 impl Timeline {
-    /// The times of the run in `lab`.
     pub fn of(lab: &Lab) -> Self {
         let run = lab.player().run();
         let (scenario, furthest) = (run.scenario(), run.furthest());
@@ -139,7 +131,6 @@ impl Timeline {
     }
 }
 
-/// Draws the timeline of `lab` on the line `area`.
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let timeline = Timeline::of(lab);
     let Some(line) = timeline.line(area) else {

@@ -8,23 +8,18 @@ use crate::lab::view::Pane;
 use crate::tui::keymap::{BINDINGS, Binding};
 use crate::tui::panes::PANES;
 
-/// A line of the help.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
     /// The heading under which it stands.
     pub group: &'static str,
     /// The pane whose key it is; `None` for a key that every pane has, and for a word.
     pub pane: Option<Pane>,
-    /// The key or the word.
     pub what: What,
 }
 
-/// A key or a word.
 #[derive(Clone, Copy, Debug)]
 pub enum What {
-    /// A key, or several that mean the same.
     Key(&'static Binding),
-    /// A word of the glossary and its meaning.
     Word(&'static Word),
 }
 
@@ -48,7 +43,6 @@ const PLACES: [(Mode, &str); 5] = [
 const WORDS: &str = "words";
 
 impl Entry {
-    /// The keys, or the word.
     pub fn name(&self) -> String {
         match self.what {
             What::Key(binding) => {
@@ -59,7 +53,6 @@ impl Entry {
         }
     }
 
-    /// What it does, or means.
     pub fn text(&self) -> &'static str {
         match self.what {
             What::Key(binding) => binding.help,

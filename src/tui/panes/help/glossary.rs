@@ -1,6 +1,5 @@
 //! The words that the lab uses, each in one sentence.
 
-/// A word and its meaning.
 pub(super) type Word = (&'static str, &'static str);
 
 /// Every word, those of the motion first, then those of the numbers and of the screen.

@@ -28,7 +28,6 @@ pub(super) fn fewer_digits(text: &str, room: usize) -> Cow<'_, str> {
     fitting.find(is_told).map_or(text.into(), Cow::from)
 }
 
-/// Whether `told` is `number` to within a thousandth of it.
 fn near(told: f64, number: f64) -> bool {
     (told - number).abs() <= 1e-3 * number.abs()
 }

@@ -24,7 +24,6 @@ const LEAST_SEEN: i32 = 3;
 
 const DIGITS_OF_TURNS: usize = 5;
 
-/// How numbers are written on a page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Format {
     /// Columns of a number, with a space before it.

@@ -28,12 +28,10 @@ pub struct Section {
 }
 
 impl Line {
-    /// A line of `text` at `column`.
     pub fn of(column: usize, text: impl Into<String>, role: Role) -> Self {
         Self::default().and(column, text, role)
     }
 
-    /// The same with `text` at `column`.
     pub fn and(mut self, column: usize, text: impl Into<String>, role: Role) -> Self {
         self.pieces.push((column, text.into(), role));
         self
@@ -55,7 +53,6 @@ impl Section {
         }
     }
 
-    /// A section of one line.
     pub fn line(rank: u8, line: Line) -> Self {
         Self {
             rank,
@@ -73,7 +70,6 @@ impl Section {
     }
 }
 
-/// How many lines `sections` have.
 pub fn height(sections: &[Section]) -> usize {
     sections.iter().map(|section| section.lines.len()).sum()
 }
@@ -100,7 +96,6 @@ pub fn spread(sections: &mut [Section], room: usize) {
     }
 }
 
-/// Draws `sections` one under the other on `area`.
 pub fn draw(sections: &[Section], area: Rect, theme: &Theme, buf: &mut Buffer) {
     let lines = sections.iter().flat_map(|section| &section.lines);
     for (line, y) in lines.zip(0..area.height) {

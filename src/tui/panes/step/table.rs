@@ -21,15 +21,11 @@ const FEW: usize = 3;
 /// Rows of a table that are kept where there is little room.
 const LEAST_ROWS: usize = 4;
 
-/// A table as it is drawn.
 pub struct TableView<'a> {
-    /// The table.
     pub table: &'a Table,
     /// How many of its rows are added up, and the sum of each column over them; `None`: no sum is wanted.
     pub sum: Option<(usize, Vec<f64>)>,
-    /// The names of the body's points.
     pub name: &'a dyn Fn(usize) -> String,
-    /// Columns of the screen.
     pub width: usize,
 }
 

@@ -37,7 +37,6 @@ const LEAST_SEEN: f64 = 0.25;
 /// A displacement shorter than this part of the arm is rounding error.
 const ROUNDING: f64 = 1e-12;
 
-/// Draws the page for the step at which the run of `lab` stands.
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let Some(explained) = lab.player().explained() else {
         return;
@@ -73,7 +72,6 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     dip(dip_and_arm, is_seen, view, right, buf);
 }
 
-/// What the axle does under the forces of the step, and why.
 fn reason(explained: &Explained) -> &'static str {
     let Some(part) = explained.workings.parts.last() else {
         return NONE;

@@ -1,9 +1,7 @@
 //! The words about each phase of a time step, for every scheme.
 
-/// The words about a phase.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Words {
-    /// The phase's name, as its scheme has it.
     pub name: &'static str,
     /// What happens in it, in one sentence.
     pub happens: &'static str,
@@ -35,7 +33,6 @@ const fn words(
     }
 }
 
-/// Every phase.
 #[rustfmt::skip]
 const TABLE: &[Words] = &[
     words("inertia", "How the masses lie about the pivot, added up point by point.", "nothing yet; gives I", "the body before the step (°)"),
@@ -59,7 +56,6 @@ const TABLE: &[Words] = &[
     words("Taylor series", "Orientation and momentum at the time t, from a series that is exact to the last digits.", "how the body stands, and L", "the body before (°) and after"),
 ];
 
-/// The words about the phase called `name`.
 pub fn of(name: &str) -> &'static Words {
     TABLE.iter().find(|row| row.name == name).unwrap_or(&OTHER)
 }

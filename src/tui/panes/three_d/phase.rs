@@ -16,7 +16,6 @@ const AXIS: f64 = 1.0;
 /// Directions that differ by less than this, rad, are drawn as one.
 const SEEN: f64 = 0.03;
 
-/// The phase that the step pane is at.
 #[derive(Clone, Copy)]
 pub struct Shown<'a> {
     explained: &'a Explained,

@@ -16,7 +16,6 @@ pub struct Shape {
     pub corners: Vec<(f64, f64)>,
     /// The free points that have a mass.
     pub free: Vec<Vector3<f64>>,
-    /// The solid parts.
     pub solids: Vec<Solid>,
 }
 

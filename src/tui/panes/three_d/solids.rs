@@ -8,7 +8,6 @@ use crate::tui::scene::{Scene, Stroke};
 use crate::tui::theme::Role;
 use nalgebra::Vector3;
 
-/// Parts that are drawn at most.
 const MOST_PARTS: usize = 60;
 /// A line is near or far where it is nearer or farther than the part's centre by this share of the part's size.
 const NEAR: f64 = 0.33;
@@ -24,7 +23,6 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// Those of `parts` that are drawn.
     pub fn of(parts: &[Part]) -> Vec<Self> {
         let solid = |part: &Part| {
             let lines = outline::lines(part);

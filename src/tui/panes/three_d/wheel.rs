@@ -90,7 +90,6 @@ impl Subject<'_> {
         signs.chain(hub).collect()
     }
 
-    /// The masses where they were at `state`.
     pub(super) fn masses_before(&self, state: &State, scene: &Scene) -> Vec<Sign> {
         let masses = self.places_of_masses(state, scene);
         let sign = |at: &Vector3<f64>| ("°", Role::Ghost, scene.cell(at));
