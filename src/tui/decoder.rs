@@ -5,7 +5,7 @@
 //! the focus and the like, and older ones of the mouse, are recognised and ignored, so that they are not taken for keys.
 
 use crate::tui::keymap::Key;
-use crate::tui::mouse::event::{Did, Mouse};
+use crate::tui::mouse::{Did, Mouse};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 

@@ -19,15 +19,46 @@ pub enum Ink {
     Ghost,
 }
 
+/// Dots that are drawn, and out of how many: dashes and dots tell the runs apart without colours.
+pub type Dashes = (usize, usize);
+
+/// The exact motion.
+pub const EXACT: Dashes = (2, 4);
+/// The pinned run: long dashes.
+pub const PINNED: Dashes = (5, 7);
+const DOTTED: Dashes = (1, 3);
+const LARGE_DOTTED: Dashes = (1, 2);
+
+/// The run before an edit: single dots, closer where the dots of `marker` are as large as cells.
+pub fn of_run_before(marker: Marker) -> Dashes {
+    match marker {
+        Marker::Braille => DOTTED,
+        _ => LARGE_DOTTED,
+    }
+}
+
+/// The dots of a straight line, each with its share of the way; none of a line that is far longer than a sheet of
+/// `width` and `height` dots.
+pub fn line(
+    from: (f64, f64),
+    to: (f64, f64),
+    (width, height): (usize, usize),
+) -> impl Iterator<Item = (f64, (f64, f64))> {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let length = dx.abs().max(dy.abs()).ceil();
+    let is_near = length <= 8.0 * (width + height) as f64; // NaN is not
+    let dots = if is_near { length as usize + 1 } else { 0 };
+    (0..dots).map(move |dot| {
+        let share = dot as f64 / length.max(1.0);
+        (share, (from.0 + share * dx, from.1 + share * dy))
+    })
+}
+
+/// The dots of a cell in each layer, strong, faint, under and ghost.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
-    strong: u8,
-    faint: u8,
-    under: u8,
-    ghost: u8,
-    strong_role: Role,
-    faint_role: Role,
-    under_role: Role,
+    bits: [u8; 4],
+    roles: [Role; 4],
 }
 
 /// Dots on an area of cells; columns and rows are counted from the upper left.
@@ -62,78 +93,69 @@ impl Dots {
         self.area.height as usize * self.marker.dots().1
     }
 
+    /// The cell of the dot at column `x`, row `y`, and the dot's bit in it.
+    fn cell(&mut self, x: usize, y: usize) -> Option<(&mut Cell, u8)> {
+        let (across, down) = self.marker.dots();
+        let cell = y / down * self.area.width as usize + x / across;
+        let bit = self.marker.bit(x % across, y % down);
+        self.cells.get_mut(cell).map(|cell| (cell, bit))
+    }
+
     /// Sets the dot at column `x`, row `y`; outside the sheet nothing happens.
     pub fn set(&mut self, x: f64, y: f64, ink: Ink) {
         let inside = x >= 0.0 && y >= 0.0 && x < self.width() as f64 && y < self.height() as f64;
-        if !inside {
-            return; // so is NaN
-        }
-        let (x, y) = (x as usize, y as usize);
-        let (across, down) = self.marker.dots();
-        let bit = self.marker.bit(x % across, y % down);
-        let cell = &mut self.cells[y / down * self.area.width as usize + x / across];
-        match ink {
-            Ink::Strong(role) => {
-                cell.strong |= bit;
-                cell.strong_role = role;
-            }
-            Ink::Faint(role) => {
-                cell.faint |= bit;
-                cell.faint_role = role;
-            }
-            Ink::Under(role) => {
-                cell.under |= bit;
-                cell.under_role = role;
-            }
-            Ink::Ghost => cell.ghost |= bit,
+        let (layer, role) = match ink {
+            Ink::Strong(role) => (0, role),
+            Ink::Faint(role) => (1, role),
+            Ink::Under(role) => (2, role),
+            Ink::Ghost => (3, Role::Ghost),
+        };
+        // NaN is outside.
+        if inside && let Some((cell, bit)) = self.cell(x as usize, y as usize) {
+            cell.bits[layer] |= bit;
+            cell.roles[layer] = role;
         }
     }
 
     /// Takes the dot at column `x`, row `y` away, of whatever layer.
     pub fn clear(&mut self, x: usize, y: usize) {
-        let (across, down) = self.marker.dots();
-        let kept = !self.marker.bit(x % across, y % down);
-        if let Some(cell) = self
-            .cells
-            .get_mut(y / down * self.area.width as usize + x / across)
-        {
-            cell.strong &= kept;
-            cell.faint &= kept;
-            cell.under &= kept;
-            cell.ghost &= kept;
+        if let Some((cell, bit)) = self.cell(x, y) {
+            cell.bits = cell.bits.map(|bits| bits & !bit);
         }
     }
 
     /// Takes all dots of a cell away, in which the dot at column `x`, row `y` is.
     pub fn clear_cell(&mut self, x: usize, y: usize) {
-        let (across, down) = self.marker.dots();
-        let cell = y / down * self.area.width as usize + x / across;
-        if let Some(cell) = self.cells.get_mut(cell) {
+        if let Some((cell, _)) = self.cell(x, y) {
             *cell = Cell::default();
         }
     }
 
-    pub fn marker(&self) -> Marker {
-        self.marker
-    }
-
     pub fn line(&mut self, from: (f64, f64), to: (f64, f64), ink: Ink) {
-        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-        let length = dx.abs().max(dy.abs()).ceil();
-        let longest = 4.0 * (self.width() + self.height()) as f64;
-        if length.is_nan() || length > longest {
-            return; // nowhere near the sheet
-        }
-        for dot in 0..=length as usize {
-            let share = if length > 0.0 {
-                dot as f64 / length
-            } else {
-                0.0
-            };
-            self.set(from.0 + share * dx, from.1 + share * dy, ink);
+        let size = (self.width(), self.height());
+        for (_, (x, y)) in line(from, to, size) {
+            self.set(x, y, ink);
         }
     }
 
+    /// Sets, of the dots that `path` goes through one after the other, the first `drawn` of every `out_of`.
+    pub fn dashed(
+        &mut self,
+        path: impl Iterator<Item = (f64, f64)>,
+        (drawn, out_of): Dashes,
+        ink: Ink,
+    ) {
+        let (mut passed, mut last) = (0, None);
+        for (x, y) in path {
+            let dot = (x.floor(), y.floor());
+            passed += usize::from(last.replace(dot) != Some(dot));
+            if passed % out_of < drawn {
+                self.set(x, y, ink);
+            }
+        }
+    }
+
+    /// Sets every dot of column `x` from row `top` to row `bottom`.
     pub fn column(&mut self, x: usize, top: usize, bottom: usize, ink: Ink) {
         for y in top..=bottom.min(self.height().saturating_sub(1)) {
             self.set(x as f64, y as f64, ink);
@@ -143,16 +165,17 @@ impl Dots {
     /// Draws the dots on the screen; cells without dots are left as they are.
     pub fn render(&self, theme: &Theme, buf: &mut Buffer) {
         for (cell, position) in self.cells.iter().zip(self.area.positions()) {
-            let (symbol, role) = match (cell.strong, cell.faint, cell.under, cell.ghost) {
-                (0, 0, 0, 0) => continue,
-                (0, 0, 0, ghost) => (self.marker.ghost(ghost), Role::Ghost),
-                (0, 0, under, _) => (self.marker.faint(under), cell.under_role),
-                (0, faint, ..) => (self.marker.faint(faint), cell.faint_role),
-                // The exact motion is dashed: where it coincides with the run, the run is seen between its dashes.
-                (_, faint, ..) if faint != 0 && cell.faint_role == Role::Exact => {
-                    (self.marker.faint(faint), cell.faint_role)
-                }
-                (strong, ..) => (self.marker.strong(strong), cell.strong_role),
+            let Some(uppermost) = cell.bits.iter().position(|bits| *bits != 0) else {
+                continue;
+            };
+            // The exact motion is dashed: where it coincides with the run, the run is seen between its dashes.
+            let is_exact = cell.bits[1] != 0 && cell.roles[1] == Role::Exact;
+            let layer = if is_exact { 1 } else { uppermost };
+            let (bits, role) = (cell.bits[layer], cell.roles[layer]);
+            let symbol = match layer {
+                0 => self.marker.strong(bits),
+                1 | 2 => self.marker.faint(bits),
+                _ => self.marker.ghost(bits),
             };
             if let Some(target) = buf.cell_mut(position) {
                 target.set_char(symbol).set_style(theme.style(role));

@@ -4,12 +4,8 @@
 //! 3-D view stand side by side, from 120 columns on that too. On smaller screens there are fewer, and the hint line says
 //! so.
 
-mod below;
-mod page;
-
 use super::panes::{PANES, PaneRow, Width};
 use crate::lab::view::{Pane, Part, View};
-pub use below::Said;
 use ratatui::layout::Rect;
 
 /// The width the whole lab wants.
@@ -20,13 +16,52 @@ const TWO_FROM: u16 = 52;
 const ONE_LINE_FROM: u16 = 140;
 /// The fewest columns of a pane beside the step pane.
 const BESIDE_STEP: u16 = 24;
+/// From this width on a page of a lesson stands beside a pane.
+const BESIDE_PAGE_FROM: u16 = 72;
+/// The fewest and the most columns of a page, and its share of the screen, %.
+const PAGE: (u16, u16) = (38, 64);
+const PAGE_SHARE: usize = 48;
 /// The height the whole lab wants.
 const HEIGHT: u16 = 24;
 /// From this height on a hint may have two lines.
 const TWO_LINES_FROM: u16 = 18;
+/// On lower screens the lines below the panes leave at least these rows to the panes, and a hint has at most this many lines.
+const ROWS_OF_PANES: u16 = 6;
+const MOST_LINES: u16 = 3;
+
+/// What the lines below the panes have to say: what there is to see, and whether the numbers are to be believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Said {
+    /// Lines of the hint on a screen of this width.
+    pub lines: u16,
+    /// Whether the numbers' health warns of something.
+    pub warns: bool,
+}
+
+/// The first `height` rows of `area`, and the others.
+pub fn split_rows(area: Rect, height: u16) -> [Rect; 2] {
+    let height = height.min(area.height);
+    let below = Rect {
+        y: area.y + height,
+        height: area.height - height,
+        ..area
+    };
+    [Rect { height, ..area }, below]
+}
+
+/// The first `width` columns of `area`, and the others.
+pub fn split_columns(area: Rect, width: u16) -> [Rect; 2] {
+    let width = width.min(area.width);
+    let right = Rect {
+        x: area.x + width,
+        width: area.width - width,
+        ..area
+    };
+    [Rect { width, ..area }, right]
+}
 
 /// Where everything stands; what has no place has an empty area.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Layout {
     pub title: Rect,
     /// The panes that have a place, from left to right.
@@ -56,25 +91,30 @@ impl Layout {
     /// The same, with room for what is to be said: on a low screen a hint that is too long for one line has more, and the
     /// line about the numbers' health only where that warns.
     pub fn saying(said: Said, area: Rect, view: &View, keys: bool) -> Self {
-        if view.bare {
-            return Self::bare(area, view);
-        }
         let mut rest = area;
-        let title = cut(&mut rest, area.height >= 3, false);
-        let keys = cut(&mut rest, keys && area.height >= 7, true);
-        let hint = cut(&mut rest, area.height >= 6, true);
+        let title = cut_top(&mut rest, area.height >= 3);
+        if view.bare {
+            // A message has the last line, over the panes.
+            return Self {
+                title,
+                panes: panes(rest, view),
+                hint: cut_bottom(&mut rest, area.height >= 6),
+                ..Self::default()
+            };
+        }
+        let keys = cut_bottom(&mut rest, keys && area.height >= 7);
+        let hint = cut_bottom(&mut rest, area.height >= 6);
         let (lines, has_health) = if area.height >= TWO_LINES_FROM {
             (1 + u16::from(area.width < ONE_LINE_FROM), true)
         } else {
-            below::on_low_screen(said, area.height, view.hides(Part::Health))
+            on_low_screen(said, area.height, view.hides(Part::Health))
         };
-        let hint = (1..lines).fold(hint, |hint, _| hint.union(cut(&mut rest, true, true)));
-        let health = cut(&mut rest, has_health, true);
+        let hint = (1..lines).fold(hint, |hint, _| hint.union(cut_bottom(&mut rest, true)));
+        let health = cut_bottom(&mut rest, has_health);
         // The values have all the lines where they fill a screen that has no more than they need.
         let is_full = area.height == HEIGHT && view.is_filled_by(Pane::PARAMETERS);
-        let timeline = cut(&mut rest, area.height >= HEIGHT && !is_full, true);
-        let measured = cut(&mut rest, view.measured && area.height >= 8, true);
-        let is_cramped = area.width < WIDTH || area.height < HEIGHT;
+        let timeline = cut_bottom(&mut rest, area.height >= HEIGHT && !is_full);
+        let measured = cut_bottom(&mut rest, view.measured && area.height >= 8);
         Self {
             title,
             panes: panes(rest, view),
@@ -83,25 +123,7 @@ impl Layout {
             health,
             hint,
             keys,
-            is_cramped,
-        }
-    }
-
-    /// The layout of a bare screen: the title and the panes. A message has the last line, over the panes.
-    fn bare(area: Rect, view: &View) -> Self {
-        let mut rest = area;
-        let title = cut(&mut rest, area.height >= 3, false);
-        let hint = cut(&mut rest.clone(), area.height >= 6, true);
-        let none = Rect { height: 0, ..hint };
-        Self {
-            title,
-            panes: panes(rest, view),
-            timeline: none,
-            measured: none,
-            health: none,
-            hint,
-            keys: none,
-            is_cramped: false,
+            is_cramped: area.width < WIDTH || area.height < HEIGHT,
         }
     }
 
@@ -116,23 +138,37 @@ impl Layout {
     }
 }
 
-/// Takes a line off `rest`, at its bottom or its top, if it is `wanted`.
-fn cut(rest: &mut Rect, wanted: bool, bottom: bool) -> Rect {
-    let height = u16::from(wanted && rest.height > 0);
-    rest.height -= height;
-    let y = if bottom { rest.y + rest.height } else { rest.y };
-    if !bottom {
-        rest.y += height;
-    }
-    Rect { y, height, ..*rest }
+/// Lines of the hint on a screen of this `height` that is low, and whether the health of the numbers has a line.
+fn on_low_screen(said: Said, height: u16, hides_health: bool) -> (u16, bool) {
+    let below = height.saturating_sub(2 + ROWS_OF_PANES);
+    let lines = below.saturating_sub(said.warns.into());
+    let lines = lines.min(MOST_LINES).min(said.lines).max(1);
+    let has_health = said.warns || lines == 1;
+    (lines, height >= 9 && has_health && !hides_health)
+}
+
+/// Takes the first line off `rest` if it is `wanted`.
+fn cut_top(rest: &mut Rect, wanted: bool) -> Rect {
+    let [line, below] = split_rows(*rest, wanted.into());
+    *rest = below;
+    line
+}
+
+/// Takes the last line off `rest` if it is `wanted`.
+fn cut_bottom(rest: &mut Rect, wanted: bool) -> Rect {
+    let [above, line] = split_rows(*rest, rest.height.saturating_sub(wanted.into()));
+    *rest = above;
+    line
 }
 
 fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     if area.is_empty() {
         return Vec::new();
     }
-    if let Some((page, rest)) = page::beside(area, view) {
-        let mut panes = panes(rest, &page::without(view));
+    if !view.filled && view.may_show(Pane::LESSON) && area.width >= BESIDE_PAGE_FROM {
+        let share = area.width as usize * PAGE_SHARE / 100;
+        let [page, rest] = split_columns(area, (share as u16).clamp(PAGE.0, PAGE.1));
+        let mut panes = panes(rest, &beside_page(view));
         panes.insert(0, (Pane::LESSON, page));
         return panes;
     }
@@ -150,6 +186,19 @@ fn panes(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     }
 }
 
+/// The view of the panes beside a lesson's page. If there is room for only one, it is the one that was there before the
+/// page had the focus.
+fn beside_page(view: &View) -> View {
+    let mut view = view.clone();
+    view.sheet = None;
+    if view.focus == Pane::LESSON {
+        let beside = view.beside.filter(|pane| view.may_show(*pane));
+        let first = view.to_show().first().copied();
+        view.focus = beside.or(first).unwrap_or(Pane::TRACES);
+    }
+    view
+}
+
 /// The panes that are shown without being asked for: all but the page of a lesson and the step pane.
 fn usual() -> impl Iterator<Item = &'static PaneRow> {
     let extra = [Pane::LESSON, Pane::STEP];
@@ -159,16 +208,11 @@ fn usual() -> impl Iterator<Item = &'static PaneRow> {
 /// The panes that have room beside each other on `width` columns, in the table's order: by their ranks, up to the first
 /// that has none.
 fn joined(width: u16) -> Vec<&'static PaneRow> {
-    let mut ranked: Vec<_> = usual().collect();
-    ranked.sort_by_key(|row| row.rank);
-    let mut taken = 0;
-    let has_room = |row: &&PaneRow| {
-        taken += row.least.0;
-        taken <= width
+    let needed = |row: &PaneRow| -> u16 {
+        let before = usual().filter(|other| other.rank <= row.rank);
+        before.map(|other| other.least.0).sum()
     };
-    let last = ranked.iter().copied().take_while(has_room).count();
-    let is_joined = |row: &&PaneRow| ranked[..last].iter().any(|other| other.id == row.id);
-    usual().filter(is_joined).collect()
+    usual().filter(|row| needed(row) <= width).collect()
 }
 
 /// The pane of the first rank, and beside it the one in focus or else that of the second rank.
@@ -178,15 +222,7 @@ fn halves(area: Rect, focus: Pane) -> Vec<(Pane, Rect)> {
         return vec![(focus, area)];
     };
     let second = if focus == first.id { second.id } else { focus };
-    let left = Rect {
-        width: area.width - area.width / 2,
-        ..area
-    };
-    let right = Rect {
-        x: left.right(),
-        width: area.width / 2,
-        ..area
-    };
+    let [left, right] = split_columns(area, area.width - area.width / 2);
     vec![(first.id, left), (second, right)]
 }
 
@@ -194,134 +230,102 @@ fn halves(area: Rect, focus: Pane) -> Vec<(Pane, Rect)> {
 fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
     // What stands side by side with all others on a screen of the least width that the whole lab wants.
     let joined = joined(area.width.max(WIDTH));
-    let is_named = |row: &&PaneRow| view.shown.contains(&row.id);
-    let has_room = |row: &&PaneRow| joined.iter().any(|other| other.id == row.id);
-    let is_chosen = |row: &&PaneRow| view.may_show(row.id) && (is_named(row) || has_room(row));
+    let has_room = |row: &PaneRow| joined.iter().any(|other| other.id == row.id);
+    let is_chosen =
+        |row: &&PaneRow| view.may_show(row.id) && (view.shown.contains(&row.id) || has_room(row));
     let mut panes: Vec<_> = usual().filter(is_chosen).collect();
-    if area.width < WIDTH {
-        let rest = panes.iter().skip(1).copied();
-        let second = rest
-            .clone()
-            .find(|row| row.id == view.focus)
-            .or_else(|| rest.clone().next());
-        panes.truncate(1);
-        panes.extend(second);
-    }
-    let Some((_, others)) = panes.split_first() else {
+    if panes.is_empty() {
         return Vec::new();
-    };
+    }
+    if area.width < WIDTH {
+        panes[1..].sort_by_key(|row| row.id != view.focus);
+        panes.truncate(2);
+    }
     let share = area.width / panes.len() as u16;
-    let round = share.min(2 * area.height);
-    let width = |row: &&PaneRow| match row.width {
-        Width::Fixed => share.min(row.least.0),
-        Width::Wide => share,
-        Width::Round => round,
-    };
-    let mut widths: Vec<_> = others.iter().map(width).collect();
-    widths.insert(0, area.width - widths.iter().sum::<u16>()); // the first has what the others leave
-    beside(area, &panes, &widths)
+    side_by_side(area, &panes, share, 0)
 }
 
 /// The step pane at the right, as wide as its numbers are, and beside it as many of the other panes that were chosen as
 /// have room; where none has, the one in focus.
 fn with_step(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
-    let rows = || {
-        let rows = PANES.iter().filter(|row| row.id != Pane::LESSON);
-        rows.filter(|row| view.may_show(row.id))
-    };
-    let Some(step) = rows().find(|row| row.id == Pane::STEP) else {
+    let is_chosen = |row: &&PaneRow| row.id != Pane::LESSON && view.may_show(row.id);
+    let mut panes: Vec<_> = PANES.iter().filter(is_chosen).collect();
+    let Some(step) = panes.iter().position(|row| row.id == Pane::STEP) else {
         return Vec::new();
     };
-    let room = area.width.saturating_sub(step.least.0) / BESIDE_STEP;
-    let mut others: Vec<_> = rows().filter(|row| row.id != Pane::STEP).collect();
+    let least = panes.remove(step).least.0;
+    let room = area.width.saturating_sub(least) / BESIDE_STEP;
     if room == 0 && view.focus != Pane::STEP {
         return vec![(view.focus, area)];
     }
-    others.sort_by_key(|row| row.id != view.focus);
-    others.truncate(room.into());
-    let is_kept = |row: &&PaneRow| others.iter().any(|other| other.id == row.id);
-    let panes: Vec<_> = rows()
-        .filter(|row| row.id == Pane::STEP || is_kept(row))
-        .collect();
+    panes.sort_by_key(|row| row.id != view.focus);
+    panes.truncate(room.into());
+    let is_kept =
+        |row: &&PaneRow| row.id == Pane::STEP || panes.iter().any(|other| other.id == row.id);
+    let panes: Vec<_> = PANES.iter().filter(is_kept).collect();
     let count = panes.len() as u16;
-    let share = (area.width / count).max(step.least.0.min(area.width));
+    let share = (area.width / count).max(least.min(area.width));
     let each = (area.width - share) / (count - 1).max(1);
-    let width = |row: &&PaneRow| match row.width {
-        _ if row.id == Pane::STEP => 0,
-        Width::Fixed => each.min(row.least.0),
-        Width::Wide => each,
-        Width::Round => each.min(2 * area.height),
-    };
-    let mut widths: Vec<_> = panes.iter().map(width).collect();
-    let left = area.width - widths.iter().sum::<u16>(); // the step pane, the last, has what the others leave
-    if let Some(last) = widths.last_mut() {
-        *last = left;
-    }
-    beside(area, &panes, &widths)
+    side_by_side(area, &panes, each, panes.len() - 1)
 }
 
-fn beside(area: Rect, panes: &[&PaneRow], widths: &[u16]) -> Vec<(Pane, Rect)> {
-    let mut x = area.x;
-    let place = |(row, &width): (&&PaneRow, &u16)| {
-        let place = Rect { x, width, ..area };
-        x += width;
+/// `panes` side by side, each on at most `share` columns; the pane at the index `rest` has what the others leave.
+fn side_by_side(area: Rect, panes: &[&PaneRow], share: u16, rest: usize) -> Vec<(Pane, Rect)> {
+    let width = |row: &&PaneRow| match row.width {
+        Width::Fixed => share.min(row.least.0),
+        Width::Wide => share,
+        Width::Round => share.min(2 * area.height),
+    };
+    let mut widths: Vec<_> = panes.iter().map(width).collect();
+    widths[rest] = 0;
+    widths[rest] = area.width - widths.iter().sum::<u16>();
+    let mut right = area;
+    let place = |(row, width): (&&PaneRow, u16)| {
+        let [place, others] = split_columns(right, width);
+        right = others;
         (row.id, place)
     };
     panes.iter().zip(widths).map(place).collect()
 }
 
-/// All of `rows` side by side. Where the screen is high enough, the round ones stand in pairs, one above the other.
+/// All of `rows` side by side. Where the screen is high enough, two round ones stand one above the other.
 fn columns(area: Rect, rows: &[&PaneRow]) -> Vec<(Pane, Rect)> {
     let of = |width| rows.iter().filter(move |row| row.width == width);
-    let fixed: u16 = of(Width::Fixed).map(|row| row.least.0).sum();
-    let rest = area.width - fixed;
-    let rounds = of(Width::Round).count() as u16;
-    let pair: u16 = of(Width::Round).take(2).map(|row| row.least.1).sum();
-    let is_stacked = rounds > 1 && area.height >= pair;
-    let (in_a_column, widest) = if is_stacked {
-        (2, area.height * 5 / 4)
+    let (rounds, wides) = (
+        of(Width::Round).count() as u16,
+        of(Width::Wide).count() as u16,
+    );
+    let rest = area.width - of(Width::Fixed).map(|row| row.least.0).sum::<u16>();
+    let is_stacked =
+        rounds == 2 && area.height >= of(Width::Round).map(|row| row.least.1).sum::<u16>();
+    let (round_columns, widest) = if is_stacked {
+        (1, area.height * 5 / 4)
     } else {
-        (1, 2 * area.height)
+        (rounds, 2 * area.height)
     };
-    let round_columns = rounds.div_ceil(in_a_column);
-    let wides = of(Width::Wide).count() as u16;
     let round = (rest / (round_columns + wides).max(1)).min(widest);
     let wide = (rest - round * round_columns) / wides.max(1);
-    let mut x = area.x;
-    let mut rounds_before = 0;
-    let mut places = Vec::with_capacity(rows.len());
+    let mut places: Vec<(Pane, Rect)> = Vec::with_capacity(rows.len());
+    let mut right = area;
     for row in rows {
         let width = match row.width {
             Width::Wide => wide,
             Width::Round => round,
             Width::Fixed => row.least.0,
         };
-        let column = Rect { x, width, ..area };
-        if row.width != Width::Round {
+        let [column, others] = split_columns(right, width);
+        if row.width != Width::Round || !is_stacked {
             places.push((row.id, column));
-            x += width;
+            right = others;
             continue;
         }
-        rounds_before += 1;
-        let is_upper = is_stacked && rounds_before % 2 == 1 && rounds_before < rounds;
-        let is_lower = is_stacked && rounds_before % 2 == 0;
-        let upper = column.height / 2;
-        places.push((
-            row.id,
-            match (is_upper, is_lower) {
-                (true, _) => Rect {
-                    height: upper,
-                    ..column
-                },
-                (_, true) => Rect {
-                    y: column.y + upper,
-                    height: column.height - upper,
-                    ..column
-                },
-                _ => column,
-            },
-        ));
-        x += if is_upper { 0 } else { width };
+        let [upper, lower] = split_rows(column, column.height / 2);
+        if places.iter().any(|(_, place)| *place == upper) {
+            places.push((row.id, lower));
+            right = others;
+        } else {
+            places.push((row.id, upper));
+        }
     }
     places
 }

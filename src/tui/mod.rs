@@ -12,12 +12,10 @@
 //! - [`keymap`] is the one table of keys, [`press`](mod@press) carries out what a key stands for.
 //! - [`screen`] puts the panes in their places, [`panes`] draw what they borrow and change nothing; [`layout`] says which
 //!   places those are, [`theme`] and [`markers`] what colours and dots look like, [`dots`] sets the dots,
-//!   [`points`] what was measured, [`trail`] those of a path that fades, [`dashes`] of those of other runs some, [`scene`] those of lines in space.
+//!   [`points`] what was measured, [`trail`] a path that fades, [`scene`] lines in space; [`plane`] takes metres to dots and cells.
 //! - [`recorder`] draws the lab into memory.
 
 pub mod app;
-pub mod counted;
-pub mod dashes;
 pub mod decoder;
 pub mod dots;
 pub mod keyboard;
@@ -28,6 +26,7 @@ pub mod markers;
 pub mod mouse;
 pub mod pacing;
 pub mod panes;
+pub mod plane;
 pub mod points;
 pub mod press;
 pub mod recorder;

@@ -1,7 +1,5 @@
 //! The mouse: what a press, a drag or the wheel does where it points. Nothing needs it; every act has keys too.
 
-pub mod event;
-
 use super::keymap::Mode;
 use super::layout::Layout;
 use super::panes::browser;
@@ -15,7 +13,6 @@ use crate::lab::command::{Command, CursorTo, Place};
 use crate::lab::view::Pane;
 use crate::lab::{Lab, Request};
 use crate::run::Clock;
-use event::{Did, Mouse};
 use ratatui::layout::{Position, Rect};
 
 /// Degrees by which the 3-D view turns where it is dragged by a column, and by a row, which is twice as high.
@@ -23,6 +20,26 @@ const DEGREES_A_COLUMN: f64 = 3.0;
 const DEGREES_A_ROW: f64 = 6.0;
 /// Lines that one notch of the wheel moves a list by.
 const LINES: usize = 3;
+
+/// What the mouse did, and at which cell of the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mouse {
+    pub did: Did,
+    /// The column and the line, from 0.
+    pub x: u16,
+    pub y: u16,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Did {
+    /// The left button was pressed.
+    Press,
+    /// The mouse was moved with the left button held.
+    Drag,
+    Release,
+    WheelUp,
+    WheelDown,
+}
 
 /// What a held button drags.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

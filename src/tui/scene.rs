@@ -1,9 +1,12 @@
 //! Lines in space on a sheet of dots. What is nearer hides what is farther and leaves a gap beside it, so that one sees
 //! which of two crossing lines passes in front of the other.
 
+use crate::lab::view::markers::Marker;
 use crate::observe::camera::{Camera, View};
-use crate::tui::dots::{Dots, Ink};
+use crate::tui::dots::{self, Dots, Ink};
+use crate::tui::plane::Plane;
 use nalgebra::Vector3;
+use ratatui::layout::Rect;
 
 /// A line hides what is farther than it by more than this part of the scene's reach: lines that meet do not hide each other.
 const BEHIND: f64 = 0.05;
@@ -17,13 +20,8 @@ const MOST_OF_ARROW: f64 = 0.6;
 const HEAD_STROKES: i32 = 3;
 /// An arrow that is seen as short as this, dots, has no head.
 const SHORTEST: f64 = 4.0;
-/// An arrow over another one, and a rod, are nearer than what lies along them by these parts of the scene's reach.
-const OVER: f64 = 0.01;
+/// A rod is nearer than what lies along it by this part of the scene's reach.
 const IN_FRONT: f64 = 0.15;
-/// An arrow behind a rod is farther than it is by this part of the scene's reach.
-const FARTHER: f64 = 0.5;
-/// An arrow in front of everything is nearer than it is by this part of the scene's reach.
-const FRONT: f64 = 10.0;
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,17 +44,35 @@ struct Speck {
     is_parted: bool,
 }
 
+/// What an arrow is drawn over, where it is not seen as near as it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    /// What is farther.
+    Farther,
+    /// Another arrow that lies along it.
+    Arrow,
+    /// Everything but what is farther than a rod that is nearly as near.
+    BehindRod,
+    /// Everything but the arrows of this kind that are nearer: nothing hides a part of it.
+    Everything,
+}
+
+impl Over {
+    /// How much nearer to the eye than it is an arrow counts, of the scene's reach.
+    fn nearer(self) -> f64 {
+        match self {
+            Self::Farther => 0.0,
+            Self::Arrow => 0.01,
+            Self::BehindRod => -0.5,
+            Self::Everything => 10.0,
+        }
+    }
+}
+
 /// The camera's eye on a sheet of dots.
 pub struct Scene {
     camera: View,
-    /// Dots in a cell, across and down.
-    pub in_cell: (usize, usize),
-    /// Dots of the sheet, across and down.
-    pub size: (usize, usize),
-    /// What stands in the middle of the sheet, m to the right and up.
-    middle: (f64, f64),
-    /// Dots in a metre, across and down.
-    pub scale: (f64, f64),
+    pub plane: Plane,
     reach: f64,
     specks: Vec<Speck>,
 }
@@ -72,19 +88,11 @@ pub struct Shown {
 }
 
 impl Scene {
-    /// An empty scene on the sheet of `dots`, as large as there is room for.
-    pub fn new(dots: &Dots, camera: Camera, shown: &Shown) -> Self {
-        let marker = dots.marker();
-        let aspect = marker.dot_aspect();
-        let size = (dots.width(), dots.height());
-        let down =
-            (0.5 * size.1 as f64 / shown.half.1).min(0.5 * size.0 as f64 * aspect / shown.half.0);
+    /// An empty scene on `area`, as large as there is room for.
+    pub fn new(area: Rect, marker: Marker, camera: Camera, shown: &Shown) -> Self {
         Self {
             camera: camera.view(),
-            in_cell: marker.dots(),
-            size,
-            middle: shown.middle,
-            scale: (down / aspect, down),
+            plane: Plane::new(area, marker, shown.middle, shown.half),
             reach: shown.reach,
             specks: Vec::new(),
         }
@@ -92,92 +100,50 @@ impl Scene {
 
     /// Where `point` (world frame, m) is on the sheet.
     pub fn dot(&self, point: &Vector3<f64>) -> (f64, f64) {
-        self.dot_at(self.camera.project(point))
-    }
-
-    fn dot_at(&self, (right, up): (f64, f64)) -> (f64, f64) {
-        (
-            0.5 * self.size.0 as f64 + (right - self.middle.0) * self.scale.0,
-            0.5 * self.size.1 as f64 - (up - self.middle.1) * self.scale.1,
-        )
+        self.plane.dot(self.camera.project(point))
     }
 
     /// The cell of `point`, or the one at the edge that is nearest to it.
     pub fn cell(&self, point: &Vector3<f64>) -> (u16, u16) {
-        let (x, y) = self.dot(point);
-        let inside = |dot: f64, dots: usize| dot.clamp(0.0, dots.saturating_sub(1) as f64);
-        (
-            (inside(x, self.size.0) / self.in_cell.0 as f64) as u16,
-            (inside(y, self.size.1) / self.in_cell.1 as f64) as u16,
-        )
-    }
-
-    /// The cell of the dot `at`, if it is on the sheet.
-    pub fn cell_of(&self, at: (f64, f64)) -> Option<(u16, u16)> {
-        let (x, y) = self.place(at)?;
-        Some(((x / self.in_cell.0) as u16, (y / self.in_cell.1) as u16))
+        self.plane.cell(self.camera.project(point))
     }
 
     pub fn shows(&self, point: &Vector3<f64>) -> bool {
-        let (x, y) = self.dot(point);
-        (0.0..self.size.0 as f64).contains(&x) && (0.0..self.size.1 as f64).contains(&y)
+        self.plane.shows(self.camera.project(point))
     }
 
     pub fn line(&mut self, from: &Vector3<f64>, to: &Vector3<f64>, stroke: Stroke, ink: Ink) {
-        let depths = (self.camera.depth(from), self.camera.depth(to));
-        self.line_of_dots(
-            (self.dot(from), depths.0),
-            (self.dot(to), depths.1),
-            stroke,
-            ink,
-        );
+        let ends = [from, to].map(|end| (self.dot(end), self.camera.depth(end)));
+        self.line_of_dots(ends, stroke, ink);
     }
 
-    fn line_of_dots(
-        &mut self,
-        (from, near): ((f64, f64), f64),
-        (to, far): ((f64, f64), f64),
-        stroke: Stroke,
-        ink: Ink,
-    ) {
+    /// A line between two dots with their depths.
+    fn line_of_dots(&mut self, ends: [((f64, f64), f64); 2], stroke: Stroke, ink: Ink) {
+        let [(from, near), (to, far)] = ends;
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-        let length = dx.abs().max(dy.abs()).ceil();
-        if length.is_nan() || length > 8.0 * (self.size.0 + self.size.1) as f64 {
-            return; // nowhere near the sheet
-        }
         let every = match stroke {
             Stroke::Dotted(every) => every.max(1),
             Stroke::Heavy | Stroke::Thick | Stroke::Thin => 1,
         };
         // Where a dot is as wide as a cell, the dot beside it makes a heavy line.
         let beside: &[f64] = match stroke {
-            Stroke::Heavy if self.in_cell.0 > 1 => &[-1.0, 1.0],
-            Stroke::Heavy | Stroke::Thick => &[1.0],
-            Stroke::Thin | Stroke::Dotted(_) => &[],
+            Stroke::Heavy if self.plane.in_cell.0 > 1 => &[0.0, -1.0, 1.0],
+            Stroke::Heavy | Stroke::Thick => &[0.0, 1.0],
+            Stroke::Thin | Stroke::Dotted(_) => &[0.0],
         };
         let across = if dx.abs() > dy.abs() {
             (0.0, 1.0)
         } else {
             (1.0, 0.0)
         };
-        for dot in (0..=length as u32).step_by(every as usize) {
-            let share = f64::from(dot) / length.max(1.0);
-            let at = (from.0 + share * dx, from.1 + share * dy);
-            let depth = near + share * (far - near);
-            let hides = every == 1;
-            let mut speck = |at| {
-                self.specks.push(Speck {
-                    at,
-                    depth,
-                    ink,
-                    hides,
-                    is_parted: stroke != Stroke::Heavy,
-                });
-            };
-            speck(at);
-            for side in beside {
-                speck((at.0 + side * across.0, at.1 + side * across.1));
-            }
+        for (share, at) in dots::line(from, to, self.plane.size).step_by(every as usize) {
+            self.specks.extend(beside.iter().map(|side| Speck {
+                at: (at.0 + side * across.0, at.1 + side * across.1),
+                depth: near + share * (far - near),
+                ink,
+                hides: every == 1,
+                is_parted: stroke != Stroke::Heavy,
+            }));
         }
     }
 
@@ -196,45 +162,24 @@ impl Scene {
     }
 
     /// A line with a filled head at its tip, which is seen on a small sheet too.
-    pub fn arrow(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink) {
-        self.arrow_nearer(from, tip, ink, 0.0);
-    }
-
-    /// As [`arrow`](Self::arrow), over another arrow that lies along it.
-    pub fn arrow_over(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink) {
-        self.arrow_nearer(from, tip, ink, OVER * self.reach);
-    }
-
-    /// As [`arrow`](Self::arrow), behind a rod that is nearly as near.
-    pub fn arrow_behind(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink) {
-        self.arrow_nearer(from, tip, ink, -FARTHER * self.reach);
-    }
-
-    /// As [`arrow`](Self::arrow), in front of everything but the arrows of this kind that are nearer: nothing hides a part
-    /// of it.
-    pub fn arrow_in_front(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink) {
-        self.arrow_nearer(from, tip, ink, FRONT * self.reach);
-    }
-
-    /// An arrow that counts as nearer to the eye than it is by `nearer`, m.
-    fn arrow_nearer(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink, nearer: f64) {
-        let end = |point| (self.dot(point), self.camera.depth(point) - nearer);
-        let ends = (end(from), end(tip));
-        self.line_of_dots(ends.0, ends.1, Stroke::Thin, ink);
-        let ((begin, _), (end, depth)) = ends;
+    pub fn arrow(&mut self, from: &Vector3<f64>, tip: &Vector3<f64>, ink: Ink, over: Over) {
+        let nearer = over.nearer() * self.reach;
+        let ends = [from, tip].map(|end| (self.dot(end), self.camera.depth(end) - nearer));
+        self.line_of_dots(ends, Stroke::Thin, ink);
+        let [(begin, _), (end, depth)] = ends;
         let (x, y) = (begin.0 - end.0, begin.1 - end.1);
         let length = x.hypot(y);
         if length < SHORTEST {
             return; // seen along itself, it has no head
         }
-        let head = (HEAD * self.reach * self.scale.1).max(LEAST_HEAD);
+        let head = (HEAD * self.reach * self.plane.scale.1).max(LEAST_HEAD);
         let share = head.min(MOST_OF_ARROW * length) / length;
         for part in -HEAD_STROKES..=HEAD_STROKES {
             let angle = HEAD_ANGLE * f64::from(part) / f64::from(HEAD_STROKES);
             let (sin, cos) = angle.sin_cos();
             let stroke = (x * cos - y * sin, x * sin + y * cos);
             let stroke_end = (end.0 + share * stroke.0, end.1 + share * stroke.1);
-            self.line_of_dots((end, depth), (stroke_end, depth), Stroke::Thin, ink);
+            self.line_of_dots([(end, depth), (stroke_end, depth)], Stroke::Thin, ink);
         }
     }
 
@@ -245,7 +190,7 @@ impl Scene {
         if length < SHORTEST {
             *tip
         } else {
-            tip + (tip - from) * (self.in_cell.1 as f64 / length)
+            tip + (tip - from) * (self.plane.in_cell.1 as f64 / length)
         }
     }
 
@@ -258,30 +203,25 @@ impl Scene {
         } else {
             2.0
         };
-        tip + right * (side * self.in_cell.0 as f64 / self.scale.0)
+        tip + right * (side * self.plane.in_cell.0 as f64 / self.plane.scale.0)
     }
 
     /// A heavy line that is in front of what lies along it: arrows along the axle do not cover it. What crosses it in front
     /// leaves no gap in it, so that it is seen as one line.
     pub fn rod(&mut self, from: &Vector3<f64>, to: &Vector3<f64>, ink: Ink) {
-        let nearer = |point| self.camera.depth(point) - IN_FRONT * self.reach;
-        let ends = ((self.dot(from), nearer(from)), (self.dot(to), nearer(to)));
-        self.line_of_dots(ends.0, ends.1, Stroke::Heavy, ink);
-    }
-
-    fn place(&self, (x, y): (f64, f64)) -> Option<(usize, usize)> {
-        let inside = x >= 0.0 && y >= 0.0 && x < self.size.0 as f64 && y < self.size.1 as f64;
-        inside.then_some((x as usize, y as usize))
+        let nearer = IN_FRONT * self.reach;
+        let ends = [from, to].map(|end| (self.dot(end), self.camera.depth(end) - nearer));
+        self.line_of_dots(ends, Stroke::Heavy, ink);
     }
 
     /// Sets the dots that are to be seen, and takes away those beside and behind them that were set before: in a cell with a
     /// strong line all of them, as a cell has one colour.
     pub fn draw(mut self, dots: &mut Dots) {
-        let (width, height) = self.size;
+        let (width, height) = self.plane.size;
         let mut nearest = vec![f64::INFINITY; width * height];
         let mut at_dot = nearest.clone();
         for speck in self.specks.iter().filter(|speck| speck.hides) {
-            let Some((x, y)) = self.place(speck.at) else {
+            let Some((x, y)) = self.plane.place(speck.at) else {
                 continue;
             };
             if matches!(speck.ink, Ink::Strong(_)) {
@@ -296,11 +236,8 @@ impl Scene {
                 }
             }
         }
-        for (place, _) in nearest
-            .iter()
-            .enumerate()
-            .filter(|(_, depth)| depth.is_finite())
-        {
+        let is_near = |(_, depth): &(usize, &f64)| depth.is_finite();
+        for (place, _) in nearest.iter().enumerate().filter(is_near) {
             dots.clear(place % width, place / width);
         }
         // The nearest last: it decides how a cell looks that several lines cross.
@@ -308,6 +245,7 @@ impl Scene {
         for speck in &self.specks {
             let nearest = if speck.is_parted { &nearest } else { &at_dot };
             let is_seen = self
+                .plane
                 .place(speck.at)
                 .is_some_and(|(x, y)| speck.depth <= nearest[y * width + x] + BEHIND * self.reach);
             if is_seen {

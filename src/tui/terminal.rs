@@ -6,11 +6,10 @@
 //! an answer from the terminal: on a slow line or in a bare pty there may be none.
 
 use crate::storage::at_exit::{self, Release};
-use crate::tui::counted::Counted;
 use crate::tui::decoder::Typed;
 use crate::tui::keyboard::{self, Keyboard};
 use crate::tui::keymap::Key;
-use crate::tui::mouse::event::Mouse;
+use crate::tui::mouse::Mouse;
 use crossterm::cursor::{Hide, Show};
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
 use crossterm::terminal::{self, Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};
@@ -90,7 +89,7 @@ pub enum Event {
 
 pub struct Screen {
     /// Never dropped, because ratatui's drop prints to a stderr that may be closed.
-    terminal: ManuallyDrop<Terminal<CrosstermBackend<Counted<BufWriter<File>>>>>,
+    terminal: ManuallyDrop<Terminal<CrosstermBackend<Counted>>>,
     keyboard: Keyboard,
     /// The bytes of all frames.
     sent: Rc<Cell<usize>>,
@@ -106,8 +105,11 @@ impl Screen {
         // crossterm's own reading of NO_COLOR would take the reversed selection away too; the theme honours it.
         style::force_color_output(true);
         let taken = take_over().and_then(|()| {
-            let (writer, sent) = Counted::new(BufWriter::with_capacity(1 << 16, stdout()?));
-            let backend = CrosstermBackend::new(writer);
+            let sent = Rc::default();
+            let backend = CrosstermBackend::new(Counted {
+                writer: BufWriter::with_capacity(1 << 16, stdout()?),
+                count: Rc::clone(&sent),
+            });
             let viewport = Viewport::Fixed(drawn_of(backend.size()?));
             let terminal = Terminal::with_options(backend, TerminalOptions { viewport })?;
             Ok((terminal, Keyboard::new()?, sent))
@@ -216,6 +218,24 @@ impl Screen {
 impl Drop for Screen {
     fn drop(&mut self) {
         leave();
+    }
+}
+
+/// A writer that counts its bytes.
+struct Counted {
+    writer: BufWriter<File>,
+    count: Rc<Cell<usize>>,
+}
+
+impl Write for Counted {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.writer.write(bytes)?;
+        self.count.set(self.count.get() + written);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::support::stage::{LARGE, SMALL, Stage};
 use gyrolab::tui::layout::Layout;
 use gyrolab::tui::mouse::Pointer;
-use gyrolab::tui::mouse::event::{Did, Mouse};
+use gyrolab::tui::mouse::{Did, Mouse};
 use ratatui::layout::Rect;
 
 /// A stage and its mouse.

@@ -4,12 +4,11 @@
 //! that came before are dotted, more and more sparsely; dots are denser where the point stayed longer.
 
 mod legend;
-mod points;
 
 use super::{PaneRow, Width, frame, round_title, write};
 use crate::lab::measured::Beside;
-use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, View};
+use crate::measured::Place;
 use crate::observe::ages::{Age, Ages};
 use crate::observe::camera::Zoom;
 use crate::observe::ghost::Ghost;
@@ -19,10 +18,12 @@ use crate::observe::path::Path;
 use crate::observe::reading::Reading;
 use crate::observe::recording::Moment;
 use crate::run::Clock;
-use crate::tui::dashes::{self, on_and_off};
-use crate::tui::dots::{Dots, Ink};
+use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::keymap::ZOOM_KEYS;
 use crate::tui::labels::Labels;
+use crate::tui::layout::split_rows;
+use crate::tui::plane::Plane;
+use crate::tui::points::{Ends, Points};
 use crate::tui::theme::Role;
 use crate::tui::trail::{Around, Trail};
 use nalgebra::{Vector2, Vector3};
@@ -91,48 +92,39 @@ pub struct FromAbove<'a> {
 
 impl Widget for FromAbove<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
-        let theme = &self.view.theme;
         let zoom = self.view.zoom.above;
         let title = round_title(ROW.title, zoom, self.reading, area.width);
-        let inside = frame(&title, area, self.view.focus == ROW.id, theme, buf);
+        let has_focus = self.view.focus == ROW.id;
+        let inside = frame(&title, area, has_focus, &self.view.theme, buf);
         if inside.height < 2 || inside.width == 0 {
             return;
         }
-        let above = |rows: usize| Rect {
-            height: inside.height.saturating_sub(rows as u16),
-            ..inside
-        };
+        let without = |lines: usize| split_rows(inside, inside.height - lines as u16);
         let most = (inside.height / ROWS_A_LINE).clamp(1, MOST_LINES) as usize;
-        let lines = self.legend(&self.plan(above(1)), inside.width, most).len();
-        let picture = above(lines);
-        let plan = self.plan(picture);
-        self.path(&plan, picture, buf);
-        self.points(&plan, picture, buf);
-        let forces = self.pushes(&plan, picture, buf);
-        let mut places = self.marks(&plan, picture, buf);
+        let (plane, _) = self.plane(without(1)[0]);
+        let lines = self.legend(&plane, inside.width, most).len();
+        let [picture, legend] = without(lines);
+        let (plane, radius_m) = self.plane(picture);
+        self.path(&plane, picture, buf);
+        self.points(&plane, picture, buf);
+        let forces = self.pushes(&plane, radius_m, picture, buf);
+        let mut places = self.marks(&plane, picture, buf);
         // Words do not cover marks; heads of arrows stand where they point.
-        let push = self.view.theme.style(Role::Push);
         for (cell, sign) in forces {
-            let width = sign.len() as u16;
-            let cell = if width > 1 {
-                places.place(cell, width)
-            } else {
-                cell
+            let cell = match sign.len() {
+                1 => cell,
+                width => places.place(cell, width as u16),
             };
+            let push = self.view.theme.style(Role::Push);
             write(picture, cell, sign, push, buf);
         }
-        let legend = Rect {
-            y: picture.bottom(),
-            height: lines as u16,
-            ..inside
-        };
-        self.write_legend(&plan, legend, buf);
+        self.write_legend(&plane, legend, buf);
     }
 }
 
 impl FromAbove<'_> {
-    /// The middle and the scale of the picture.
-    fn plan(&self, picture: Rect) -> Plan {
+    /// The plane of the picture, and the radius that it shows, m.
+    fn plane(&self, picture: Rect) -> (Plane, f64) {
         let middle = self.circled().unwrap_or_default();
         let exact = self.run.overlay().map(Overlay::path);
         let before = self.ghost.map(Ghost::path);
@@ -152,13 +144,14 @@ impl FromAbove<'_> {
         let radius = libm::exp((libm::log(radius) / STEP).ceil() * STEP) * 1.02;
         let zoom = self.view.zoom.above;
         let half = radius / zoom;
-        let plan = Plan::new(picture, middle, half, self.view.marker);
+        let plane = |middle| Plane::new(picture, self.view.marker, middle, (half, half));
+        let whole = plane((middle.x, middle.y));
         if zoom <= 1.0 {
-            return plan;
+            return (whole, half);
         }
-        let at = self.now(plan.across).position.xy();
-        let middle = at.map(|at| Zoom::middle(at, half));
-        Plan { middle, ..plan }
+        let at = self.now(whole.scale.0).position.xy();
+        let [x, y] = [at.x, at.y].map(|at| Zoom::middle(at, half));
+        (plane((x, y)), half)
     }
 
     /// The place from above around which the axle circles: where the line of L is, at the height of the traced point, as
@@ -210,48 +203,72 @@ impl FromAbove<'_> {
         known.into_iter().find(|exact| exact.time_s == time_s)
     }
 
-    fn path(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) {
+    fn path(&self, plane: &Plane, picture: Rect, buf: &mut Buffer) {
         let mut dots = Dots::new(picture, self.view.marker);
-        if let Some(ghost) = self.ghost {
-            let before = ghost.path().dots().map(|(x, y)| plan.dot(x, y));
-            for (x, y) in on_and_off(before, dashes::before(self.view.marker)) {
-                dots.set(x, y, Ink::Ghost);
-            }
-        }
-        if let Some(pinned) = self.pinned {
-            let kept = pinned.path().dots().map(|(x, y)| plan.dot(x, y));
-            for (x, y) in on_and_off(kept, dashes::PINNED) {
-                dots.set(x, y, Ink::Faint(Role::Pinned));
-            }
+        let before = dots::of_run_before(self.view.marker);
+        let pinned = Ink::Faint(Role::Pinned);
+        for (ghost, dashes, ink) in [
+            (self.ghost, before, Ink::Ghost),
+            (self.pinned, dots::PINNED, pinned),
+        ] {
+            let path = ghost.into_iter().flat_map(|ghost| ghost.path().dots());
+            dots.dashed(path.map(|at| plane.dot(at)), dashes, ink);
         }
         let mut trail = Trail::new(&dots, Around::Nothing);
-        for (x, y) in self.run.path().dots() {
-            trail.dot(plan.dot(x, y), Age::Old);
+        for at in self.run.path().dots() {
+            trail.dot(plane.dot(at), Age::Old);
         }
-        let ages = self.ages(plan.across);
-        let now = self.now(plan.across);
-        let to_dot = |at: &Vector3<f64>| plan.dot(at.x, at.y);
-        trail.follow(
-            self.run.recording(),
-            &ages,
-            (now.time_s, &now.position),
-            to_dot,
-        );
+        let ages = self.ages(plane.scale.0);
+        let now = self.now(plane.scale.0);
+        let now = (now.time_s, &now.position);
+        let to_dot = |at: &Vector3<f64>| plane.dot((at.x, at.y));
+        trail.follow(self.run.recording(), &ages, now, to_dot);
         trail.draw(&mut dots);
         if let Some(overlay) = self.run.overlay() {
-            let exact = overlay.path().dots().map(|(x, y)| plan.dot(x, y));
-            for (x, y) in on_and_off(exact, dashes::EXACT) {
-                dots.set(x, y, Ink::Faint(Role::Exact));
-            }
+            let exact = overlay.path().dots().map(|at| plane.dot(at));
+            dots.dashed(exact, dots::EXACT, Ink::Faint(Role::Exact));
         }
         dots.render(&self.view.theme, buf);
+    }
+
+    /// The measured places; none where the columns of the data do not say them.
+    fn places(&self) -> &[Place] {
+        self.measured
+            .map_or(&[], |beside| &beside.compared().places)
+    }
+
+    /// The measured places: those at times that the run has not reached are faint.
+    fn points(&self, plane: &Plane, picture: Rect, buf: &mut Buffer) {
+        let now_s = self.run.now().time_s;
+        let mut points = Points::new(picture, self.view.marker);
+        for place in self.places() {
+            let cell = |x: f64, y: f64| {
+                let (column, row) = plane.dot((x, y));
+                (
+                    column / plane.in_cell.0 as f64,
+                    row / plane.in_cell.1 as f64,
+                )
+            };
+            let (x, y) = (place.at.x, place.at.y);
+            let level = |sigma: f64| -> Ends { (cell(x - sigma, y).0, cell(x + sigma, y).0) };
+            let upright = |sigma: f64| -> Ends { (cell(x, y + sigma).1, cell(x, y - sigma).1) };
+            let role = if place.time_s <= now_s {
+                Role::Measured
+            } else {
+                Role::Quiet
+            };
+            let [of_x, of_y] = place.sigmas;
+            points.add(cell(x, y), of_x.map(level), of_y.map(upright), role);
+        }
+        points.render(&self.view.theme, buf);
     }
 
     /// Each push that acts: a line from the pushed point. Returns its head, or a word where it is straight up or down, and
     /// where that is to stand.
     fn pushes(
         &self,
-        plan: &Plan,
+        plane: &Plane,
+        radius_m: f64,
         picture: Rect,
         buf: &mut Buffer,
     ) -> Vec<((u16, u16), &'static str)> {
@@ -261,18 +278,16 @@ impl FromAbove<'_> {
         let mut signs = Vec::new();
         for push in simulation.loads().pushes.iter().take(MOST_PUSHES) {
             let at = simulation.state().orientation * points[push.point].at;
-            let plane = push.force.xy();
-            match plane.try_normalize(UPRIGHT * push.force.norm()) {
+            let at = at.xy();
+            match push.force.xy().try_normalize(UPRIGHT * push.force.norm()) {
                 Some(direction) => {
-                    let tip = at.xy() + direction * (ARROW * plan.radius_m);
-                    dots.line(
-                        plan.dot(at.x, at.y),
-                        plan.dot(tip.x, tip.y),
-                        Ink::Strong(Role::Push),
-                    );
-                    signs.push((plan.cell(tip.x, tip.y), head(direction.x, direction.y)));
+                    let tip = at + direction * (ARROW * radius_m);
+                    let [from, to] = [at, tip].map(|at| plane.dot((at.x, at.y)));
+                    dots.line(from, to, Ink::Strong(Role::Push));
+                    let cell = plane.cell((tip.x, tip.y));
+                    signs.push((cell, head(direction.x, direction.y)));
                 }
-                None => signs.push(upright(plan.cell(at.x, at.y), push.force.z, picture)),
+                None => signs.push(upright(plane.cell((at.x, at.y)), push.force.z, picture)),
             }
         }
         dots.render(&self.view.theme, buf);
@@ -280,7 +295,7 @@ impl FromAbove<'_> {
     }
 
     /// The pivot, the axes' names, and where the point is now. Returns which places are left for words.
-    fn marks(&self, plan: &Plan, picture: Rect, buf: &mut Buffer) -> Labels {
+    fn marks(&self, plane: &Plane, picture: Rect, buf: &mut Buffer) -> Labels {
         let mut places = Labels::new(picture);
         let mut mark = |cell, sign: &str, role| {
             write(picture, cell, sign, self.view.theme.style(role), buf);
@@ -289,19 +304,18 @@ impl FromAbove<'_> {
         let (right, middle) = (picture.width - 1, picture.height / 2);
         mark((right, middle), "x", Role::X);
         mark((picture.width / 2, 0), "y", Role::Y);
-        if plan.shows(0.0, 0.0) {
-            mark(plan.cell(0.0, 0.0), "+", Role::Quiet);
+        if plane.shows((0.0, 0.0)) {
+            mark(plane.cell((0.0, 0.0)), "+", Role::Quiet);
         }
-        let now = self.now(plan.across);
-        let here = plan.cell(now.position.x, now.position.y);
+        let now = self.now(plane.scale.0);
+        let here = plane.cell((now.position.x, now.position.y));
         let mut sign = "o";
         if let Some(exact) = self.exact_at(now.time_s) {
-            let at = exact.position;
-            let exact = plan.cell(at.x, at.y);
-            if plan.shows(at.x, at.y) {
-                mark(exact, "e", Role::Exact);
+            let at = (exact.position.x, exact.position.y);
+            if plane.shows(at) {
+                mark(plane.cell(at), "e", Role::Exact);
             }
-            sign = if exact == here { "*" } else { sign };
+            sign = if plane.cell(at) == here { "*" } else { sign };
         }
         mark(here, sign, Role::Focus);
         places
@@ -326,70 +340,10 @@ fn head(x: f64, y: f64) -> &'static str {
 fn upright((x, y): (u16, u16), up: f64, picture: Rect) -> ((u16, u16), &'static str) {
     let sign = if up < 0.0 { "F down" } else { "F up" };
     let width = sign.len() as u16;
-    let right = x + 2;
-    let left = x.saturating_sub(width + 1);
-    let place = if right + width <= picture.width {
-        right
+    let place = if x + 2 + width <= picture.width {
+        x + 2
     } else {
-        left
+        x.saturating_sub(width + 1)
     };
     ((place, y), sign)
-}
-
-/// From metres to dots and cells.
-struct Plan {
-    middle: Vector2<f64>,
-    width: f64,
-    height: f64,
-    /// Dots in a metre, across and down.
-    across: f64,
-    down: f64,
-    dots: (f64, f64),
-    cell_width_m: f64,
-    radius_m: f64,
-}
-
-impl Plan {
-    fn new(picture: Rect, middle: Vector2<f64>, radius_m: f64, marker: Marker) -> Self {
-        let (in_x, in_y) = marker.dots();
-        let (width, height) = (
-            picture.width as f64 * in_x as f64,
-            picture.height as f64 * in_y as f64,
-        );
-        // A dot is `aspect` times as wide as high: this is what keeps circles round.
-        let aspect = marker.dot_aspect();
-        let down = (0.5 * height).min(0.5 * width * aspect) / radius_m;
-        let across = down / aspect;
-        let cell_width_m = in_x as f64 / across;
-        Self {
-            middle,
-            width,
-            height,
-            across,
-            down,
-            dots: (in_x as f64, in_y as f64),
-            cell_width_m,
-            radius_m,
-        }
-    }
-
-    fn dot(&self, x: f64, y: f64) -> (f64, f64) {
-        (
-            0.5 * self.width + (x - self.middle.x) * self.across,
-            0.5 * self.height - (y - self.middle.y) * self.down,
-        )
-    }
-
-    fn shows(&self, x: f64, y: f64) -> bool {
-        let (column, row) = self.dot(x, y);
-        (0.0..self.width).contains(&column) && (0.0..self.height).contains(&row)
-    }
-
-    fn cell(&self, x: f64, y: f64) -> (u16, u16) {
-        let (column, row) = self.dot(x, y);
-        let inside = |dot: f64, dots: f64| dot.clamp(0.0, dots - 1.0);
-        let column = inside(column, self.width) / self.dots.0;
-        let row = inside(row, self.height) / self.dots.1;
-        (column as u16, row as u16)
-    }
 }

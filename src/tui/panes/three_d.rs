@@ -4,36 +4,36 @@
 //! where it goes. The weight g makes a torque τ about the pivot; L changes by dL along it, and the axle follows L.
 
 mod arrows;
+mod body;
 mod phase;
-mod room;
-mod shape;
-mod solids;
 mod way;
-mod wheel;
 
 use super::{PaneRow, Width, frame, round_title, write};
 use crate::lab::explained::Explained;
 use crate::lab::view::{Pane, View};
 use crate::observe::ages::Ages;
+use crate::observe::camera::Zoom;
 use crate::observe::ghost::Ghost;
 use crate::observe::live::LiveRun;
 use crate::observe::reading::Reading;
+use crate::observe::recording::Curve;
 use crate::physics::friction::Damping;
 use crate::physics::{State, loads, observables};
 use crate::text::wrap::columns;
-use crate::tui::dashes::{self, on_and_off};
-use crate::tui::dots::{Dots, Ink};
+use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::keymap::ZOOM_KEYS;
 use crate::tui::labels::Labels;
-use crate::tui::scene::{Scene, Stroke};
+use crate::tui::layout::split_rows;
+use crate::tui::scene::{self, Scene, Stroke};
 use crate::tui::theme::Role;
 use crate::tui::trail::{Around, Trail};
+use body::{Shape, Sign};
 use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::widgets::Widget;
-use shape::Shape;
 use std::f64::consts::TAU;
+use way::Way;
 
 /// Length of the arrow of L, in lengths of the axle. Only its direction has a meaning. Where it lies along the axle, its end
 /// shows beyond the axle's top and the arrow of the angular velocity; a longer one would leave less room for the wheel.
@@ -47,6 +47,10 @@ const GROUND: f64 = 0.45;
 /// Height of the stand that carries the pivot, and radius of its foot, as such shares.
 const STAND: f64 = 0.26;
 const FOOT: f64 = 0.22;
+/// Tilts are rounded to multiples of this, degrees, so that the scale does not change all the time.
+const TILT_DEG: f64 = 5.0;
+/// Margin around what is drawn, as a share of it, for letters.
+const MARGIN: f64 = 1.06;
 /// A torque smaller than this share of the largest torque of the weight counts as zero.
 const NO_TORQUE: f64 = 1e-9;
 /// Rows of the pane for each line of its legend.
@@ -101,49 +105,8 @@ impl Widget for ThreeD<'_> {
         let subject = Subject::of(&self);
         let most = (inside.height / ROWS_A_LINE).max(1) as usize;
         let lines = subject.legend_lines(inside.width as usize, most) as u16;
-        let picture = Rect {
-            height: inside.height - lines,
-            ..inside
-        };
-        let mut dots = Dots::new(picture, self.view.marker);
-        let mut scene = Scene::new(&dots, self.view.camera, &subject.shown());
-        let mut labels = subject.ground(&mut scene);
-        subject.other_runs(&mut scene, &mut dots);
-        subject.path(&scene, &mut dots);
-        subject.body(&mut scene);
-        labels.extend(subject.phase(&mut scene));
-        labels.extend(subject.vectors(&mut scene));
-        labels.extend(subject.pushes(&mut scene));
-        let way = subject.way(&scene);
-        let mut masses = subject.signs_of_phase(&scene);
-        masses.extend(subject.masses(&scene));
-        let cells: Vec<_> = labels
-            .iter()
-            .map(|(name, role, at)| (*name, *role, scene.cell(at)))
-            .collect();
-        let here = subject.position;
-        let here = scene.shows(&here).then(|| scene.cell(&here));
-        let pivot = Vector3::zeros();
-        let pivot = scene.shows(&pivot).then(|| scene.cell(&pivot));
-        scene.draw(&mut dots);
-        way.join(&mut dots);
-        dots.render(theme, buf);
-        let pivot = pivot.map(|cell| ("+", Role::Heading, cell));
-        let here = here.map(|cell| ("*", Role::Focus, cell));
-        let mut places = Labels::new(picture);
-        for (sign, role, cell) in way.head.into_iter().chain(masses).chain(pivot).chain(here) {
-            write(picture, cell, sign, theme.style(role), buf);
-            places.take(cell);
-        }
-        for (name, role, cell) in cells.iter().rev() {
-            let cell = places.place(*cell, columns(name) as u16);
-            write(picture, cell, name, theme.style(*role), buf);
-        }
-        let legend = Rect {
-            y: picture.bottom(),
-            height: lines,
-            ..inside
-        };
+        let [picture, legend] = split_rows(inside, inside.height - lines);
+        subject.draw(picture, buf);
         subject.legend(legend, buf);
     }
 }
@@ -200,18 +163,131 @@ impl<'a> Subject<'a> {
         }
     }
 
+    fn draw(&self, picture: Rect, buf: &mut Buffer) {
+        let (theme, marker) = (&self.view.theme, self.view.marker);
+        let mut dots = Dots::new(picture, marker);
+        let mut scene = Scene::new(picture, marker, self.view.camera, &self.shown());
+        let mut labels = self.ground(&mut scene);
+        self.other_runs(&mut scene, &mut dots);
+        self.path(&scene, &mut dots);
+        self.body(&mut scene);
+        labels.extend(self.phase(&mut scene));
+        labels.extend(self.vectors(&mut scene));
+        labels.extend(self.pushes(&mut scene));
+        let way = self.way(&scene);
+        let signs = self.signs(&way, &scene);
+        let labels = labels.iter().rev();
+        let labels: Vec<_> = labels
+            .map(|(name, role, at)| (*name, *role, scene.cell(at)))
+            .collect();
+        scene.draw(&mut dots);
+        way.join(&mut dots);
+        dots.render(theme, buf);
+        let mut places = Labels::new(picture);
+        for (sign, role, cell) in signs {
+            write(picture, cell, sign, theme.style(role), buf);
+            places.take(cell);
+        }
+        for (name, role, cell) in labels {
+            let cell = places.place(cell, columns(name) as u16);
+            write(picture, cell, name, theme.style(role), buf);
+        }
+    }
+
+    /// The signs that no letter covers, the most important last.
+    fn signs(&self, way: &Way, scene: &Scene) -> Vec<Sign> {
+        let mut signs: Vec<_> = way.head.into_iter().collect();
+        signs.extend(self.signs_of_phase(scene));
+        signs.extend(self.masses(scene));
+        let marks = [
+            ("+", Role::Heading, Vector3::zeros()),
+            ("*", Role::Focus, self.position),
+        ];
+        let marks = marks.iter().filter(|(_, _, at)| scene.shows(at));
+        signs.extend(marks.map(|(sign, role, at)| (*sign, *role, scene.cell(at))));
+        signs
+    }
+
+    /// What the scene needs to show: the body as it precesses at the tilts that it has had, L, and the ground.
+    fn shown(&self) -> scene::Shown {
+        let circles = self.circles();
+        let (sin, cos) = self.view.camera.pitch_deg.to_radians().sin_cos();
+        let end = |side: f64| move |&(radius, z): &(f64, f64)| z * cos + side * radius * sin.abs();
+        let lowest = circles.iter().map(end(-1.0)).fold(0.0, f64::min);
+        let highest = circles.iter().map(end(1.0)).fold(0.0, f64::max);
+        let widest = circles
+            .iter()
+            .fold(0.0, |most, (radius, _)| radius.max(most));
+        let zoom = self.view.zoom.three_d;
+        let half = (
+            MARGIN * widest / zoom,
+            MARGIN * 0.5 * (highest - lowest) / zoom,
+        );
+        let middle = if zoom > 1.0 {
+            let (right, up) = self.view.camera.project(&self.wheel());
+            (Zoom::middle(right, half.0), Zoom::middle(up, half.1))
+        } else {
+            (0.0, 0.5 * (lowest + highest))
+        };
+        scene::Shown {
+            middle,
+            half,
+            reach: self.reach,
+        }
+    }
+
+    /// Circles about the vertical around all that is drawn, radius and height.
+    fn circles(&self) -> Vec<(f64, f64)> {
+        let tilts = self.run.recording().whole();
+        let tilts = tilts.map_or((0.0, 0.0), |whole| {
+            let tilt = whole.extent(Curve::Tilt);
+            (tilt.min, tilt.max)
+        });
+        let (first, last) = ((tilts.0 / TILT_DEG).floor(), (tilts.1 / TILT_DEG).ceil());
+        let ground = GROUND * self.reach;
+        let mut circles = if self.stands() {
+            vec![(ground, -STAND * self.reach)]
+        } else {
+            vec![(ground, 0.0), (0.0, ground)] // z too has a letter
+        };
+        for tilt in first as i32..=last as i32 {
+            let (sin, cos) = (f64::from(tilt) * TILT_DEG).to_radians().sin_cos();
+            for &(across, height) in &self.shape.corners {
+                circles.extend([across, -across].map(|side| {
+                    let radius = height * sin + side * cos;
+                    (radius.abs(), height * cos - side * sin)
+                }));
+            }
+        }
+        for other in [self.ghost, self.pinned].into_iter().flatten() {
+            if let Some(whole) = other.recording().whole() {
+                let z = whole.extent(Curve::Z);
+                circles.extend([z.min, z.max].map(|z| (other.path().radius(), z)));
+            }
+        }
+        if let Some(axis) = self.state.momentum.try_normalize(f64::MIN_POSITIVE) {
+            let angle = libm::acos(axis.z.clamp(-1.0, 1.0)).to_degrees() / (3.0 * TILT_DEG);
+            for angle in [angle.floor(), angle.ceil()] {
+                let (sin, cos) = (angle * 3.0 * TILT_DEG).to_radians().sin_cos();
+                let length = MOMENTUM * self.arm;
+                circles.push(((length * sin).hypot(CHANGE * self.reach), length * cos));
+            }
+        }
+        circles
+    }
+
     /// The stand on which the axle rests, or a level circle about a pivot that carries no weight; and the directions of x,
     /// y and z. Where there is a stand, z has no letter, which would lie over the hub: the stand shows what is up.
     fn ground(&self, scene: &mut Scene) -> Vec<Label> {
         let stands = self.stands();
         let floor = Vector3::z() * if stands { -STAND * self.reach } else { 0.0 };
         let radius = self.reach * if stands { FOOT } else { GROUND };
-        let around = |part: usize, parts: usize| {
-            let (sin, cos) = (TAU * part as f64 / parts as f64).sin_cos();
+        let around = |part: usize| {
+            let (sin, cos) = (TAU * part as f64 / PARTS as f64).sin_cos();
             floor + Vector3::new(radius * cos, radius * sin, 0.0)
         };
         let ink = Ink::Faint(Role::Quiet);
-        let circle: Vec<_> = (0..PARTS).map(|part| around(part, PARTS)).collect();
+        let circle: Vec<_> = (0..PARTS).map(around).collect();
         if stands {
             scene.ring(&circle, |_| (Stroke::Thin, ink));
             scene.line(&Vector3::zeros(), &floor, Stroke::Thin, ink);
@@ -250,7 +326,7 @@ impl<'a> Subject<'a> {
         let now = (self.state.time_s, &self.position);
         let ages = self
             .ages
-            .on_picture(TAU * self.run.path().radius() * scene.scale.0);
+            .on_picture(TAU * self.run.path().radius() * scene.plane.scale.0);
         let to_dot = |at: &Vector3<f64>| scene.dot(at);
         trail.follow(self.run.recording(), &ages, now, to_dot);
         trail.draw(dots);
@@ -264,16 +340,14 @@ impl<'a> Subject<'a> {
 
     /// The paths of the run before and of the pinned one, and a line from the pivot to where each is at this time.
     fn other_runs(&self, scene: &mut Scene, dots: &mut Dots) {
-        let before = (Ink::Ghost, dashes::before(self.view.marker), 3);
-        let pinned = (Ink::Faint(Role::Pinned), dashes::PINNED, 2);
+        let before = (Ink::Ghost, dots::of_run_before(self.view.marker), 3);
+        let pinned = (Ink::Faint(Role::Pinned), dots::PINNED, 2);
         for (run, (ink, path, axle)) in [(self.ghost, before), (self.pinned, pinned)] {
             let Some(recording) = run.map(Ghost::recording) else {
                 continue;
             };
             let places = recording.since(f64::NEG_INFINITY);
-            for (x, y) in on_and_off(places.map(|block| scene.dot(&block.end)), path) {
-                dots.set(x, y, ink);
-            }
+            dots.dashed(places.map(|block| scene.dot(&block.end)), path, ink);
             let mut until_now = recording.between(self.state.time_s, self.state.time_s);
             if let Some(now) = until_now.next() {
                 scene.line(&Vector3::zeros(), &now.end, Stroke::Dotted(axle), ink);

@@ -1,9 +1,7 @@
 use super::*;
-use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::{Background, Theme};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
 
 const INK: Ink = Ink::Strong(Role::Text);
 
@@ -20,7 +18,7 @@ fn drawn(draw: impl Fn(&mut Scene)) -> (impl Fn(usize, usize) -> bool, (usize, u
         half: (1.0, 1.0),
         reach: 1.0,
     };
-    let mut scene = Scene::new(&dots, camera, &shown);
+    let mut scene = Scene::new(area, Marker::Braille, camera, &shown);
     draw(&mut scene);
     let (x, y) = scene.dot(&Vector3::zeros());
     scene.draw(&mut dots);
@@ -70,7 +68,7 @@ fn nothing_hides_an_arrow_in_front() {
     let (is_set, (x, y)) = drawn(|scene| {
         upright(scene);
         let [from, to] = level();
-        scene.arrow_in_front(&from, &to, INK);
+        scene.arrow(&from, &to, INK, Over::Everything);
     });
     assert!((x - 5..x + 5).all(|x| is_set(x, y)), "the arrow is whole");
     let beside = [is_set(x, y - 1), is_set(x, y + 1)];

@@ -1,8 +1,7 @@
 //! The scale of the picture from above, and the meaning of its marks and lines.
 
-use super::{FromAbove, Plan, write};
+use super::{FromAbove, Plane, write};
 use crate::lab::view::markers::Marker;
-use crate::text::ladder::at_or_below;
 use crate::text::wrap::columns;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -13,11 +12,11 @@ const BETWEEN: [&str; 2] = [", ", " "];
 const BEFORE: [&str; 2] = ["dotted: before"; 2];
 
 impl FromAbove<'_> {
-    /// The lines of the legend on `width` columns; the last has room for the scale of `plan` beside it. Where `most` lines
+    /// The lines of the legend on `width` columns; the last has room for the scale of `plane` beside it. Where `most` lines
     /// are too few for every mark and line of the picture, those named last are left out.
-    pub(super) fn legend(&self, plan: &Plan, width: u16, most: usize) -> Vec<String> {
+    pub(super) fn legend(&self, plane: &Plane, width: u16, most: usize) -> Vec<String> {
         let width = width as usize;
-        let room = width.saturating_sub(columns(&self.bar(plan, width)) + 1);
+        let room = width.saturating_sub(columns(&self.bar(plane, width)) + 1);
         let words = self.words();
         let legend = Self::in_fewest_lines(&words, width, room, most);
         if words.contains(&BEFORE) || self.ghost.is_some() {
@@ -46,12 +45,12 @@ impl FromAbove<'_> {
     }
 
     /// The legend and the scale on `area`, which has as many rows as the legend has lines.
-    pub(super) fn write_legend(&self, plan: &Plan, area: Rect, buf: &mut Buffer) {
+    pub(super) fn write_legend(&self, plane: &Plane, area: Rect, buf: &mut Buffer) {
         let style = self.view.theme.style(Role::Quiet);
         let last = area.height.saturating_sub(1);
-        let bar = self.bar(plan, area.width as usize);
+        let bar = self.bar(plane, area.width as usize);
         write(area, (0, last), &bar, style, buf);
-        let lines = self.legend(plan, area.width, area.height as usize);
+        let lines = self.legend(plane, area.width, area.height as usize);
         for (line, y) in lines.iter().zip(0..) {
             let x = if y == last {
                 area.width.saturating_sub(columns(line) as u16)
@@ -63,17 +62,14 @@ impl FromAbove<'_> {
     }
 
     /// The scale: a line of a round length.
-    fn bar(&self, plan: &Plan, width: usize) -> String {
+    fn bar(&self, plane: &Plane, width: usize) -> String {
         // The longer legend beside it leaves less room for the bar.
         let share = if self.run.overlay().is_some() {
             0.25
         } else {
             0.4
         };
-        let length_m = at_or_below(share * width as f64 * plan.cell_width_m);
-        // From the middle of its first cell to that of its last.
-        let cells = (length_m / plan.cell_width_m).round() as usize + 1;
-        format!("├{}┤ {length_m} m", "─".repeat(cells.saturating_sub(2)))
+        plane.bar(share * width as f64)
     }
 
     /// What is drawn, the most important first, at length and in short.
@@ -106,13 +102,12 @@ fn in_lines(words: &[[&str; 2]], form: usize, width: usize, room: usize) -> Vec<
     let between = BETWEEN[form];
     let mut lines = vec![String::new()];
     for word in words.iter().map(|word| word[form]) {
-        if let Some(line) = lines.last_mut() {
-            let length = columns(line) + columns(between) + columns(word);
-            match line.is_empty() {
-                true => *line = word.to_owned(),
-                false if length <= width => *line += &format!("{between}{word}"),
-                false => lines.push(word.to_owned()),
+        match lines.last_mut() {
+            Some(line) if line.is_empty() => *line = word.to_owned(),
+            Some(line) if columns(line) + columns(between) + columns(word) <= width => {
+                *line += &format!("{between}{word}");
             }
+            _ => lines.push(word.to_owned()),
         }
     }
     if lines.last().is_some_and(|line| columns(line) > room) {

@@ -9,10 +9,10 @@ use crate::lab::view::View;
 use crate::observe::dip::Dip;
 use crate::physics::loads::torque;
 use crate::physics::workings::{Quantity, Value};
-use crate::text::ladder::at_or_below;
-use crate::text::number::shortest;
 use crate::text::wrap::wrapped;
 use crate::tui::dots::{Dots, Ink};
+use crate::tui::layout::{split_columns, split_rows};
+use crate::tui::plane::Plane;
 use crate::tui::theme::Role;
 use nalgebra::Vector2;
 use ratatui::buffer::Buffer;
@@ -25,6 +25,7 @@ const ANY: &str = "Each force makes a torque τ = X × F square to it. In the ti
 const RUBBED: &str = "The forces make a torque τ = X × F, and friction makes one too. In the time dt both add dL to L, which is not along τ; \
                       and the axle goes with L.";
 const NONE: &str = "No torque acts: L stays as it is, and the axle circles about it.";
+const UPRIGHT: [&str; 2] = ["L is upright:", "no side is sideways"];
 /// The fewest lines of a picture.
 const LEAST_PICTURE: u16 = 6;
 /// Lengths in the picture from above, in units of the axle as it is drawn: τ, dL, and L from the pivot.
@@ -49,23 +50,11 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     page::fit(&mut sections, room.into());
     page::draw(&sections, area, &view.theme, buf);
     let taken = (page::height(&sections) as u16).min(area.height);
-    let below = Rect {
-        y: area.y + taken,
-        height: area.height - taken,
-        ..area
-    };
+    let [_, below] = split_rows(area, taken);
     if below.height < LEAST_PICTURE {
         return;
     }
-    let left = Rect {
-        width: below.width / 2,
-        ..below
-    };
-    let right = Rect {
-        x: left.right(),
-        width: below.width - left.width,
-        ..below
-    };
+    let [left, right] = split_columns(below, below.width / 2);
     from_above(explained, view, left, buf);
     let is_seen = lab.player().reading().readouts.nutation_is_resolved() != Some(false);
     let dip_and_arm = (explained.dip(), explained.scenario.arm_m());
@@ -122,63 +111,56 @@ fn vectors(explained: &Explained, width: usize) -> Vec<Section> {
 }
 
 /// A picture of level directions, x to the right and y up, with arrows.
-struct Plan {
-    middle: Vector2<f64>,
-    /// Dots in a metre, across and down.
-    scale: (f64, f64),
+struct Picture {
+    plane: Plane,
     dots: Dots,
     /// Signs with the dots at which they stand.
     signs: Vec<((f64, f64), &'static str, Role)>,
 }
 
-impl Plan {
-    /// Of `half` metres to each side of `middle`.
-    fn new(area: Rect, view: &View, middle: Vector2<f64>, half: Vector2<f64>) -> Self {
-        let dots = Dots::new(area, view.marker);
-        let aspect = view.marker.dot_aspect();
-        let down =
-            (0.5 * dots.height() as f64 / half.y).min(0.5 * dots.width() as f64 * aspect / half.x);
+impl Picture {
+    /// Of all between `least` and `most`; `margin` says how far it is to be seen, m, from half of that.
+    fn new(
+        area: Rect,
+        view: &View,
+        (least, most): (Vector2<f64>, Vector2<f64>),
+        margin: impl Fn(f64) -> f64,
+    ) -> Self {
+        let (middle, half) = ((least + most) * 0.5, ((most - least) * 0.5).map(margin));
         Self {
-            middle,
-            scale: (down / aspect, down),
-            dots,
+            plane: Plane::new(area, view.marker, (middle.x, middle.y), (half.x, half.y)),
+            dots: Dots::new(area, view.marker),
             signs: Vec::new(),
         }
     }
 
-    fn dot(&self, at: Vector2<f64>) -> (f64, f64) {
-        (
-            0.5 * self.dots.width() as f64 + (at.x - self.middle.x) * self.scale.0,
-            0.5 * self.dots.height() as f64 - (at.y - self.middle.y) * self.scale.1,
-        )
-    }
-
     fn line(&mut self, from: Vector2<f64>, to: Vector2<f64>, ink: Ink) {
-        let (from, to) = (self.dot(from), self.dot(to));
+        let [from, to] = [from, to].map(|at| self.plane.dot((at.x, at.y)));
         self.dots.line(from, to, ink);
     }
 
     fn sign(&mut self, at: Vector2<f64>, sign: &'static str, role: Role) {
-        self.signs.push((self.dot(at), sign, role));
+        self.signs.push((self.plane.dot((at.x, at.y)), sign, role));
     }
 
     /// A line from one place along another, with its name at its tip.
     fn arrow(&mut self, from: Vector2<f64>, along: Vector2<f64>, name: &'static str, role: Role) {
         self.line(from, from + along, Ink::Strong(role));
         // A head of two strokes.
+        let plane = self.plane;
         let back = -along.normalize()
-            * (0.16 * along.norm()).min(0.12 * self.dots.height() as f64 / self.scale.1);
+            * (0.16 * along.norm()).min(0.12 * plane.size.1 as f64 / plane.scale.1);
         for (sin, cos) in [0.5_f64, -0.5].map(f64::sin_cos) {
             let stroke = Vector2::new(back.x * cos - back.y * sin, back.x * sin + back.y * cos);
             self.line(from + along, from + along + stroke, Ink::Strong(role));
         }
-        let cell = self.dots.in_a_cell().0 as f64 / self.scale.0;
+        let cell = plane.in_cell.0 as f64 / plane.scale.0;
         self.sign(from + along + along.normalize() * (1.3 * cell), name, role);
     }
 
     fn draw(&self, area: Rect, view: &View, buf: &mut Buffer) {
         self.dots.render(&view.theme, buf);
-        let (across, down) = self.dots.in_a_cell();
+        let (across, down) = self.plane.in_cell;
         for ((x, y), sign, role) in &self.signs {
             let last = area.width.saturating_sub(sign.chars().count() as u16);
             let cell = |dot: f64, dots: usize, last: u16| {
@@ -195,13 +177,37 @@ impl Plan {
 
 /// The heading of a picture on `area`, and the area below it.
 fn headed(heading: &str, view: &View, area: Rect, buf: &mut Buffer) -> Rect {
+    let [heading_line, below] = split_rows(area, 1);
     let style = view.theme.style(Role::Quiet);
-    write(area, (0, 0), heading, style, buf);
-    Rect {
-        y: area.y + 1,
-        height: area.height.saturating_sub(1),
-        ..area
+    write(heading_line, (0, 0), heading, style, buf);
+    below
+}
+
+/// `text` in lines on `area`.
+fn text(text: &str, role: Role, view: &View, area: Rect, buf: &mut Buffer) {
+    let lines = wrapped(text, area.width.into());
+    for (line, y) in lines.iter().zip(0..area.height) {
+        write(area, (0, y), line, view.theme.style(role), buf);
     }
+}
+
+/// The directions of the torque and of the change of L that the picture from above shows, where there are any. Of a scheme
+/// that gives no torque it is the change of L in the step. Under friction that is not along the torque.
+fn torque_and_change(explained: &Explained) -> [Option<Vector2<f64>>; 2] {
+    let (before, after) = &explained.states;
+    let changed = after.momentum - before.momentum;
+    let last_part = explained.workings.parts.last();
+    let rubbing = last_part.filter(|part| !part.loads.friction.is_none());
+    let given = last(explained, &["τ", "dL", "ΔL"]).map(|quantity| &quantity.value);
+    let both = match (rubbing, given) {
+        (Some(part), _) => {
+            let moment = part.loads.moment(&explained.scenario.body.mechanics);
+            [torque(&after.orientation, &moment), changed]
+        }
+        (None, Some(Value::Vector(torque))) => [*torque, *torque],
+        (None, _) => [changed, changed],
+    };
+    both.map(|vector| vector.xy().try_normalize(f64::MIN_POSITIVE))
 }
 
 /// The axle from above with L, and at its tip the weight, τ and dL.
@@ -209,71 +215,40 @@ fn from_above(explained: &Explained, view: &View, area: Rect, buf: &mut Buffer) 
     let area = headed("from above, o: top", view, area, buf);
     let (_, after) = &explained.states;
     let arm = explained.scenario.arm_m();
-    let level = |vector: nalgebra::Vector3<f64>| vector.xy();
-    let tip = level(after.axle()) * arm;
-    let momentum = level(after.momentum);
+    let tip = after.axle().xy() * arm;
+    let momentum = after.momentum.xy();
     let Some(along) = momentum.try_normalize(1e-9 * after.momentum.norm()) else {
-        write(
-            area,
-            (0, 0),
-            "L is upright:",
-            view.theme.style(Role::Text),
-            buf,
-        );
-        write(
-            area,
-            (0, 1),
-            "no side is sideways",
-            view.theme.style(Role::Text),
-            buf,
-        );
+        for (line, y) in UPRIGHT.iter().zip(0..) {
+            write(area, (0, y), line, view.theme.style(Role::Text), buf);
+        }
         return;
     };
     if area.height < 3 || area.width < 8 {
         return;
     }
     let length = tip.norm().max(LEAST_SEEN * arm);
-    let changed = after.momentum - explained.states.0.momentum;
-    let rubbing = explained.workings.parts.last();
-    let rubbing = rubbing.filter(|part| !part.loads.friction.is_none());
-    // Of a scheme that gives no torque the change of L in the step. Under friction that is not along the torque.
-    let (torque, change) = match (
-        rubbing,
-        last(explained, &["τ", "dL", "ΔL"]).map(|quantity| &quantity.value),
-    ) {
-        (Some(part), _) => {
-            let moment = part.loads.moment(&explained.scenario.body.mechanics);
-            (torque(&after.orientation, &moment), changed)
-        }
-        (None, Some(Value::Vector(torque))) => (*torque, *torque),
-        (None, _) => (changed, changed),
-    };
-    let [torque, change] = [torque, change].map(|of| of.xy().try_normalize(f64::MIN_POSITIVE));
-    // The corners of all that is drawn.
+    let [torque, change] = torque_and_change(explained);
     let momentum_tip = along * (BEYOND * length);
-    let mut corners = vec![Vector2::zeros(), tip, momentum_tip];
-    if let Some(torque) = torque {
-        corners.push(tip + torque * (TORQUE * length));
-    }
-    if let Some(change) = change {
-        corners.push(momentum_tip + change * (CHANGE * length));
-    }
+    let origin = Vector2::zeros();
+    let mut arrows = vec![(origin, momentum_tip, "L", Role::Z)];
+    arrows.extend(torque.map(|torque| (tip, torque * (TORQUE * length), "τ", Role::X)));
+    let change = change.map(|change| change * (CHANGE * length));
+    arrows.extend(change.map(|change| (momentum_tip, change, "dL", Role::X)));
+    let corners = arrows.iter().map(|(from, along, ..)| from + along);
+    let corners: Vec<_> = corners.chain([origin]).collect();
     let least = corners.iter().fold(tip, |least, at| least.inf(at));
     let most = corners.iter().fold(tip, |most, at| most.sup(at));
-    let half = (most - least) * 0.5;
-    let half = half.map(|half| 1.3 * half + 0.05 * length);
-    let mut plan = Plan::new(area, view, (least + most) * 0.5, half);
-    plan.arrow(Vector2::zeros(), momentum_tip, "L", Role::Z);
-    plan.line(Vector2::zeros(), tip, Ink::Strong(Role::Text));
-    if let Some(torque) = torque {
-        plan.arrow(tip, torque * (TORQUE * length), "τ", Role::X);
+    let margin = |half| 1.3 * half + 0.05 * length;
+    let mut picture = Picture::new(area, view, (least, most), margin);
+    for (from, along, name, role) in arrows {
+        picture.arrow(from, along, name, role);
+        if name == "L" {
+            picture.line(origin, tip, Ink::Strong(Role::Text));
+        }
     }
-    if let Some(change) = change {
-        plan.arrow(momentum_tip, change * (CHANGE * length), "dL", Role::X);
-    }
-    plan.sign(Vector2::zeros(), "+", Role::Quiet);
-    plan.sign(tip, "o", Role::Focus);
-    plan.draw(area, view, buf);
+    picture.sign(origin, "+", Role::Quiet);
+    picture.sign(tip, "o", Role::Focus);
+    picture.draw(area, view, buf);
 }
 
 /// The path of the axle's tip in its first dip, magnified to fill the picture.
@@ -285,74 +260,48 @@ fn dip(
     buf: &mut Buffer,
 ) {
     let area = headed("first dip, magnified", view, area, buf);
-    let text = |line: u16, text: &str, buf: &mut Buffer| {
-        let lines = wrapped(text, area.width.into());
-        for (text, y) in lines.iter().zip(line..area.height) {
-            write(area, (0, y), text, view.theme.style(Role::Text), buf);
-        }
-    };
     let Some(dip) = dip else {
-        return text(
-            0,
-            "the axle is upright at first: no side of it is down",
-            buf,
-        );
+        let upright = "the axle is upright at first: no side of it is down";
+        return text(upright, Role::Text, view, area, buf);
     };
-    let far = dip.way_m.iter().fold(0.0_f64, |far, (side, down)| {
-        far.max(side.abs()).max(down.abs())
-    });
     if area.height < 4 || area.width < 8 {
         return;
     }
+    let way = dip
+        .way_m
+        .iter()
+        .map(|(side, down)| Vector2::new(*side, -down));
+    let way: Vec<_> = way.collect();
+    let far = way.iter().fold(0.0_f64, |far, at| far.max(at.amax()));
     if far <= ROUNDING * arm_m {
-        return text(0, "it has not moved yet: . takes a step", buf);
+        let still = "it has not moved yet: . takes a step";
+        return text(still, Role::Text, view, area, buf);
     }
     let note = match (is_seen, dip.is_whole) {
         (false, _) => "dt is too long for the true dip: this one is dt's own",
         (true, true) => "",
         (true, false) => "so far",
     };
-    let note = wrapped(note, area.width.into());
-    let notes = if note.concat().is_empty() {
+    let notes = if note.is_empty() {
         0
     } else {
-        note.len() as u16
+        wrapped(note, area.width.into()).len() as u16
     };
-    let picture = Rect {
-        height: area.height.saturating_sub(1 + notes),
-        ..area
-    };
-    let at = |(side, down): &(f64, f64)| Vector2::new(*side, -down);
+    let [place, below] = split_rows(area, area.height.saturating_sub(1 + notes));
     let first = Vector2::zeros();
-    let least = dip
-        .way_m
-        .iter()
-        .fold(first, |least, way| least.inf(&at(way)));
-    let most = dip.way_m.iter().fold(first, |most, way| most.sup(&at(way)));
-    let half = ((most - least) * 0.5).map(|half| 1.15 * half + 0.1 * far);
-    let mut plan = Plan::new(picture, view, (least + most) * 0.5, half);
-    let ink = Ink::Strong(Role::Path);
-    for pair in dip.way_m.windows(2) {
-        if is_seen {
-            plan.line(at(&pair[0]), at(&pair[1]), ink);
-        } else {
-            plan.line(at(&pair[1]), at(&pair[1]), ink);
-        }
+    let least = way.iter().fold(first, |least, at| least.inf(at));
+    let most = way.iter().fold(first, |most, at| most.sup(at));
+    let margin = |half| 1.15 * half + 0.1 * far;
+    let mut picture = Picture::new(place, view, (least, most), margin);
+    for pair in way.windows(2) {
+        // Steps that are too long for the true dip are not joined.
+        let from = if is_seen { pair[0] } else { pair[1] };
+        picture.line(from, pair[1], Ink::Strong(Role::Path));
     }
-    plan.sign(first, "o", Role::Focus);
-    plan.draw(picture, view, buf);
-    // The scale, below the picture.
-    let cell_m = plan.dots.in_a_cell().0 as f64 / plan.scale.0;
-    let length_m = at_or_below(0.5 * f64::from(area.width) * cell_m);
-    let cells = (length_m / cell_m).round() as usize + 1;
-    let bar = format!(
-        "├{}┤ {} m",
-        "─".repeat(cells.saturating_sub(2)),
-        shortest(length_m)
-    );
-    let style = view.theme.style(Role::Quiet);
-    write(area, (0, picture.height), &bar, style, buf);
-    for (line, y) in note.iter().zip(picture.height + 1..area.height) {
-        write(area, (0, y), line, view.theme.style(Role::Warning), buf);
-    }
+    picture.sign(first, "o", Role::Focus);
+    picture.draw(place, view, buf);
+    let [scale, below] = split_rows(below, 1);
+    let bar = picture.plane.bar(0.5 * f64::from(area.width));
+    write(scale, (0, 0), &bar, view.theme.style(Role::Quiet), buf);
+    text(note, Role::Warning, view, below, buf);
 }

@@ -4,7 +4,7 @@ use super::{CHANGE, Label, MOMENTUM, Subject, write};
 use crate::physics::observables;
 use crate::text::wrap::columns;
 use crate::tui::dots::Ink;
-use crate::tui::scene::Scene;
+use crate::tui::scene::{Over, Scene};
 use crate::tui::theme::Role;
 use nalgebra::Vector3;
 use ratatui::buffer::Buffer;
@@ -19,9 +19,6 @@ const PUSH: f64 = 0.4;
 /// The most pushes that are drawn at one time.
 const MOST_PUSHES: usize = 20;
 
-/// How an arrow is drawn: from where to where, and in which ink.
-type Draw = fn(&mut Scene, &Vector3<f64>, &Vector3<f64>, Ink);
-
 /// Where an arrow's letter stands beside its tip instead of beyond it: the direction away from which it stands.
 type Away = Option<Vector3<f64>>;
 
@@ -35,12 +32,12 @@ impl Subject<'_> {
         let direction = |vector: &Vector3<f64>| vector.try_normalize(f64::MIN_POSITIVE);
         let mut labels = Vec::new();
         let mut arrow =
-            |name, role, draw: Draw, from: Vector3<f64>, to: Vector3<f64>, away: Away| {
+            |name, role, over: Over, from: Vector3<f64>, to: Vector3<f64>, away: Away| {
                 if !self.draws(name) {
                     return;
                 }
                 let tip = from + to;
-                draw(scene, &from, &tip, Ink::Strong(role));
+                scene.arrow(&from, &tip, Ink::Strong(role), over);
                 let place = match away {
                     Some(direction) => scene.beside(&tip, &direction),
                     None => scene.beyond(&from, &tip),
@@ -53,32 +50,32 @@ impl Subject<'_> {
             let centre = state.orientation * body.first_moment() / body.mass();
             let to = down * (WEIGHT * reach);
             // The axle is whole where it is seen upright.
-            arrow("g", Role::Push, Scene::arrow_behind, centre, to, None);
+            arrow("g", Role::Push, Over::BehindRod, centre, to, None);
         }
         let omega = direction(&observables::angular_velocity(body, state));
         if let Some(along) = self.direction("Ω", omega) {
             let to = along * (OMEGA * arm);
             // Shorter than L, in which it would vanish where both lie along the axle. L goes on beyond its tip, where no
             // letter can be read, and dL stands on the side to which the torque points.
-            arrow("Ω", Role::Y, Scene::arrow_over, pivot, to, self.torque);
+            arrow("Ω", Role::Y, Over::Arrow, pivot, to, self.torque);
         }
         let momentum = self.direction("L", direction(&state.momentum));
         let momentum = momentum.map(|along| along * (MOMENTUM * arm));
         if let Some(torque) = self.direction("τ", self.torque) {
             // Both are short and cross the rim, which would hide them.
             let to = torque * (TORQUE * reach);
-            arrow("τ", Role::X, Scene::arrow_in_front, pivot, to, None);
+            arrow("τ", Role::X, Over::Everything, pivot, to, None);
         }
         if let (Some(change), Some(momentum)) = (self.direction("dL", self.change), momentum) {
             let to = change * (CHANGE * reach);
-            arrow("dL", Role::X, Scene::arrow_in_front, momentum, to, None);
+            arrow("dL", Role::X, Over::Everything, momentum, to, None);
         }
         if let Some(new) = self.new_momentum() {
             let to = new * (MOMENTUM * arm);
-            arrow("new L", Role::Z, Scene::arrow, pivot, to, None);
+            arrow("new L", Role::Z, Over::Farther, pivot, to, None);
         }
         if let Some(momentum) = momentum {
-            arrow("L", Role::Z, Scene::arrow, pivot, momentum, None);
+            arrow("L", Role::Z, Over::Farther, pivot, momentum, None);
         }
         labels
     }
@@ -94,7 +91,7 @@ impl Subject<'_> {
             let from = self.state.orientation * points[push.point].at;
             if let Some(direction) = push.force.try_normalize(f64::MIN_POSITIVE) {
                 let tip = from + direction * length;
-                scene.arrow_in_front(&from, &tip, Ink::Strong(Role::Push));
+                scene.arrow(&from, &tip, Ink::Strong(Role::Push), Over::Everything);
                 labels.push(("F", Role::Push, scene.beyond(&from, &tip)));
             }
         }
@@ -179,41 +176,23 @@ impl Subject<'_> {
     }
 
     /// What is drawn besides the arrows.
+    #[rustfmt::skip]
     fn signs_in_words(&self) -> Vec<Words> {
-        let mut words = vec![(["+ pivot"; 3], Role::Heading)];
-        words.push((["thick: axle", "", ""], Role::Focus));
-        if self.run.scenario().file.trace.is_none() {
-            words.push((["* axle top", "* top", "* top"], Role::Focus));
-        } else {
-            words.push((["* traced point", "* traced", "* traced"], Role::Focus));
-        }
-        words.push((["►▲ its way", "", ""], Role::Focus));
-        if self.shape.rim.is_some() {
-            words.push((["■ hub", "■ hub", ""], Role::Heading));
-        }
-        words.push((
-            ["O o · masses, near to far", "O o · masses", ""],
-            Role::Text,
-        ));
-        if self.run.overlay().is_some() {
-            words.push((
-                ["dots: exact motion", "dots: exact", "dots: exact"],
-                Role::Exact,
-            ));
-        }
-        if self.pinned.is_some() {
-            words.push((
-                ["long dashes: pinned", "-- pinned", "-- pinned"],
-                Role::Pinned,
-            ));
-        }
-        if self.ghost.is_some() {
-            words.push((
-                ["dotted: other run", "dotted: other", "dotted: other"],
-                Role::Ghost,
-            ));
-        }
-        words
+        let is_top = self.run.scenario().file.trace.is_none();
+        let all = [
+            (true, ["+ pivot"; 3], Role::Heading),
+            (true, ["thick: axle", "", ""], Role::Focus),
+            (is_top, ["* axle top", "* top", "* top"], Role::Focus),
+            (!is_top, ["* traced point", "* traced", "* traced"], Role::Focus),
+            (true, ["►▲ its way", "", ""], Role::Focus),
+            (self.shape.rim.is_some(), ["■ hub", "■ hub", ""], Role::Heading),
+            (true, ["O o · masses, near to far", "O o · masses", ""], Role::Text),
+            (self.run.overlay().is_some(), ["dots: exact motion", "dots: exact", "dots: exact"], Role::Exact),
+            (self.pinned.is_some(), ["long dashes: pinned", "-- pinned", "-- pinned"], Role::Pinned),
+            (self.ghost.is_some(), ["dotted: other run", "dotted: other", "dotted: other"], Role::Ghost),
+        ];
+        let drawn = all.into_iter().filter(|(is_drawn, ..)| *is_drawn);
+        drawn.map(|(_, words, role)| (words, role)).collect()
     }
 }
 

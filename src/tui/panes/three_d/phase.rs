@@ -1,6 +1,7 @@
 //! The phase of the step pane in the scene: only the arrows that it is about, the axis of its turn, and the body as it
 //! stood before the step.
 
+use super::body::Sign;
 use super::{Label, MOMENTUM, Subject};
 use crate::lab::explained::{Explained, table_of};
 use crate::lab::view::View;
@@ -121,17 +122,10 @@ impl Subject<'_> {
             let Some(point) = points.get(point) else {
                 return labels;
             };
-            let (old, new) = (
-                shown.before().orientation * point.at,
-                self.state.orientation * point.at,
-            );
-            let from = match shown.phase.name {
-                "inertia" => Vector3::zeros(),
-                _ => old,
-            };
-            let to = match shown.phase.name {
-                "inertia" => old,
-                _ => new,
+            let before = shown.before().orientation * point.at;
+            let (from, to) = match shown.phase.name {
+                "inertia" => (Vector3::zeros(), before),
+                _ => (before, self.state.orientation * point.at),
             };
             scene.line(&from, &to, Stroke::Thin, Ink::Strong(Role::Focus));
             labels.push(("@", Role::Focus, to));
@@ -140,7 +134,7 @@ impl Subject<'_> {
     }
 
     /// The masses where they were before the step.
-    pub(super) fn signs_of_phase(&self, scene: &Scene) -> Vec<(&'static str, Role, (u16, u16))> {
+    pub(super) fn signs_of_phase(&self, scene: &Scene) -> Vec<Sign> {
         let shown = self.shown_phase.as_ref().filter(|shown| shown.has_before());
         shown.map_or_else(Vec::new, |shown| self.masses_before(shown.before(), scene))
     }

@@ -35,14 +35,17 @@ impl Subject<'_> {
         let blocks = blocks.filter(|block| block.end_s >= turn && block.end_s <= until);
         let blocks: Vec<_> = blocks.collect();
         let now = scene.dot(&self.position);
-        let (across, down) = (scene.in_cell.0 as f64, 0.5 * scene.in_cell.1 as f64);
+        let (across, down) = (
+            scene.plane.in_cell.0 as f64,
+            0.5 * scene.plane.in_cell.1 as f64,
+        );
         let columns =
             |from: Place, to: Place| ((to.0 - from.0) / across).hypot((to.1 - from.1) / down);
         let (mut way, mut joined) = (vec![now], 0);
         let mut head = None;
         for block in blocks.iter().rev() {
             let at = scene.dot(&block.end);
-            let longest = trail::longest_line(scene.size, block.end_s >= recent);
+            let longest = trail::longest_line(scene.plane.size, block.end_s >= recent);
             let last = way[way.len() - 1];
             let apart = (at.0 - last.0).abs().max((at.1 - last.1).abs());
             if apart.is_nan() || apart > longest {
@@ -57,9 +60,10 @@ impl Subject<'_> {
             let newer = newer.find(|place| columns(at, **place) >= STRETCH);
             let to = newer.unwrap_or(&now);
             let direction = ((to.0 - at.0) / across, (to.1 - at.1) / down);
-            head = scene
-                .cell_of(at)
-                .map(|cell| (sign(direction), Role::Focus, cell));
+            let (across, down) = scene.plane.in_cell;
+            let cell = scene.plane.place(at);
+            let cell = cell.map(|(x, y)| ((x / across) as u16, (y / down) as u16));
+            head = cell.map(|cell| (sign(direction), Role::Focus, cell));
             break;
         }
         way.truncate(joined + 1);
@@ -69,11 +73,11 @@ impl Subject<'_> {
 
 /// The sign that points most nearly along `right`, `down`.
 fn sign((right, down): Place) -> &'static str {
-    match right.abs() >= down.abs() {
-        true if right >= 0.0 => "►",
-        true => "◄",
-        false if down >= 0.0 => "▼",
-        false => "▲",
+    match (right.abs() >= down.abs(), right >= 0.0, down >= 0.0) {
+        (true, true, _) => "►",
+        (true, false, _) => "◄",
+        (false, _, true) => "▼",
+        (false, _, false) => "▲",
     }
 }
 

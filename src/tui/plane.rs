@@ -1,0 +1,75 @@
+//! A plane, m to the right and up, on an area of cells: circles are round at every size.
+
+use crate::lab::view::markers::Marker;
+use crate::text::ladder::at_or_below;
+use crate::text::number::shortest;
+use ratatui::layout::Rect;
+
+/// From metres to dots and cells.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane {
+    /// What is in the middle of the area, m.
+    pub middle: (f64, f64),
+    /// Dots in a metre, across and down.
+    pub scale: (f64, f64),
+    /// Dots of the area, across and down.
+    pub size: (usize, usize),
+    /// Dots in a cell, across and down.
+    pub in_cell: (usize, usize),
+}
+
+impl Plane {
+    /// The plane on `area`, as large as there is room for `half` to each side, and up and down (m).
+    pub fn new(area: Rect, marker: Marker, middle: (f64, f64), half: (f64, f64)) -> Self {
+        let in_cell = marker.dots();
+        let size = (
+            area.width as usize * in_cell.0,
+            area.height as usize * in_cell.1,
+        );
+        let aspect = marker.dot_aspect();
+        let down = (0.5 * size.1 as f64 / half.1).min(0.5 * size.0 as f64 * aspect / half.0);
+        Self {
+            middle,
+            scale: (down / aspect, down),
+            size,
+            in_cell,
+        }
+    }
+
+    pub fn dot(&self, (right, up): (f64, f64)) -> (f64, f64) {
+        (
+            0.5 * self.size.0 as f64 + (right - self.middle.0) * self.scale.0,
+            0.5 * self.size.1 as f64 - (up - self.middle.1) * self.scale.1,
+        )
+    }
+
+    pub fn shows(&self, at: (f64, f64)) -> bool {
+        self.place(self.dot(at)).is_some()
+    }
+
+    /// The column and row of a dot; `None` outside of the area, as for NaN.
+    pub fn place(&self, (x, y): (f64, f64)) -> Option<(usize, usize)> {
+        let inside = x >= 0.0 && y >= 0.0 && x < self.size.0 as f64 && y < self.size.1 as f64;
+        inside.then_some((x as usize, y as usize))
+    }
+
+    /// The cell of a place, or the one at the edge that is nearest to it.
+    pub fn cell(&self, at: (f64, f64)) -> (u16, u16) {
+        let (x, y) = self.dot(at);
+        let inside = |dot: f64, dots: usize| dot.clamp(0.0, dots.saturating_sub(1) as f64);
+        (
+            (inside(x, self.size.0) / self.in_cell.0 as f64) as u16,
+            (inside(y, self.size.1) / self.in_cell.1 as f64) as u16,
+        )
+    }
+
+    /// The scale: a line of a round length, at most `columns` long.
+    pub fn bar(&self, columns: f64) -> String {
+        let cell_m = self.in_cell.0 as f64 / self.scale.0;
+        let length_m = at_or_below(columns * cell_m);
+        // From the middle of its first cell to that of its last.
+        let cells = (length_m / cell_m).round() as usize + 1;
+        let line = "─".repeat(cells.saturating_sub(2));
+        format!("├{line}┤ {} m", shortest(length_m))
+    }
+}
