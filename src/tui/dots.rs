@@ -37,6 +37,12 @@ pub fn of_run_before(marker: Marker) -> Dashes {
     }
 }
 
+/// The column and row of a dot; `None` outside of a sheet of this size, as for NaN.
+pub fn on_sheet((x, y): (f64, f64), (width, height): (usize, usize)) -> Option<(usize, usize)> {
+    let is_inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
+    is_inside.then_some((x as usize, y as usize))
+}
+
 /// The dots of a straight line, each with its share of the way; none of a line that is far longer than a sheet of
 /// `width` and `height` dots.
 pub fn line(
@@ -103,15 +109,14 @@ impl Dots {
 
     /// Sets the dot at column `x`, row `y`; outside the sheet nothing happens.
     pub fn set(&mut self, x: f64, y: f64, ink: Ink) {
-        let inside = x >= 0.0 && y >= 0.0 && x < self.width() as f64 && y < self.height() as f64;
         let (layer, role) = match ink {
             Ink::Strong(role) => (0, role),
             Ink::Faint(role) => (1, role),
             Ink::Under(role) => (2, role),
             Ink::Ghost => (3, Role::Ghost),
         };
-        // NaN is outside.
-        if inside && let Some((cell, bit)) = self.cell(x as usize, y as usize) {
+        let place = on_sheet((x, y), (self.width(), self.height()));
+        if let Some((cell, bit)) = place.and_then(|(x, y)| self.cell(x, y)) {
             cell.bits[layer] |= bit;
             cell.roles[layer] = role;
         }

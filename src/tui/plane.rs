@@ -3,6 +3,7 @@
 use crate::lab::view::markers::Marker;
 use crate::text::ladder::at_or_below;
 use crate::text::number::shortest;
+use crate::tui::dots::on_sheet;
 use ratatui::layout::Rect;
 
 /// From metres to dots and cells.
@@ -47,10 +48,9 @@ impl Plane {
         self.place(self.dot(at)).is_some()
     }
 
-    /// The column and row of a dot; `None` outside of the area, as for NaN.
-    pub fn place(&self, (x, y): (f64, f64)) -> Option<(usize, usize)> {
-        let inside = x >= 0.0 && y >= 0.0 && x < self.size.0 as f64 && y < self.size.1 as f64;
-        inside.then_some((x as usize, y as usize))
+    /// The column and row of a dot; `None` outside of the area.
+    pub fn place(&self, dot: (f64, f64)) -> Option<(usize, usize)> {
+        on_sheet(dot, self.size)
     }
 
     /// The cell of a place, or the one at the edge that is nearest to it.

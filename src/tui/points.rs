@@ -5,6 +5,7 @@
 
 use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::Theme;
+use crate::tui::dots::on_sheet;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -119,14 +120,11 @@ impl Points {
     }
 
     fn set(&mut self, (x, y): (f64, f64), sign: Sign, role: Role) {
-        let is_inside = x >= 0.0
-            && y >= 0.0
-            && x < f64::from(self.area.width)
-            && y < f64::from(self.area.height);
-        if !is_inside {
-            return; // so is NaN
-        }
-        let cell = &mut self.cells[y as usize * self.area.width as usize + x as usize];
+        let size = (self.area.width.into(), self.area.height.into());
+        let Some((x, y)) = on_sheet((x, y), size) else {
+            return;
+        };
+        let cell = &mut self.cells[y * size.0 + x];
         if sign >= cell.sign {
             *cell = Cell { sign, role };
         }

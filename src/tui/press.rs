@@ -12,7 +12,7 @@ pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
     if own.any(|row| row.modes.contains(&mode) && row.keys.contains(&key)) {
         lab.touch_pane();
     }
-    match keymap::action_with(panes::keys_of(lab), mode, key) {
+    match keymap::action(panes::keys_of(lab), mode, key) {
         Some(Action::DoEntry) => help::do_entry(lab),
         Some(action) => {
             let request = lab.update(action);

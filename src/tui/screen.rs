@@ -14,7 +14,7 @@ use crate::lab::action::Direction;
 use crate::lab::view::markers::Marker;
 use crate::lab::view::{Pane, Part};
 use crate::tui::keymap::Mode;
-use crate::tui::layout::{Layout, Said};
+use crate::tui::layout::{Layout, Said, split_rows};
 use crate::tui::markers;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
@@ -132,37 +132,23 @@ fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
 }
 
-pub(super) fn body(layout: &Layout) -> Rect {
-    layout
-        .panes
-        .iter()
-        .map(|(_, area)| *area)
-        .reduce(Rect::union)
-        .unwrap_or_default()
-}
-
 /// The area of what lies on top of the panes: all of theirs, without the lines that a message takes of it.
 pub(super) fn place_on_top(lab: &Lab, layout: &Layout) -> Rect {
-    let body = body(layout);
+    let panes = layout.panes.iter().map(|(_, area)| *area);
+    let body = panes.reduce(Rect::union).unwrap_or_default();
     let message = hint::place(lab, layout);
-    let end = if message.is_empty() {
-        body.bottom()
+    if message.is_empty() {
+        body
     } else {
-        message.y
-    };
-    Rect {
-        height: body.height.min(end.saturating_sub(body.y)),
-        ..body
+        split_rows(body, message.y.saturating_sub(body.y))[0]
     }
 }
 
 /// Nothing but ASCII, whatever a scenario's title holds.
 fn to_ascii(area: Rect, buf: &mut Buffer) {
     for position in area.positions() {
-        if let Some(cell) = buf
-            .cell_mut(position)
-            .filter(|cell| !cell.symbol().is_ascii())
-        {
+        let cell = buf.cell_mut(position);
+        if let Some(cell) = cell.filter(|cell| !cell.symbol().is_ascii()) {
             let ascii = markers::ascii(cell.symbol());
             cell.set_symbol(ascii);
         }

@@ -4,7 +4,7 @@
 
 use crate::observe::ages::{Age, Ages};
 use crate::observe::recording::Recording;
-use crate::tui::dots::{Dots, Ink};
+use crate::tui::dots::{self, Dots, Ink};
 use crate::tui::theme::Role;
 use nalgebra::Vector3;
 
@@ -13,16 +13,16 @@ use nalgebra::Vector3;
 const RANK: [u8; 5] = [0, 3, 1, 4, 2];
 const SHIFT: usize = 3;
 
-/// A dot in which the point was found this many times as often as in an average one is one where it dwelt.
+/// The point dwelt at a dot where it was found this many times as often as at an average dot.
 const DWELT: f64 = 3.0;
-/// And no more seldom than this: else it is chance.
+/// Fewer times than these are chance.
 const LEAST_DWELT: u16 = 5;
 /// The longest line between two places of the last turn, dots: the way between them is not known.
 const LONGEST_LINE: f64 = 8.0;
 /// The longest line between two recent places, of the sheet's shorter side.
 const LONGEST_RECENT_LINE: f64 = 0.5;
 
-/// The dots near a dot are those up to this distance across and down, and so many of them are more than two lines have.
+/// Dots of the path up to this distance across and down are near; two lines have fewer near dots than a crowd.
 const NEAR: usize = 2;
 const CROWD: usize = 12;
 
@@ -56,27 +56,14 @@ impl Trail {
         }
     }
 
-    /// The place of a dot; `None` outside the sheet, as of NaN.
-    fn place(&self, (x, y): (f64, f64)) -> Option<usize> {
-        let inside = x >= 0.0 && y >= 0.0 && x < self.width as f64 && y < self.height as f64;
-        inside.then(|| y as usize * self.width + x as usize)
+    fn place(&self, at: (f64, f64)) -> Option<usize> {
+        let place = dots::on_sheet(at, (self.width, self.height));
+        place.map(|(x, y)| y * self.width + x)
     }
 
     pub fn dot(&mut self, at: (f64, f64), age: Age) {
         if let Some(place) = self.place(at) {
             self.ages[place] = self.ages[place].max(Some(age));
-        }
-    }
-
-    fn line(&mut self, from: (f64, f64), to: (f64, f64), age: Age) {
-        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-        let length = dx.abs().max(dy.abs()).ceil();
-        if length.is_nan() || length > 4.0 * (self.width + self.height) as f64 {
-            return; // nowhere near the sheet
-        }
-        for dot in 1..=length as usize {
-            let share = dot as f64 / length;
-            self.dot((from.0 + share * dx, from.1 + share * dy), age);
         }
     }
 
@@ -120,7 +107,9 @@ impl Trail {
             if let Some(last) = last.replace(at)
                 && (at.0 - last.0).abs().max((at.1 - last.1).abs()) <= longest
             {
-                self.line(last, at, age);
+                for (_, dot) in dots::line(last, at, (self.width, self.height)).skip(1) {
+                    self.dot(dot, age);
+                }
             }
         }
     }
@@ -167,19 +156,18 @@ impl Trail {
             let of_age = self.ages.iter().enumerate();
             for (place, _) in of_age.filter(|(_, is)| **is == Some(age)) {
                 let (x, y) = (place % self.width, place / self.width);
-                let dwelt = self.counts[place] >= dwelt;
                 // What is beside a recent line is left out, so that it is seen as one.
                 if age != Age::Recent && self.is_beside_recent(x, y) {
                     continue;
                 }
-                let is_drawn = match self.is_covered(x, y) {
-                    _ if age == Age::Recent || dwelt => true,
-                    true if self.around == Around::Body => is_in_area(x, y, Age::Old),
-                    true => is_in_area(x, y, age),
-                    false => is_in_line(x, y, age),
+                let is_area = self.is_covered(x, y);
+                let is_drawn = match self.around {
+                    _ if age == Age::Recent || self.counts[place] >= dwelt => true,
+                    Around::Body if is_area => is_in_area(x, y, Age::Old),
+                    Around::Nothing if is_area => is_in_area(x, y, age),
+                    _ => is_in_line(x, y, age),
                 };
                 if is_drawn {
-                    let is_area = self.is_covered(x, y);
                     dots.set(x as f64, y as f64, self.ink(age, is_area));
                 }
             }

@@ -8,6 +8,7 @@ use crate::scenario::Scenario;
 use crate::text::printable::printable;
 use crate::text::wrap::wrapped;
 use crate::tui::keymap::Mode;
+use crate::tui::layout::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
@@ -35,30 +36,16 @@ impl Widget for BrowserPane<'_> {
         if inside.is_empty() {
             return;
         }
-        self.filter_line(
-            Rect {
-                height: 1,
-                ..inside
-            },
-            buf,
-        );
-        let below = Rect {
-            y: inside.y + 1,
-            height: inside.height - 1,
-            ..inside
-        };
+        let [top, below] = split_rows(inside, 1);
         let width = if below.width >= 2 * LIST {
             LIST
         } else {
             below.width
         };
-        self.list(Rect { width, ..below }, buf);
-        let rest = Rect {
-            x: below.x + width,
-            width: below.width - width,
-            ..below
-        };
-        self.preview(rest, buf);
+        let [list, preview] = split_columns(below, width);
+        self.filter_line(top, buf);
+        self.list(list, buf);
+        self.preview(preview, buf);
     }
 }
 
@@ -96,11 +83,8 @@ fn keys(files: usize, others: usize, width: usize) -> String {
         format!("/ filters, Enter opens; {files}"),
     ];
     let fits = |form: &&String| form.len() <= width;
-    forms
-        .iter()
-        .find(fits)
-        .map_or(KEYS, String::as_str)
-        .to_owned()
+    let fitting = forms.iter().find(fits);
+    fitting.map_or(KEYS, String::as_str).to_owned()
 }
 
 impl BrowserPane<'_> {
@@ -121,27 +105,22 @@ impl BrowserPane<'_> {
     fn list(&self, area: Rect, buf: &mut Buffer) {
         let shown = self.browser.shown();
         if shown.is_empty() {
-            write(
-                area,
-                (1, 0),
-                "nothing has that in its name",
-                self.theme.style(Role::Text),
-                buf,
-            );
+            let text = "nothing has that in its name";
+            write(area, (1, 0), text, self.theme.style(Role::Text), buf);
         }
         let height = area.height as usize;
         let first = first_shown(self.browser, height);
-        for ((index, entry), y) in shown.iter().enumerate().skip(first).zip(0..area.height) {
-            let selected = index == self.browser.selected();
-            let role = if selected { Role::Selected } else { Role::Text };
-            let mark = if selected { ">" } else { " " };
+        let [places, _] = split_columns(area, LIST - 1);
+        let entries = shown.iter().enumerate().skip(first);
+        for ((index, entry), place) in entries.zip(places.rows()) {
+            let (role, mark) = if index == self.browser.selected() {
+                (Role::Selected, ">")
+            } else {
+                (Role::Text, " ")
+            };
             let name = below(&entry.name, self.browser.folder());
             let line = format!("{mark} {name:<width$}", width = LIST as usize - 4);
-            let room = Rect {
-                width: area.width.min(LIST - 1),
-                ..area
-            };
-            write(room, (0, y), &line, self.theme.style(role), buf);
+            write(place, (0, 0), &line, self.theme.style(role), buf);
         }
     }
 
@@ -166,25 +145,11 @@ impl BrowserPane<'_> {
             None => Vec::new(),
         };
         let more = lines.len() > area.height as usize;
-        for ((text, role), y) in lines.iter().zip(0..area.height) {
-            let last = more && y + 1 == area.height;
-            let text = if last {
-                format!("{text} ...")
-            } else {
-                text.clone()
-            };
-            let room = area.width - 1;
-            let line = Rect {
-                width: room,
-                ..area
-            };
-            write(
-                line,
-                (1, y),
-                text.trim_start(),
-                self.theme.style(*role),
-                buf,
-            );
+        let [places, _] = split_columns(area, area.width - 1);
+        for ((text, role), (y, place)) in lines.iter().zip((1..).zip(places.rows())) {
+            let rest = if more && y == area.height { " ..." } else { "" };
+            let text = format!("{}{rest}", text.trim_start());
+            write(place, (1, 0), &text, self.theme.style(*role), buf);
         }
     }
 }

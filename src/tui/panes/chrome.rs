@@ -9,6 +9,7 @@ use crate::lab::view::{Pane, Part};
 use crate::observe::reading::Reading;
 use crate::text::number::{fixed, significant};
 use crate::tui::keymap::{BINDINGS, Binding, Key, Mode};
+use crate::tui::layout::split_columns;
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -34,10 +35,7 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     );
     let clock_x = area.width.saturating_sub(clock.chars().count() as u16);
     write(area, (clock_x, 0), &clock, theme.style(Role::Text), buf);
-    let left = Rect {
-        width: clock_x.saturating_sub(1),
-        ..area
-    };
+    let [left, _] = split_columns(area, clock_x.saturating_sub(1));
     let room = left.width.saturating_sub(1) as usize;
     let details = [
         format!(" · {} scheme · dt {step} s", motion.scheme.name),
@@ -66,10 +64,7 @@ fn bare_title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let time = format!("t {:>8} s ", fixed(time_s, digits));
     let x = area.width.saturating_sub(time.len() as u16);
     write(area, (x, 0), &time, theme.style(Role::Text), buf);
-    let left = Rect {
-        width: x.saturating_sub(1),
-        ..area
-    };
+    let [left, _] = split_columns(area, x.saturating_sub(1));
     let title = &lab.player().run().scenario().file.title;
     write(left, (1, 0), title, theme.style(Role::Heading), buf);
 }
@@ -144,13 +139,8 @@ pub fn warns(lab: &Lab) -> bool {
 pub fn keys(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     for (x, item) in placed(lab, area.width) {
-        let x = write(
-            area,
-            (x, 0),
-            &item.key.to_string(),
-            theme.style(Role::Focus),
-            buf,
-        );
+        let (key, focus) = (item.key.to_string(), theme.style(Role::Focus));
+        let x = write(area, (x, 0), &key, focus, buf);
         write(area, (x + 1, 0), item.word, theme.style(Role::Quiet), buf);
     }
 }
@@ -215,49 +205,26 @@ fn fitted(mut items: Vec<Item>, width: u16) -> (Vec<Item>, u16) {
     }
 }
 
+/// The keys that the footer names where there is room for all.
 fn footer(lab: &Lab) -> Vec<Item> {
-    let (mode, is_running) = (lab.on_top().mode(), lab.player().playback().is_running());
-    let is_why = lab.view().page == Page::Why;
-    let sheet = lab.view().sheet.as_ref();
-    let (enter, has_next) = sheet.map_or(("", false), |sheet| (sheet.enter, sheet.has_next));
+    let mode = lab.on_top().mode();
     let of_pane = super::keys_of(lab);
     let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
     let is_new = |row: &&Binding| of_mode.clone().all(|other| other.keys[0] != row.keys[0]);
     // The keys of a page and of a step mean something else than those of the run, touched or not.
     let always = [Pane::LESSON, Pane::STEP].contains(&lab.view().focus);
     let of_touched = of_pane.filter(|_| lab.view().is_touched || always);
-    let own = of_touched.map(|row| (row, Worth::Own));
-    let of_lab = BINDINGS
-        .iter()
-        .filter(is_new)
-        .map(|row| (row, worth(row.action)));
-    let rows = own
-        .chain(of_lab)
-        .filter(|(row, _)| row.modes.contains(&mode) && !row.footer.is_empty())
-        .filter(|(row, _)| {
-            row.action != Action::ToggleResiduals || lab.player().measured().is_some()
-        })
-        .filter(|(row, _)| row.action != Action::Lesson(LessonKey::Take) || !enter.is_empty())
-        .filter(|(row, _)| row.action != Action::Lesson(LessonKey::Next) || has_next)
-        .filter(|(row, _)| !is_why || !matches!(row.action, Action::Move(_)))
-        .filter(|(row, _)| !goes_on(row.action) || !lab.player().run().simulation().has_ended());
-    let items = rows.map(|(row, worth)| {
-        let word = match row.action {
-            Action::TogglePause if !is_running => "go on",
-            Action::Lesson(LessonKey::Take) => enter,
-            Action::NextPhase if is_why => "next step",
-            Action::Why if is_why => "phases",
-            Action::Accept if lab.shows_settings() => "change",
-            _ => row.footer,
-        };
-        Item {
-            key: row.keys[0],
-            word,
-            worth,
-        }
+    let of_lab = BINDINGS.iter().filter(is_new);
+    let of_lab = of_lab.map(|row| (row, worth(row.action)));
+    let rows = of_touched.map(|row| (row, Worth::Own)).chain(of_lab);
+    let rows = rows.filter(|(row, _)| row.modes.contains(&mode) && !row.footer.is_empty());
+    let items = rows.filter_map(|(row, worth)| {
+        let word = word(lab, row)?;
+        let key = row.keys[0];
+        Some(Item { key, word, worth })
     });
     let esc = match mode {
-        Mode::Lab if lab.view().filled && sheet.is_some() => Some("to the page"),
+        Mode::Lab if lab.view().filled && lab.view().sheet.is_some() => Some("to the page"),
         Mode::Lab => None,
         Mode::Help if lab.on_top().help().text().is_empty() => Some("close"),
         Mode::Help | Mode::Filter | Mode::Find => Some("clear"),
@@ -271,9 +238,29 @@ fn footer(lab: &Lab) -> Vec<Item> {
     esc.into_iter().chain(items).collect()
 }
 
-/// Whether `action` plays the run on, which a run whose numbers are no longer finite cannot.
-fn goes_on(action: Action) -> bool {
-    matches!(action, Action::TogglePause | Action::Step)
+/// What the footer says of a key now; `None` where the key does nothing.
+fn word(lab: &Lab, row: &Binding) -> Option<&'static str> {
+    let is_why = lab.view().page == Page::Why;
+    let sheet = lab.view().sheet.as_ref();
+    let enter = sheet.map_or("", |sheet| sheet.enter);
+    let is_of_use = match row.action {
+        Action::ToggleResiduals => lab.player().measured().is_some(),
+        Action::Lesson(LessonKey::Take) => !enter.is_empty(),
+        Action::Lesson(LessonKey::Next) => sheet.is_some_and(|sheet| sheet.has_next),
+        Action::Move(_) => !is_why,
+        // A run whose numbers are no longer finite cannot go on.
+        Action::TogglePause | Action::Step => !lab.player().run().simulation().has_ended(),
+        _ => true,
+    };
+    let word = match row.action {
+        Action::TogglePause if !lab.player().playback().is_running() => "go on",
+        Action::Lesson(LessonKey::Take) => enter,
+        Action::NextPhase if is_why => "next step",
+        Action::Why if is_why => "phases",
+        Action::Accept if lab.shows_settings() => "change",
+        _ => row.footer,
+    };
+    is_of_use.then_some(word)
 }
 
 /// How long the footer names a key where there is not room for all: the least go first.

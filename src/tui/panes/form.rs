@@ -4,6 +4,7 @@ use super::{frame_on_top, wrapped_to, write};
 use crate::lab::form::{Field, Form};
 use crate::lab::view::theme::Theme;
 use crate::text::wrap::{columns, wrapped};
+use crate::tui::layout::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -39,20 +40,22 @@ impl Widget for FormPane<'_> {
         let is_framed = area.height >= LEAST_FRAMED && width >= LEAST_FRAMED;
         let border = if is_framed { 2 } else { 0 };
         let lines = self.lines(width - border, (area.height - border) as usize);
-        let height = lines.len() as u16 + border;
-        let place = Rect {
-            y: area.bottom() - height,
-            height,
-            ..area
-        };
+        let [_, place] = split_rows(area, area.height - lines.len() as u16 - border);
         let inside = if is_framed {
             frame_on_top(&self.form.title, place, self.theme, buf)
         } else {
             Clear.render(place, buf);
             place
         };
-        for (line, y) in lines.iter().zip(0..inside.height) {
-            self.draw_line(line, y, inside, buf);
+        for (line, place) in lines.iter().zip(inside.rows()) {
+            match line {
+                Line::Text(text, role) => {
+                    write(place, (0, 0), text, self.theme.style(*role), buf);
+                }
+                Line::Field(index, field) => {
+                    self.field(*index == self.form.selected, field, place, buf);
+                }
+            }
         }
     }
 }
@@ -99,42 +102,18 @@ impl FormPane<'_> {
         }
     }
 
-    fn draw_line(&self, line: &Line<'_>, y: u16, area: Rect, buf: &mut Buffer) {
-        match line {
-            Line::Text(text, role) => {
-                write(area, (0, y), text, self.theme.style(*role), buf);
-            }
-            Line::Field(index, field) => {
-                let place = Rect {
-                    y: area.y + y,
-                    height: 1,
-                    ..area
-                };
-                self.field(*index == self.form.selected, field, place, buf);
-            }
-        }
-    }
-
     /// The labels in one column, and the texts beside it.
     fn field(&self, is_selected: bool, field: &Field, area: Rect, buf: &mut Buffer) {
         let labels = self.form.fields.iter().map(|field| columns(&field.label));
         let widest = labels.max().unwrap_or(0) as u16 + 1;
-        let begin = widest.min(area.width / 2);
-        let label = Rect {
-            width: begin.saturating_sub(1),
-            ..area
-        };
+        let [label, room] = split_columns(area, widest.min(area.width / 2));
+        let [label, _] = split_columns(label, label.width.saturating_sub(1));
         let role = if is_selected {
             Role::Focus
         } else {
             Role::Quiet
         };
         write(label, (0, 0), &field.label, self.theme.style(role), buf);
-        let room = Rect {
-            x: area.x + begin,
-            width: area.width - begin,
-            ..area
-        };
         self.text(is_selected, field, room, buf);
     }
 

@@ -83,8 +83,16 @@ impl Widget for Help<'_> {
         }
         let lines = lines(&found, self.search.is_empty(), inside.width as usize);
         let first = first_shown(&lines, selected, inside.height as usize);
-        for (line, y) in lines.iter().skip(first).zip(0..inside.height) {
-            self.line(line, line.entry == Some(selected), y, inside, buf);
+        for (line, place) in lines.iter().skip(first).zip(inside.rows()) {
+            for (x, text, role) in &line.pieces {
+                write(place, (*x as u16, 0), text, self.theme.style(*role), buf);
+            }
+            if line.entry == Some(selected) {
+                buf.set_style(place, self.theme.style(Role::Selected));
+                if line.is_first {
+                    write(place, (0, 0), SELECTED, self.theme.style(Role::Focus), buf);
+                }
+            }
         }
     }
 }
@@ -94,23 +102,6 @@ impl Help<'_> {
         match (self.search, count) {
             ("", _) => "help: type to search, Enter does it".to_owned(),
             (search, count) => format!("help: {search}_ ({count})"),
-        }
-    }
-
-    fn line(&self, line: &Line, is_selected: bool, y: u16, area: Rect, buf: &mut Buffer) {
-        for (x, text, role) in &line.pieces {
-            write(area, (*x as u16, y), text, self.theme.style(*role), buf);
-        }
-        if is_selected {
-            let place = Rect {
-                y: area.y + y,
-                height: 1,
-                ..area
-            };
-            buf.set_style(place, self.theme.style(Role::Selected));
-            if line.is_first {
-                write(area, (0, y), SELECTED, self.theme.style(Role::Focus), buf);
-            }
         }
     }
 }

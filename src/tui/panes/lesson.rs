@@ -154,9 +154,10 @@ fn dressed(kind: &Kind) -> (String, u16, Role) {
         } => {
             let pointer = if *is_selected { "> " } else { "  " };
             let mark = if *is_given { "[x] " } else { "[ ] " };
-            let role = match is_selected {
-                true => Role::Focus,
-                false => Role::Text,
+            let role = if *is_selected {
+                Role::Focus
+            } else {
+                Role::Text
             };
             (format!("{pointer}{mark}"), 0, role)
         }

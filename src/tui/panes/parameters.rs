@@ -3,7 +3,6 @@
 //! With the focus it is an editor: the values above, one on each line, one of them selected; the readouts to watch
 //! below.
 
-mod digits;
 mod edited;
 mod fitting;
 mod lines;
@@ -17,13 +16,13 @@ use crate::observe::reading::Reading;
 use crate::scenario::{Motion, Scenario};
 use crate::text::wrap::columns;
 use crate::tui::keymap::{Binding, Key, Mode, row};
+use crate::tui::layout::{split_columns, split_rows};
 use crate::tui::theme::Role;
-use digits::fewer_digits;
 use edited::{around_selected, edited_lines, key_lines, needed, title};
 use fitting::{by_group, fitting, read_lines, shown, without_dashes};
 use lines::{
-    COLUMN, Line, PREDICTED, VALUE_END, body_lines, derived_lines, further_lines, heading,
-    motion_lines, now_lines, start_lines,
+    COLUMN, Line, PREDICTED, VALUE_END, body_lines, derived_lines, fewer_digits, further_lines,
+    heading, motion_lines, now_lines, start_lines,
 };
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -81,13 +80,8 @@ impl Widget for Parameters<'_> {
     fn render(self, area: Rect, buf: &mut Buffer) {
         let focus = self.view.focus == ROW.id;
         let list = Some(self.list).filter(|_| focus);
-        let inside = frame(
-            &title(list, self.is_searched),
-            area,
-            focus,
-            &self.view.theme,
-            buf,
-        );
+        let title = title(list, self.is_searched);
+        let inside = frame(&title, area, focus, &self.view.theme, buf);
         if inside.is_empty() {
             return;
         }
@@ -108,13 +102,11 @@ impl Parameters<'_> {
         area: Rect,
         buf: &mut Buffer,
     ) {
-        for (lines, column) in columns.zip(0..MOST_EDITED) {
-            let place = Rect {
-                x: area.x + column * wide,
-                width: area.width.saturating_sub(column * wide).min(wide),
-                ..area
-            };
-            self.draw_in(lines, wide, place, buf);
+        let mut rest = area;
+        for lines in columns.take(MOST_EDITED.into()) {
+            let [place, right] = split_columns(rest, wide);
+            self.draw(lines, wide, place, buf);
+            rest = right;
         }
     }
 
@@ -125,11 +117,11 @@ impl Parameters<'_> {
             let further = without_dashes(further_lines(self.reading));
             lines.extend(shown(self.view, further));
             let lines = fitting(lines, area.height as usize);
-            return self.draw(&lines, area, buf);
+            return self.draw(&lines, COLUMN, area, buf);
         }
-        let (place, note) = above_last(area);
+        let [place, note] = split_rows(area, area.height.saturating_sub(1));
         let lines = fitting(lines, place.height as usize);
-        self.draw(&lines, place, buf);
+        self.draw(&lines, COLUMN, place, buf);
         self.note("all values: e, then f", note, buf);
     }
 
@@ -146,18 +138,9 @@ impl Parameters<'_> {
             "" => read_lines(self.view, self.reading, room),
             name => self.found(name, room),
         };
-        let lower = read.len() as u16;
-        let upper = Rect {
-            height: area.height - lower,
-            ..area
-        };
+        let [upper, lower] = split_rows(area, area.height.saturating_sub(read.len() as u16));
         self.edited(&edited, list, upper, (1, COLUMN), buf);
-        let lower = Rect {
-            y: upper.bottom(),
-            height: lower,
-            ..area
-        };
-        self.draw(&read, lower, buf);
+        self.draw(&read, COLUMN, lower, buf);
     }
 
     /// The values to edit in columns, and the readouts in one more.
@@ -181,16 +164,10 @@ impl Parameters<'_> {
         let most = (area.width - COLUMN) / count;
         let wide = edited.iter().map(needed).max().unwrap_or(COLUMN);
         let wide = wide.clamp(COLUMN, most.max(COLUMN));
-        let width = wide * count;
-        let place = Rect { width, ..area };
-        self.edited(&edited, list, place, (count, wide), buf);
-        let right = Rect {
-            x: area.x + width,
-            width: area.width - width,
-            ..area
-        };
+        let [left, right] = split_columns(area, wide * count);
+        self.edited(&edited, list, left, (count, wide), buf);
         let lines = fitting(read, right.height as usize);
-        self.draw(&lines, right, buf);
+        self.draw(&lines, COLUMN, right, buf);
     }
 
     /// The numbers that cannot be edited and have `name` in theirs, with what theory predicts for them, in `room` lines.
@@ -229,7 +206,7 @@ impl Parameters<'_> {
             .map(|value| key_lines(value, area.width as usize));
         for note in notes.into_iter().flatten().rev() {
             if place.height > 1 {
-                let (above, last) = above_last(place);
+                let [above, last] = split_rows(place, place.height - 1);
                 self.note(&note, last, buf);
                 place = above;
             }
@@ -264,18 +241,9 @@ impl Parameters<'_> {
         write(area, (0, 0), text, self.view.theme.style(Role::Quiet), buf);
     }
 
-    fn draw(&self, lines: &[Line], area: Rect, buf: &mut Buffer) {
-        self.draw_in(lines, COLUMN, area, buf);
-    }
-
     /// Draws `lines` one below the other, each `wide` columns of the screen.
-    fn draw_in(&self, lines: &[Line], wide: u16, area: Rect, buf: &mut Buffer) {
-        for (line, y) in lines.iter().zip(0..area.height) {
-            let place = Rect {
-                y: area.y + y,
-                height: 1,
-                ..area
-            };
+    fn draw(&self, lines: &[Line], wide: u16, area: Rect, buf: &mut Buffer) {
+        for (line, place) in lines.iter().zip(area.rows()) {
             self.draw_line(line, VALUE_END + wide - COLUMN, place, buf);
         }
     }
@@ -306,22 +274,10 @@ impl Parameters<'_> {
     }
 
     fn lines(&self) -> Vec<Line> {
-        let mut lines = Vec::with_capacity(32);
-        lines.extend(body_lines(self.scenario));
+        let mut lines = body_lines(self.scenario);
         lines.extend(start_lines(self.scenario));
         lines.extend(motion_lines(self.scenario, self.motion));
         lines.extend(shown(self.view, now_lines(self.reading)));
         lines
     }
-}
-
-/// `area` without its last line, and that line.
-fn above_last(area: Rect) -> (Rect, Rect) {
-    let height = area.height.saturating_sub(1);
-    let last = Rect {
-        y: area.y + height,
-        height: area.height - height,
-        ..area
-    };
-    (Rect { height, ..area }, last)
 }

@@ -2,8 +2,7 @@
 //! one.
 
 use super::ROW;
-use super::digits::in_pane;
-use super::lines::{COLUMN, Line, VALUE_END, heading};
+use super::lines::{COLUMN, Line, VALUE_END, heading, in_pane};
 use crate::lab::values::list::ValueList;
 use crate::lab::values::listed::ListedValue;
 use crate::text::printable::printable;

@@ -1,12 +1,13 @@
 //! The lines of the pane. Each number has as many decimals as there is room for.
 
-use super::digits::{fewer_digits, in_pane};
 use crate::analysis::remarks::{short_no_drift, short_unit};
 use crate::analysis::theory::{Axis, Path};
 use crate::observe::reading::Reading;
 use crate::physics::{Body, Friction};
 use crate::scenario::{Motion, Scenario, Window};
-use crate::text::number::{NONE, exponent, fixed as decimals_of, without_minus_zero};
+use crate::text::number::{
+    NONE, exponent, fixed as decimals_of, shortest, significant, without_minus_zero,
+};
 use crate::tui::theme::Role;
 use std::borrow::Cow;
 
@@ -15,6 +16,9 @@ pub(super) const VALUE_END: u16 = 18;
 
 /// Width of a column of lines.
 pub(super) const COLUMN: u16 = 26;
+
+/// Digits of a number in a pane. The key line below the values, the dialog and files have all of them.
+const DIGITS: usize = 7;
 
 /// The label of what theory predicts for the number above it.
 pub(super) const PREDICTED: &str = "predicted";
@@ -339,6 +343,32 @@ fn fitted(label: &str, digits: usize, format: impl Fn(usize) -> String, number: 
     let fits = |text: &String| text.len() <= room;
     let text = decimals.chain(exponents).find(fits);
     text.unwrap_or_else(|| exponent(number, 0))
+}
+
+/// `number` as a pane shows it.
+pub(super) fn in_pane(number: f64) -> String {
+    if number.fract() == 0.0 {
+        return shortest(number);
+    }
+    significant(number, DIGITS)
+}
+
+/// `text`, or with fewer decimals where it is a number that is wider than `room`.
+pub(super) fn fewer_digits(text: &str, room: usize) -> Cow<'_, str> {
+    let is_wide = text.len() > room;
+    let number = text.parse::<f64>().ok().filter(|_| is_wide);
+    let Some(number) = number else {
+        return text.into();
+    };
+    let decimals = (1..room).rev().map(|digits| format!("{number:.digits$}"));
+    let exponents = (0..room).rev().map(|digits| format!("{number:.digits$e}"));
+    let is_told = |text: &String| text.parse::<f64>().is_ok_and(|told| near(told, number));
+    let mut fitting = decimals.chain(exponents).filter(|text| text.len() <= room);
+    fitting.find(is_told).map_or(text.into(), Cow::from)
+}
+
+fn near(told: f64, number: f64) -> bool {
+    (told - number).abs() <= 1e-3 * number.abs()
 }
 
 #[cfg(test)]

@@ -98,17 +98,12 @@ pub fn spread(sections: &mut [Section], room: usize) {
 
 pub fn draw(sections: &[Section], area: Rect, theme: &Theme, buf: &mut Buffer) {
     let lines = sections.iter().flat_map(|section| &section.lines);
-    for (line, y) in lines.zip(0..area.height) {
+    for (line, place) in lines.zip(area.rows()) {
         for (column, text, role) in &line.pieces {
             let column = u16::try_from(*column).unwrap_or(u16::MAX);
-            write(area, (column, y), text, theme.style(*role), buf);
+            write(place, (column, 0), text, theme.style(*role), buf);
         }
         if line.is_chosen {
-            let place = Rect {
-                y: area.y + y,
-                height: 1,
-                ..area
-            };
             buf.set_style(place, theme.style(Role::Selected));
         }
     }
