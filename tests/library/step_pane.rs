@@ -1,8 +1,7 @@
-//! The step pane: a time step phase by phase. Its numbers are the run's, and those that a hand computes.
+//! The step pane: a time step phase by phase. Its numbers are the run's.
 
 use crate::support::scenarios::{parse, preset};
 use crate::support::stage::{LARGE, SMALL, Stage};
-use gyrolab::export::{CsvWriter, stream};
 use gyrolab::lab::view::step::Page;
 use gyrolab::physics::scheme::SCHEMES;
 use gyrolab::physics::workings::{NAMES, Phase, Sums, Value};
@@ -11,110 +10,7 @@ use gyrolab::scenario::Document;
 use gyrolab::tui::keymap::Key;
 use gyrolab::tui::screen;
 use ratatui::layout::Rect;
-use std::ops::ControlFlow;
 use std::sync::Arc;
-
-type Vector = [f64; 3];
-
-fn cross(a: Vector, b: Vector) -> Vector {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-fn norm(a: Vector) -> f64 {
-    a.iter().map(|c| c * c).sum::<f64>().sqrt()
-}
-
-fn determinant(m: [Vector; 3]) -> f64 {
-    let [a, b, c] = cross(m[1], m[2]);
-    m[0][0] * a + m[0][1] * b + m[0][2] * c
-}
-
-/// One step of the report's method (its section 3) on method-2, in plain arithmetic: ten masses of 0.5 kg on a circle of
-/// 0.8 m, the axle's top at twice their height, all of it turned by 45 degrees about +x.
-struct ByHand {
-    inertia: [Vector; 3],
-    omega: Vector,
-    axis: Vector,
-    angle: f64,
-    rotation: [Vector; 3],
-    rim: Vec<Vector>,
-    top: Vector,
-    torque: Vector,
-    momentum: Vector,
-}
-
-impl ByHand {
-    fn step(dt: f64) -> Self {
-        let height = 0.8 / 2f64.sqrt();
-        let (sin, cos) = 45f64.to_radians().sin_cos();
-        let tilted = |[x, y, z]: Vector| [x, y * cos - z * sin, y * sin + z * cos];
-        let rim: Vec<_> = (0..10)
-            .map(|j| {
-                let (s, c) = (2.0 * std::f64::consts::PI * f64::from(j) / 10.0).sin_cos();
-                tilted([0.8 * c, 0.8 * s, height])
-            })
-            .collect();
-        let momentum = tilted([0.0, 0.0, 1000.0]);
-        // 1. I = sum m (|X|^2 E - X X^T)
-        let mut inertia = [[0.0; 3]; 3];
-        for at in &rim {
-            let square: f64 = at.iter().map(|c| c * c).sum();
-            for row in 0..3 {
-                for column in 0..3 {
-                    let unit = if row == column { square } else { 0.0 };
-                    inertia[row][column] += 0.5 * (unit - at[row] * at[column]);
-                }
-            }
-        }
-        // 2. Omega = I \ L, by Cramer's rule; I is its own transpose.
-        let replaced = |column: usize| {
-            let mut m = inertia;
-            m[column] = momentum;
-            determinant(m) / determinant(inertia)
-        };
-        let omega = [replaced(0), replaced(1), replaced(2)];
-        // 3. u, P and R
-        let axis = omega.map(|c| c / norm(omega));
-        let angle = norm(omega) * dt;
-        let [ux, uy, uz] = axis;
-        let crossed = [[0.0, -uz, uy], [uz, 0.0, -ux], [-uy, ux, 0.0]];
-        let mut rotation = [[0.0; 3]; 3];
-        for row in 0..3 {
-            for column in 0..3 {
-                let p = axis[row] * axis[column];
-                let unit = if row == column { 1.0 } else { 0.0 };
-                rotation[row][column] =
-                    p + angle.cos() * (unit - p) + angle.sin() * crossed[row][column];
-            }
-        }
-        // 4. X <- R X
-        let turned = |x: Vector| rotation.map(|row| row[0] * x[0] + row[1] * x[1] + row[2] * x[2]);
-        let rim: Vec<_> = rim.into_iter().map(turned).collect();
-        let top = turned(tilted([0.0, 0.0, 2.0 * height]));
-        // 5. L <- L + dt sum X x F, with the new positions
-        let mut torque = [0.0; 3];
-        for at in &rim {
-            let moment = cross(*at, [0.0, 0.0, -0.5 * 9.8]);
-            (0..3).for_each(|c| torque[c] += moment[c]);
-        }
-        let momentum = [0, 1, 2].map(|c| momentum[c] + dt * torque[c]);
-        Self {
-            inertia,
-            omega,
-            axis,
-            angle,
-            rotation,
-            rim,
-            top,
-            torque,
-            momentum,
-        }
-    }
-}
 
 /// The phases of the first step of method-2.
 fn first_step() -> Vec<Phase> {
@@ -124,14 +20,6 @@ fn first_step() -> Vec<Phase> {
     workings.phases().cloned().collect()
 }
 
-#[track_caller]
-fn near(shown: f64, by_hand: f64, largest: f64) {
-    assert!(
-        (shown - by_hand).abs() <= 1e-12 * largest,
-        "{shown} {by_hand}"
-    );
-}
-
 /// Every number of `phase` under `symbol`, row by row.
 fn numbers(phase: &Phase, symbol: &str) -> Vec<f64> {
     match phase.value(symbol).unwrap() {
@@ -139,62 +27,6 @@ fn numbers(phase: &Phase, symbol: &str) -> Vec<f64> {
         Value::Vector(vector) => vector.iter().copied().collect(),
         Value::Matrix(matrix) => matrix.transpose().iter().copied().collect(),
         Value::Table(table) => table.cells.clone(),
-    }
-}
-
-#[test]
-fn the_numbers_of_a_step_are_those_of_a_hand() {
-    let hand = ByHand::step(0.1);
-    let phases = first_step();
-    let compare = |phase: usize, symbol: &str, by_hand: &[f64]| {
-        let shown = numbers(&phases[phase], symbol);
-        assert_eq!(shown.len(), by_hand.len(), "{symbol}");
-        let largest = by_hand
-            .iter()
-            .fold(0.0_f64, |most, number| most.max(number.abs()));
-        for (shown, by_hand) in shown.iter().zip(by_hand) {
-            near(*shown, *by_hand, largest.max(1e-3));
-        }
-    };
-    compare(0, "I", &hand.inertia.concat());
-    compare(1, "Ω", &hand.omega);
-    compare(2, "u", &hand.axis);
-    compare(2, "angle", &[hand.angle]);
-    compare(3, "R", &hand.rotation.concat());
-    let moved: Vec<f64> = numbers(&phases[4], "X")
-        .chunks(6)
-        .take(10)
-        .flat_map(|row| row[3..].to_vec())
-        .collect();
-    for (shown, by_hand) in moved.iter().zip(hand.rim.concat()) {
-        near(*shown, by_hand, 1.0);
-    }
-    compare(5, "τ", &hand.torque);
-    compare(6, "dL", &hand.torque.map(|c| 0.1 * c));
-    compare(6, "new L", &hand.momentum);
-    // And the row of the CSV.
-    let scenario = Arc::new(preset("method-2", &["motion.steps=1"]));
-    let mut run = Simulation::new(Arc::clone(&scenario));
-    let mut csv = CsvWriter::new(Vec::new(), &scenario).unwrap();
-    let watch = |_, _| ControlFlow::Continue(());
-    stream::play(&mut run, 1, Some(&mut csv), |_| (), watch).unwrap();
-    let text = String::from_utf8(csv.finish().unwrap()).unwrap();
-    let row: Vec<f64> = text
-        .lines()
-        .last()
-        .unwrap()
-        .split(',')
-        .map(|cell| cell.parse().unwrap())
-        .collect();
-    for (column, by_hand) in hand.top.iter().enumerate() {
-        near(row[2 + column], *by_hand, 1.0);
-    }
-    assert_eq!(row[5..8], numbers(&phases[6], "new L"));
-    let top = numbers(&phases[4], "X");
-    assert_eq!(row[2..5].len(), 3);
-    for (column, cell) in row[2..5].iter().enumerate() {
-        // The CSV's point is the orientation's, the scheme's own points differ by rounding.
-        near(top[11 * 6 + 3 + column], *cell, 1.0);
     }
 }
 
@@ -491,19 +323,6 @@ fn no_size_is_too_small() {
     }
 }
 
-/// The numbers at 40x12 are those at 80x24: what does not fit is left out as a whole.
-#[test]
-fn a_small_screen_has_the_result() {
-    let size = Rect::new(0, 0, 40, 12);
-    let mut stage = Stage::open("method-2", &[], size);
-    stage.commands("pause = true\nstep = 1\nfill = 'step'\nphase = 7");
-    let picture = stage.picture();
-    assert!(
-        picture.contains("new L") && picture.contains("dL = dt τ"),
-        "{picture}"
-    );
-}
-
 #[test]
 fn its_place_is_as_wide_as_its_numbers() {
     use gyrolab::tui::layout::Layout;
@@ -659,14 +478,22 @@ fn pictures_of_the_step() {
     for (size, name) in [(SMALL, "small"), (LARGE, "large")] {
         let mut stage = Stage::open("wobble-push", &[], size);
         stage.commands("pause = true\nstep = 12\nshow = ['3d', 'step']");
-        for (page, commands) in pages {
+        // The tables are what a large screen shows otherwise.
+        let shown = if size == SMALL {
+            &pages[..]
+        } else {
+            &pages[1..2]
+        };
+        for (page, commands) in shown {
             stage.commands(commands);
             insta::assert_snapshot!(format!("{page}_{name}"), stage.picture());
         }
         let mut stage = Stage::open("cusps", &["motion.scheme='srkn11b'"], size);
         stage.commands("pause = true\nstep = 900\nshow = ['3d', 'step']\nphase = 'why'");
         insta::assert_snapshot!(format!("why_{name}"), stage.picture());
-        stage.commands("phase = 2");
-        insta::assert_snapshot!(format!("splitting_{name}"), stage.picture());
+        if size == SMALL {
+            stage.commands("phase = 2");
+            insta::assert_snapshot!("splitting_small", stage.picture());
+        }
     }
 }
