@@ -132,14 +132,14 @@ fn handle(
     if matches!(request, Some(Request::Quit | Request::Suspend)) {
         keep(lab, session); // what was pressed just before it came with it
     }
-    let request = match request {
-        Some(request) => do_in_class(request, lab, class, screen.size()?),
-        None => None,
+    let Some(request) = request else {
+        return Ok(ControlFlow::Continue(()));
     };
-    match request {
-        None => return Ok(ControlFlow::Continue(())),
+    match do_in_class(request, lab, class, screen.size()?) {
+        None | Some(Request::Lesson(_) | Request::Answer(_)) => {
+            return Ok(ControlFlow::Continue(()));
+        }
         Some(Request::Quit) => return Ok(ControlFlow::Break(())),
-        Some(Request::Lesson(_) | Request::Answer(_)) => {} // do_in_class
         Some(Request::Redraw) => screen.forget()?,
         Some(Request::Suspend) => screen.suspend()?,
     }

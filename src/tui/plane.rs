@@ -53,6 +53,12 @@ impl Plane {
         on_sheet(dot, self.size)
     }
 
+    /// The cell of a dot; `None` outside of the area.
+    pub fn cell_of(&self, dot: (f64, f64)) -> Option<(u16, u16)> {
+        let (x, y) = self.place(dot)?;
+        Some(((x / self.in_cell.0) as u16, (y / self.in_cell.1) as u16))
+    }
+
     /// The cell of a place, or the one at the edge that is nearest to it.
     pub fn cell(&self, at: (f64, f64)) -> (u16, u16) {
         let (x, y) = self.dot(at);

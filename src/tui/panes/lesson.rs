@@ -12,6 +12,7 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
+use std::iter::Peekable;
 
 pub const ROW: PaneRow = PaneRow {
     id: Pane::LESSON,
@@ -182,29 +183,8 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<Line> {
     let mut looks = looks(paragraph).peekable();
     let mut lines = Vec::with_capacity(texts.len());
     for (index, text) in texts.iter().enumerate() {
-        let mut pieces: Vec<(String, Style)> = Vec::new();
-        for letter in text.chars() {
-            // The letters of the lines are those of the paragraph, but for the blanks between words.
-            while looks
-                .peek()
-                .is_some_and(|(other, _)| *other != letter && other.is_whitespace())
-            {
-                looks.next();
-            }
-            let look = match letter {
-                ' ' => looks.peek().map(|(_, look)| *look),
-                _ => looks.next().map(|(_, look)| look),
-            };
-            let style = style.patch(styled(look.unwrap_or_default(), theme));
-            match pieces.last_mut() {
-                Some((piece, last)) if *last == style => piece.push(letter),
-                _ => pieces.push((letter.to_string(), style)),
-            }
-        }
-        let is_marked = match paragraph.kind {
-            Kind::Note => true,
-            _ => index == 0,
-        };
+        let mut pieces = pieces(text, &mut looks, style, theme);
+        let is_marked = index == 0 || paragraph.kind == Kind::Note;
         if is_marked && !mark.is_empty() {
             pieces.insert(0, (mark.clone(), style));
         }
@@ -214,6 +194,32 @@ fn lines_of(paragraph: &Paragraph, width: u16, theme: &Theme) -> Vec<Line> {
         });
     }
     lines
+}
+
+/// `text` in pieces of one style each. Its letters are the next of `looks`, but for the blanks between words.
+fn pieces(
+    text: &str,
+    looks: &mut Peekable<impl Iterator<Item = (char, Look)>>,
+    style: Style,
+    theme: &Theme,
+) -> Vec<(String, Style)> {
+    let mut pieces: Vec<(String, Style)> = Vec::new();
+    for letter in text.chars() {
+        while looks
+            .next_if(|(other, _)| *other != letter && other.is_whitespace())
+            .is_some()
+        {}
+        let look = match letter {
+            ' ' => looks.peek().map(|(_, look)| *look),
+            _ => looks.next().map(|(_, look)| look),
+        };
+        let style = style.patch(styled(look.unwrap_or_default(), theme));
+        match pieces.last_mut() {
+            Some((piece, last)) if *last == style => piece.push(letter),
+            _ => pieces.push((letter.to_string(), style)),
+        }
+    }
+    pieces
 }
 
 /// `line` of code as it is, or in several lines where it is longer than there is room.

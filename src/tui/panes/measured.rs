@@ -21,51 +21,50 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         return;
     };
     let theme = &lab.view().theme;
-    let sum = &beside.compared().sum;
-    let room = area.width.saturating_sub(1) as usize;
     let mark = lab.view().marker.point().to_string();
     let what = if lab.view().residuals {
         " residuals: "
     } else {
         " measured: "
     };
+    let room = area.width.saturating_sub(1) as usize;
+    let room = room.saturating_sub(columns(&mark) + columns(what) + 1);
     let end_s = lab.player().playback().end_s();
-    let counts = counted(beside, sum, end_s);
-    let parts = [parts(sum, false), parts(sum, true)];
-    let name = file_name(beside.name());
-    let length = |counts: &str, parts: &[String]| {
-        let parts = parts.iter().map(|part| columns(SEPARATOR) + columns(part));
-        columns(&mark) + columns(what) + 1 + columns(counts) + parts.sum::<usize>()
-    };
-    // Short forms make room for the rest, then a shorter name, then the last parts.
-    let mut forms = vec![(&counts[0], &parts[0][..]), (&counts[0], &parts[1][..])];
-    forms.extend(
-        (0..=parts[1].len())
-            .rev()
-            .map(|count| (&counts[1], &parts[1][..count])),
-    );
-    let (whole, least) = (columns(&name), columns(&name).min(LEAST_NAME));
-    let fits =
-        |name: usize, &(counts, parts): &(&String, &[String])| length(counts, parts) + name <= room;
-    let with_all = forms.iter().take(3).find(|form| fits(whole, form));
-    let found = with_all.or_else(|| forms.iter().find(|form| fits(least, form)));
-    let &(counts, parts) = found.unwrap_or(&forms[forms.len() - 1]);
-    let rest = room.saturating_sub(length(counts, parts));
-    let mut x = write(area, (1, 0), &mark, theme.style(Role::Measured), buf);
+    let (name, counts, parts) = fitting(beside, end_s, room);
     let quiet = theme.style(Role::Quiet);
+    let mut x = write(area, (1, 0), &mark, theme.style(Role::Measured), buf);
     x = write(area, (x, 0), what, quiet, buf);
-    x = write(
-        area,
-        (x, 0),
-        &shortened(&name, rest.max(least)),
-        theme.style(Role::Text),
-        buf,
-    );
+    x = write(area, (x, 0), &name, theme.style(Role::Text), buf);
     x = write(area, (x, 0), &format!(" {counts}"), quiet, buf);
     for part in parts {
         x = write(area, (x, 0), SEPARATOR, quiet, buf);
-        x = write(area, (x, 0), part, theme.style(Role::Text), buf);
+        x = write(area, (x, 0), &part, theme.style(Role::Text), buf);
     }
+}
+
+/// The name of the data, their counts and the parts of the line that fit in `room` columns: short forms make room for the
+/// rest, then a shorter name, then the last parts give way.
+fn fitting(beside: &Beside, end_s: f64, room: usize) -> (String, String, Vec<String>) {
+    let sum = &beside.compared().sum;
+    let name = file_name(beside.name());
+    let [long, short] = counted(beside, sum, end_s);
+    let [all, mut short_parts] = [parts(sum, false), parts(sum, true)];
+    let mut forms = vec![(long.clone(), all), (long, short_parts.clone())];
+    forms.push((short.clone(), short_parts.clone()));
+    while short_parts.pop().is_some() {
+        forms.push((short.clone(), short_parts.clone()));
+    }
+    let length = |counts: &str, parts: &[String]| {
+        let parts = parts.iter().map(|part| columns(SEPARATOR) + columns(part));
+        columns(counts) + parts.sum::<usize>()
+    };
+    let (whole, least) = (columns(&name), columns(&name).min(LEAST_NAME));
+    let fits = |form: &(String, Vec<String>), name| length(&form.0, &form.1) + name <= room;
+    let found = forms.iter().take(3).position(|form| fits(form, whole));
+    let found = found.or_else(|| forms.iter().position(|form| fits(form, least)));
+    let (counts, parts) = forms.swap_remove(found.unwrap_or(forms.len() - 1));
+    let rest = room.saturating_sub(length(&counts, &parts)).max(least);
+    (shortened(&name, rest).into_owned(), counts, parts)
 }
 
 /// The name of data, or of a file without its folders.

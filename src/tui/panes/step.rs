@@ -250,27 +250,30 @@ impl PhasePage<'_> {
         let mut has_heads = false;
         for (index, quantity) in all.iter().enumerate() {
             let is_last = index + 1 == all.len();
-            if let Value::Table(table) = &quantity.value {
-                if !table.points.is_empty() {
+            match &quantity.value {
+                Value::Table(table) if table.points.is_empty() => continue,
+                Value::Table(_) => {
                     sections.push(Section {
                         table: Some(index),
                         lines: self.table(index, 0),
                         ..Section::default().apart()
                     });
+                    continue;
                 }
-                continue;
+                Value::Vector(_) | Value::Matrix(_) if !has_heads => {
+                    has_heads = true;
+                    sections.push(numbers::heads(heads, format).apart());
+                }
+                _ => {}
             }
-            if !has_heads && is_vector(&quantity) {
-                has_heads = true;
-                sections.push(numbers::heads(heads, format).apart());
-            }
+            let rank = match quantity.symbol {
+                _ if is_aside(quantity) => ASIDE,
+                _ if is_last => 0,
+                "S" => 7,
+                _ => 3,
+            };
             sections.push(Section {
-                rank: match (is_last, quantity.symbol) {
-                    _ if is_aside(quantity) => ASIDE,
-                    (true, _) => 0,
-                    (_, "S") => 7,
-                    _ => 3,
-                },
+                rank,
                 lines: numbers::lines(quantity, format, is_last),
                 ..Section::default()
             });

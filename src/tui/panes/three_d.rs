@@ -172,8 +172,7 @@ impl<'a> Subject<'a> {
         self.path(&scene, &mut dots);
         self.body(&mut scene);
         labels.extend(self.phase(&mut scene));
-        labels.extend(self.vectors(&mut scene));
-        labels.extend(self.pushes(&mut scene));
+        labels.extend(self.draw_arrows(&mut scene));
         let way = self.way(&scene);
         let signs = self.signs(&way, &scene);
         let labels = labels.iter().rev();

@@ -93,48 +93,31 @@ impl Format {
 /// The lines of `quantity`, which is no table; `is_result` says whether the phase was about it.
 pub fn lines(quantity: &Quantity, format: Format, is_result: bool) -> Vec<Line> {
     let role = if is_result { Role::Heading } else { Role::Text };
-    let rows: Vec<Vec<f64>> = match &quantity.value {
-        Value::Number(number) => vec![vec![*number]],
-        Value::Vector(vector) => vec![vector.iter().copied().collect()],
-        Value::Matrix(matrix) => matrix
-            .row_iter()
-            .map(|row| row.iter().copied().collect())
-            .collect(),
+    let (numbers, across): (Vec<f64>, usize) = match &quantity.value {
+        Value::Number(number) => (vec![*number], 1),
+        Value::Vector(vector) => (vector.iter().copied().collect(), 3),
+        Value::Matrix(matrix) => (matrix.transpose().iter().copied().collect(), 3),
         Value::Table(_) => return Vec::new(),
     };
-    let across = rows.first().map_or(0, Vec::len);
-    let cells = match &quantity.value {
-        Value::Number(number) => {
-            let text = significant(*number, format.digits);
-            if columns(&text) < format.cell {
-                vec![format!("{text:>0$}", format.cell)]
-            } else {
-                format.aligned(&[*number])
-            }
+    let mut cells = format.aligned(&numbers);
+    if let [number] = numbers[..] {
+        let text = significant(number, format.digits);
+        if columns(&text) < format.cell {
+            cells = vec![format!("{text:>0$}", format.cell)];
         }
-        _ => format.aligned(&rows.concat()),
-    };
-    let mut lines: Vec<Line> = cells
-        .chunks(across.max(1))
+    }
+    let rows = cells.chunks(across);
+    let mut lines: Vec<_> = rows
         .map(|cells| Line::of(SYMBOL, cells.concat(), role))
         .collect();
-    if let Some(first) = lines.first_mut() {
-        let unit = SYMBOL + across * format.cell + 1;
-        first.pieces.push((unit, unit_of(quantity), Role::Quiet));
-    }
-    let symbol = (0, quantity.symbol.to_owned(), Role::Focus);
+    let unit = SYMBOL + across * format.cell + 1;
+    let unit = (unit, unit_of(quantity), Role::Quiet);
+    lines[0].pieces.push(unit);
+    let symbol = Line::of(0, quantity.symbol, Role::Focus);
     if columns(quantity.symbol) < SYMBOL {
-        if let Some(first) = lines.first_mut() {
-            first.pieces.push(symbol);
-        }
+        lines[0].pieces.extend(symbol.pieces);
     } else {
-        lines.insert(
-            0,
-            Line {
-                pieces: vec![symbol],
-                ..Line::default()
-            },
-        );
+        lines.insert(0, symbol);
     }
     lines
 }

@@ -41,60 +41,57 @@ impl TableView<'_> {
     pub fn lines(&self, room: usize) -> Vec<Line> {
         let groups = self.groups();
         let sum = self.sum_lines(&groups);
-        let heads = self.heads(&groups);
-        let in_a_row = groups.len();
-        let rows = room.saturating_sub(heads.len() + sum.len()) / in_a_row;
+        let mut lines = self.heads(&groups);
+        let rows = room.saturating_sub(lines.len() + sum.len()) / groups.len();
         let all = self.table.points.len();
-        let chosen = self.sum.as_ref().map(|(rows, _)| (*rows).min(all));
-        let (shown, left) = match chosen {
+        let (shown, left) = match self.chosen() {
             Some(last) => (last.saturating_sub(rows)..last.max(rows).min(all), 0),
             None if all > rows => (0..rows.saturating_sub(1), all + 1 - rows.max(1)),
             None => (0..all, 0),
         };
-        let mut lines = heads;
-        let formats: Vec<_> = groups
-            .iter()
-            .map(|group| (group.clone(), self.format(group)))
-            .collect();
-        let texts: Vec<Vec<Vec<String>>> = formats
-            .iter()
-            .map(|(group, format)| self.texts(group, *format, &shown))
-            .collect();
-        for (at, row) in shown.enumerate() {
-            let is_chosen = chosen == Some(row + 1);
-            let role = match chosen {
-                Some(last) if row >= last => Role::Quiet,
-                _ => Role::Text,
-            };
-            let name = (self.name)(self.table.points[row]);
-            for (group, texts) in texts.iter().enumerate() {
-                let cells: String = texts.iter().map(|column| column[at].as_str()).collect();
-                let name = match group {
-                    0 => shortened(&name, NAME - 1).into_owned(),
-                    _ => String::new(),
-                };
-                let mut line = Line::of(0, name, role);
-                if self.has_mass_aside(&groups[group]) {
-                    let mass = significant(self.table.row(row)[0], MASS_DIGITS);
-                    line = line.and(NAME - 1, format!("{mass:>MASS$}"), role);
-                }
-                let column = self.begin(&groups[group]);
-                lines.push(Line {
-                    is_chosen: is_chosen && group == 0,
-                    ..line.and(column, cells, role)
-                });
-            }
-        }
+        lines.extend(self.rows(&groups, shown));
         if left > 0 {
-            let what = if summed(self.table).is_empty() {
-                "Down goes through them"
-            } else {
+            let what = if is_summed(self.table) {
                 "Down adds them up one by one"
+            } else {
+                "Down goes through them"
             };
             let text = format!("... {left} more: {what}");
             lines.push(Line::of(0, text, Role::Quiet));
         }
         lines.extend(sum);
+        lines
+    }
+
+    /// How many rows are added up: the last of them is the chosen one.
+    fn chosen(&self) -> Option<usize> {
+        let rows = self.sum.as_ref().map(|(rows, _)| *rows);
+        rows.map(|rows| rows.min(self.table.points.len()))
+    }
+
+    /// The lines of the rows `shown`.
+    fn rows(&self, groups: &[Range<usize>], shown: Range<usize>) -> Vec<Line> {
+        let texts = groups.iter().map(|group| self.texts(group, &shown));
+        let texts: Vec<_> = texts.collect();
+        let mut lines = Vec::with_capacity(shown.len() * groups.len());
+        for (at, row) in shown.enumerate() {
+            let role = match self.chosen() {
+                Some(last) if row >= last => Role::Quiet,
+                _ => Role::Text,
+            };
+            let name = (self.name)(self.table.points[row]);
+            let mut name = shortened(&name, NAME - 1).into_owned();
+            for (index, (group, texts)) in groups.iter().zip(&texts).enumerate() {
+                let cells: String = texts.iter().map(|column| column[at].as_str()).collect();
+                let mut line = Line::of(0, std::mem::take(&mut name), role);
+                if self.has_mass_aside(group) {
+                    let mass = significant(self.table.row(row)[0], MASS_DIGITS);
+                    line = line.and(NAME - 1, format!("{mass:>MASS$}"), role);
+                }
+                line.is_chosen = index == 0 && self.chosen() == Some(row + 1);
+                lines.push(line.and(self.begin(group), cells, role));
+            }
+        }
         lines
     }
 
@@ -131,12 +128,8 @@ impl TableView<'_> {
     }
 
     /// The numbers of each column of `group` on the rows `shown`.
-    fn texts(
-        &self,
-        group: &Range<usize>,
-        format: Format,
-        shown: &Range<usize>,
-    ) -> Vec<Vec<String>> {
+    fn texts(&self, group: &Range<usize>, shown: &Range<usize>) -> Vec<Vec<String>> {
+        let format = self.format(group);
         let column = |column: usize| {
             let cells = shown.clone().map(|row| self.table.row(row)[column]);
             format.aligned(&cells.collect::<Vec<_>>())
@@ -176,49 +169,58 @@ impl TableView<'_> {
     /// What the chosen row adds, and the sum up to it.
     fn sum_lines(&self, groups: &[Range<usize>]) -> Vec<Line> {
         let columns = summed(self.table);
-        let Some((rows, sums)) = self.sum.as_ref().filter(|_| !columns.is_empty()) else {
+        let (Some(rows), Some((_, sums)), false) = (self.chosen(), &self.sum, columns.is_empty())
+        else {
             return Vec::new();
         };
         let all = self.table.points.len();
-        let rows = (*rows).min(all);
         let caption = match rows {
             1 => format!("the first of {all} points gives"),
             rows => format!("the first {rows} of {all} points add up to"),
         };
         let mut lines = vec![Line::of(0, caption, Role::Text)];
-        if let [group] = groups
-            && group.contains(&columns.start)
-        {
-            let format = self.format(group);
-            let blank = " ".repeat((columns.start - group.start) * format.cell);
-            let sums: String = sums[columns]
-                .iter()
-                .map(|sum| format.aligned(&[*sum]).concat())
-                .collect();
-            lines.push(Line::of(0, "sum", Role::Focus).and(NAME, blank + &sums, Role::Heading));
-            return lines;
-        }
-        let adds = self.table.row(rows.saturating_sub(1));
-        let format = Format::of_vectors(self.width);
-        for begin in columns.clone().step_by(FEW) {
-            let group = begin..(begin + FEW).min(columns.end);
-            let heads: String = self.table.columns[group.clone()]
-                .iter()
-                .map(|(symbol, _)| format!("{symbol:>0$}", format.cell))
-                .collect();
-            lines.push(Line::of(SYMBOL, heads, Role::Quiet));
-            let both: Vec<_> = group
-                .clone()
-                .map(|column| format.aligned(&[adds[column], sums[column]]))
-                .collect();
-            let unit = SYMBOL + group.len() * format.cell + 1;
-            for (at, name, role) in [(0, "adds", Role::Text), (1, "sum", Role::Heading)] {
-                let cells: String = both.iter().map(|pair| pair[at].as_str()).collect();
-                let line = Line::of(0, name, Role::Focus).and(SYMBOL, cells, role);
-                lines.push(line.and(unit, self.table.columns[begin].1, Role::Quiet));
+        match groups {
+            [group] if group.contains(&columns.start) => {
+                let format = self.format(group);
+                let blank = " ".repeat((columns.start - group.start) * format.cell);
+                let sums = sums[columns].iter();
+                let sums: String = sums.map(|sum| format.aligned(&[*sum]).concat()).collect();
+                let line = Line::of(0, "sum", Role::Focus);
+                lines.push(line.and(NAME, blank + &sums, Role::Heading));
+            }
+            _ => {
+                for begin in columns.clone().step_by(FEW) {
+                    let group = begin..(begin + FEW).min(columns.end);
+                    lines.extend(self.added(group, rows.saturating_sub(1), sums));
+                }
             }
         }
         lines
+    }
+
+    /// What `row` adds to each column of `group`, and their `sums`, with heads of their own.
+    fn added(&self, group: Range<usize>, row: usize, sums: &[f64]) -> [Line; 3] {
+        let adds = self.table.row(row);
+        let format = Format::of_vectors(self.width);
+        let columns = &self.table.columns[group.clone()];
+        let heads = columns
+            .iter()
+            .map(|(symbol, _)| format!("{symbol:>0$}", format.cell));
+        let heads = Line::of(SYMBOL, heads.collect::<String>(), Role::Quiet);
+        let unit = SYMBOL + group.len() * format.cell + 1;
+        let both: Vec<_> = group
+            .map(|column| format.aligned(&[adds[column], sums[column]]))
+            .collect();
+        let line = |at: usize, name, role| {
+            let cells: String = both.iter().map(|pair| pair[at].as_str()).collect();
+            let line = Line::of(0, name, Role::Focus).and(SYMBOL, cells, role);
+            line.and(unit, columns[0].1, Role::Quiet)
+        };
+        [
+            heads,
+            line(0, "adds", Role::Text),
+            line(1, "sum", Role::Heading),
+        ]
     }
 }
 

@@ -6,7 +6,6 @@ use super::page::{self, Section};
 use crate::lab::Lab;
 use crate::lab::explained::Explained;
 use crate::lab::view::View;
-use crate::observe::dip::Dip;
 use crate::physics::loads::torque;
 use crate::physics::workings::{Quantity, Value};
 use crate::text::wrap::wrapped;
@@ -57,8 +56,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let [left, right] = split_columns(below, below.width / 2);
     from_above(explained, view, left, buf);
     let is_seen = lab.player().reading().readouts.nutation_is_resolved() != Some(false);
-    let dip_and_arm = (explained.dip(), explained.scenario.arm_m());
-    dip(dip_and_arm, is_seen, view, right, buf);
+    dip(explained, is_seen, view, right, buf);
 }
 
 fn reason(explained: &Explained) -> &'static str {
@@ -235,11 +233,9 @@ fn from_above(explained: &Explained, view: &View, area: Rect, buf: &mut Buffer) 
     let change = change.map(|change| change * (CHANGE * length));
     arrows.extend(change.map(|change| (momentum_tip, change, "dL", Role::X)));
     let corners = arrows.iter().map(|(from, along, ..)| from + along);
-    let corners: Vec<_> = corners.chain([origin]).collect();
-    let least = corners.iter().fold(tip, |least, at| least.inf(at));
-    let most = corners.iter().fold(tip, |most, at| most.sup(at));
+    let corners: Vec<_> = corners.chain([tip]).collect();
     let margin = |half| 1.3 * half + 0.05 * length;
-    let mut picture = Picture::new(area, view, (least, most), margin);
+    let mut picture = Picture::new(area, view, around(&corners), margin);
     for (from, along, name, role) in arrows {
         picture.arrow(from, along, name, role);
         if name == "L" {
@@ -252,28 +248,19 @@ fn from_above(explained: &Explained, view: &View, area: Rect, buf: &mut Buffer) 
 }
 
 /// The path of the axle's tip in its first dip, magnified to fill the picture.
-fn dip(
-    (dip, arm_m): (Option<&Dip>, f64),
-    is_seen: bool,
-    view: &View,
-    area: Rect,
-    buf: &mut Buffer,
-) {
+fn dip(explained: &Explained, is_seen: bool, view: &View, area: Rect, buf: &mut Buffer) {
     let area = headed("first dip, magnified", view, area, buf);
-    let Some(dip) = dip else {
+    let Some(dip) = explained.dip() else {
         let upright = "the axle is upright at first: no side of it is down";
         return text(upright, Role::Text, view, area, buf);
     };
     if area.height < 4 || area.width < 8 {
         return;
     }
-    let way = dip
-        .way_m
-        .iter()
-        .map(|(side, down)| Vector2::new(*side, -down));
-    let way: Vec<_> = way.collect();
+    let way = dip.way_m.iter();
+    let way: Vec<_> = way.map(|(side, down)| Vector2::new(*side, -down)).collect();
     let far = way.iter().fold(0.0_f64, |far, at| far.max(at.amax()));
-    if far <= ROUNDING * arm_m {
+    if far <= ROUNDING * explained.scenario.arm_m() {
         let still = "it has not moved yet: . takes a step";
         return text(still, Role::Text, view, area, buf);
     }
@@ -282,26 +269,27 @@ fn dip(
         (true, true) => "",
         (true, false) => "so far",
     };
-    let notes = if note.is_empty() {
-        0
-    } else {
-        wrapped(note, area.width.into()).len() as u16
-    };
-    let [place, below] = split_rows(area, area.height.saturating_sub(1 + notes));
-    let first = Vector2::zeros();
-    let least = way.iter().fold(first, |least, at| least.inf(at));
-    let most = way.iter().fold(first, |most, at| most.sup(at));
-    let margin = |half| 1.15 * half + 0.1 * far;
-    let mut picture = Picture::new(place, view, (least, most), margin);
+    let mut notes = wrapped(note, area.width.into());
+    notes.retain(|line| !line.is_empty());
+    let [place, below] = split_rows(area, area.height.saturating_sub(1 + notes.len() as u16));
+    let mut picture = Picture::new(place, view, around(&way), |half| 1.15 * half + 0.1 * far);
     for pair in way.windows(2) {
         // Steps that are too long for the true dip are not joined.
         let from = if is_seen { pair[0] } else { pair[1] };
         picture.line(from, pair[1], Ink::Strong(Role::Path));
     }
-    picture.sign(first, "o", Role::Focus);
+    picture.sign(Vector2::zeros(), "o", Role::Focus);
     picture.draw(place, view, buf);
     let [scale, below] = split_rows(below, 1);
     let bar = picture.plane.bar(0.5 * f64::from(area.width));
     write(scale, (0, 0), &bar, view.theme.style(Role::Quiet), buf);
     text(note, Role::Warning, view, below, buf);
+}
+
+/// The corners of a rectangle around `places` and the origin.
+fn around(places: &[Vector2<f64>]) -> (Vector2<f64>, Vector2<f64>) {
+    let origin = Vector2::zeros();
+    let least = places.iter().fold(origin, |least, at| least.inf(at));
+    let most = places.iter().fold(origin, |most, at| most.sup(at));
+    (least, most)
 }

@@ -19,45 +19,77 @@ const PUSH: f64 = 0.4;
 /// The most pushes that are drawn at one time.
 const MOST_PUSHES: usize = 20;
 
-/// Where an arrow's letter stands beside its tip instead of beyond it: the direction away from which it stands.
-type Away = Option<Vector3<f64>>;
+/// An arrow with its letter.
+struct Arrow {
+    letter: &'static str,
+    role: Role,
+    over: Over,
+    from: Vector3<f64>,
+    along: Vector3<f64>,
+    /// Where the letter stands beside the tip instead of beyond it: the direction away from which it stands.
+    away: Option<Vector3<f64>>,
+}
 
 impl Subject<'_> {
-    /// L and Ω from the pivot, the weight at the centre of mass, its torque at the pivot, and at the tip of L where it goes.
-    pub(super) fn vectors(&self, scene: &mut Scene) -> Vec<Label> {
-        let simulation = self.run.simulation();
-        let state = self.state;
+    pub(super) fn draw_arrows(&self, scene: &mut Scene) -> Vec<Label> {
+        let mut labels = Vec::new();
+        for arrow in self.arrows() {
+            if self.draws(arrow.letter) {
+                let tip = arrow.from + arrow.along;
+                scene.arrow(&arrow.from, &tip, Ink::Strong(arrow.role), arrow.over);
+                let place = match arrow.away {
+                    Some(direction) => scene.beside(&tip, &direction),
+                    None => scene.beyond(&arrow.from, &tip),
+                };
+                labels.push((arrow.letter, arrow.role, place));
+            }
+        }
+        labels
+    }
+
+    /// L and Ω from the pivot, the weight at the centre of mass, its torque at the pivot, at the tip of L where L goes, and
+    /// the pushes that act.
+    fn arrows(&self) -> Vec<Arrow> {
+        let (state, loads) = (self.state, self.run.simulation().loads());
         let body = &self.run.scenario().body.mechanics;
         let (reach, arm) = (self.reach, self.arm);
         let direction = |vector: &Vector3<f64>| vector.try_normalize(f64::MIN_POSITIVE);
-        let mut labels = Vec::new();
-        let mut arrow =
-            |name, role, over: Over, from: Vector3<f64>, to: Vector3<f64>, away: Away| {
-                if !self.draws(name) {
-                    return;
-                }
-                let tip = from + to;
-                scene.arrow(&from, &tip, Ink::Strong(role), over);
-                let place = match away {
-                    Some(direction) => scene.beside(&tip, &direction),
-                    None => scene.beyond(&from, &tip),
-                };
-                labels.push((name, role, place));
-            };
         let pivot = Vector3::zeros();
-        let weight = Vector3::z() * -simulation.loads().gravity;
-        if let Some(down) = direction(&weight) {
+        let mut arrows = Vec::new();
+        let mut arrow = |letter, role, over, from, along, away| {
+            arrows.push(Arrow {
+                letter,
+                role,
+                over,
+                from,
+                along,
+                away,
+            })
+        };
+        if let Some(down) = direction(&(Vector3::z() * -loads.gravity)) {
             let centre = state.orientation * body.first_moment() / body.mass();
-            let to = down * (WEIGHT * reach);
             // The axle is whole where it is seen upright.
-            arrow("g", Role::Push, Over::BehindRod, centre, to, None);
+            arrow(
+                "g",
+                Role::Push,
+                Over::BehindRod,
+                centre,
+                down * (WEIGHT * reach),
+                None,
+            );
         }
         let omega = direction(&observables::angular_velocity(body, state));
         if let Some(along) = self.direction("Ω", omega) {
-            let to = along * (OMEGA * arm);
             // Shorter than L, in which it would vanish where both lie along the axle. L goes on beyond its tip, where no
             // letter can be read, and dL stands on the side to which the torque points.
-            arrow("Ω", Role::Y, Over::Arrow, pivot, to, self.torque);
+            arrow(
+                "Ω",
+                Role::Y,
+                Over::Arrow,
+                pivot,
+                along * (OMEGA * arm),
+                self.torque,
+            );
         }
         let momentum = self.direction("L", direction(&state.momentum));
         let momentum = momentum.map(|along| along * (MOMENTUM * arm));
@@ -77,25 +109,20 @@ impl Subject<'_> {
         if let Some(momentum) = momentum {
             arrow("L", Role::Z, Over::Farther, pivot, momentum, None);
         }
-        labels
-    }
-
-    /// An arrow for each push that acts, from the pushed point along the force.
-    pub(super) fn pushes(&self, scene: &mut Scene) -> Vec<Label> {
-        let simulation = self.run.simulation();
-        let points = self.run.scenario().body.mechanics.points();
-        let length = PUSH * self.reach;
-        let mut labels = Vec::new();
-        let shown = if self.draws("F") { MOST_PUSHES } else { 0 };
-        for push in simulation.loads().pushes.iter().take(shown) {
-            let from = self.state.orientation * points[push.point].at;
-            if let Some(direction) = push.force.try_normalize(f64::MIN_POSITIVE) {
-                let tip = from + direction * length;
-                scene.arrow(&from, &tip, Ink::Strong(Role::Push), Over::Everything);
-                labels.push(("F", Role::Push, scene.beyond(&from, &tip)));
+        for push in loads.pushes.iter().take(MOST_PUSHES) {
+            if let Some(along) = direction(&push.force) {
+                let from = state.orientation * body.points()[push.point].at;
+                arrow(
+                    "F",
+                    Role::Push,
+                    Over::Everything,
+                    from,
+                    along * (PUSH * reach),
+                    None,
+                );
             }
         }
-        labels
+        arrows
     }
 
     /// Lines that the legend takes of `width` columns, at most `most`. They are as many while a push acts as between

@@ -60,9 +60,7 @@ impl Subject<'_> {
             let newer = newer.find(|place| columns(at, **place) >= STRETCH);
             let to = newer.unwrap_or(&now);
             let direction = ((to.0 - at.0) / across, (to.1 - at.1) / down);
-            let (across, down) = scene.plane.in_cell;
-            let cell = scene.plane.place(at);
-            let cell = cell.map(|(x, y)| ((x / across) as u16, (y / down) as u16));
+            let cell = scene.plane.cell_of(at);
             head = cell.map(|cell| (sign(direction), Role::Focus, cell));
             break;
         }
