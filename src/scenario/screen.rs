@@ -9,7 +9,7 @@ pub const ABOVE: &str = "above";
 /// The pane of the scene in space, and its figure.
 pub const THREE_D: &str = "3d";
 
-/// The panes of the lab. The table of panes in `tui` has a row for each, in this order: the compiler compares the two.
+/// The panes of the lab. The table of panes in `tui` has a row for each, in this order: a test compares the two.
 pub const PANES: [&str; 6] = ["lesson", TRACES, ABOVE, THREE_D, "parameters", "step"];
 
 /// What of the lab's screen can be hidden: the panes, the line about the numbers' health, the numbers that theory

@@ -4,7 +4,7 @@ use super::panes;
 use super::panes::browser::BrowserPane;
 use super::panes::chrome;
 use super::panes::form::FormPane;
-use super::panes::help::Help;
+use super::panes::help;
 use super::panes::hint;
 use super::panes::lesson;
 use super::panes::measured;
@@ -123,12 +123,7 @@ fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
             }
             .render(area, buf);
         }
-        Mode::Help => Help {
-            search: lab.on_top().help().text(),
-            selected: lab.on_top().help().selected(),
-            theme,
-        }
-        .render(area, buf),
+        Mode::Help => help::draw(lab, area, buf),
     }
 }
 

@@ -54,19 +54,15 @@ fn paragraph(text: &str) -> String {
 /// The keys of each purpose, pane and place under its name.
 fn keys() -> String {
     let entries = help::entries();
-    let keys: Vec<_> = entries
-        .iter()
-        .filter(|entry| matches!(entry.what, help::What::Key(_)))
-        .collect();
+    let keys = entries.iter().filter(|entry| entry.binding.is_some());
+    let keys: Vec<_> = keys.collect();
     let mut text =
         paragraph("The same list is shown by ? in the lab, with the words on its screen.");
     for group in keys.chunk_by(|one, next| one.group == next.group) {
         let focus = group[0].pane.map(|_| ", while this pane has the focus");
         text += &format!("{}{}\n", group[0].group, focus.unwrap_or_default());
-        let rows: Vec<_> = group
-            .iter()
-            .map(|entry| (entry.name(), entry.text()))
-            .collect();
+        let rows = group.iter().map(|entry| (entry.name(), entry.text));
+        let rows: Vec<_> = rows.collect();
         text += &terms(&rows);
     }
     text

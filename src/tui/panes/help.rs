@@ -5,14 +5,12 @@ mod glossary;
 
 use super::{frame_on_top, write};
 use crate::lab::view::Pane;
-use crate::lab::view::theme::Theme;
 use crate::lab::{Lab, Mode, Request};
 use crate::text::wrap::{columns, wrapped};
 use crate::tui::theme::Role;
-pub use entries::{Entry, What, entries, found};
+pub use entries::{Entry, entries, found};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::widgets::Widget;
 
 /// Column of keys and words.
 const NAMES: usize = 2;
@@ -21,14 +19,6 @@ const GAP: usize = 2;
 /// A text that would have fewer columns than this begins right after its key, not in a column of its own.
 const LEAST_TEXT: usize = 40;
 const SELECTED: &str = "►";
-
-pub struct Help<'a> {
-    /// What is searched for; empty: every entry is shown.
-    pub search: &'a str,
-    /// The number of the selected entry among those found.
-    pub selected: usize,
-    pub theme: &'a Theme,
-}
 
 fn selected(lab: &Lab) -> Option<Entry> {
     let found = found(lab.on_top().help().text());
@@ -50,7 +40,7 @@ pub fn do_entry(lab: &mut Lab) -> Option<Request> {
         lab.refuse("nothing is selected: Esc clears the search");
         return None;
     };
-    let What::Key(binding) = entry.what else {
+    let Some(binding) = entry.binding else {
         lab.refuse("a word to read: Enter does nothing with it, Esc closes");
         return None;
     };
@@ -72,36 +62,32 @@ pub fn do_entry(lab: &mut Lab) -> Option<Request> {
     }
 }
 
-impl Widget for Help<'_> {
-    fn render(self, area: Rect, buf: &mut Buffer) {
-        let found = found(self.search);
-        let selected = self.selected.min(found.len().saturating_sub(1));
-        let inside = frame_on_top(&self.title(found.len()), area, self.theme, buf);
-        if found.is_empty() {
-            let text = "nothing has that in it: Esc clears the search";
-            write(inside, (1, 0), text, self.theme.style(Role::Text), buf);
-        }
-        let lines = lines(&found, self.search.is_empty(), inside.width as usize);
-        let first = first_shown(&lines, selected, inside.height as usize);
-        for (line, place) in lines.iter().skip(first).zip(inside.rows()) {
-            for (x, text, role) in &line.pieces {
-                write(place, (*x as u16, 0), text, self.theme.style(*role), buf);
-            }
-            if line.entry == Some(selected) {
-                buf.set_style(place, self.theme.style(Role::Selected));
-                if line.is_first {
-                    write(place, (0, 0), SELECTED, self.theme.style(Role::Focus), buf);
-                }
-            }
-        }
+pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let theme = &lab.view().theme;
+    let search = lab.on_top().help().text();
+    let found = found(search);
+    let title = match search {
+        "" => "help: type to search, Enter does it".to_owned(),
+        search => format!("help: {search}_ ({})", found.len()),
+    };
+    let inside = frame_on_top(&title, area, theme, buf);
+    if found.is_empty() {
+        let text = "nothing has that in it: Esc clears the search";
+        write(inside, (1, 0), text, theme.style(Role::Text), buf);
     }
-}
-
-impl Help<'_> {
-    fn title(&self, count: usize) -> String {
-        match (self.search, count) {
-            ("", _) => "help: type to search, Enter does it".to_owned(),
-            (search, count) => format!("help: {search}_ ({count})"),
+    let selected = lab.on_top().help().selected();
+    let selected = selected.min(found.len().saturating_sub(1));
+    let lines = lines(&found, search.is_empty(), inside.width as usize);
+    let first = first_shown(&lines, selected, inside.height as usize);
+    for (line, place) in lines.iter().skip(first).zip(inside.rows()) {
+        for (x, text, role) in &line.pieces {
+            write(place, (*x as u16, 0), text, theme.style(*role), buf);
+        }
+        if line.entry == Some(selected) {
+            buf.set_style(place, theme.style(Role::Selected));
+            if line.is_first {
+                write(place, (0, 0), SELECTED, theme.style(Role::Focus), buf);
+            }
         }
     }
 }
@@ -172,8 +158,8 @@ type Pieces = Vec<(usize, String, Role)>;
 /// The text of `entry`. For a key of a pane it names the pane, unless a heading does.
 fn told(entry: &Entry, grouped: bool) -> String {
     match entry.pane {
-        Some(_) if !grouped => format!("{} ({})", entry.text(), entry.group),
-        _ => entry.text().to_owned(),
+        Some(_) if !grouped => format!("{} ({})", entry.text, entry.group),
+        _ => entry.text.to_owned(),
     }
 }
 

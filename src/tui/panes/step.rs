@@ -23,7 +23,6 @@ use numbers::Format;
 use page::{Line, Section};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::widgets::Widget;
 use table::{TableView, is_summed};
 pub use words::{Words, of as words_of};
 
@@ -41,7 +40,7 @@ pub const ROW: PaneRow = PaneRow {
     width: Width::Wide,
     rank: 4,
     least: (44, 0),
-    draw: |lab, area, buf| StepPane { lab }.render(area, buf),
+    draw,
     keys: KEYS,
 };
 
@@ -58,72 +57,64 @@ const KEYS: &[Binding] = &[
     row(&[Mode::Lab], &[Key::PageUp], Action::Move(Direction::PageUp), "", "ten points fewer"),
 ];
 
-pub struct StepPane<'a> {
-    pub lab: &'a Lab,
-}
-
-impl Widget for StepPane<'_> {
-    fn render(self, area: Rect, buf: &mut Buffer) {
-        let view = self.lab.view();
-        let inside = frame(&self.title(), area, view.focus == ROW.id, &view.theme, buf);
-        if inside.is_empty() {
-            return;
-        }
-        match self.lab.player().explained() {
-            None => self.nothing_yet(inside, buf),
-            Some(_) if view.page == Page::Why => why::draw(self.lab, inside, buf),
-            Some(explained) => {
-                if let Some((phase, number, _)) = explained.phase(view.page) {
-                    let page = PhasePage {
-                        explained,
-                        phase,
-                        number,
-                        view,
-                        width: inside.width.into(),
-                    };
-                    let sections = page.sections(inside.height.into());
-                    page::draw(&sections, inside, &view.theme, buf);
-                }
+fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let view = lab.view();
+    let title = title(lab);
+    let inside = frame(&title, area, view.focus == ROW.id, &view.theme, buf);
+    if inside.is_empty() {
+        return;
+    }
+    match lab.player().explained() {
+        None => nothing_yet(lab, inside, buf),
+        Some(_) if view.page == Page::Why => why::draw(lab, inside, buf),
+        Some(explained) => {
+            if let Some((phase, number, _)) = explained.phase(view.page) {
+                let page = PhasePage {
+                    explained,
+                    phase,
+                    number,
+                    view,
+                    width: inside.width.into(),
+                };
+                let sections = page.sections(inside.height.into());
+                page::draw(&sections, inside, &view.theme, buf);
             }
         }
     }
 }
 
-impl StepPane<'_> {
-    fn title(&self) -> String {
-        let page = self.lab.view().page;
-        let Some(explained) = self.lab.player().explained() else {
-            return ROW.title.to_owned();
-        };
-        let step = explained.step;
-        match explained.phase(page) {
-            Some((phase, number, count)) => {
-                format!("step {step}: {number} of {count}, {}", phase.name)
-            }
-            None => format!("step {step}: why sideways, not down?"),
+fn title(lab: &Lab) -> String {
+    let Some(explained) = lab.player().explained() else {
+        return ROW.title.to_owned();
+    };
+    let step = explained.step;
+    match explained.phase(lab.view().page) {
+        Some((phase, number, count)) => {
+            format!("step {step}: {number} of {count}, {}", phase.name)
         }
+        None => format!("step {step}: why sideways, not down?"),
     }
+}
 
-    /// What is to be done where there is no step to take apart.
-    fn nothing_yet(&self, area: Rect, buf: &mut Buffer) {
-        let playback = self.lab.player().playback();
-        let texts: [&str; 2] = match playback.step_number() {
-            0 => [
-                "No time step has been taken yet.",
-                "Press . to take the first: it is then shown here phase by phase, each with its formula and its numbers.",
-            ],
-            _ if !playback.is_busy() => [
-                "This time step would take too long to compute again.",
-                "Press . to take the next: it is then shown here phase by phase.",
-            ],
-            _ => [
-                "The run goes on.",
-                "Press space to stop it: the time step taken last is then shown here phase by phase.",
-            ],
-        };
-        let sections = texts.map(|text| Section::text(0, text, area.width.into(), 0, Role::Text));
-        page::draw(&sections, area, &self.lab.view().theme, buf);
-    }
+/// What is to be done where there is no step to take apart.
+fn nothing_yet(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let playback = lab.player().playback();
+    let texts: [&str; 2] = match playback.step_number() {
+        0 => [
+            "No time step has been taken yet.",
+            "Press . to take the first: it is then shown here phase by phase, each with its formula and its numbers.",
+        ],
+        _ if !playback.is_busy() => [
+            "This time step would take too long to compute again.",
+            "Press . to take the next: it is then shown here phase by phase.",
+        ],
+        _ => [
+            "The run goes on.",
+            "Press space to stop it: the time step taken last is then shown here phase by phase.",
+        ],
+    };
+    let sections = texts.map(|text| Section::text(0, text, area.width.into(), 0, Role::Text));
+    page::draw(&sections, area, &lab.view().theme, buf);
 }
 
 struct PhasePage<'a> {

@@ -1,26 +1,26 @@
 //! The entries of the help: every key, grouped by its purpose, and every word of the glossary. And the search among
 //! them.
 
-use super::glossary::{GLOSSARY, Word};
+use super::glossary::GLOSSARY;
 use crate::lab::Mode;
 use crate::lab::action::Action;
 use crate::lab::view::Pane;
 use crate::tui::keymap::{BINDINGS, Binding};
 use crate::tui::panes::PANES;
 
+/// A key, or several that mean the same; or a word of the glossary.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
     /// The heading under which it stands.
     pub group: &'static str,
     /// The pane whose key it is; `None` for a key that every pane has, and for a word.
     pub pane: Option<Pane>,
-    pub what: What,
-}
-
-#[derive(Clone, Copy, Debug)]
-pub enum What {
-    Key(&'static Binding),
-    Word(&'static Word),
+    /// Its key; `None` for a word.
+    pub binding: Option<&'static Binding>,
+    /// A word, or what the footer says of a key.
+    short: &'static str,
+    /// What it does, or means.
+    pub text: &'static str,
 }
 
 const PLAY: &str = "play";
@@ -44,48 +44,30 @@ const WORDS: &str = "words";
 
 impl Entry {
     pub fn name(&self) -> String {
-        match self.what {
-            What::Key(binding) => {
-                let keys: Vec<_> = binding.keys.iter().map(ToString::to_string).collect();
-                keys.join(" ")
-            }
-            What::Word((word, _)) => (*word).to_owned(),
-        }
-    }
-
-    pub fn text(&self) -> &'static str {
-        match self.what {
-            What::Key(binding) => binding.help,
-            What::Word((_, meaning)) => meaning,
-        }
+        self.binding.map_or(self.short.to_owned(), |binding| {
+            let keys: Vec<_> = binding.keys.iter().map(ToString::to_string).collect();
+            keys.join(" ")
+        })
     }
 
     /// How well it matches `search`, of which `lower` is the lower case: 0 is the best match; `None` where it does not
     /// match.
     fn answers(&self, search: &str, lower: &str) -> Option<u8> {
-        let is_key = |wanted: &dyn Fn(String) -> bool| match self.what {
-            What::Key(binding) => binding.keys.iter().any(|key| wanted(key.to_string())),
-            What::Word(_) => false,
-        };
+        let keys = self.binding.map_or(&[][..], |binding| binding.keys);
+        let is_key =
+            |wanted: &dyn Fn(String) -> bool| keys.iter().any(|key| wanted(key.to_string()));
         if is_key(&|key| key == search) {
             return Some(0);
         }
-        let short = match self.what {
-            What::Key(binding) => binding.footer,
-            What::Word((word, _)) => word,
-        };
-        let short = short.to_lowercase();
+        let short = self.short.to_lowercase();
         if short == lower || is_key(&|key| key.to_lowercase() == lower) {
             return Some(1);
         }
         if short.starts_with(lower) {
             return Some(2);
         }
-        let further = match self.what {
-            What::Key(binding) => binding.search,
-            What::Word(_) => "",
-        };
-        let all = format!("{} {short} {} {further}", self.name(), self.text()).to_lowercase();
+        let further = self.binding.map_or("", |binding| binding.search);
+        let all = format!("{} {short} {} {further}", self.name(), self.text).to_lowercase();
         let is_word = |wanted: &str| {
             let mut words = all.split(|c: char| !c.is_alphanumeric());
             words.any(|word| word.starts_with(wanted))
@@ -118,10 +100,12 @@ pub fn entries() -> Vec<Entry> {
         let rows = pane.keys.iter();
         rows.map(|row| key(pane.title, Some(pane.id), row))
     });
-    let words = GLOSSARY.iter().map(|word| Entry {
+    let words = GLOSSARY.iter().map(|(word, meaning)| Entry {
         group: WORDS,
         pane: None,
-        what: What::Word(word),
+        binding: None,
+        short: word,
+        text: meaning,
     });
     let keys = PURPOSES.into_iter().flat_map(of_lab).chain(of_pane);
     keys.chain(words)
@@ -146,7 +130,9 @@ fn key(group: &'static str, pane: Option<Pane>, binding: &'static Binding) -> En
     Entry {
         group,
         pane,
-        what: What::Key(binding),
+        binding: Some(binding),
+        short: binding.footer,
+        text: binding.help,
     }
 }
 
@@ -174,9 +160,7 @@ mod tests {
     #[test]
     fn every_key_is_listed_once() {
         let entries = entries();
-        let keys = entries
-            .iter()
-            .filter(|entry| matches!(entry.what, What::Key(_)));
+        let keys = entries.iter().filter(|entry| entry.binding.is_some());
         let of_panes: usize = PANES.iter().map(|pane| pane.keys.len()).sum();
         assert_eq!(keys.count(), BINDINGS.len() + of_panes);
     }
@@ -222,7 +206,7 @@ mod tests {
             assert!(
                 found
                     .iter()
-                    .any(|entry| entry.name() == *word && entry.text() == *meaning)
+                    .any(|entry| entry.name() == *word && entry.text == *meaning)
             );
             assert!(
                 meaning.len() < 140 && !meaning.contains(". "),

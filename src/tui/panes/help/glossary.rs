@@ -1,9 +1,7 @@
 //! The words that the lab uses, each in one sentence.
 
-pub(super) type Word = (&'static str, &'static str);
-
 /// Every word, those of the motion first, then those of the numbers and of the screen.
-pub(super) const GLOSSARY: &[Word] = &[
+pub(super) const GLOSSARY: &[(&str, &str)] = &[
     (
         "precession",
         "the slow turn of the axle about the vertical: gravity's torque carries L around",
