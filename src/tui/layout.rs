@@ -215,7 +215,7 @@ fn joined(width: u16) -> Vec<&'static PaneRow> {
     usual().filter(|row| needed(row) <= width).collect()
 }
 
-/// The pane of the first rank, and beside it the one in focus or else that of the second rank.
+/// The pane of the first rank, and beside it the pane in focus, or else the pane of the second rank.
 fn halves(area: Rect, focus: Pane) -> Vec<(Pane, Rect)> {
     let ranked = |rank| PANES.iter().find(|row| row.rank == rank);
     let (Some(first), Some(second)) = (ranked(0), ranked(1)) else {
@@ -228,7 +228,7 @@ fn halves(area: Rect, focus: Pane) -> Vec<(Pane, Rect)> {
 
 /// The panes that were chosen, side by side: all of them, or two where there is room for no more.
 fn chosen(area: Rect, view: &View) -> Vec<(Pane, Rect)> {
-    // What stands side by side with all others on a screen of the least width that the whole lab wants.
+    // The panes that would stand side by side if all were shown, on at least the width that the whole lab wants.
     let joined = joined(area.width.max(WIDTH));
     let has_room = |row: &PaneRow| joined.iter().any(|other| other.id == row.id);
     let is_chosen =

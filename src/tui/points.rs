@@ -1,7 +1,7 @@
 //! Measured points on a picture: a mark in the cell of each, and a bar where its uncertainty is larger than the cell.
 //!
-//! Nothing else on a picture has the shape of the mark. Bars do not cover the curve that the points are held against. Where
-//! marks stand close together, they would hide it: after a mark that covers the curve, the next few cells show the curve.
+//! Nothing else on a picture has the shape of the mark. Bars do not cover the curve. After a mark that covers the curve, the
+//! next few cells show the curve: marks close together would hide it.
 
 use crate::lab::view::markers::Marker;
 use crate::lab::view::theme::Theme;
@@ -28,7 +28,7 @@ impl Marker {
     }
 }
 
-/// So many cells of the curve are seen after one that a mark covers.
+/// Cells of the curve that are shown after a mark that covers the curve.
 const SEEN: u8 = 3;
 
 /// What stands in a cell, the least first: what comes later in this list covers what comes earlier.
@@ -88,8 +88,8 @@ impl Points {
         self.set((x, y), Sign::Mark, role);
     }
 
-    /// The cells of a bar about `middle` on a side of so many `cells`; `place` is where a cell of it stands. A bar that
-    /// ends in the cell of its mark is none.
+    /// The cells of a bar about `middle` on a side of `cells` cells; `place` gives the place of each. A bar that ends in
+    /// the cell of its mark is not drawn.
     fn bar(
         &mut self,
         middle: f64,

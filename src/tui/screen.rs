@@ -1,7 +1,7 @@
 //! The whole picture: every pane in its place, and on top what has been opened.
 
 use super::panes;
-use super::panes::browser::BrowserPane;
+use super::panes::browser;
 use super::panes::chrome;
 use super::panes::form::FormPane;
 use super::panes::help;
@@ -115,14 +115,7 @@ fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
                 FormPane { form, theme }.render(area, buf);
             }
         }
-        Mode::Browser | Mode::Filter => {
-            BrowserPane {
-                browser: lab.on_top().browser(),
-                mode: lab.on_top().mode(),
-                theme,
-            }
-            .render(area, buf);
-        }
+        Mode::Browser | Mode::Filter => browser::draw(lab, area, buf),
         Mode::Help => help::draw(lab, area, buf),
     }
 }

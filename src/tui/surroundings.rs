@@ -72,23 +72,19 @@ mod tests {
 
     #[test]
     fn the_locale_decides_on_ascii() {
-        assert_eq!(
-            marker(with(&[("LANG", "de_DE.UTF-8"), ("TERM", "xterm")])),
-            Marker::Braille
-        );
-        assert_eq!(
-            marker(with(&[("LANG", "de_DE.UTF-8"), ("LC_ALL", "C")])),
-            Marker::Ascii
-        );
-        assert_eq!(
-            marker(with(&[("LC_ALL", ""), ("LANG", "C.utf8")])),
-            Marker::Braille
-        );
-        assert_eq!(
-            marker(with(&[("LANG", "C.UTF-8"), ("TERM", "linux")])),
-            Marker::HalfBlock
-        );
-        assert_eq!(marker(with(&[])), Marker::Ascii);
+        let cases: [(&[(&str, &str)], Marker); 5] = [
+            (
+                &[("LANG", "de_DE.UTF-8"), ("TERM", "xterm")],
+                Marker::Braille,
+            ),
+            (&[("LANG", "de_DE.UTF-8"), ("LC_ALL", "C")], Marker::Ascii),
+            (&[("LC_ALL", ""), ("LANG", "C.utf8")], Marker::Braille),
+            (&[("LANG", "C.UTF-8"), ("TERM", "linux")], Marker::HalfBlock),
+            (&[], Marker::Ascii),
+        ];
+        for (variables, wanted) in cases {
+            assert_eq!(marker(with(variables)), wanted, "{variables:?}");
+        }
     }
 
     #[test]

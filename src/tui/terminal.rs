@@ -129,10 +129,7 @@ impl Screen {
 
     /// Draws a frame; only what differs from the previous one is sent. Returns how many bytes that were.
     pub fn draw(&mut self, picture: impl FnOnce(Rect, &mut Buffer)) -> io::Result<usize> {
-        let _pen = PEN.lock().unwrap_or_else(PoisonError::into_inner);
-        while ENDING.load(Ordering::SeqCst) {
-            thread::park(); // a signal is ending the process: nothing may be drawn after the terminal is given back
-        }
+        let _pen = pen();
         let before = self.sent.get();
         if self.terminal.get_frame().area() != self.size()? {
             self.forget()?;
@@ -147,10 +144,7 @@ impl Screen {
         if MOUSE.load(Ordering::SeqCst) == listens {
             return Ok(());
         }
-        let _pen = PEN.lock().unwrap_or_else(PoisonError::into_inner);
-        while ENDING.load(Ordering::SeqCst) {
-            thread::park();
-        }
+        let _pen = pen();
         MOUSE.store(listens, Ordering::SeqCst);
         stdout()?.write_all(if listens { MOUSE_ON } else { MOUSE_OFF })
     }
@@ -237,6 +231,15 @@ impl Write for Counted {
     fn flush(&mut self) -> io::Result<()> {
         self.writer.flush()
     }
+}
+
+/// Waits for the pen; for ever where a signal is ending the process: nothing may be drawn after the terminal is given back.
+fn pen() -> MutexGuard<'static, ()> {
+    let pen = PEN.lock().unwrap_or_else(PoisonError::into_inner);
+    while ENDING.load(Ordering::SeqCst) {
+        thread::park();
+    }
+    pen
 }
 
 /// A second handle of standard output, without Rust's lock: a frame that hangs in a stopped terminal would hold that lock,

@@ -303,11 +303,4 @@ mod tests {
         let columns = drawn(&trail(|t| (t.min(20.0).max(t - 20.0), 7.0)), sheet());
         assert!(columns[10] > columns[5], "{columns:?}");
     }
-
-    #[test]
-    fn it_has_no_more_places_than_the_sheet_has_dots() {
-        let trail = trail(|t| (t * 1e9, t));
-        assert_eq!(trail.ages.len(), 120 * 40);
-        assert_eq!(trail.counts.len(), 120 * 40);
-    }
 }

@@ -87,36 +87,8 @@ fn ctrl_u_takes_away_what_is_searched_for() {
 
 #[test]
 fn a_word_is_explained_by_its_sentence() {
-    let words = [
-        "nutation",
-        "precession",
-        "strobed",
-        "mgl",
-        "lag",
-        "predicted",
-        "measured",
-        "drift",
-        "turn",
-        "band",
-        "segment",
-        "tilt",
-        "azimuth",
-        "time step",
-        "scheme",
-        "exact motion",
-    ];
     for size in [SMALL, LARGE, Rect::new(0, 0, 40, 12)] {
-        let mut stage = open(size);
-        for word in words {
-            stage.press("?").press(word).shows(word).press("\n");
-            stage.press(ESC).press(ESC);
-            assert_eq!(stage.lab.on_top().mode(), Mode::Lab, "{word}");
-        }
-        stage
-            .press("?strobed")
-            .shows("as under a strobe")
-            .press(ESC)
-            .press(ESC);
+        open(size).press("?strobed").shows("as under a strobe");
     }
 }
 

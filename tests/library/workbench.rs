@@ -68,41 +68,23 @@ fn pictures_of_what_lies_on_top() {
 
 #[test]
 fn the_keys_of_zoom_pan_and_whole_are_named_where_they_act() {
-    for size in [SMALL, Rect::new(0, 0, 120, 40), LARGE] {
-        let mut stage = Stage::open("wobble-push", &[], size);
-        let keys = |stage: &Stage| {
-            stage
-                .picture()
-                .trim_end()
-                .lines()
-                .last()
-                .unwrap()
-                .to_owned()
-        };
-        let first = keys(&stage);
-        for word in ["p push", "o open", "? help", "q quit"] {
-            assert!(first.contains(word), "{word} at {size}: {first}");
+    let mut stage = Stage::open("wobble-push", &[], SMALL);
+    let keys = |stage: &Stage| stage.picture().trim_end().lines().last().map(str::to_owned);
+    stage
+        .wait(1.0)
+        .press("W")
+        .shows("Home shows the usual time");
+    stage.key(Key::Home);
+    let first = keys(&stage);
+    for pressed in ["[", "z"] {
+        stage.wait(1.0).press(pressed);
+        for word in ["W zoom", "[ pan", "Home whole", "? help", "q quit"] {
+            stage.shows(word);
         }
-        stage
-            .wait(1.0)
-            .press("W")
-            .shows("Home shows the usual time");
         stage.key(Key::Home);
-        let first = keys(&stage);
-        for pressed in ["[", "z"] {
-            stage.wait(1.0).press(pressed);
-            let zoomed = keys(&stage);
-            for word in ["W zoom", "[ pan", "Home whole", "? help", "q quit"] {
-                assert!(
-                    zoomed.contains(word),
-                    "{pressed}: {word} at {size}: {zoomed}"
-                );
-            }
-            stage.key(Key::Home);
-        }
-        assert!(stage.lab.shows_whole_view());
-        assert_eq!(keys(&stage), first);
     }
+    assert!(stage.lab.shows_whole_view());
+    assert_eq!(keys(&stage), first);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The list of presets and files, with a preview of what is selected.
 
 use super::{frame_on_top, write};
+use crate::lab::Lab;
 use crate::lab::browser::Browser;
 use crate::lab::preview::Preview;
 use crate::lab::view::theme::Theme;
@@ -12,41 +13,34 @@ use crate::tui::layout::{split_columns, split_rows};
 use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
-use ratatui::widgets::Widget;
 use std::path::Path;
 
 const TITLE: &str = "open a preset or a file";
 /// Width of the list; the preview has the rest.
 const LIST: u16 = 30;
 
-pub struct BrowserPane<'a> {
-    pub browser: &'a Browser,
-    /// Whether the filter is being typed.
-    pub mode: Mode,
-    pub theme: &'a Theme,
-}
-
-impl Widget for BrowserPane<'_> {
-    fn render(self, area: Rect, buf: &mut Buffer) {
-        let title = match self.browser.folder() {
-            None => TITLE.to_owned(),
-            Some(folder) => format!("{TITLE} of {}", folder.display()),
-        };
-        let inside = frame_on_top(&title, area, self.theme, buf);
-        if inside.is_empty() {
-            return;
-        }
-        let [top, below] = split_rows(inside, 1);
-        let width = if below.width >= 2 * LIST {
-            LIST
-        } else {
-            below.width
-        };
-        let [list, preview] = split_columns(below, width);
-        self.filter_line(top, buf);
-        self.list(list, buf);
-        self.preview(preview, buf);
+pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
+    let theme = &lab.view().theme;
+    let browser = lab.on_top().browser();
+    let title = match browser.folder() {
+        None => TITLE.to_owned(),
+        Some(folder) => format!("{TITLE} of {}", folder.display()),
+    };
+    let inside = frame_on_top(&title, area, theme, buf);
+    if inside.is_empty() {
+        return;
     }
+    let [top, below] = split_rows(inside, 1);
+    let width = if below.width >= 2 * LIST {
+        LIST
+    } else {
+        below.width
+    };
+    let [places, rest] = split_columns(below, width);
+    let is_typed = lab.on_top().mode() == Mode::Filter;
+    filter_line(browser, is_typed, theme, top, buf);
+    list(browser, theme, places, buf);
+    preview(browser, theme, rest, buf);
 }
 
 fn first_shown(browser: &Browser, height: usize) -> usize {
@@ -87,70 +81,68 @@ fn keys(files: usize, others: usize, width: usize) -> String {
     fitting.map_or(KEYS, String::as_str).to_owned()
 }
 
-impl BrowserPane<'_> {
-    fn filter_line(&self, area: Rect, buf: &mut Buffer) {
-        let shown = self.browser.shown().len();
-        let (text, role) = match (self.mode, self.browser.filter()) {
-            (Mode::Filter, filter) => (format!("/{filter}_  ({shown})"), Role::Focus),
-            (_, "") => {
-                let (files, others) = (self.browser.files(), self.browser.others());
-                let room = area.width.saturating_sub(2) as usize;
-                (keys(files, others, room), Role::Quiet)
-            }
-            (_, filter) => (format!("/{filter}  ({shown})"), Role::Text),
-        };
-        write(area, (1, 0), &text, self.theme.style(role), buf);
-    }
+fn filter_line(browser: &Browser, is_typed: bool, theme: &Theme, area: Rect, buf: &mut Buffer) {
+    let shown = browser.shown().len();
+    let (text, role) = match (is_typed, browser.filter()) {
+        (true, filter) => (format!("/{filter}_  ({shown})"), Role::Focus),
+        (_, "") => {
+            let (files, others) = (browser.files(), browser.others());
+            let room = area.width.saturating_sub(2) as usize;
+            (keys(files, others, room), Role::Quiet)
+        }
+        (_, filter) => (format!("/{filter}  ({shown})"), Role::Text),
+    };
+    write(area, (1, 0), &text, theme.style(role), buf);
+}
 
-    fn list(&self, area: Rect, buf: &mut Buffer) {
-        let shown = self.browser.shown();
-        if shown.is_empty() {
-            let text = "nothing has that in its name";
-            write(area, (1, 0), text, self.theme.style(Role::Text), buf);
-        }
-        let height = area.height as usize;
-        let first = first_shown(self.browser, height);
-        let [places, _] = split_columns(area, LIST - 1);
-        let entries = shown.iter().enumerate().skip(first);
-        for ((index, entry), place) in entries.zip(places.rows()) {
-            let (role, mark) = if index == self.browser.selected() {
-                (Role::Selected, ">")
-            } else {
-                (Role::Text, " ")
-            };
-            let name = below(&entry.name, self.browser.folder());
-            let line = format!("{mark} {name:<width$}", width = LIST as usize - 4);
-            write(place, (0, 0), &line, self.theme.style(role), buf);
-        }
+fn list(browser: &Browser, theme: &Theme, area: Rect, buf: &mut Buffer) {
+    let shown = browser.shown();
+    if shown.is_empty() {
+        let text = "nothing has that in its name";
+        write(area, (1, 0), text, theme.style(Role::Text), buf);
     }
-
-    fn preview(&self, area: Rect, buf: &mut Buffer) {
-        let width = area.width.saturating_sub(2) as usize;
-        if width == 0 {
-            return;
-        }
-        let lines = match self.browser.preview() {
-            Some(Preview::Known(known)) => match known.as_ref() {
-                Ok(scenario) => described(scenario, width),
-                Err(problem) => refused(problem, width),
-            },
-            Some(Preview::Loading) => vec![("reading ...".to_owned(), Role::Quiet)],
-            Some(Preview::Unknown) => vec![(
-                "no preview: the system is out of threads".to_owned(),
-                Role::Quiet,
-            )],
-            None if self.browser.choice().is_some_and(|entry| entry.is_folder) => {
-                vec![("a folder: Enter lists its files".to_owned(), Role::Quiet)]
-            }
-            None => Vec::new(),
+    let height = area.height as usize;
+    let first = first_shown(browser, height);
+    let [places, _] = split_columns(area, LIST - 1);
+    let entries = shown.iter().enumerate().skip(first);
+    for ((index, entry), place) in entries.zip(places.rows()) {
+        let (role, mark) = if index == browser.selected() {
+            (Role::Selected, ">")
+        } else {
+            (Role::Text, " ")
         };
-        let more = lines.len() > area.height as usize;
-        let [places, _] = split_columns(area, area.width - 1);
-        for ((text, role), (y, place)) in lines.iter().zip((1..).zip(places.rows())) {
-            let rest = if more && y == area.height { " ..." } else { "" };
-            let text = format!("{}{rest}", text.trim_start());
-            write(place, (1, 0), &text, self.theme.style(*role), buf);
+        let name = below(&entry.name, browser.folder());
+        let line = format!("{mark} {name:<width$}", width = LIST as usize - 4);
+        write(place, (0, 0), &line, theme.style(role), buf);
+    }
+}
+
+fn preview(browser: &Browser, theme: &Theme, area: Rect, buf: &mut Buffer) {
+    let width = area.width.saturating_sub(2) as usize;
+    if width == 0 {
+        return;
+    }
+    let lines = match browser.preview() {
+        Some(Preview::Known(known)) => match known.as_ref() {
+            Ok(scenario) => described(scenario, width),
+            Err(problem) => refused(problem, width),
+        },
+        Some(Preview::Loading) => vec![("reading ...".to_owned(), Role::Quiet)],
+        Some(Preview::Unknown) => vec![(
+            "no preview: the system is out of threads".to_owned(),
+            Role::Quiet,
+        )],
+        None if browser.choice().is_some_and(|entry| entry.is_folder) => {
+            vec![("a folder: Enter lists its files".to_owned(), Role::Quiet)]
         }
+        None => Vec::new(),
+    };
+    let more = lines.len() > area.height as usize;
+    let [places, _] = split_columns(area, area.width - 1);
+    for ((text, role), (y, place)) in lines.iter().zip((1..).zip(places.rows())) {
+        let rest = if more && y == area.height { " ..." } else { "" };
+        let text = format!("{}{rest}", text.trim_start());
+        write(place, (1, 0), &text, theme.style(*role), buf);
     }
 }
 

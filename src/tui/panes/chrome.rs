@@ -14,7 +14,7 @@ use crate::tui::theme::Role;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// A title of up to so many columns is written whole before scheme and time step have room.
+/// A title of up to this many columns is written whole before scheme and time step have room.
 const LEAST_TITLE: usize = 32;
 /// Remarks before what would mend the numbers: the turns in a step and the distance.
 const BEFORE_OFFER: usize = 2;
@@ -211,7 +211,7 @@ fn footer(lab: &Lab) -> Vec<Item> {
     let of_pane = super::keys_of(lab);
     let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
     let is_new = |row: &&Binding| of_mode.clone().all(|other| other.keys[0] != row.keys[0]);
-    // The keys of a page and of a step mean something else than those of the run, touched or not.
+    // The keys of a page and of a step differ in meaning from the keys of the run, touched or not.
     let always = [Pane::LESSON, Pane::STEP].contains(&lab.view().focus);
     let of_touched = of_pane.filter(|_| lab.view().is_touched || always);
     let of_lab = BINDINGS.iter().filter(is_new);

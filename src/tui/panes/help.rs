@@ -127,8 +127,8 @@ fn lines(entries: &[Entry], grouped: bool, width: usize) -> Vec<Line> {
             lines.extend(heading(entry, width));
         }
         let of_entry = match column {
-            Some(column) => beside(entry, &told(entry, grouped), column, width),
-            None => after(entry, &told(entry, grouped), width),
+            Some(column) => beside(entry, &text_of(entry, grouped), column, width),
+            None => after(entry, &text_of(entry, grouped), width),
         };
         lines.extend(of_entry.into_iter().enumerate().map(|(at, pieces)| Line {
             entry: Some(index),
@@ -156,7 +156,7 @@ fn heading(entry: &Entry, width: usize) -> Vec<Line> {
 type Pieces = Vec<(usize, String, Role)>;
 
 /// The text of `entry`. For a key of a pane it names the pane, unless a heading does.
-fn told(entry: &Entry, grouped: bool) -> String {
+fn text_of(entry: &Entry, grouped: bool) -> String {
     match entry.pane {
         Some(_) if !grouped => format!("{} ({})", entry.text, entry.group),
         _ => entry.text.to_owned(),

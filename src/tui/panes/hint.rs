@@ -25,8 +25,8 @@ fn lines_of(text: &str, width: u16) -> u16 {
     lines.min(u16::MAX.into()) as u16
 }
 
-/// Where the hint of `lab` stands: on its lines, or, for a message that has no room there, on as many lines above as it
-/// needs too, as long as the message stays: that about the numbers, and on a small or a bare screen the last of a pane.
+/// Where the hint of `lab` stands. A message that needs more lines takes lines above as long as it stays: the line about
+/// the numbers, and on a small or a bare screen the last of a pane.
 pub fn place(lab: &Lab, layout: &Layout) -> Rect {
     let place = layout.hint;
     let needed = if has_message(lab) {
@@ -41,7 +41,6 @@ pub fn place(lab: &Lab, layout: &Layout) -> Rect {
     let most = match (is_bare, layout.is_cramped) {
         (true, _) => place.height + 1,
         (false, true) => own.max(MOST_LINES),
-        (false, false) if layout.health.is_empty() => place.height,
         (false, false) => own,
     };
     let height = needed

@@ -88,8 +88,8 @@ pub fn keys(pane: Pane) -> &'static [Binding] {
     row(pane).map_or(&[], |row| row.keys)
 }
 
-/// The keys of the pane in focus; where that is a lesson's page, those of a step pane beside it too; and where there is a
-/// lesson, the keys that turn its pages.
+/// The keys of the pane in focus; beside a lesson's page in focus also the keys of the step pane; in a lesson also the keys
+/// that turn its pages.
 pub fn keys_of(lab: &Lab) -> impl Iterator<Item = &'static Binding> + Clone {
     let view = lab.view();
     let is_beside = view.focus == Pane::LESSON && view.side_by_side.contains(&Pane::STEP);

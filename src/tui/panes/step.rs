@@ -10,7 +10,7 @@ mod words;
 use super::{PaneRow, Width, frame};
 use crate::lab::Lab;
 use crate::lab::action::{Action, Direction};
-use crate::lab::explained::Explained;
+use crate::lab::explained::{Explained, table_of};
 use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, View};
 use crate::physics::workings::{Phase, Quantity, Value};
@@ -139,8 +139,8 @@ impl PhasePage<'_> {
         sections.push(text(2, words.happens, Role::Text).apart());
         sections.push(Section::text(1, self.phase.formula, self.width, 2, Role::Focus).apart());
         sections.extend(self.quantities());
-        sections.push(self.told(4, "changes", words.changes).apart());
-        sections.push(self.told(6, "in 3-D", words.seen));
+        sections.push(self.labelled(4, "changes", words.changes).apart());
+        sections.push(self.labelled(6, "in 3-D", words.seen));
         sections.retain(|section| !section.lines.is_empty());
         page::fit(&mut sections, room);
         self.fill_tables(&mut sections, room);
@@ -203,7 +203,7 @@ impl PhasePage<'_> {
     }
 
     /// A section of `text` after `label`.
-    fn told(&self, rank: u8, label: &str, text: &str) -> Section {
+    fn labelled(&self, rank: u8, label: &str, text: &str) -> Section {
         if text.is_empty() {
             return Section::default();
         }
@@ -274,7 +274,7 @@ impl PhasePage<'_> {
 
     /// How many rows are added up, and their sums.
     fn sum(&self) -> Option<(usize, Vec<f64>)> {
-        let table = crate::lab::explained::table_of(self.phase)?;
+        let table = table_of(self.phase)?;
         let rows = self.view.sum_to?.min(table.points.len());
         Some((rows, self.explained.sums(self.view.page, table, rows)?))
     }
@@ -284,8 +284,7 @@ impl PhasePage<'_> {
         let Value::Table(table) = &self.phase.quantities[index].value else {
             return Vec::new();
         };
-        let is_first = crate::lab::explained::table_of(self.phase)
-            .is_some_and(|first| std::ptr::eq(first, table));
+        let is_first = table_of(self.phase).is_some_and(|first| std::ptr::eq(first, table));
         let scenario = &self.explained.scenario;
         let view = TableView {
             table,
@@ -311,7 +310,7 @@ impl PhasePage<'_> {
 
 /// Whether `quantity` of `phase` is made of the sums over the table's rows.
 fn is_made_of_sums(phase: &Phase, quantity: &Quantity) -> bool {
-    let table = crate::lab::explained::table_of(phase);
+    let table = table_of(phase);
     table.is_some_and(is_summed) && matches!(quantity.symbol, "S" | "I" | "Σ m X")
 }
 

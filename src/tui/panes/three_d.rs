@@ -1,7 +1,6 @@
 //! The scene in space: the wheel on its axle over the ground, the path of the axle's top, and what turns it.
 //!
-//! The scene shows which way is up, a wheel with its masses of which some are in front and some behind, and why it goes
-//! where it goes. The weight g makes a torque τ about the pivot; L changes by dL along it, and the axle follows L.
+//! The scene shows which way is up, a wheel with masses in front and behind, and why it goes where it goes. The weight g makes a torque τ about the pivot; L changes by dL along it, and the axle follows L.
 
 mod arrows;
 mod body;
@@ -38,13 +37,13 @@ use way::Way;
 /// Length of the arrow of L, in lengths of the axle. Only its direction has a meaning. Where it lies along the axle, its end
 /// shows beyond the axle's top and the arrow of the angular velocity; a longer one would leave less room for the wheel.
 const MOMENTUM: f64 = 1.36;
-/// The least length that the axle counts as in these lengths, as a share of the body's size.
+/// The least length of the axle as a unit of arrows, as a share of the body's size.
 const LEAST_ARM: f64 = 0.7;
 /// Length of the arrow of the change of L, as a share of the body's size.
 const CHANGE: f64 = 0.3;
-/// Length of the axes of the world, as such a share.
+/// Length of the axes of the world, as a share of the body's size.
 const GROUND: f64 = 0.45;
-/// Height of the stand that carries the pivot, and radius of its foot, as such shares.
+/// Height of the stand that carries the pivot, and radius of its foot, as shares of the body's size.
 const STAND: f64 = 0.26;
 const FOOT: f64 = 0.22;
 /// Tilts are rounded to multiples of this, degrees, so that the scale does not change all the time.
@@ -55,7 +54,7 @@ const MARGIN: f64 = 1.06;
 const NO_TORQUE: f64 = 1e-9;
 /// Rows of the pane for each line of its legend.
 const ROWS_A_LINE: u16 = 5;
-/// Straight pieces of which a circle is drawn.
+/// Straight pieces of a circle.
 const PARTS: usize = 72;
 
 pub const ROW: PaneRow = PaneRow {
@@ -124,7 +123,7 @@ struct Subject<'a> {
     shape: Shape,
     /// The size of the body, m: the unit of the arrows' lengths.
     reach: f64,
-    /// That of the arrows along the axle, m.
+    /// The length of the axle, m: the unit of the arrows along it.
     arm: f64,
     /// The direction of the torque of all forces about the pivot, where there is one.
     torque: Option<Vector3<f64>>,

@@ -12,14 +12,14 @@ pub const SYMBOL: usize = 6;
 const UNIT: usize = 6;
 /// Columns of a number besides its digits: sign, point, a zero before it, and a space.
 const AROUND: usize = 4;
-/// Digits of a number, where there is room for so many.
+/// The fewest and the most digits of a number.
 const DIGITS: std::ops::RangeInclusive<usize> = 3..=9;
 /// A number smaller than this part of the largest beside it is the rounding error of a zero: a few units in the last
 /// place of its terms.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// The text for such a number, which is not exactly zero.
 const ALMOST_ZERO: &str = "~0";
-/// A component of which fewer digits than this would be seen is written with an exponent.
+/// A component that would show fewer digits than this is written with an exponent.
 const LEAST_SEEN: i32 = 3;
 
 const DIGITS_OF_TURNS: usize = 5;

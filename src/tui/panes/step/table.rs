@@ -1,5 +1,4 @@
-//! A table of points. Only the rows that are drawn are read, however many there are. A sum stands below the last row
-//! that it includes.
+//! A table of points. Only the rows that are drawn are read. The sum of the rows up to the chosen one stands below them.
 
 use super::super::shortened;
 use super::numbers::{Format, SYMBOL};
@@ -37,7 +36,7 @@ impl TableView<'_> {
         self.heads(&groups).len() + rows + self.sum_lines(&groups).len()
     }
 
-    /// Its lines, at most `room` of them, of which the heads and a sum always are.
+    /// Its lines: the heads, the sum, and the rows for which `room` is left.
     pub fn lines(&self, room: usize) -> Vec<Line> {
         let groups = self.groups();
         let sum = self.sum_lines(&groups);

@@ -1,4 +1,4 @@
-//! The body in the scene: axle, hub, spokes, rim, masses and solid parts, of which some are near and some are far.
+//! The body in the scene: axle, hub, spokes, rim, masses and solid parts. Near parts look heavier than far ones.
 
 use super::{PARTS, Subject};
 use crate::observe::live::LiveRun;

@@ -139,7 +139,7 @@ impl Subject<'_> {
         shown.map_or_else(Vec::new, |shown| self.masses_before(shown.before(), scene))
     }
 
-    /// The direction of the new L, if the phase makes one that can be told from the old.
+    /// The direction of the new L, if the phase makes one that is seen to differ from the old.
     pub(super) fn new_momentum(&self) -> Option<Vector3<f64>> {
         let shown = self.shown_phase.as_ref().filter(|_| self.draws("dL"))?;
         let (old, new) = (shown.direction("L")?, shown.direction("new L")?);

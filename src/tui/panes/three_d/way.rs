@@ -8,11 +8,11 @@ use crate::tui::scene::Scene;
 use crate::tui::theme::Role;
 use crate::tui::trail;
 
-/// The path is drawn over everything until it is first as far as this from the point, and the sign stands where it is
-/// first as far as this, columns; a row counts as two.
+/// Distances from the point, columns, a row counting as two: up to the first the path is drawn over everything, at the
+/// second the sign stands.
 const JOINED: f64 = 3.0;
 const HEAD: f64 = 7.0;
-/// The direction of the sign is that of a stretch as long as this, columns.
+/// Length of the stretch of path that gives the sign its direction, columns.
 const STRETCH: f64 = 1.5;
 
 /// A place on the sheet, dots across and down.
