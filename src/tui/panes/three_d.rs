@@ -1,6 +1,7 @@
 //! The scene in space: the wheel on its axle over the ground, the path of the axle's top, and what turns it.
 //!
-//! The scene shows which way is up, a wheel with masses in front and behind, and why it goes where it goes. The weight g makes a torque τ about the pivot; L changes by dL along it, and the axle follows L.
+//! The scene shows which way is up, a wheel with masses in front and behind, and why it goes where it goes: the weight g
+//! makes a torque τ about the pivot; L changes by dL along it, and the axle follows L.
 
 mod arrows;
 mod body;

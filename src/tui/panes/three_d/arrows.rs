@@ -19,108 +19,72 @@ const PUSH: f64 = 0.4;
 /// The most pushes that are drawn at one time.
 const MOST_PUSHES: usize = 20;
 
-/// An arrow with its letter.
-struct Arrow {
-    letter: &'static str,
-    role: Role,
-    over: Over,
-    from: Vector3<f64>,
-    along: Vector3<f64>,
-    /// Where the letter stands beside the tip instead of beyond it: the direction away from which it stands.
-    away: Option<Vector3<f64>>,
+/// How the arrow of this letter is drawn.
+fn look(letter: &str) -> (Role, Over) {
+    match letter {
+        // The axle is whole where it is seen upright.
+        "g" => (Role::Push, Over::BehindRod),
+        "Ω" => (Role::Y, Over::Arrow),
+        // These are short and cross the rim, which would hide them.
+        "τ" | "dL" => (Role::X, Over::Everything),
+        "F" => (Role::Push, Over::Everything),
+        _ => (Role::Z, Over::Farther),
+    }
 }
 
 impl Subject<'_> {
     pub(super) fn draw_arrows(&self, scene: &mut Scene) -> Vec<Label> {
         let mut labels = Vec::new();
-        for arrow in self.arrows() {
-            if self.draws(arrow.letter) {
-                let tip = arrow.from + arrow.along;
-                scene.arrow(&arrow.from, &tip, Ink::Strong(arrow.role), arrow.over);
-                let place = match arrow.away {
-                    Some(direction) => scene.beside(&tip, &direction),
-                    None => scene.beyond(&arrow.from, &tip),
-                };
-                labels.push((arrow.letter, arrow.role, place));
+        for (letter, from, along) in self.arrows() {
+            if !self.draws(letter) {
+                continue;
             }
+            let (tip, (role, over)) = (from + along, look(letter));
+            scene.arrow(&from, &tip, Ink::Strong(role), over);
+            // L goes on beyond the tip of Ω, where no letter can be read, and dL is on the side to which the torque points.
+            let place = match self.torque.filter(|_| letter == "Ω") {
+                Some(torque) => scene.beside(&tip, &torque),
+                None => scene.beyond(&from, &tip),
+            };
+            labels.push((letter, role, place));
         }
         labels
     }
 
     /// L and Ω from the pivot, the weight at the centre of mass, its torque at the pivot, at the tip of L where L goes, and
-    /// the pushes that act.
-    fn arrows(&self) -> Vec<Arrow> {
+    /// the pushes that act: each with its letter, its origin and its length.
+    fn arrows(&self) -> Vec<(&'static str, Vector3<f64>, Vector3<f64>)> {
         let (state, loads) = (self.state, self.run.simulation().loads());
         let body = &self.run.scenario().body.mechanics;
         let (reach, arm) = (self.reach, self.arm);
         let direction = |vector: &Vector3<f64>| vector.try_normalize(f64::MIN_POSITIVE);
         let pivot = Vector3::zeros();
         let mut arrows = Vec::new();
-        let mut arrow = |letter, role, over, from, along, away| {
-            arrows.push(Arrow {
-                letter,
-                role,
-                over,
-                from,
-                along,
-                away,
-            })
-        };
         if let Some(down) = direction(&(Vector3::z() * -loads.gravity)) {
             let centre = state.orientation * body.first_moment() / body.mass();
-            // The axle is whole where it is seen upright.
-            arrow(
-                "g",
-                Role::Push,
-                Over::BehindRod,
-                centre,
-                down * (WEIGHT * reach),
-                None,
-            );
+            arrows.push(("g", centre, down * (WEIGHT * reach)));
         }
         let omega = direction(&observables::angular_velocity(body, state));
         if let Some(along) = self.direction("Ω", omega) {
-            // Shorter than L, in which it would vanish where both lie along the axle. L goes on beyond its tip, where no
-            // letter can be read, and dL stands on the side to which the torque points.
-            arrow(
-                "Ω",
-                Role::Y,
-                Over::Arrow,
-                pivot,
-                along * (OMEGA * arm),
-                self.torque,
-            );
+            // Shorter than L, in which it would vanish where both lie along the axle.
+            arrows.push(("Ω", pivot, along * (OMEGA * arm)));
         }
         let momentum = self.direction("L", direction(&state.momentum));
         let momentum = momentum.map(|along| along * (MOMENTUM * arm));
         if let Some(torque) = self.direction("τ", self.torque) {
-            // Both are short and cross the rim, which would hide them.
-            let to = torque * (TORQUE * reach);
-            arrow("τ", Role::X, Over::Everything, pivot, to, None);
+            arrows.push(("τ", pivot, torque * (TORQUE * reach)));
         }
-        if let (Some(change), Some(momentum)) = (self.direction("dL", self.change), momentum) {
-            let to = change * (CHANGE * reach);
-            arrow("dL", Role::X, Over::Everything, momentum, to, None);
+        if let (Some(change), Some(tip)) = (self.direction("dL", self.change), momentum) {
+            arrows.push(("dL", tip, change * (CHANGE * reach)));
         }
         if let Some(new) = self.new_momentum() {
-            let to = new * (MOMENTUM * arm);
-            arrow("new L", Role::Z, Over::Farther, pivot, to, None);
+            arrows.push(("new L", pivot, new * (MOMENTUM * arm)));
         }
-        if let Some(momentum) = momentum {
-            arrow("L", Role::Z, Over::Farther, pivot, momentum, None);
-        }
+        arrows.extend(momentum.map(|along| ("L", pivot, along)));
         for push in loads.pushes.iter().take(MOST_PUSHES) {
-            if let Some(along) = direction(&push.force) {
-                let from = state.orientation * body.points()[push.point].at;
-                arrow(
-                    "F",
-                    Role::Push,
-                    Over::Everything,
-                    from,
-                    along * (PUSH * reach),
-                    None,
-                );
-            }
+            let from = state.orientation * body.points()[push.point].at;
+            let along = direction(&push.force);
+            arrows.extend(along.map(|along| ("F", from, along * (PUSH * reach))));
         }
         arrows
     }
