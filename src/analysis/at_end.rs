@@ -11,9 +11,6 @@ use std::sync::Arc;
 const BLOCK: u64 = 4096;
 
 /// Plays the run of `scenario` to its end and reads `wanted` off it; `None` where `go_on` said no on the way.
-///
-/// # Errors
-/// Why there is nothing to read: the numbers stop being finite.
 pub fn readouts(
     scenario: Scenario,
     wanted: &[&Readout],

@@ -34,7 +34,6 @@ const TOO_FAR_RAD: f64 = 60.0;
 /// order has in that rate are not where the rate changes its sign.
 const BEYOND_ERROR: f64 = 2.0;
 
-/// The instruments for one such top.
 #[derive(Clone, Debug)]
 pub(super) struct Between {
     /// One over the moment across the axle, 1/(kg m²).
@@ -127,7 +126,6 @@ impl Between {
         })
     }
 
-    /// Takes in `step`.
     #[inline]
     pub fn follow(&mut self, step: &Step) {
         // Assigned at once: by way of a copy it would be stored in parts and read whole, for which processors wait.

@@ -21,7 +21,6 @@ pub struct Gauges {
 }
 
 impl Gauges {
-    /// Of the run that begins at `step`.
     pub fn new(step: &Step) -> Self {
         Self {
             instruments: Instruments::new(step),
@@ -33,7 +32,6 @@ impl Gauges {
         }
     }
 
-    /// Takes in `step`.
     #[inline]
     pub fn follow(&mut self, step: &Step) {
         self.extremes.follow(step);

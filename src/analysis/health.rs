@@ -63,7 +63,6 @@ pub struct Health {
     pub most_distance_m: Option<f64>,
     /// Distance of the traced point from the pivot, m.
     pub arm_m: f64,
-    /// Steps taken.
     pub steps: u64,
     /// Whether the whole run can be had at another time step by itself: no edits, no push that counts its own steps.
     pub can_be_rescaled: bool,
@@ -106,9 +105,7 @@ pub enum Advice {
     TimeStep(f64),
     /// Another scheme at this time step, s: the run's own was tried down to `tried_s` without success.
     Scheme {
-        /// The scheme.
         name: &'static str,
-        /// The time step of the other scheme, s.
         time_step_s: f64,
         /// The finest time step tried with the run's own, s.
         tried_s: f64,

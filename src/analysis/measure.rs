@@ -46,7 +46,6 @@ impl Instruments {
         })
     }
 
-    /// Takes in `step`.
     #[inline]
     pub fn follow(&mut self, step: &Step) {
         match &mut self.0 {

@@ -24,7 +24,6 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// A monitor for the run that begins at `step`.
     pub fn new(step: &Step) -> Self {
         Self {
             gauges: Gauges::new(step),

@@ -23,15 +23,12 @@ use std::time::Duration;
 /// A run at one step, with what has been measured on it and what theory says of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Readouts {
-    /// The scenario's title.
     pub title: String,
     /// The name of the scheme in force.
     pub scheme: &'static str,
     /// How the scheme went about it, where it has more than one way.
     pub scheme_kind: Option<String>,
-    /// The time step in force, s.
     pub time_step_s: f64,
-    /// The state.
     pub sample: Sample,
     /// L·axle, J s.
     pub spin: f64,
@@ -41,13 +38,11 @@ pub struct Readouts {
     pub has_rotor: bool,
     /// I3/I1 of a symmetric body.
     pub kappa: Option<f64>,
-    /// How it stands.
     pub health: Health,
     /// What would mend it, where that has been sought.
     pub advice: Option<Advice>,
     /// What theory says of the exact motion now, about the axis that it names.
     pub theory: Option<Theory>,
-    /// The least and the greatest so far.
     pub extremes: Extremes,
     /// Precession since the forces last changed, rad/s.
     pub precession: Option<Measured>,

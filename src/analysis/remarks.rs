@@ -42,11 +42,8 @@ fn change(nutation: &Nutation) -> (&'static str, String) {
 /// One thing to say on the screen, at length where there is room, and in short.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
-    /// In full.
     pub long: String,
-    /// In few words.
     pub short: String,
-    /// Whether something is wrong.
     pub warns: bool,
 }
 
@@ -236,7 +233,6 @@ fn taken(slowing: &Slowing) -> Remark {
     Remark::new(format!("friction took {} J", short(-slowing.work)), false)
 }
 
-/// Why there is no energy drift.
 fn no_drift(health: &Health) -> &'static str {
     match health.energy_unit {
         None => "neither weight nor kinetic energy to measure it by",

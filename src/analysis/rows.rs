@@ -23,7 +23,6 @@ const ROWS_OF_CHANCE: f64 = 1.5;
 /// How much more the scatter of nutations that differ at random counts than that of single points.
 const AT_RANDOM: f64 = 1.75;
 
-/// The instruments for such a run.
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
     /// The last three steps, the newest last.
@@ -92,7 +91,6 @@ impl Rows {
         }
     }
 
-    /// Takes in `step`.
     #[inline]
     pub fn follow(&mut self, step: &Step) {
         let look = Look::at(step);

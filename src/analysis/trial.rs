@@ -20,7 +20,6 @@ const TIMED: u64 = 1000;
 /// How a run went beside the exact motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
-    /// Steps taken.
     pub steps: u64,
     /// Largest distance of the traced point from where it should have been, m.
     pub most_distance_m: f64,

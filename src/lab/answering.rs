@@ -17,9 +17,6 @@ impl Lab {
     }
 
     /// The dialog that asks for the file of an export, a run file or a scenario of the present state.
-    ///
-    /// # Errors
-    /// Why there is nothing to write now.
     pub(super) fn dialog_for_a_file(&self, action: Action) -> Result<Dialog, String> {
         let free_name = |about, extension| self.files.free_name(self.work.name(), about, extension);
         match action {
@@ -115,9 +112,6 @@ impl Lab {
 }
 
 /// The number in `text`; a comma may stand for the decimal point.
-///
-/// # Errors
-/// Why it is none.
 fn number_typed(text: &str) -> Result<f64, String> {
     let text = text.trim().replace(',', ".");
     let number: Option<f64> = text.parse().ok();

@@ -19,13 +19,10 @@ const ABOVE: &str = "../";
 pub struct Entry {
     /// The name of the preset or the path of the file, as SCENARIO on the command line; that of a folder ends in `/`.
     pub name: String,
-    /// Whether it is a file.
     pub is_file: bool,
-    /// Whether it is a folder.
     pub is_folder: bool,
 }
 
-/// The state of the browser.
 #[derive(Debug, Default)]
 pub struct Browser {
     entries: Vec<Entry>,
@@ -41,7 +38,6 @@ pub struct Browser {
     open: String,
     filter: String,
     selected: usize,
-    /// The selected entry and its preview.
     preview: Option<(Entry, Preview)>,
     /// Whether the selected entry is to be opened as soon as it has been read.
     is_chosen: bool,
@@ -209,12 +205,10 @@ impl Browser {
         self.selected
     }
 
-    /// The selected entry.
     pub fn choice(&self) -> Option<&Entry> {
         self.shown().get(self.selected).copied()
     }
 
-    /// The preview of the selected entry.
     pub fn preview(&self) -> Option<&Preview> {
         self.preview.as_ref().map(|(_, preview)| preview)
     }
@@ -244,7 +238,6 @@ impl Browser {
         }
     }
 
-    /// The filter.
     pub fn filter(&self) -> &str {
         &self.filter
     }

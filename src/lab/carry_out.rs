@@ -245,9 +245,6 @@ impl Lab {
     }
 
     /// The scenario of the run from step 0 to `to_step`, or to the present step; `to` says what it is for.
-    ///
-    /// # Errors
-    /// Why there is no such run.
     pub(super) fn run_up_to(
         &self,
         to_step: Option<u64>,

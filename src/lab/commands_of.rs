@@ -137,7 +137,6 @@ impl Lab {
         }
     }
 
-    /// The command that nudges the selected value `times` times.
     fn nudged(&self, times: i32) -> Result<Option<Vec<Command>>, String> {
         Ok(match self.values.list().selected() {
             None => None,
@@ -163,7 +162,6 @@ fn signed(direction: Direction, times: i32) -> i32 {
     }
 }
 
-/// How often an action is repeated for `count`.
 pub(super) fn repeated(count: Option<u64>) -> i32 {
     count.unwrap_or(1).min(MOST_REPEATED) as i32
 }

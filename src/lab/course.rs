@@ -55,9 +55,6 @@ impl Player {
     }
 
     /// The step at `time_s`.
-    ///
-    /// # Errors
-    /// If the time is negative or not finite.
     pub(super) fn step_at(&self, time_s: f64) -> Result<u64, String> {
         if time_s >= 0.0 && time_s.is_finite() {
             Ok(Simulation::step_at(self.run().scenario(), time_s))
@@ -90,9 +87,6 @@ impl Player {
     }
 
     /// The speed `notches` places higher, or lower, in the list of speeds.
-    ///
-    /// # Errors
-    /// In words, if there is no other speed in that direction.
     pub(super) fn other_speed(&self, notches: i32) -> Result<Speed, String> {
         let now = self.playback.speed();
         match now.shifted(notches) {
@@ -104,9 +98,6 @@ impl Player {
     }
 
     /// The scenario that starts from the present state, as TOML.
-    ///
-    /// # Errors
-    /// Why there is none.
     pub(super) fn present_as_text(&self) -> Result<String, String> {
         let run = self.run().simulation();
         let scenario = scenario_from(run.scenario(), run.state(), run.step_number())

@@ -18,12 +18,9 @@ use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The line about the keys in a dialog with one field.
 const KEYS: &str = "Enter takes it, typing replaces it, Esc leaves it";
-/// The same in a dialog with several fields.
 const KEYS_OF_TWO: &str = "Enter writes it, Up and Down the other line, Esc leaves it";
 
-/// The same in the dialog of the settings.
 const KEYS_OF_SETTINGS: &str = "Up and Down choose, Left and Right or Enter change it, Esc closes";
 
 /// A form on top of the panes, and the question that it asks.
@@ -35,12 +32,10 @@ pub struct Dialog {
     asked_to_replace: Option<PathBuf>,
 }
 
-/// The question of a dialog.
 #[derive(Clone, Debug)]
 pub(super) enum Question {
     /// The value of the selected line of the parameters pane.
     Value,
-    /// A step or a time to go to.
     GoTo,
     /// The CSV file for the rows of this run, and how many of the rows to write.
     Export(Arc<Scenario>),
@@ -131,7 +126,6 @@ impl Dialog {
         Self::new(question, title, &[("file", path)], &[info])
     }
 
-    /// Asks for a number.
     pub(super) fn number(title: &str, label: &str, about: &str) -> Self {
         let fields = [(label, String::new())];
         Self::new(Question::Number, title, &fields, &[about])
@@ -166,12 +160,10 @@ impl Dialog {
         }
     }
 
-    /// Whether it lists the settings.
     pub fn is_of_settings(&self) -> bool {
         matches!(self.question, Question::Settings)
     }
 
-    /// The form to draw.
     pub fn form(&self) -> &Form {
         &self.form
     }
@@ -186,9 +178,6 @@ impl Dialog {
     }
 
     /// The interval of the rows to write, as typed in the second field: 10 stands for each tenth row.
-    ///
-    /// # Errors
-    /// Why the text is no such number.
     pub(super) fn every(&self) -> Result<NonZeroU64, String> {
         let text = self.form.text(1).trim();
         text.parse()

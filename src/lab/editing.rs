@@ -15,7 +15,6 @@ use std::sync::Arc;
 use toml::Table;
 
 impl Lab {
-    /// Lists the values that can be edited, as they are now.
     pub(super) fn list_parameters(&mut self) {
         self.values
             .list_again(self.player.run(), self.work.journal());

@@ -9,9 +9,7 @@ const MOST_TYPED: usize = 1000;
 /// One line to type into. The cursor moves by visible characters, each of which may consist of several code points.
 #[derive(Clone, Debug, Default)]
 pub struct Field {
-    /// Its label.
     pub label: String,
-    /// The text and the cursor.
     input: Input,
     /// Whether the whole text is marked: typing then replaces it.
     is_marked: bool,
@@ -20,7 +18,6 @@ pub struct Field {
 /// A few fields, with a title above and lines of text below.
 #[derive(Clone, Debug, Default)]
 pub struct Form {
-    /// Its title.
     pub title: String,
     /// Its fields, from top to bottom.
     pub fields: Vec<Field>,
@@ -35,7 +32,6 @@ pub struct Form {
 }
 
 impl Field {
-    /// The field of `label` with `text` in it, all of it marked.
     pub fn new(label: &str, text: &str) -> Self {
         Self {
             label: label.to_owned(),
@@ -53,7 +49,6 @@ impl Field {
         }
     }
 
-    /// Its text.
     pub fn text(&self) -> &str {
         self.input.value()
     }
@@ -166,7 +161,6 @@ impl Form {
         self.move_cursor(InputRequest::GoToStart);
     }
 
-    /// Moves the cursor to the end.
     pub fn end(&mut self) {
         self.move_cursor(InputRequest::GoToEnd);
     }

@@ -39,7 +39,6 @@ impl HelpSearch {
         self.selected = 0;
     }
 
-    /// Moves the selection by `rows`.
     pub(super) fn shift(&mut self, rows: isize) {
         self.selected = self.selected.saturating_add_signed(rows);
     }

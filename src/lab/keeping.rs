@@ -16,7 +16,6 @@ use crate::work::journal::Journal;
 use crate::work::next_push::NextPush;
 use serde::{Deserialize, Serialize};
 
-/// The text of the work.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct KeptWork {
@@ -46,9 +45,6 @@ impl KeptPinned {
     }
 
     /// What is to be pinned again.
-    ///
-    /// # Errors
-    /// What is wrong with the run file.
     fn reference(self) -> Result<Reference, Problems> {
         match self.run {
             None => Ok(Reference::Present),
@@ -70,10 +66,8 @@ struct KeptPlace {
     detail_s: Option<f64>,
     /// What that strip shows; `None` where the motion or `[view]` of the scenario tells.
     detail_of: Option<String>,
-    /// The id of the pane in focus.
     focus: String,
     filled: bool,
-    /// The file of the export that was in progress.
     exporting: Option<String>,
     /// The ids of the panes that share the screen; `None` where `[view]` of the scenario tells.
     show: Option<Vec<String>>,
@@ -136,7 +130,6 @@ pub struct Summary {
 pub struct Unreadable(String);
 
 impl Lab {
-    /// The content of the session.
     pub fn content(&mut self) -> Content {
         Content {
             work: self.work.kept(self.player.reference()),
@@ -145,9 +138,6 @@ impl Lab {
     }
 
     /// What a list of sessions shows of `content`.
-    ///
-    /// # Errors
-    /// Why it cannot be read.
     pub fn summary(content: &Content) -> Result<Summary, Unreadable> {
         let work: KeptWork = read("the run", &content.work)?;
         let place: KeptPlace = read("the place in it", &content.place)?;
@@ -171,7 +161,6 @@ impl Lab {
         self.lessons.as_ref()
     }
 
-    /// Makes `lessons` what the session keeps of the lessons.
     pub fn keep_lessons(&mut self, lessons: Option<toml::Table>) {
         self.lessons = lessons;
     }

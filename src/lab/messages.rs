@@ -101,7 +101,6 @@ impl Lab {
         self.changed = true;
     }
 
-    /// Removes the present message.
     pub fn take_back_message(&mut self) {
         self.changed |= self.on_top.notice_mut().take_back();
     }

@@ -82,11 +82,9 @@ pub enum Request {
     Redraw,
     /// Suspend the program until the shell resumes it.
     Suspend,
-    /// End the program.
     Quit,
 }
 
-/// The state of the lab.
 pub struct Lab {
     work: Work,
     player: Player,
@@ -152,7 +150,6 @@ impl Lab {
         self.usual_colour = Some(colour);
     }
 
-    /// The choice of colours, as it is remembered.
     fn colour_choice(&self) -> &'static str {
         if self.usual_colour == Some(self.view.theme.colour) {
             "auto"
@@ -174,9 +171,6 @@ impl Lab {
     }
 
     /// Takes the run to `step` at once.
-    ///
-    /// # Errors
-    /// If the numbers stop being finite on the way.
     pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
         let arrived = self.player.playback.begin_at(step);
         self.player.playback.catch_up_exact();
@@ -220,7 +214,6 @@ impl Lab {
         self.view.fps = fps;
     }
 
-    /// Listens to the mouse, or leaves it to the terminal.
     pub fn set_mouse(&mut self, listens: bool) {
         self.view.mouse = listens;
     }
@@ -284,42 +277,34 @@ impl Lab {
         std::mem::take(&mut self.changed)
     }
 
-    /// What was done to the run.
     pub fn work(&self) -> &Work {
         &self.work
     }
 
-    /// The player of the run.
     pub fn player(&self) -> &Player {
         &self.player
     }
 
-    /// The values that can be edited.
     pub fn values(&self) -> &Values {
         &self.values
     }
 
-    /// The files of the lab.
     pub fn files(&self) -> &Files {
         &self.files
     }
 
-    /// The files of the lab, to say where they are.
     pub fn files_mut(&mut self) -> &mut Files {
         &mut self.files
     }
 
-    /// How the run is shown.
     pub fn view(&self) -> &View {
         &self.view
     }
 
-    /// What lies on top of the panes.
     pub fn on_top(&self) -> &OnTop {
         &self.on_top
     }
 
-    /// The commands that are not carried out yet.
     pub fn script(&self) -> &Script {
         &self.script
     }

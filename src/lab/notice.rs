@@ -14,7 +14,6 @@ pub struct Notice {
     trouble: Option<String>,
 }
 
-/// A message.
 #[derive(Clone, Debug)]
 struct Said {
     text: String,
@@ -96,7 +95,6 @@ impl Notice {
         until.map(|until| until.saturating_sub(now))
     }
 
-    /// The message.
     pub fn text(&self) -> Option<&str> {
         self.said.as_ref().map(|said| said.text.as_str())
     }

@@ -11,15 +11,12 @@ use super::typing::MOST_TYPED;
 use std::path::Path;
 use std::time::Duration;
 
-/// The largest count that can be typed.
 pub const MOST_COUNTED: u64 = 999_999_999;
 
-/// What gets the keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// The panes: nothing lies on top of them.
     Lab,
-    /// The browser of presets and files.
     Browser,
     /// The line in which the user types the browser's filter.
     Filter,
@@ -27,12 +24,10 @@ pub enum Mode {
     Find,
     /// The list of keys and words.
     Help,
-    /// A dialog.
     Dialog,
 }
 
 impl Mode {
-    /// Every mode.
     pub const ALL: [Self; 6] = [
         Self::Lab,
         Self::Browser,
@@ -61,7 +56,6 @@ pub struct OnTop {
 /// What was on the screen when a key was pressed; the key has removed it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cleared {
-    /// The count that was typed.
     pub(super) count: Option<u64>,
     /// Whether a message or a count was removed.
     pub(super) anything: bool,
@@ -85,12 +79,10 @@ impl Default for OnTop {
 }
 
 impl OnTop {
-    /// What gets the keys.
     pub fn mode(&self) -> Mode {
         self.mode
     }
 
-    /// The open dialog, if there is one.
     pub fn dialog(&self) -> Option<&Dialog> {
         self.dialog.as_ref()
     }
@@ -100,22 +92,18 @@ impl OnTop {
         &self.browser
     }
 
-    /// The search in the help, and the selected entry.
     pub fn help(&self) -> &HelpSearch {
         &self.help
     }
 
-    /// The mode that is returned to when the help is closed.
     pub fn under_help(&self) -> Mode {
         self.under_help
     }
 
-    /// The count typed so far.
     pub fn count(&self) -> Option<u64> {
         self.count
     }
 
-    /// The message.
     pub fn notice(&self) -> &Notice {
         &self.notice
     }
@@ -140,7 +128,6 @@ impl OnTop {
         self.count = Some(count.min(MOST_COUNTED));
     }
 
-    /// Forgets the count that was typed.
     pub(super) fn forget_count(&mut self) {
         self.count = None;
     }
@@ -157,7 +144,6 @@ impl OnTop {
         self.mode = Mode::Dialog;
     }
 
-    /// Closes the dialog and returns it.
     pub(super) fn take_dialog(&mut self) -> Option<Dialog> {
         let dialog = self.dialog.take()?;
         self.mode = Mode::Lab;
@@ -182,7 +168,6 @@ impl OnTop {
         self.browser.enter(may_be_read)
     }
 
-    /// Opens the line for the browser's filter.
     pub(super) fn open_filter(&mut self) {
         self.mode = Mode::Filter;
     }
@@ -192,7 +177,6 @@ impl OnTop {
         self.mode = Mode::Find;
     }
 
-    /// Closes that line.
     pub(super) fn close_find(&mut self) {
         self.mode = Mode::Lab;
     }
@@ -202,7 +186,6 @@ impl OnTop {
         self.help.limit(entries);
     }
 
-    /// Closes the browser.
     pub(super) fn close_browser(&mut self) {
         self.mode = Mode::Lab;
     }

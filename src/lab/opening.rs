@@ -11,9 +11,6 @@ use std::sync::Arc;
 
 /// Reads the preset or the file called `name`. A FIFO or a device is refused: reading it may wait for any length of time,
 /// which only the command line can do.
-///
-/// # Errors
-/// Why it cannot be read.
 pub(super) fn read(name: &str) -> Result<Document, Problems> {
     if presets::find(name).is_none() && Destination::may_wait(Path::new(name)) {
         let rule = "is not a regular file: it can be opened at the command line only";

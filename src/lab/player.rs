@@ -34,7 +34,6 @@ pub struct Player {
     /// The run before, where an edit has begun this one anew.
     pub(super) ghost: Option<Ghost>,
     pub(super) pinned: Option<Pinned>,
-    /// The measured data beside the run.
     pub(super) measured: Option<Beside>,
     /// Whether to look for a scheme or time step that would make doubtful numbers right.
     pub(super) is_advised: bool,
@@ -174,7 +173,6 @@ impl Player {
         self.at_cursor = found.map(|sample| (Arc::clone(run.scenario()), sample));
     }
 
-    /// The numbers at the cursor on the traces.
     pub fn cursor(&self) -> Option<&Sample> {
         self.at_cursor.as_ref().map(|(_, sample)| sample)
     }
@@ -220,7 +218,6 @@ impl Player {
         &self.playback
     }
 
-    /// The run.
     pub fn run(&self) -> &LiveRun {
         self.playback.run()
     }
@@ -230,7 +227,6 @@ impl Player {
         self.ghost.as_ref()
     }
 
-    /// The latest reading.
     pub fn reading(&self) -> &Reading {
         &self.reading
     }

@@ -13,7 +13,6 @@ pub(super) const AT_ONCE: Duration = Duration::from_millis(15);
 /// What is known of the selected entry.
 #[derive(Clone, Debug)]
 pub enum Preview {
-    /// It is being read.
     Loading,
     /// It cannot be read: the system gives no thread.
     Unknown,

@@ -22,7 +22,6 @@ pub(super) const GO_ON_WITH_THEM: &str = "space goes on with them, Esc leaves th
 /// How long steps are taken before the caller decides whether to go on.
 const PART: Duration = Duration::from_millis(100);
 
-/// The commands that are not carried out yet.
 #[derive(Clone, Debug, Default)]
 pub struct Script {
     /// The file of the commands, as the user named it.
@@ -43,7 +42,6 @@ pub struct Script {
 }
 
 impl Script {
-    /// The script of `commands`.
     fn new(commands: Commands) -> Self {
         Self {
             origin: commands.origin,
@@ -80,7 +78,6 @@ impl Script {
         self.failed.as_deref()
     }
 
-    /// Begins a chapter.
     pub(super) fn begin_chapter(&mut self, title: &str) {
         self.chapters.push(title.to_owned());
     }
@@ -112,7 +109,6 @@ impl Script {
         self.left.pop_front()
     }
 
-    /// Whether all commands are carried out.
     pub fn is_done(&self) -> bool {
         self.count() == 0
     }
@@ -308,9 +304,6 @@ impl Lab {
     }
 
     /// Whether the action `under_way` is complete.
-    ///
-    /// # Errors
-    /// Why it has failed.
     fn is_complete(&mut self, under_way: UnderWay, halt: Option<Halt>) -> Result<bool, String> {
         let is_on = match under_way {
             UnderWay::Going => self.player.playback.steps_to_go().is_some(),

@@ -78,7 +78,6 @@ impl Lab {
             .open_dialog(Dialog::settings(&self.view, selected));
     }
 
-    /// Whether the dialog of the settings is open.
     pub fn shows_settings(&self) -> bool {
         self.on_top.dialog().is_some_and(Dialog::is_of_settings)
     }

@@ -33,7 +33,6 @@ impl Lab {
         self.changed = true;
     }
 
-    /// Moves the focus to the sheet, if there is one.
     pub fn turn_to_sheet(&mut self) {
         if self.view.sheet.is_some() {
             self.view.filled &= self.view.focus == Pane::LESSON;

@@ -17,7 +17,6 @@ pub(super) struct Sorting {
 }
 
 impl Sorting {
-    /// Begins to look into the files of these `names`.
     pub fn begin(names: &[String]) -> Self {
         let (tell, found) = mpsc::channel();
         let names = names.to_vec();

@@ -11,7 +11,6 @@ use super::script::{GO_ON_WITH_IT, GO_ON_WITH_THEM};
 use super::view::Pane;
 use super::{Lab, Request};
 
-/// Rows of a page in lists.
 const PAGE: isize = 10;
 
 impl Lab {
@@ -45,7 +44,6 @@ impl Lab {
         self.carry_out_all(std::slice::from_ref(command));
     }
 
-    /// Moves the focus to `pane`.
     pub fn turn_to(&mut self, pane: Pane) {
         self.on_top.clear();
         self.view.turn_to(pane);
@@ -57,7 +55,6 @@ impl Lab {
         self.view.is_touched = true;
     }
 
-    /// Selects the entry of this number in the browser.
     pub fn select_in_browser(&mut self, row: usize) {
         self.on_top.clear();
         let selected = self.on_top.browser().selected();

@@ -96,7 +96,6 @@ impl Lab {
         Ok(Done::SILENT)
     }
 
-    /// Moves the traces where they do not show `time_s`.
     fn show_time(&mut self, time_s: f64) {
         let window_s = self.view.window_s;
         let now_s = self.player.run().now().time_s;
@@ -110,7 +109,6 @@ impl Lab {
         }
     }
 
-    /// The command that moves the cursor by so many fiftieths of the window.
     pub(super) fn moved_cursor(&self, fiftieths: i32) -> Command {
         let run = self.player.run();
         let here = self
@@ -126,7 +124,6 @@ impl Lab {
         Command::Cursor(CursorTo::Place(Place::Step(step)))
     }
 
-    /// The command that moves the cursor by so many steps.
     pub(super) fn stepped_cursor(&self, steps: i32) -> Command {
         let here = self
             .view

@@ -9,9 +9,6 @@ pub(super) const WHERE: &str =
 
 impl Player {
     /// The step that `text` means, seen from where the run stands.
-    ///
-    /// # Errors
-    /// Why the text means no step.
     pub(super) fn step_meant(&self, text: &str) -> Result<u64, String> {
         let text = text.trim();
         let here = self.playback.step_number();

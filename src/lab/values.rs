@@ -73,12 +73,10 @@ impl Values {
         journal.count_by(step) != self.entries_listed
     }
 
-    /// The list, and the selected value.
     pub fn list(&self) -> &ValueList {
         &self.list
     }
 
-    /// Adds `text` to what is searched for.
     pub(super) fn type_name(&mut self, text: &str) {
         let mut name = self.list.name().to_owned();
         type_into(&mut name, text);
@@ -99,7 +97,6 @@ impl Values {
         was_filtered
     }
 
-    /// Moves the selection by `rows` values.
     pub(super) fn shift(&mut self, rows: isize) {
         self.list.shift(rows);
     }
@@ -135,7 +132,6 @@ impl Values {
         self.last_nudged.as_ref().is_some_and(belongs)
     }
 
-    /// Records that `key` was nudged at `now`.
     pub(super) fn note_nudge(&mut self, key: &str, now: Duration) {
         self.last_nudged = Some((key.to_owned(), now));
     }
@@ -145,7 +141,6 @@ impl Values {
         self.last_nudged = None;
     }
 
-    /// The push to come.
     pub(super) fn next_push(&self) -> &NextPush {
         &self.next_push
     }
@@ -161,9 +156,6 @@ impl Values {
     }
 
     /// The push to come, with the values that `choice` has in place of its own. `time_step_s` is the time step in force, s.
-    ///
-    /// # Errors
-    /// Why a value is refused.
     pub(super) fn chosen(
         &self,
         choice: &PushChoice,
@@ -188,9 +180,6 @@ impl Values {
     }
 
     /// The command that gives the selected value what `text` says; `None` if it already has that value.
-    ///
-    /// # Errors
-    /// Why `text` is refused.
     pub(super) fn value_typed(
         &self,
         text: &str,
@@ -217,7 +206,6 @@ impl Values {
 }
 
 impl PushChoice {
-    /// A choice of the `field` of `push` only.
     pub(super) fn field(field: Field, push: &NextPush) -> Self {
         let mut choice = Self::default();
         match field {

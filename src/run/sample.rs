@@ -7,7 +7,6 @@ use nalgebra::{Matrix3, Vector3};
 pub struct Sample {
     /// Number of the step, 0 at the start.
     pub step: u64,
-    /// Time, s.
     pub time_s: f64,
     /// Orientation: turns body-frame vectors into world-frame ones.
     pub orientation: Matrix3<f64>,

@@ -183,9 +183,6 @@ impl Simulation {
     }
 
     /// Steps until the run stands at `step`.
-    ///
-    /// # Errors
-    /// When the numbers stop being finite before that.
     pub fn step_to(&mut self, step: u64) -> Result<(), NotFinite> {
         while self.now.number < step {
             self.step()?;
@@ -332,17 +329,14 @@ impl Simulation {
         self.scheme.load(&now.loads);
     }
 
-    /// The scenario that is being run.
     pub fn scenario(&self) -> &Arc<Scenario> {
         &self.now.scenario
     }
 
-    /// The number of the step it stands at.
     pub fn step_number(&self) -> u64 {
         self.now.number
     }
 
-    /// The state it stands at.
     pub fn state(&self) -> &State {
         &self.now.after
     }

@@ -50,7 +50,6 @@ pub(super) struct Derived {
 }
 
 impl Step {
-    /// The scenario whose step it is.
     pub fn scenario(&self) -> &Arc<Scenario> {
         &self.scenario
     }
@@ -86,7 +85,6 @@ impl Step {
         (self.number > 0).then_some(&self.before)
     }
 
-    /// The state after it.
     pub fn after(&self) -> &State {
         &self.after
     }

@@ -7,9 +7,6 @@ use crate::lab::Lab;
 use crate::scenario::Problem;
 
 /// The predictions of `place` beside what came out of `lesson`, which is played in a new `lab`; as Markdown.
-///
-/// # Errors
-/// Which command was refused, and why.
 pub fn answers(
     lesson: &Lesson,
     place: &Place,

@@ -12,7 +12,6 @@ use std::path::Path;
 use std::time::Duration;
 use toml::Table;
 
-/// The lessons of a lab.
 #[derive(Debug, Default)]
 pub struct Class {
     shown: Shown,
@@ -26,7 +25,6 @@ pub struct Class {
     has_changed: bool,
 }
 
-/// What is shown beside the panes.
 #[derive(Debug, Default)]
 enum Shown {
     #[default]
@@ -41,22 +39,16 @@ enum Shown {
     Lesson(Box<Taken>),
 }
 
-/// What a session keeps of the lessons.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct KeptLessons {
-    /// The one that is taken.
     pub open: Option<String>,
-    /// Where each stands, by its name.
     #[serde(default)]
     pub lessons: BTreeMap<String, Place>,
 }
 
 impl KeptLessons {
     /// What `kept`, a table of a session, says.
-    ///
-    /// # Errors
-    /// When it is no such table.
     pub fn read(kept: &Table) -> Result<Self, toml::de::Error> {
         kept.clone().try_into()
     }
@@ -82,9 +74,6 @@ impl Class {
     }
 
     /// Opens the lesson that NAME names, on the page `page` (from 1) or where it was left, and makes the lab stand there.
-    ///
-    /// # Errors
-    /// When there is no such lesson or page, or everything that is wrong with its file.
     pub fn open(&mut self, name: &str, page: Option<usize>, lab: &mut Lab) -> Result<(), String> {
         self.take(name, lab)?;
         if let Shown::Lesson(taken) = &mut self.shown {
@@ -95,7 +84,6 @@ impl Class {
         Ok(())
     }
 
-    /// The lesson that is taken.
     pub fn taken(&self) -> Option<&Taken> {
         match &self.shown {
             Shown::Lesson(taken) => Some(taken),
@@ -255,7 +243,6 @@ impl Class {
         }
     }
 
-    /// What the session keeps.
     fn kept(&self) -> KeptLessons {
         let mut lessons = self.left.clone();
         let open = self.taken().map(|taken| {

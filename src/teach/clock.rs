@@ -3,14 +3,12 @@
 use chrono::Local;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// What the clock shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
     /// The time since the lesson was opened.
     Up,
     /// What is left of the lesson's minutes.
     Down,
-    /// The time of the day.
     Day,
 }
 

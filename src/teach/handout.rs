@@ -14,9 +14,6 @@ use crate::scenario::Problem;
 const BLANK: &str = "____________";
 
 /// The handout of `lesson`, played in a new `lab`; `picture` is the lab's picture as text.
-///
-/// # Errors
-/// Which command was refused, and why.
 pub fn handout(
     lesson: &Lesson,
     lab: Lab,

@@ -63,7 +63,6 @@ impl Names {
         self.open_from.get_or_insert(page);
     }
 
-    /// Whether a number is kept as `name` somewhere.
     pub(super) fn is_kept(&self, name: &str) -> bool {
         self.kept.iter().any(|(known, _)| known == name)
     }

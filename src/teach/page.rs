@@ -82,7 +82,6 @@ pub(super) fn sheet(taken: &Taken, now: Duration, lab: &Lab) -> Sheet {
     writer.sheet
 }
 
-/// Writes the sheet of a page.
 struct Writer<'a> {
     taken: &'a Taken,
     lab: &'a Lab,
@@ -203,7 +202,6 @@ impl Writer<'_> {
         }
     }
 
-    /// What to do next.
     fn next(&mut self, page: usize) {
         let has_task = self.taken.page().is_some_and(|page| page.task().is_some());
         let is_last = page == self.taken.lesson().pages.len();

@@ -4,16 +4,13 @@ use super::Kept;
 use super::predictions::Predictions;
 use serde::{Deserialize, Serialize};
 
-/// Where a lesson was left.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Place {
     /// The number of the page, from 1.
     pub page: usize,
-    /// What was predicted.
     #[serde(default)]
     pub predictions: Predictions,
-    /// The numbers that were kept.
     #[serde(default)]
     pub kept: Kept,
     /// Whether its last page was opened.

@@ -32,12 +32,10 @@ impl Predictions {
         Ok(())
     }
 
-    /// Whether nothing is locked.
     pub fn is_empty(&self) -> bool {
         self.locked.is_empty()
     }
 
-    /// The answer that is locked under this name.
     pub fn answer(&self, name: &str) -> Option<&Answer> {
         self.locked.get(name)
     }
@@ -89,7 +87,6 @@ impl Compare {
         Some(predictions.answer(&self.prediction)?.in_words(predict))
     }
 
-    /// The number that came out, in `lab`.
     pub fn came_out(&self, lab: &Lab, kept: &Kept) -> Option<f64> {
         value(self.with.as_ref()?, lab, kept)
     }

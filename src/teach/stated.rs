@@ -25,7 +25,6 @@ impl Stated {
         }
     }
 
-    /// The text at this line of the file.
     pub(super) fn text(&self, line: usize) -> Option<&str> {
         self.texts.get(&line).map(String::as_str)
     }

@@ -22,7 +22,6 @@ const LONGEST: Duration = Duration::from_secs(5);
 const TOO_LONG: &str =
     "the pages before this one take too long: its lab block should open a run of its own";
 
-/// A lesson that is taken.
 #[derive(Debug)]
 pub struct Taken {
     lesson: Arc<Lesson>,
@@ -40,7 +39,6 @@ pub struct Taken {
     stated: Option<Stated>,
     /// Whether the hints of the page's checks are shown.
     shows_hints: bool,
-    /// The block that the lab is carrying out.
     under_way: Option<Block>,
     /// Whether turning the page was refused once, because a prediction is open.
     was_asked: bool,
@@ -55,9 +53,7 @@ pub struct Taken {
 /// A block of a page that the lab carries out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Block {
-    /// The `lab` block of the page with this number.
     Lab(usize),
-    /// Its `task` block.
     Task(usize),
 }
 
@@ -91,12 +87,10 @@ impl Taken {
         }
     }
 
-    /// The lesson.
     pub fn lesson(&self) -> &Lesson {
         &self.lesson
     }
 
-    /// Where it stands.
     pub fn place(&self) -> &Place {
         &self.place
     }
@@ -105,7 +99,6 @@ impl Taken {
         self.place
     }
 
-    /// The page that is open.
     pub fn page(&self) -> Option<&Page> {
         self.lesson.page(self.place.page)
     }
@@ -150,7 +143,6 @@ impl Taken {
         self.clock
     }
 
-    /// What that clock shows.
     pub fn time(&self, now: Duration) -> Option<String> {
         let since = now.saturating_sub(self.since) + self.gone_before;
         self.clock
@@ -302,7 +294,6 @@ impl Taken {
     }
 }
 
-/// Whether `check` holds in `lab`.
 fn holds(check: &super::Check, lab: &Lab, kept: &super::Kept) -> bool {
     value(&check.that, lab, kept).is_some_and(|held| held != 0.0)
 }

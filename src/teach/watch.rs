@@ -8,7 +8,6 @@ use std::time::{Duration, SystemTime};
 /// The time between two looks.
 const EVERY: Duration = Duration::from_secs(1);
 
-/// A file that may change.
 #[derive(Clone, Debug)]
 pub struct Watch {
     path: PathBuf,
@@ -17,7 +16,6 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Watches the file at `path` as it is now.
     pub fn new(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
@@ -26,7 +24,6 @@ impl Watch {
         }
     }
 
-    /// The file.
     pub fn path(&self) -> &Path {
         &self.path
     }

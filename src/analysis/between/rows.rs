@@ -7,11 +7,9 @@ use crate::run::Step;
 /// What is known of the axle after a time step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
-    /// Time, s.
     pub time_s: f64,
     /// Where the axle is, and how it moves.
     pub swing: Swing,
-    /// The azimuth of the axle.
     pub azimuth: Azimuth,
 }
 
@@ -39,7 +37,6 @@ impl Row {
 /// Two rows with a turning point between them, or a start that stands at one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crossing {
-    /// The row before it.
     pub before: Row,
     /// The row after it; `None` at a start that stands there.
     pub after: Option<Row>,

@@ -1,18 +1,13 @@
 //! The value of a readout.
 
-/// What a readout is at one step.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[serde(untagged)]
 pub enum Value {
     /// A finite number, in the readout's unit.
     Number(f64),
-    /// A count.
     Whole(u64),
-    /// Whether it is so.
     Flag(bool),
-    /// A name or a sentence.
     Text(String),
-    /// There is none, or none that can be stated.
     Nothing,
 }
 

@@ -46,7 +46,6 @@ fn names(
     names
 }
 
-/// The folder above `folder`, if there is one.
 pub(super) fn above(folder: &Path) -> Option<PathBuf> {
     let folder = std::fs::canonicalize(folder).ok()?;
     folder.parent().map(Path::to_owned)

@@ -312,7 +312,6 @@ pub(super) fn flag(table: &Table, name: &str) -> Result<bool, Vec<Problem>> {
     Ok(field(table, name, read)?.flatten().unwrap_or(false))
 }
 
-/// A whole number of `least` or more.
 pub(super) fn whole(table: &Table, name: &str, least: i64) -> Result<Option<u64>, Vec<Problem>> {
     let read = |value: &Value| Ok(checked(Kind::Whole(least, i64::MAX), value)?.as_integer());
     let number = field(table, name, read)?.flatten();

@@ -13,22 +13,17 @@ use super::reading::{
 use crate::scenario::Problem;
 use toml::Value;
 
-/// One command: its row in the table.
 pub struct CommandRow {
     /// Its name in a `[[do]]` table.
     pub name: &'static str,
     /// Examples of its value, as TOML.
     pub value: &'static str,
-    /// What it does.
     pub about: &'static str,
     read: fn(&Value) -> Read,
 }
 
 impl CommandRow {
     /// The command with this value.
-    ///
-    /// # Errors
-    /// Every rule that is broken, with keys below the command's name.
     pub fn read(&self, value: &Value) -> Result<Command, Vec<Problem>> {
         (self.read)(value)
     }
@@ -48,7 +43,6 @@ const fn row(
     }
 }
 
-/// Every command there is.
 #[rustfmt::skip]
 pub static COMMANDS: &[CommandRow] = &[
     row("open", "\"wobble-push\"", "open a preset or a file, SCENARIO as on the command line; it stands still at step 0", open),

@@ -13,9 +13,6 @@ use std::path::Path;
 impl Files {
     /// Reads the measured data `name`: those that come with the program, or a file. `may_wait` says whether it may be a
     /// FIFO or a device, which is read for any length of time.
-    ///
-    /// # Errors
-    /// Why it may not be read, or what is wrong with it.
     fn open_measured(&self, name: &str, may_wait: bool) -> Result<Measured, Problems> {
         if shipped::find(name).is_none() {
             let refused = |rule: String| Problems::one(name, Problem::at("", rule));
@@ -33,9 +30,6 @@ impl Files {
 impl Lab {
     /// Puts the measured data `name` beside the run, as the command line wants it, or else those that the scenario's
     /// `[view]` names.
-    ///
-    /// # Errors
-    /// Why they cannot be read, or have no place beside a run.
     pub fn begin_with_measured(&mut self, name: Option<&str>) -> Result<(), Problems> {
         let file = self.player.run().scenario().file.view.as_ref();
         let of_file = file.and_then(|view| view.measured.clone());

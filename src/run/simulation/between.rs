@@ -22,9 +22,6 @@ impl Simulation {
     ///
     /// From there on its steps end at other times than those of the run: where the run is still needed, call this on a
     /// clone.
-    ///
-    /// # Errors
-    /// When the numbers stop being finite.
     pub fn step_to_time(&mut self, time_s: f64) -> Result<(), NotFinite> {
         if self.next_edit == self.now.number {
             self.make_due_edits();
