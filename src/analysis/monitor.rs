@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Follows one run from its start.
 #[derive(Clone, Debug)]
 pub struct Monitor {
-    gauges: Gauges,
+    pub gauges: Gauges,
     beside: Beside,
     /// Steps still to be held against the exact motion.
     unheld: Vec<State>,
@@ -123,31 +123,5 @@ impl Monitor {
     /// where it is not held against that.
     pub fn most_distance_m(&self) -> f64 {
         self.beside.most_distance_m()
-    }
-
-    /// The least and the greatest over every step of the run.
-    pub fn extremes(&self) -> &Extremes {
-        self.gauges.extremes()
-    }
-
-    /// By how much the tilt has swung since the forces last changed, degrees; `None` before it was seen whole.
-    pub fn tilt_swing_deg(&self) -> Option<Measured> {
-        self.gauges.tilt_swing_deg()
-    }
-
-    /// What the linear theory of the report's scheme says of the motion since the forces last changed; `None` where it says
-    /// nothing.
-    pub fn frozen(&self) -> Option<Frozen> {
-        self.gauges.frozen()
-    }
-
-    /// The step at which the forces last changed.
-    pub fn since(&self) -> u64 {
-        self.gauges.since()
-    }
-
-    /// What has been measured since the forces last changed.
-    pub fn instruments(&self) -> &Instruments {
-        self.gauges.instruments()
     }
 }

@@ -177,7 +177,7 @@ fn new(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
 /// Says on the shell's screen what was exported: the lab's is gone with its last notice.
 fn tell_of_exports(lab: &Lab) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
-    for written in lab.files().written() {
+    for written in &lab.files().written {
         let path = Shown(&written.path);
         let rows = written.rows.map(|rows| format!(": {rows} rows"));
         let rows = rows.unwrap_or_default();

@@ -31,13 +31,13 @@ pub struct Browser {
     first: PathBuf,
     passed: Vec<PathBuf>,
     /// How many files of the folder are left out because they hold no run.
-    others: usize,
+    pub others: usize,
     /// The search for files that hold no run, while it is in progress.
     sorting: Option<Sorting>,
     /// The name of the entry that is open in the lab.
     open: String,
-    filter: String,
-    selected: usize,
+    pub filter: String,
+    pub selected: usize,
     preview: Option<(Entry, Preview)>,
     /// Whether the selected entry is to be opened as soon as it has been read.
     is_chosen: bool,
@@ -195,16 +195,6 @@ impl Browser {
         self.entries.iter().filter(|entry| entry.is_file).count()
     }
 
-    /// How many TOML and CSV files of the folder are not listed, because they hold no run.
-    pub fn others(&self) -> usize {
-        self.others
-    }
-
-    /// The number of the selected entry among those shown, from 0.
-    pub fn selected(&self) -> usize {
-        self.selected
-    }
-
     pub fn choice(&self) -> Option<&Entry> {
         self.shown().get(self.selected).copied()
     }
@@ -236,10 +226,6 @@ impl Browser {
             }
             _ => false,
         }
-    }
-
-    pub fn filter(&self) -> &str {
-        &self.filter
     }
 
     /// Moves the selection by `rows`; it stops at both ends.

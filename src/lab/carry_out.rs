@@ -76,7 +76,7 @@ impl Lab {
                 let scenario = self.run_up_to(*to_step, "draw")?;
                 let path = self.files.path_of(path);
                 let beside = self.player.measured();
-                let measured = beside.map(|beside| Arc::clone(beside.measured()));
+                let measured = beside.map(|beside| Arc::clone(&beside.measured));
                 let what = (kind.as_str(), *exact);
                 self.files.draw(&scenario, &path, what, measured, *force)
             }
@@ -196,7 +196,7 @@ impl Lab {
 
     fn nudge(&mut self, key: &str, times: i32) -> Answer {
         let Some(parameter) = self.values.parameter(key).cloned() else {
-            let listed = self.values.list().values().iter();
+            let listed = self.values.list.values.iter();
             let known = listed.filter_map(ListedValue::key);
             return Err(format!(
                 "{key} is no value of this scenario: {}",

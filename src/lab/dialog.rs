@@ -26,8 +26,8 @@ const KEYS_OF_SETTINGS: &str = "Up and Down choose, Left and Right or Enter chan
 /// A form on top of the panes, and the question that it asks.
 #[derive(Clone, Debug)]
 pub struct Dialog {
-    question: Question,
-    form: Form,
+    pub question: Question,
+    pub form: Form,
     /// The existing file that the user was last asked about: the next Enter replaces it.
     asked_to_replace: Option<PathBuf>,
 }
@@ -61,7 +61,7 @@ impl Dialog {
 
     /// Asks for the selected one of `values`; `None` if none is shown.
     pub(super) fn value(values: &Values) -> Option<Self> {
-        let value = values.list().selected()?;
+        let value = values.list.selected()?;
         let title = match value.key() {
             Some(key) => key.to_owned(),
             None => format!("{} {}", value.group(), value.label()),
@@ -162,14 +162,6 @@ impl Dialog {
 
     pub fn is_of_settings(&self) -> bool {
         matches!(self.question, Question::Settings)
-    }
-
-    pub fn form(&self) -> &Form {
-        &self.form
-    }
-
-    pub(super) fn question(&self) -> &Question {
-        &self.question
     }
 
     /// Whether the user has confirmed that the existing file `path` is to be replaced.
@@ -290,14 +282,14 @@ mod tests {
     #[test]
     fn an_export_shows_its_size_as_it_is_typed() {
         let mut dialog = export();
-        assert!(dialog.form().info[0].starts_with("2,301 rows"));
+        assert!(dialog.form.info[0].starts_with("2,301 rows"));
         dialog.edit_field(FieldEdit::Next);
         dialog.type_char('1');
         dialog.type_char('0');
         assert_eq!(dialog.every().unwrap().get(), 10);
-        assert!(dialog.form().info[0].starts_with("231 rows"));
+        assert!(dialog.form.info[0].starts_with("231 rows"));
         dialog.edit_field(FieldEdit::Clear);
-        assert!(dialog.form().info[0].starts_with("every must be"));
+        assert!(dialog.form.info[0].starts_with("every must be"));
         dialog.paste("5");
         assert_eq!(dialog.every().unwrap().get(), 5);
         dialog.erase();
@@ -313,7 +305,7 @@ mod tests {
         assert!(dialog.may_replace(path) && !dialog.may_replace(other));
         let dialog = dialog.refused(Refusal::Because("no".to_owned()));
         assert!(!dialog.may_replace(path));
-        assert_eq!(dialog.form().complaint.as_deref(), Some("no"));
+        assert_eq!(dialog.form.complaint.as_deref(), Some("no"));
     }
 
     #[test]

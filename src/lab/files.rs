@@ -24,7 +24,7 @@ pub struct Files {
     exporting: Option<Exporting>,
     /// Why the last export failed, until it has been read.
     failure: Option<String>,
-    written: Vec<Written>,
+    pub written: Vec<Written>,
 }
 
 impl Files {
@@ -50,11 +50,6 @@ impl Files {
     /// Whether the file `path` may be read and written.
     pub fn admit(&self, path: &Path) -> Result<(), String> {
         self.confined().map_or(Ok(()), |folder| folder.check(path))
-    }
-
-    /// What has been exported since the lab was opened.
-    pub fn written(&self) -> &[Written] {
-        &self.written
     }
 
     pub fn is_exporting(&self) -> bool {
@@ -282,7 +277,7 @@ mod tests {
     fn nothing_is_under_way_at_first() {
         let mut files = Files::default();
         assert_eq!(files.folder(), Path::new("."));
-        assert!(!files.is_exporting() && files.written().is_empty());
+        assert!(!files.is_exporting() && files.written.is_empty());
         assert_eq!(
             (files.follow_export(), files.export_in_words()),
             (None, None)

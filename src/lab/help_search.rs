@@ -5,21 +5,11 @@ use super::typing::type_into;
 /// The text that is searched for, and the selected entry.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HelpSearch {
-    text: String,
-    selected: usize,
+    pub text: String,
+    pub selected: usize,
 }
 
 impl HelpSearch {
-    /// The part of a key, a text or a word that is searched for; empty where every entry is shown.
-    pub fn text(&self) -> &str {
-        &self.text
-    }
-
-    /// The number of the selected entry among those found, from 0.
-    pub fn selected(&self) -> usize {
-        self.selected
-    }
-
     /// Shows every entry; the first is selected.
     pub(super) fn clear(&mut self) {
         *self = Self::default();

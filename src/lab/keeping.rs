@@ -192,7 +192,7 @@ impl Lab {
             residuals: self.view.residuals.then_some(true),
             phase: (self.view.page != Page::default()).then(|| self.view.page.choice()),
             sum_to: self.view.sum_to,
-            next_push: self.values.next_push().clone(),
+            next_push: self.values.next_push.clone(),
             camera: self.view.camera_is_chosen.then_some(KeptCamera {
                 yaw_deg: self.view.camera.yaw_deg,
                 pitch_deg: self.view.camera.pitch_deg,
@@ -212,7 +212,7 @@ impl Lab {
             return None;
         }
         let playback = &self.player.playback;
-        let plays_again = self.script.is_held() && self.script.plays_again();
+        let plays_again = self.script.is_held && self.script.plays_again;
         let is_playing = plays_again || playback.is_running() && !playback.is_running_until();
         let under_way = self.script.under_way();
         let again = under_way.and_then(|(command, under_way)| match under_way {
@@ -226,7 +226,7 @@ impl Lab {
         let run = is_playing.then_some(Command::Run);
         let first: Vec<_> = run.into_iter().chain(again).collect();
         Some(KeptScript {
-            origin: self.script.origin().to_owned(),
+            origin: self.script.origin.to_owned(),
             first: command::to_toml(&first),
             left: self.script.left_as_text().to_string(),
         })

@@ -23,8 +23,8 @@ const IN_A_RECORDING: usize = Curve::OF_POINT.len();
 
 /// Measured data, and the run's values for them so far.
 pub struct Beside {
-    name: String,
-    measured: Arc<Measured>,
+    pub name: String,
+    pub measured: Arc<Measured>,
     series: Arc<Series>,
     simulation: Simulation,
     reader: Reader<Arc<Series>>,
@@ -32,7 +32,7 @@ pub struct Beside {
     before: Vec<Recording>,
     /// Whether the run's numbers stopped being finite on the way.
     has_broken: bool,
-    compared: Compared,
+    pub compared: Compared,
 }
 
 impl Beside {
@@ -58,26 +58,12 @@ impl Beside {
         Ok(beside)
     }
 
-    pub fn measured(&self) -> &Arc<Measured> {
-        &self.measured
-    }
-
-    /// The name of the data or of their file, as the user gave it.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
     pub fn quantities(&self) -> impl Iterator<Item = &'static Quantity> + Clone + '_ {
         self.series.curves.iter().map(|curve| curve.quantity)
     }
 
     pub fn last_s(&self) -> Option<f64> {
         self.series.times_s.last().copied()
-    }
-
-    /// The data against the run, as far as that had come when it was last read.
-    pub fn compared(&self) -> &Compared {
-        &self.compared
     }
 
     /// The recording that has the quantity of this index, and its curve there; `None` where it is not recorded here.

@@ -185,7 +185,7 @@ impl Lab {
         let now = clock();
         let wall = now.saturating_sub(self.now);
         self.now = now;
-        self.changed |= self.on_top.notice_mut().expire(now);
+        self.changed |= self.on_top.notice.expire(now);
         let (halt, is_new) = self.player.advance(now, wall, clock);
         self.changed |= is_new;
         if let Some(halt) = halt {
@@ -228,7 +228,7 @@ impl Lab {
 
     /// Takes a pasted text, where text is typed.
     pub fn paste(&mut self, text: &str) {
-        match self.on_top.mode() {
+        match self.on_top.mode {
             Mode::Find => self.values.type_name(text),
             _ => self.on_top.paste(text, self.now),
         }
@@ -251,10 +251,10 @@ impl Lab {
     /// Turns the camera so that the axle is seen aslant, unless its direction was chosen. A moving picture is left
     /// as it is: the motion shows where the axle points.
     fn turn_camera(&mut self) {
-        let playback = self.player.playback();
+        let playback = &self.player.playback;
         let is_still = !playback.is_running() || playback.step_number() == 0;
         if is_still && !self.view.camera_is_chosen {
-            let axle = self.player.reading().state.axle();
+            let axle = self.player.reading.state.axle();
             self.view.camera = self.view.camera.aside_of(&axle);
         }
     }

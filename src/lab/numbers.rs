@@ -65,7 +65,7 @@ impl Lab {
     /// The number called `name`, as the lab has read it last; `None` if there is no such number, or if it has no value
     /// now.
     pub fn number(&self, name: &str) -> Option<f64> {
-        let readouts = &self.player.reading().readouts;
+        let readouts = &self.player.reading.readouts;
         match find(name).ok()?.of(self.player.run()) {
             Source::Column(column) => Some(column.value(&readouts.sample).number()),
             Source::Readout(readout) => readout.of(readouts).number(),

@@ -40,15 +40,15 @@ impl Mode {
 
 /// The browser, the help and the dialog, and which of them is open; the count; the message.
 pub struct OnTop {
-    mode: Mode,
+    pub mode: Mode,
     /// The mode to return to when the help is closed.
-    under_help: Mode,
+    pub under_help: Mode,
     /// The open dialog; `Some` exactly in [`Mode::Dialog`].
     dialog: Option<Dialog>,
-    browser: Browser,
-    help: HelpSearch,
-    count: Option<u64>,
-    notice: Notice,
+    pub browser: Browser,
+    pub help: HelpSearch,
+    pub count: Option<u64>,
+    pub notice: Notice,
     /// Whether the last key asked to leave while an export was in progress, and the user was warned.
     was_warned: bool,
 }
@@ -79,37 +79,8 @@ impl Default for OnTop {
 }
 
 impl OnTop {
-    pub fn mode(&self) -> Mode {
-        self.mode
-    }
-
     pub fn dialog(&self) -> Option<&Dialog> {
         self.dialog.as_ref()
-    }
-
-    /// The browser of presets and files; it is shown in [`Mode::Browser`] and [`Mode::Filter`].
-    pub fn browser(&self) -> &Browser {
-        &self.browser
-    }
-
-    pub fn help(&self) -> &HelpSearch {
-        &self.help
-    }
-
-    pub fn under_help(&self) -> Mode {
-        self.under_help
-    }
-
-    pub fn count(&self) -> Option<u64> {
-        self.count
-    }
-
-    pub fn notice(&self) -> &Notice {
-        &self.notice
-    }
-
-    pub(super) fn notice_mut(&mut self) -> &mut Notice {
-        &mut self.notice
     }
 
     /// Removes the message and the count, as every key does.
@@ -226,7 +197,7 @@ impl OnTop {
         match self.mode {
             Mode::Lab => return false,
             Mode::Find => self.close_find(),
-            Mode::Help if !self.help.text().is_empty() => self.help.clear(),
+            Mode::Help if !self.help.text.is_empty() => self.help.clear(),
             Mode::Help => self.toggle_help(),
             Mode::Filter => {
                 self.browser.clear_filter();
@@ -308,24 +279,24 @@ mod tests {
         assert!(!on_top.close());
         on_top.open_browser(Path::new("/nowhere"), "cusps", |_| true);
         on_top.toggle_help();
-        assert_eq!(on_top.mode(), Mode::Help);
+        assert_eq!(on_top.mode, Mode::Help);
         assert!(on_top.close());
         on_top.open_filter();
         on_top.type_char('x');
         assert_eq!(
-            (on_top.mode(), on_top.browser().filter()),
+            (on_top.mode, on_top.browser.filter.as_str()),
             (Mode::Filter, "x")
         );
         assert!(on_top.close());
         assert_eq!(
-            (on_top.mode(), on_top.browser().filter()),
+            (on_top.mode, on_top.browser.filter.as_str()),
             (Mode::Browser, "")
         );
         assert!(on_top.close());
         on_top.open_dialog(Dialog::go_to());
-        assert_eq!(on_top.mode(), Mode::Dialog);
+        assert_eq!(on_top.mode, Mode::Dialog);
         assert!(on_top.close() && on_top.dialog().is_none());
-        assert_eq!(on_top.mode(), Mode::Lab);
+        assert_eq!(on_top.mode, Mode::Lab);
     }
 
     #[test]
@@ -333,29 +304,29 @@ mod tests {
         let mut on_top = OnTop::default();
         on_top.add_digit(None, 4);
         on_top.add_digit(Some(4), 2);
-        assert_eq!(on_top.count(), Some(42));
+        assert_eq!(on_top.count, Some(42));
         on_top.add_digit(Some(MOST_COUNTED), 9);
-        assert_eq!(on_top.count(), Some(MOST_COUNTED));
+        assert_eq!(on_top.count, Some(MOST_COUNTED));
         on_top.warn_of_export(NOW);
         let cleared = on_top.clear();
         assert_eq!(cleared.count, Some(MOST_COUNTED));
         assert!(cleared.anything && cleared.was_warned);
         let cleared = on_top.clear();
         assert_eq!((cleared.count, cleared.anything), (None, false));
-        assert!(!cleared.was_warned && on_top.notice().text().is_none());
+        assert!(!cleared.was_warned && on_top.notice.text().is_none());
     }
 
     #[test]
     fn pasted_text_goes_where_text_is_typed() {
         let mut on_top = OnTop::default();
         on_top.paste("q", NOW);
-        assert!(on_top.notice().text().unwrap().contains("does nothing"));
+        assert!(on_top.notice.text().unwrap().contains("does nothing"));
         on_top.open_dialog(Dialog::go_to());
         on_top.paste("400", NOW);
-        assert_eq!(on_top.take_dialog().unwrap().form().text(0), "400");
+        assert_eq!(on_top.take_dialog().unwrap().form.text(0), "400");
         on_top.open_filter();
         on_top.paste(&"x".repeat(MOST_TYPED + 1), NOW);
-        assert!(on_top.notice().text().unwrap().contains("is cut"));
+        assert!(on_top.notice.text().unwrap().contains("is cut"));
     }
 
     #[test]
@@ -364,15 +335,15 @@ mod tests {
         on_top.toggle_help();
         on_top.shift(10);
         on_top.shift(-3);
-        assert_eq!(on_top.help().selected(), 7);
+        assert_eq!(on_top.help.selected, 7);
         on_top.limit_help(5);
-        assert_eq!(on_top.help().selected(), 4);
+        assert_eq!(on_top.help.selected, 4);
         on_top.shift(-30);
-        assert_eq!(on_top.help().selected(), 0);
+        assert_eq!(on_top.help.selected, 0);
         on_top.shift(1);
         on_top.toggle_help();
         on_top.toggle_help();
-        assert_eq!(on_top.help().selected(), 0);
+        assert_eq!(on_top.help.selected, 0);
     }
 
     #[test]
@@ -382,11 +353,11 @@ mod tests {
         on_top.shift(3);
         on_top.type_char('d');
         on_top.paste("t\n", NOW);
-        assert_eq!((on_top.help().text(), on_top.help().selected()), ("dt", 0));
+        assert_eq!((on_top.help.text.as_str(), on_top.help.selected), ("dt", 0));
         on_top.erase();
-        assert_eq!(on_top.help().text(), "d");
-        assert!(on_top.close() && on_top.mode() == Mode::Help);
-        assert_eq!(on_top.help().text(), "");
-        assert!(on_top.close() && on_top.mode() == Mode::Lab);
+        assert_eq!(on_top.help.text, "d");
+        assert!(on_top.close() && on_top.mode == Mode::Help);
+        assert_eq!(on_top.help.text, "");
+        assert!(on_top.close() && on_top.mode == Mode::Lab);
     }
 }

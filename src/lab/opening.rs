@@ -22,7 +22,7 @@ pub(super) fn read(name: &str) -> Result<Document, Problems> {
 impl Lab {
     /// Opens the entry that is selected in the browser: plays its run, or lists what is in the folder.
     pub(super) fn open_chosen(&mut self) {
-        let Some(entry) = self.on_top.browser().choice().cloned() else {
+        let Some(entry) = self.on_top.browser.choice().cloned() else {
             return self.say("nothing is selected: Esc clears the filter");
         };
         if entry.is_folder {
@@ -41,7 +41,7 @@ impl Lab {
         }
         self.on_top.choose();
         self.open_what_was_read();
-        if self.on_top.browser().is_loading() {
+        if self.on_top.browser.is_loading() {
             self.say("reading it: it opens when it has been read, Esc stays here");
         }
     }

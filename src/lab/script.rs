@@ -25,7 +25,7 @@ const PART: Duration = Duration::from_millis(100);
 #[derive(Clone, Debug, Default)]
 pub struct Script {
     /// The file of the commands, as the user named it.
-    origin: String,
+    pub origin: String,
     left: VecDeque<Placed>,
     /// The command whose action takes time, and that action.
     under_way: Option<(Placed, UnderWay)>,
@@ -34,9 +34,9 @@ pub struct Script {
     /// Titles of the chapters that were begun and not taken yet.
     chapters: Vec<String>,
     /// Whether the script waits until the user lets it go on: it comes from a session, or was paused.
-    is_held: bool,
+    pub is_held: bool,
     /// Whether the run played when the script was paused, and plays again when it goes on.
-    plays_again: bool,
+    pub plays_again: bool,
     /// `left` as a file of commands; `None` where `left` has changed since it was written.
     kept: Option<Arc<str>>,
 }
@@ -56,21 +56,6 @@ impl Script {
             is_held: true,
             ..Self::new(commands)
         }
-    }
-
-    /// Whether the script waits until the user lets it go on: it comes from a session, or was paused.
-    pub fn is_held(&self) -> bool {
-        self.is_held
-    }
-
-    /// Whether the run played when the script was paused, and plays again when it goes on.
-    pub(super) fn plays_again(&self) -> bool {
-        self.plays_again
-    }
-
-    /// The file of the commands, as the user named it.
-    pub fn origin(&self) -> &str {
-        &self.origin
     }
 
     /// The command that was refused, and why.
@@ -146,7 +131,7 @@ impl Lab {
     /// Removes what the commands of the script have said, unless one of them was refused.
     pub fn forget_message_of_script(&mut self) {
         if self.script.failed.is_none() {
-            self.on_top.notice_mut().take_back();
+            self.on_top.notice.take_back();
             self.changed = true;
         }
     }
@@ -214,7 +199,7 @@ impl Lab {
         self.read_now();
         match self.script.failed.take() {
             Some(text) => {
-                self.on_top.notice_mut().take_back(); // the caller says it
+                self.on_top.notice.take_back(); // the caller says it
                 Err(text)
             }
             None => Ok(()),

@@ -57,7 +57,7 @@ impl Lab {
 
     pub fn select_in_browser(&mut self, row: usize) {
         self.on_top.clear();
-        let selected = self.on_top.browser().selected();
+        let selected = self.on_top.browser.selected;
         self.on_top.shift(row as isize - selected as isize);
         self.changed = true;
     }
@@ -95,13 +95,13 @@ impl Lab {
         let times = repeated(cleared.count);
         match action {
             Action::Digit(digit) => self.on_top.add_digit(cleared.count, digit),
-            Action::TogglePause if self.script.is_held() => self.release_script(),
+            Action::TogglePause if self.script.is_held => self.release_script(),
             Action::TogglePause => self.hold_script(),
             Action::GoTo => self.on_top.open_dialog(Dialog::go_to()),
             Action::ChoosePush => self.turn_to_next_push(),
             Action::Parameters | Action::GoToCursor => self.turn_to_parameters(),
             Action::Edit if self.view.focus != Pane::PARAMETERS => self.turn_to_parameters(),
-            Action::Edit if self.values.list().selected().is_none() => {
+            Action::Edit if self.values.list.selected().is_none() => {
                 self.say("no value to set has that in its name: Esc shows all of them");
             }
             Action::Edit => {
@@ -134,14 +134,14 @@ impl Lab {
             Action::Choose => self.open_chosen(),
             Action::Filter => self.on_top.open_filter(),
             Action::FindValue => self.find_value(),
-            Action::Type(typed) if self.on_top.mode() == Mode::Find => {
+            Action::Type(typed) if self.on_top.mode == Mode::Find => {
                 self.values.type_name(typed.encode_utf8(&mut [0; 4]));
             }
-            Action::Erase if self.on_top.mode() == Mode::Find => self.values.erase_name(),
+            Action::Erase if self.on_top.mode == Mode::Find => self.values.erase_name(),
             Action::Type(typed) => self.on_top.type_char(typed),
             Action::Erase => self.on_top.erase(),
             Action::DoEntry => {} // tui does it
-            Action::InField(FieldEdit::Clear) if self.on_top.mode() == Mode::Find => {
+            Action::InField(FieldEdit::Clear) if self.on_top.mode == Mode::Find => {
                 self.values.forget_name();
             }
             Action::InField(edit @ (FieldEdit::Left | FieldEdit::Right))
@@ -195,7 +195,7 @@ impl Lab {
     /// Moves the selection of what lies on top, or of the values.
     fn shift(&mut self, direction: Direction, times: i32) {
         let rows = rows(direction) * times as isize;
-        match (self.on_top.mode(), self.view.focus) {
+        match (self.on_top.mode, self.view.focus) {
             (Mode::Lab | Mode::Find, Pane::PARAMETERS) => {
                 self.values.shift(rows.signum() * times as isize);
             }
@@ -207,8 +207,8 @@ impl Lab {
     /// pane that fills the screen, the focus on the parameters, the export, the step pane in focus. If there is none of these,
     /// it says how to leave, unless the key has already removed a message or a count.
     fn close(&mut self, cleared: &Cleared) -> Option<Request> {
-        let is_found = self.on_top.mode() == Mode::Find;
-        let is_filtered = self.on_top.mode() == Mode::Lab && self.view.focus == Pane::PARAMETERS;
+        let is_found = self.on_top.mode == Mode::Find;
+        let is_filtered = self.on_top.mode == Mode::Lab && self.view.focus == Pane::PARAMETERS;
         // From a value that was searched for, one Esc leads back to the page of a lesson, as it does from any other.
         let is_left = is_filtered && self.view.sheet.is_some();
         if (is_found || is_filtered) && self.values.forget_name() && !is_left {
@@ -265,7 +265,7 @@ impl Lab {
         let left = self.script.count();
         self.pause_script();
         self.carry_out_all(&[Command::Pause]);
-        let origin = self.script.origin();
+        let origin = &self.script.origin;
         self.tell(match left {
             1 => format!("paused: 1 command of {origin} is left: {GO_ON_WITH_IT}"),
             left => format!("paused: {left} commands of {origin} are left: {GO_ON_WITH_THEM}"),

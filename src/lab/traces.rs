@@ -44,7 +44,7 @@ impl Lab {
 
     /// The command that shows another curve in the strip of the fast motion than it shows now.
     pub(super) fn other_detail(&self, direction: Direction, times: i32) -> Command {
-        let shown = self.view.detail_of.unwrap_or(self.player.detail().curve);
+        let shown = self.view.detail_of.unwrap_or(self.player.detail.curve);
         let curves = [Curve::X, Curve::Y, Curve::Z, Curve::Tilt];
         let now = curves.iter().position(|curve| *curve == shown).unwrap_or(0) as i32;
         let by = match direction {
@@ -153,13 +153,6 @@ impl Lab {
     pub(super) fn magnified(&self, notches: i32) -> Command {
         let times = self.view.magnified * 2_f64.powi(notches);
         Command::Magnify(times.clamp(1.0, MOST_MAGNIFIED))
-    }
-
-    /// Whether the traces follow the run with all its values and without a cursor. The length of the time does not count:
-    /// a scenario may ask for any.
-    pub fn shows_whole_view(&self) -> bool {
-        let view = &self.view;
-        (view.cursor, view.since_s) == (None, None) && view.magnified <= 1.0
     }
 
     /// The commands that show the run again, after the time or the values were chosen by hand.

@@ -112,7 +112,7 @@ impl Class {
     /// Keeps where the lesson stands, and takes it no longer.
     fn leave(&mut self) {
         if let Shown::Lesson(taken) = std::mem::take(&mut self.shown) {
-            let name = taken.lesson().name.clone();
+            let name = taken.lesson.name.clone();
             self.left.insert(name, taken.into_place());
         }
         self.has_changed = true;
@@ -167,7 +167,7 @@ impl Class {
 
     /// Leaves the lesson for the list; it is selected there.
     fn open_list(&mut self) {
-        let here = self.taken().map(|taken| taken.lesson().name.clone());
+        let here = self.taken().map(|taken| taken.lesson.name.clone());
         self.leave();
         let names = self.names();
         let selected = here
@@ -215,7 +215,7 @@ impl Class {
             return;
         };
         let is_new = taken.advance(now, lab);
-        if is_new || self.has_changed || lab.has_changed() || (second && taken.clock().is_some()) {
+        if is_new || self.has_changed || lab.has_changed() || (second && taken.clock.is_some()) {
             self.show(lab);
         }
     }
@@ -246,8 +246,8 @@ impl Class {
     fn kept(&self) -> KeptLessons {
         let mut lessons = self.left.clone();
         let open = self.taken().map(|taken| {
-            let name = taken.lesson().name.clone();
-            lessons.insert(name.clone(), taken.place().clone());
+            let name = taken.lesson.name.clone();
+            lessons.insert(name.clone(), taken.place.clone());
             name
         });
         KeptLessons { open, lessons }

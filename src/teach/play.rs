@@ -20,8 +20,8 @@ pub type GoOn<'a> = &'a mut dyn FnMut(u64, u64) -> ControlFlow<()>;
 /// A lab that goes through a lesson.
 pub struct Walk<'a> {
     lesson: &'a Lesson,
-    lab: Lab,
-    kept: Kept,
+    pub lab: Lab,
+    pub kept: Kept,
     /// Nothing is predicted: what a page hides until then is hidden as long as the page is open.
     predictions: Predictions,
     /// Whether a run of the lesson is open.
@@ -38,14 +38,6 @@ impl<'a> Walk<'a> {
             predictions: Predictions::default(),
             is_open: false,
         }
-    }
-
-    pub fn lab(&self) -> &Lab {
-        &self.lab
-    }
-
-    pub fn kept(&self) -> &Kept {
-        &self.kept
     }
 
     /// Stands on `page` from nothing, without the pages before it that make no difference to it.

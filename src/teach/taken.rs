@@ -24,26 +24,26 @@ const TOO_LONG: &str =
 
 #[derive(Debug)]
 pub struct Taken {
-    lesson: Arc<Lesson>,
+    pub lesson: Arc<Lesson>,
     /// Its file, where it does not come with the program.
     watch: Option<Watch>,
-    place: Place,
+    pub place: Place,
     /// The selected answer of the open question, from 0.
-    selected: usize,
+    pub selected: usize,
     /// Whether an answer on this page was selected or given.
-    has_come_to_question: bool,
+    pub has_come_to_question: bool,
     /// The lines of the checks of this page that have held.
     reached: BTreeSet<usize>,
     /// The texts of this page that the student's own run does not change, with their numbers, by their lines in the file;
     /// `None` until the run has arrived where the page wants it.
     stated: Option<Stated>,
     /// Whether the hints of the page's checks are shown.
-    shows_hints: bool,
+    pub shows_hints: bool,
     under_way: Option<Block>,
     /// Whether turning the page was refused once, because a prediction is open.
     was_asked: bool,
     /// The clock, where the teacher's notes are shown.
-    clock: Option<Clock>,
+    pub clock: Option<Clock>,
     /// When the lesson was opened in this lab, on the clock of the lab.
     since: Duration,
     /// How long before that it was opened first.
@@ -87,14 +87,6 @@ impl Taken {
         }
     }
 
-    pub fn lesson(&self) -> &Lesson {
-        &self.lesson
-    }
-
-    pub fn place(&self) -> &Place {
-        &self.place
-    }
-
     pub(super) fn into_place(self) -> Place {
         self.place
     }
@@ -106,16 +98,6 @@ impl Taken {
     /// The question of the page that is not answered yet; the first of them.
     pub fn asked(&self) -> Option<&Predict> {
         self.place.predictions.open_on(self.page()?).next()
-    }
-
-    /// The selected answer of the open question, from 0.
-    pub fn selected(&self) -> usize {
-        self.selected
-    }
-
-    /// Whether an answer on this page was selected or given.
-    pub fn has_come_to_question(&self) -> bool {
-        self.has_come_to_question
     }
 
     /// Whether the check at this line of the file has held since the page was opened.
@@ -131,16 +113,6 @@ impl Taken {
     /// The text at this line of the file with its numbers, where it is one that the student's own run does not change.
     pub fn stated(&self, line: usize) -> Option<&str> {
         self.stated.as_ref()?.text(line)
-    }
-
-    /// Whether the hints of the page's checks are shown.
-    pub fn shows_hints(&self) -> bool {
-        self.shows_hints
-    }
-
-    /// The clock, where the teacher's notes are shown.
-    pub fn clock(&self) -> Option<Clock> {
-        self.clock
     }
 
     pub fn time(&self, now: Duration) -> Option<String> {
@@ -245,7 +217,7 @@ impl Taken {
             && watch.has_changed(now)
         {
             is_new = true;
-            match reading::read_again(watch.path()) {
+            match reading::read_again(&watch.path) {
                 Ok(lesson) => self.take_file(lesson, lab),
                 Err(problems) => {
                     let text = problems.to_string();
@@ -261,7 +233,7 @@ impl Taken {
     fn state(&mut self, lab: &Lab) -> bool {
         let has_arrived = self.under_way.is_none()
             && lab.script().is_done()
-            && lab.player().playback().steps_to_go().is_none();
+            && lab.player().playback.steps_to_go().is_none();
         if self.stated.is_some() || !has_arrived {
             return false;
         }

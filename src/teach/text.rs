@@ -148,10 +148,6 @@ impl Text {
         })
     }
 
-    pub fn pieces(&self) -> &[Piece] {
-        &self.parts
-    }
-
     /// The text in Markdown, with what `written` makes of each place for a number.
     pub fn filled(&self, mut written: impl FnMut(&Expression, Format) -> String) -> String {
         let parts = self.parts.iter().map(|part| match part {

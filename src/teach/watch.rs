@@ -10,7 +10,7 @@ const EVERY: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug)]
 pub struct Watch {
-    path: PathBuf,
+    pub path: PathBuf,
     seen: Option<(SystemTime, u64)>,
     next: Duration,
 }
@@ -22,10 +22,6 @@ impl Watch {
             seen: state(path),
             next: Duration::ZERO,
         }
-    }
-
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// Whether the file has changed since it was last looked at; `now` is the time since the lab was opened. A file that

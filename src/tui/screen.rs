@@ -108,25 +108,25 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
 
 fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    match lab.on_top().mode() {
+    match lab.on_top().mode {
         Mode::Lab | Mode::Find => {}
         Mode::Dialog => {
             if let Some(dialog) = lab.on_top().dialog() {
-                let form = dialog.form();
+                let form = &dialog.form;
                 FormPane { form, theme }.render(area, buf);
             }
         }
         Mode::Browser | Mode::Filter => {
             BrowserPane {
-                browser: lab.on_top().browser(),
-                mode: lab.on_top().mode(),
+                browser: &lab.on_top().browser,
+                mode: lab.on_top().mode,
                 theme,
             }
             .render(area, buf);
         }
         Mode::Help => Help {
-            search: lab.on_top().help().text(),
-            selected: lab.on_top().help().selected(),
+            search: &lab.on_top().help.text,
+            selected: lab.on_top().help.selected,
             theme,
         }
         .render(area, buf),

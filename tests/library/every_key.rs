@@ -102,7 +102,7 @@ impl Picture {
 fn trouble(stage: &Stage) -> Option<String> {
     let picture = Picture::of(stage);
     let is_ascii = stage.lab.view().marker == gyrolab::lab::view::markers::Marker::Ascii;
-    let is_plain = stage.lab.on_top().mode() == Mode::Lab && !hint::has_message(&stage.lab);
+    let is_plain = stage.lab.on_top().mode == Mode::Lab && !hint::has_message(&stage.lab);
     if is_plain
         && picture
             .rows
@@ -292,7 +292,7 @@ fn press_everything(size: (u16, u16)) {
                 stage.key(key);
                 stage.wait(0.0);
                 check(&stage, &done);
-                let mode = stage.lab.on_top().mode();
+                let mode = stage.lab.on_top().mode;
                 if mode != Mode::Lab {
                     if time == 1 {
                         press_all(&mut stage, mode, &done);
@@ -312,7 +312,7 @@ fn press_everything(size: (u16, u16)) {
 /// Presses the keys of what has been opened on top of the panes.
 fn press_all(stage: &mut Stage, mode: Mode, done: &str) {
     for key in keys(mode, Pane::TRACES) {
-        if stage.lab.on_top().mode() != mode {
+        if stage.lab.on_top().mode != mode {
             return;
         }
         stage.key(key);

@@ -84,10 +84,7 @@ impl Lab {
     pub(in crate::lab) fn measure_as_opened(&mut self, before: &Scenario) {
         let named = |scenario: &Scenario| scenario.file.view.as_ref()?.measured.clone();
         let scenario = self.player.run().scenario();
-        let shown = self
-            .player
-            .measured()
-            .map(|beside| beside.name().to_owned());
+        let shown = self.player.measured().map(|beside| beside.name.to_owned());
         match named(scenario) {
             Some(name) if Some(&name) == shown.as_ref() => {}
             Some(name) => {
@@ -109,11 +106,11 @@ impl Lab {
     /// The name of the measured data beside the run, for a session. A file has its full path, unless the lab is
     /// confined to a folder.
     pub(in crate::lab) fn measured_to_keep(&self) -> Option<String> {
-        let name = self.player.measured().map(Beside::name)?;
+        let name = &self.player.measured()?.name;
         let is_whole = shipped::find(name).is_some() || self.files.confined().is_some();
         let whole = std::path::absolute(name).ok().filter(|_| !is_whole);
         let whole = whole.and_then(|path| path.to_str().map(str::to_owned));
-        Some(whole.unwrap_or_else(|| name.to_owned()))
+        Some(whole.unwrap_or_else(|| name.clone()))
     }
 
     /// Puts the measured data of a session beside the run again. Returns a message where that is not possible.

@@ -67,7 +67,7 @@ impl Widget for BrowserPane<'_> {
 
 /// The number of the first entry in a list of `height` lines.
 fn first_shown(browser: &Browser, height: usize) -> usize {
-    let selected = browser.selected();
+    let selected = browser.selected;
     selected.saturating_sub(height.saturating_sub(1))
 }
 
@@ -110,10 +110,10 @@ fn keys(files: usize, others: usize, width: usize) -> String {
 impl BrowserPane<'_> {
     fn filter_line(&self, area: Rect, buf: &mut Buffer) {
         let shown = self.browser.shown().len();
-        let (text, role) = match (self.mode, self.browser.filter()) {
+        let (text, role) = match (self.mode, self.browser.filter.as_str()) {
             (Mode::Filter, filter) => (format!("/{filter}_  ({shown})"), Role::Focus),
             (_, "") => {
-                let (files, others) = (self.browser.files(), self.browser.others());
+                let (files, others) = (self.browser.files(), self.browser.others);
                 let room = area.width.saturating_sub(2) as usize;
                 (keys(files, others, room), Role::Quiet)
             }
@@ -136,7 +136,7 @@ impl BrowserPane<'_> {
         let height = area.height as usize;
         let first = first_shown(self.browser, height);
         for ((index, entry), y) in shown.iter().enumerate().skip(first).zip(0..area.height) {
-            let selected = index == self.browser.selected();
+            let selected = index == self.browser.selected;
             let role = if selected { Role::Selected } else { Role::Text };
             let mark = if selected { ">" } else { " " };
             let name = below(&entry.name, self.browser.folder());

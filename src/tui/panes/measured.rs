@@ -23,7 +23,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         return;
     };
     let theme = &lab.view().theme;
-    let sum = &beside.compared().sum;
+    let sum = &beside.compared.sum;
     let room = area.width.saturating_sub(1) as usize;
     let mark = lab.view().marker.point().to_string();
     let what = if lab.view().residuals {
@@ -31,10 +31,10 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     } else {
         " measured: "
     };
-    let end_s = lab.player().playback().end_s();
+    let end_s = lab.player().playback.end_s();
     let counts = counted(beside, sum, end_s);
     let parts = [parts(sum, false), parts(sum, true)];
-    let name = file_name(beside.name());
+    let name = file_name(&beside.name);
     let length = |counts: &str, parts: &[String]| {
         let parts = parts.iter().map(|part| columns(SEPARATOR) + columns(part));
         columns(&mark) + columns(what) + 1 + columns(counts) + parts.sum::<usize>()

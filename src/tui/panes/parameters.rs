@@ -51,9 +51,9 @@ pub const ROW: PaneRow = PaneRow {
         Parameters {
             scenario: lab.player().run().scenario(),
             motion: &lab.player().motion(),
-            reading: lab.player().reading(),
-            list: lab.values().list(),
-            is_searched: lab.on_top().mode() == Mode::Find,
+            reading: &lab.player().reading,
+            list: &lab.values().list,
+            is_searched: lab.on_top().mode == Mode::Find,
             view: lab.view(),
         }
         .render(area, buf);
@@ -148,9 +148,9 @@ impl Parameters<'_> {
             WATCHED_FROM.. => spare.max(height * 2 / 5),
             _ => 0,
         };
-        let read = match list.name() {
+        let read = match list.name.as_str() {
             "" => read_lines(self.view, self.reading, room),
-            name => self.found(name, room),
+            name => self.found(&name, room),
         };
         let lower = read.len() as u16;
         let upper = Rect {
@@ -172,13 +172,13 @@ impl Parameters<'_> {
         if count == 0 {
             return self.edited_above_read(list, area, buf);
         }
-        let read = match list.name() {
+        let read = match list.name.as_str() {
             "" => {
                 let mut read = derived_lines(self.scenario);
                 read.extend(shown(self.view, now_lines(self.reading)));
                 read
             }
-            name => self.found(name, usize::MAX),
+            name => self.found(&name, usize::MAX),
         };
         let edited = edited_lines(list);
         let height = area.height.saturating_sub(1) as usize;

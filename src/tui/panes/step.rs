@@ -109,7 +109,7 @@ impl StepPane<'_> {
 
     /// What is to be done where there is no step to take apart.
     fn nothing_yet(&self, area: Rect, buf: &mut Buffer) {
-        let playback = self.lab.player().playback();
+        let playback = &self.lab.player().playback;
         let texts: [&str; 2] = match playback.step_number() {
             0 => [
                 "No time step has been taken yet.",

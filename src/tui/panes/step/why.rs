@@ -68,7 +68,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         ..below
     };
     from_above(explained, view, left, buf);
-    let is_seen = lab.player().reading().readouts.nutation_is_resolved() != Some(false);
+    let is_seen = lab.player().reading.readouts.nutation_is_resolved() != Some(false);
     let dip_and_arm = (explained.dip(), explained.scenario.arm_m());
     dip(dip_and_arm, is_seen, view, right, buf);
 }
