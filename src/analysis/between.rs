@@ -1,15 +1,13 @@
 //! A symmetric top whose time steps are short enough to follow it: its turning points, found between the rows.
 
 mod equations;
-mod rows;
 
 use super::swing::Swing;
 use super::turns::{Measured, ROUNDING, StraightLine, Turns};
 use crate::physics::{LagrangeTop, SchemeInfo, SymmetricTop};
 use crate::run::Step;
-use equations::Equations;
+use equations::{Crossing, Equations, Row};
 use nalgebra::Vector3;
-use rows::{Crossing, Row};
 use std::f64::consts::{PI, TAU};
 
 /// A swing of the height below this part of the squared sine of the tilt is no nutation.

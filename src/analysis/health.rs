@@ -277,7 +277,7 @@ fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
         turns_if_believed(&other, is_wanted)
     };
     let holds = |step: f64, scheme| trial(step, scheme).is_some_and(|most_turns| most_turns < 0.5);
-    if !is_affordable(scenario) || duration_s(scenario) / own > most_steps(scenario) {
+    if !is_affordable(scenario) || Clock::end_s(scenario) / own > most_steps(scenario) {
         return Advice::Nothing;
     }
     if trial(own, scheme).is_some() {
@@ -336,10 +336,6 @@ fn length(vector: &Vector3<f64>) -> f64 {
     }
 }
 
-fn duration_s(scenario: &Scenario) -> f64 {
-    Clock::end_s(scenario)
-}
-
 /// How many steps a search may take with this many points.
 fn most_steps(scenario: &Scenario) -> f64 {
     SEARCH_STEPS as f64 * 14.0 / scenario.body.mechanics.points().len().max(14) as f64
@@ -349,7 +345,7 @@ fn most_steps(scenario: &Scenario) -> f64 {
 /// while all of them together take no more steps than the search may.
 fn finer_time_steps(scenario: &Scenario) -> impl Iterator<Item = f64> + use<> {
     let begin = scenario.motion.time_step_s;
-    let (duration, most) = (duration_s(scenario), most_steps(scenario));
+    let (duration, most) = (Clock::end_s(scenario), most_steps(scenario));
     let spin = observables::angular_velocity(&scenario.body.mechanics, &scenario.start).norm();
     let coarsest = begin.min(PI / spin);
     let decade = libm::floor(libm::log10(coarsest)) as i32;

@@ -1,11 +1,8 @@
 //! What follows a run step by step and can say at any moment how it stands: instruments, theory, health.
 
 use super::beside::Beside;
-use super::extremes::Extremes;
-use super::frozen::Frozen;
 use super::gauges::Gauges;
 use super::health::Health;
-use super::measure::{Instruments, Measured};
 use super::swings::Swing;
 use super::theory::Theory;
 use super::trial::Deviation;
