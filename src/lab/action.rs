@@ -166,3 +166,15 @@ pub enum Direction {
     PageUp,
     PageDown,
 }
+
+impl Direction {
+    /// Rows by which a key moves in a list; a page key moves by `page`.
+    pub fn rows(self, page: isize) -> isize {
+        match self {
+            Self::Up | Self::Left => -1,
+            Self::Down | Self::Right => 1,
+            Self::PageUp => -page,
+            Self::PageDown => page,
+        }
+    }
+}

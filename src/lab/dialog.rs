@@ -2,9 +2,9 @@
 
 use super::action::FieldEdit;
 use super::answer::Refusal;
+use super::course::WHERE;
 use super::form::{Field, Form};
 use super::settings::SETTINGS;
-use super::travel::WHERE;
 use super::values::Values;
 use super::values::listed::ListedValue;
 use super::view::View;
@@ -26,7 +26,7 @@ const KEYS_OF_SETTINGS: &str = "Up and Down choose, Left and Right or Enter chan
 /// A form on top of the panes, and the question that it asks.
 #[derive(Clone, Debug)]
 pub struct Dialog {
-    pub question: Question,
+    pub(super) question: Question,
     pub form: Form,
     /// The existing file that the user was last asked about: the next Enter replaces it.
     asked_to_replace: Option<PathBuf>,
@@ -198,14 +198,8 @@ impl Dialog {
 
     pub(super) fn edit_field(&mut self, edit: FieldEdit) {
         match edit {
-            FieldEdit::Delete => self.edit(Form::delete),
-            FieldEdit::Clear => self.edit(Form::clear),
-            FieldEdit::Left => self.edit(Form::left),
-            FieldEdit::Right => self.edit(Form::right),
-            FieldEdit::Home => self.edit(Form::home),
-            FieldEdit::End => self.edit(Form::end),
-            FieldEdit::Next => self.form.next_field(),
-            FieldEdit::Previous => self.form.previous_field(),
+            FieldEdit::Next | FieldEdit::Previous => self.form.edit_field(edit),
+            _ => self.edit(|form| form.edit_field(edit)),
         }
     }
 

@@ -156,15 +156,6 @@ impl Lab {
             .lessons
     }
 
-    /// What the session keeps of the lessons, for the room above that knows what it means.
-    pub fn lessons_kept(&self) -> Option<&toml::Table> {
-        self.lessons.as_ref()
-    }
-
-    pub fn keep_lessons(&mut self, lessons: Option<toml::Table>) {
-        self.lessons = lessons;
-    }
-
     fn place(&mut self) -> KeptPlace {
         let ids = |list: &mut dyn Iterator<Item = &'static str>| -> Vec<String> {
             list.map(str::to_owned).collect()

@@ -83,7 +83,7 @@ impl Lab {
 
     /// Shows why a key means nothing here, and forgets the count that was typed.
     pub fn refuse(&mut self, text: impl Into<String>) {
-        self.on_top.forget_count();
+        self.on_top.count = None;
         self.say(text);
         self.changed = true;
     }

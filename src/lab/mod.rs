@@ -28,7 +28,6 @@ mod files;
 #[cfg(test)]
 mod for_tests;
 pub mod form;
-pub mod help_search;
 mod keeping;
 pub mod measured;
 mod messages;
@@ -42,12 +41,8 @@ mod rerun;
 mod script;
 mod settings;
 pub mod sheet;
-mod show_sheet;
-mod sorting;
 mod steering;
 mod traces;
-mod travel;
-mod typing;
 pub mod values;
 pub mod view;
 mod work;
@@ -59,7 +54,6 @@ pub use keeping::{Summary, Unreadable};
 pub use on_top::{MOST_COUNTED, Mode, OnTop};
 pub use player::Player;
 pub use script::Script;
-pub use show_sheet::scrolled_by;
 pub use values::Values;
 pub use work::Work;
 
@@ -94,11 +88,11 @@ pub struct Lab {
     on_top: OnTop,
     script: Script,
     /// Remembers what dots and colours the user chooses; `None` where nothing is remembered.
-    keeper: Option<Keeper>,
+    pub keeper: Option<Keeper>,
     /// What the session keeps of the lessons.
-    lessons: Option<toml::Table>,
+    pub lessons: Option<toml::Table>,
     /// Whether there are colours where nobody chooses; `None` where that is not known.
-    usual_colour: Option<bool>,
+    pub usual_colour: Option<bool>,
     /// The time since the lab was opened.
     now: Duration,
     /// Whether the picture has changed since it was drawn.
@@ -140,27 +134,12 @@ impl Lab {
         self.read_now(); // a run that stands still is not read again by itself
     }
 
-    /// From now on remembers what dots and colours the user chooses.
-    pub fn remember_with(&mut self, keeper: Keeper) {
-        self.keeper = Some(keeper);
-    }
-
-    /// Tells the lab whether its screen has colours where nobody chooses: that choice is remembered as no choice.
-    pub fn set_usual_colour(&mut self, colour: bool) {
-        self.usual_colour = Some(colour);
-    }
-
     fn colour_choice(&self) -> &'static str {
         if self.usual_colour == Some(self.view.theme.colour) {
             "auto"
         } else {
             self.view.theme.colour_choice()
         }
-    }
-
-    /// Ends remembering, and returns what remembers: it may have something left to write.
-    pub fn take_keeper(&mut self) -> Option<Keeper> {
-        self.keeper.take()
     }
 
     /// Remembers that the user has chosen `value` for the setting `key`.
@@ -192,7 +171,7 @@ impl Lab {
             self.halted(halt);
         }
         self.tell_what_was_found();
-        self.changed |= self.on_top.take_what_was_read();
+        self.changed |= self.on_top.browser.take_what_was_read();
         self.open_what_was_read();
         self.follow_export();
         if let Some(trouble) = self.keeper.as_ref().and_then(Keeper::trouble) {

@@ -4,10 +4,10 @@
 use super::action::FieldEdit;
 use super::browser::Browser;
 use super::dialog::Dialog;
-use super::help_search::HelpSearch;
+use super::form::MOST_IN_LINE;
+use super::form::type_into;
 use super::notice::Notice;
 use super::preview::Preview;
-use super::typing::MOST_TYPED;
 use std::path::Path;
 use std::time::Duration;
 
@@ -99,10 +99,6 @@ impl OnTop {
         self.count = Some(count.min(MOST_COUNTED));
     }
 
-    pub(super) fn forget_count(&mut self) {
-        self.count = None;
-    }
-
     /// Warns at `now` that leaving stops the export; asked again right after it, the lab ends.
     pub(super) fn warn_of_export(&mut self, now: Duration) {
         self.was_warned = true;
@@ -139,38 +135,6 @@ impl OnTop {
         self.browser.enter(may_be_read)
     }
 
-    pub(super) fn open_filter(&mut self) {
-        self.mode = Mode::Filter;
-    }
-
-    /// Opens the line for a part of the name of a value.
-    pub(super) fn open_find(&mut self) {
-        self.mode = Mode::Find;
-    }
-
-    pub(super) fn close_find(&mut self) {
-        self.mode = Mode::Lab;
-    }
-
-    /// Says that the help has `entries` entries that are found: the selected one is among them.
-    pub(super) fn limit_help(&mut self, entries: usize) {
-        self.help.limit(entries);
-    }
-
-    pub(super) fn close_browser(&mut self) {
-        self.mode = Mode::Lab;
-    }
-
-    /// Updates the browser with what its background thread has read; returns whether that was anything.
-    pub(super) fn take_what_was_read(&mut self) -> bool {
-        self.browser.take_what_was_read()
-    }
-
-    /// Reads the selected file and chooses it to be opened: [`take_chosen`](Self::take_chosen) returns what it holds.
-    pub(super) fn choose(&mut self) {
-        self.browser.choose();
-    }
-
     /// The file that was chosen to be opened and what it holds, once it has been read. Where the browser no longer has
     /// the keys, the choice is forgotten.
     pub(super) fn take_chosen(&mut self) -> Option<(String, Preview)> {
@@ -196,7 +160,7 @@ impl OnTop {
     pub(super) fn close(&mut self) -> bool {
         match self.mode {
             Mode::Lab => return false,
-            Mode::Find => self.close_find(),
+            Mode::Find => self.mode = Mode::Lab,
             Mode::Help if !self.help.text.is_empty() => self.help.clear(),
             Mode::Help => self.toggle_help(),
             Mode::Filter => {
@@ -204,7 +168,7 @@ impl OnTop {
                 self.mode = Mode::Browser;
             }
             Mode::Browser if self.browser.forget_chosen() => {}
-            Mode::Browser => self.close_browser(),
+            Mode::Browser => self.mode = Mode::Lab,
             Mode::Dialog => drop(self.take_dialog()),
         }
         true
@@ -254,7 +218,7 @@ impl OnTop {
             (None, Mode::Filter) => {
                 if !self.browser.paste(text) {
                     let text = format!(
-                        "the filter takes at most {MOST_TYPED} characters: what was pasted is cut"
+                        "the filter takes at most {MOST_IN_LINE} characters: what was pasted is cut"
                     );
                     self.notice.say(text, now);
                 }
@@ -264,6 +228,43 @@ impl OnTop {
                 self.notice.say(text, now);
             }
         }
+    }
+}
+
+/// The text that is searched for, and the selected entry.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HelpSearch {
+    pub text: String,
+    pub selected: usize,
+}
+
+impl HelpSearch {
+    /// Shows every entry; the first is selected.
+    pub(super) fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Adds `text` to the text that is searched for, up to 100 characters; the first entry found is selected. `/` begins a
+    /// search in other panes: at the beginning it means nothing here.
+    pub(super) fn type_text(&mut self, text: &str) {
+        let begun = if self.text.is_empty() { "/" } else { "" };
+        type_into(&mut self.text, text.strip_prefix(begun).unwrap_or(text));
+        self.selected = 0;
+    }
+
+    /// Removes the last character; the first entry found is selected.
+    pub(super) fn erase(&mut self) {
+        self.text.pop();
+        self.selected = 0;
+    }
+
+    pub(super) fn shift(&mut self, rows: isize) {
+        self.selected = self.selected.saturating_add_signed(rows);
+    }
+
+    /// Moves the selection to the last of `entries` entries, if it is beyond it.
+    pub(super) fn limit(&mut self, entries: usize) {
+        self.selected = self.selected.min(entries.saturating_sub(1));
     }
 }
 
@@ -281,7 +282,7 @@ mod tests {
         on_top.toggle_help();
         assert_eq!(on_top.mode, Mode::Help);
         assert!(on_top.close());
-        on_top.open_filter();
+        on_top.mode = Mode::Filter;
         on_top.type_char('x');
         assert_eq!(
             (on_top.mode, on_top.browser.filter.as_str()),
@@ -324,8 +325,8 @@ mod tests {
         on_top.open_dialog(Dialog::go_to());
         on_top.paste("400", NOW);
         assert_eq!(on_top.take_dialog().unwrap().form.text(0), "400");
-        on_top.open_filter();
-        on_top.paste(&"x".repeat(MOST_TYPED + 1), NOW);
+        on_top.mode = Mode::Filter;
+        on_top.paste(&"x".repeat(MOST_IN_LINE + 1), NOW);
         assert!(on_top.notice.text().unwrap().contains("is cut"));
     }
 
@@ -336,7 +337,7 @@ mod tests {
         on_top.shift(10);
         on_top.shift(-3);
         assert_eq!(on_top.help.selected, 7);
-        on_top.limit_help(5);
+        on_top.help.limit(5);
         assert_eq!(on_top.help.selected, 4);
         on_top.shift(-30);
         assert_eq!(on_top.help.selected, 0);

@@ -3,6 +3,7 @@
 use super::Lab;
 use super::answer::{Answer, Done};
 use super::command::Command;
+use super::on_top::Mode;
 use super::preview::Preview;
 use crate::export::Destination;
 use crate::scenario::{Document, Problem, Problems, presets};
@@ -39,7 +40,7 @@ impl Lab {
             let answer = self.carry_out(&Command::Open(entry.name));
             return self.play_opened(answer);
         }
-        self.on_top.choose();
+        self.on_top.browser.choose();
         self.open_what_was_read();
         if self.on_top.browser.is_loading() {
             self.say("reading it: it opens when it has been read, Esc stays here");
@@ -52,9 +53,7 @@ impl Lab {
             return;
         };
         let Preview::Known(known) = preview else {
-            // There is no thread to read it.
-            let answer = self.carry_out(&Command::Open(name));
-            return self.play_opened(answer);
+            return;
         };
         let answer = match known.as_ref() {
             Ok(scenario) => {
@@ -73,7 +72,7 @@ impl Lab {
     fn play_opened(&mut self, answer: Answer) {
         self.changed = true;
         if answer.is_ok() {
-            self.on_top.close_browser();
+            self.on_top.mode = Mode::Lab;
             self.carry_out_all(&[Command::Run]);
         }
         self.tell_answer(answer);

@@ -11,7 +11,7 @@ use super::script::{GO_ON_WITH_IT, GO_ON_WITH_THEM};
 use super::view::Pane;
 use super::{Lab, Request};
 
-const PAGE: isize = 10;
+pub(super) const PAGE: isize = 10;
 
 impl Lab {
     /// Carries out `action`. Returns what only the main loop can do.
@@ -132,7 +132,7 @@ impl Lab {
                 self.on_top.open_browser(files.folder(), name, may_be_read);
             }
             Action::Choose => self.open_chosen(),
-            Action::Filter => self.on_top.open_filter(),
+            Action::Filter => self.on_top.mode = Mode::Filter,
             Action::FindValue => self.find_value(),
             Action::Type(typed) if self.on_top.mode == Mode::Find => {
                 self.values.type_name(typed.encode_utf8(&mut [0; 4]));
@@ -140,7 +140,6 @@ impl Lab {
             Action::Erase if self.on_top.mode == Mode::Find => self.values.erase_name(),
             Action::Type(typed) => self.on_top.type_char(typed),
             Action::Erase => self.on_top.erase(),
-            Action::DoEntry => {} // tui does it
             Action::InField(FieldEdit::Clear) if self.on_top.mode == Mode::Find => {
                 self.values.forget_name();
             }
@@ -164,37 +163,14 @@ impl Lab {
                 self.on_top.warn_of_export(self.now);
             }
             Action::Quit => return Some(Request::Quit),
-            Action::Step
-            | Action::StepBack
-            | Action::NextPhase
-            | Action::PhaseBack
-            | Action::Why
-            | Action::Faster
-            | Action::Slower
-            | Action::Restart
-            | Action::Undo
-            | Action::Redo
-            | Action::Push
-            | Action::ToggleExact
-            | Action::ToggleResiduals
-            | Action::TogglePin
-            | Action::TakeAdvice
-            | Action::FillScreen
-            | Action::StepCursor(_)
-            | Action::ToTurn(_)
-            | Action::Pan(_)
-            | Action::Magnify(_)
-            | Action::WholeView
-            | Action::ZoomIn
-            | Action::ZoomOut
-            | Action::ZoomToWhole => {} // commands
+            _ => {} // a command, or an entry of the help, which tui carries out
         }
         None
     }
 
     /// Moves the selection of what lies on top, or of the values.
     fn shift(&mut self, direction: Direction, times: i32) {
-        let rows = rows(direction) * times as isize;
+        let rows = direction.rows(PAGE) * times as isize;
         match (self.on_top.mode, self.view.focus) {
             (Mode::Lab | Mode::Find, Pane::PARAMETERS) => {
                 self.values.shift(rows.signum() * times as isize);
@@ -252,12 +228,12 @@ impl Lab {
     fn find_value(&mut self) {
         self.view.turn_to(Pane::PARAMETERS);
         self.values.forget_name();
-        self.on_top.open_find();
+        self.on_top.mode = Mode::Find;
     }
 
     /// Says that the help has `entries` entries that are found: the selected one is among them.
     pub fn limit_help(&mut self, entries: usize) {
-        self.on_top.limit_help(entries);
+        self.on_top.help.limit(entries);
     }
 
     /// Pauses the run and the commands that are not carried out yet.
@@ -280,14 +256,5 @@ impl Lab {
             1 => "stopped: 1 command is left out".to_owned(),
             left => format!("stopped: {left} commands are left out"),
         });
-    }
-}
-
-fn rows(direction: Direction) -> isize {
-    match direction {
-        Direction::Up | Direction::Left => -1,
-        Direction::Down | Direction::Right => 1,
-        Direction::PageUp => -PAGE,
-        Direction::PageDown => PAGE,
     }
 }

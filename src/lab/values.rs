@@ -5,7 +5,7 @@ pub mod list;
 pub mod listed;
 
 use super::command::{Command, Force, PushChoice};
-use super::typing::type_into;
+use super::form::type_into;
 use crate::observe::live::LiveRun;
 use crate::scenario::Scenario;
 use crate::work::journal::{Journal, number_of_push};

@@ -1,8 +1,8 @@
 //! What a student predicted in a lesson beside what came out, to hand in.
 
 use super::lesson::{Block, Compare, Lesson, Page, Predict};
-use super::place::Place;
 use super::play::{GoOn, Walk};
+use super::predictions::Place;
 use crate::lab::Lab;
 use crate::scenario::Problem;
 

@@ -1,6 +1,6 @@
 //! The lessons of a lab: the list of them, the one that is taken, and where the others were left.
 
-use super::place::Place;
+use super::predictions::Place;
 use super::taken::Taken;
 use super::{page, reading, shipped};
 use crate::lab::Lab;
@@ -62,7 +62,7 @@ impl Class {
     /// Why the lesson that was taken cannot be taken again; where it was left is kept.
     pub fn resumed(lab: &mut Lab) -> (Self, Result<(), String>) {
         let mut class = Self::default();
-        let kept = lab.lessons_kept().map(KeptLessons::read);
+        let kept = lab.lessons.as_ref().map(KeptLessons::read);
         let Some(Ok(kept)) = kept else {
             return (class, Ok(()));
         };
@@ -142,7 +142,7 @@ impl Class {
                 lab.refuse("nothing to close: L lists the lessons, Esc there leaves them; q quits");
             }
             (Shown::List { selected, .. }, LessonKey::Move(direction)) => {
-                *selected = selected.saturating_add_signed(rows(direction));
+                *selected = selected.saturating_add_signed(direction.rows(10));
             }
             (Shown::List { selected, .. }, LessonKey::Take) => {
                 let selected = *selected;
@@ -231,7 +231,7 @@ impl Class {
         let sheet = self.sheet(lab);
         lab.set_sheet(sheet);
         let kept = Table::try_from(self.kept()).unwrap_or_default();
-        lab.keep_lessons(Some(kept).filter(|kept| !kept.is_empty()));
+        lab.lessons = Some(kept).filter(|kept| !kept.is_empty());
     }
 
     fn sheet(&mut self, lab: &Lab) -> Option<Sheet> {
@@ -251,15 +251,5 @@ impl Class {
             name
         });
         KeptLessons { open, lessons }
-    }
-}
-
-/// Entries by which a key moves in the list.
-fn rows(direction: Direction) -> isize {
-    match direction {
-        Direction::Up | Direction::Left => -1,
-        Direction::Down | Direction::Right => 1,
-        Direction::PageUp => -10,
-        Direction::PageDown => 10,
     }
 }

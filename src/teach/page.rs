@@ -2,7 +2,7 @@
 
 use super::lesson::{Asked, Block, Compare, Page, Predict};
 use super::markdown::paragraphs;
-use super::place::Place;
+use super::predictions::Place;
 use super::taken::Taken;
 use super::{reading, shipped};
 use crate::lab::Lab;
@@ -152,7 +152,7 @@ impl Writer<'_> {
         }
         let source = match self.taken.stated(compare.line) {
             Some(source) => source.to_owned(),
-            None => compare.filled(&lesson, &place.predictions, self.lab, &place.kept),
+            None => compare.filled(lesson, &place.predictions, self.lab, &place.kept),
         };
         self.extend(paragraphs(&source, &Kind::Result));
         if place.predictions.answer(&compare.prediction).is_none() {

@@ -3,14 +3,14 @@
 mod keys;
 
 use super::clock::{self, Clock};
-use super::lesson::{Lesson, Page, Predict};
+use super::lesson::{Block, Compare, Lesson, Page, Predict};
 use super::names::value;
-use super::place::Place;
+use super::predictions::Place;
 use super::stage::Stage;
-use super::stated::Stated;
 use super::watch::Watch;
 use super::{reading, shipped};
 use crate::lab::Lab;
+use std::collections::BTreeMap;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -39,7 +39,7 @@ pub struct Taken {
     stated: Option<Stated>,
     /// Whether the hints of the page's checks are shown.
     pub shows_hints: bool,
-    under_way: Option<Block>,
+    under_way: Option<UnderWay>,
     /// Whether turning the page was refused once, because a prediction is open.
     was_asked: bool,
     /// The clock, where the teacher's notes are shown.
@@ -52,7 +52,7 @@ pub struct Taken {
 
 /// A block of a page that the lab carries out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Block {
+enum UnderWay {
     Lab(usize),
     Task(usize),
 }
@@ -162,12 +162,12 @@ impl Taken {
             }
         }
         if let Some(stage) = last {
-            self.begin(stage, Block::Lab(page), lab);
+            self.begin(stage, UnderWay::Lab(page), lab);
         }
         Ok(())
     }
 
-    fn begin(&mut self, stage: &Stage<'_>, block: Block, lab: &mut Lab) {
+    fn begin(&mut self, stage: &Stage<'_>, block: UnderWay, lab: &mut Lab) {
         let commands = stage.commands(lab);
         self.under_way = Some(block);
         lab.take_commands(commands);
@@ -188,8 +188,8 @@ impl Taken {
         lab.forget_message_of_script();
         let lesson = Arc::clone(&self.lesson);
         let stage = match block {
-            Block::Lab(page) => lesson.stage_of(page, &self.place.predictions),
-            Block::Task(page) => lesson.task_of(page, &self.place.predictions),
+            UnderWay::Lab(page) => lesson.stage_of(page, &self.place.predictions),
+            UnderWay::Task(page) => lesson.task_of(page, &self.place.predictions),
         };
         if let Some(stage) = stage {
             stage.keep(lab, &mut self.place.kept);
@@ -268,4 +268,55 @@ impl Taken {
 
 fn holds(check: &super::Check, lab: &Lab, kept: &super::Kept) -> bool {
     value(&check.that, lab, kept).is_some_and(|held| held != 0.0)
+}
+
+/// The texts of a page that the student's own run does not change, by their lines in the file.
+#[derive(Clone, Debug)]
+pub(super) struct Stated {
+    texts: BTreeMap<usize, String>,
+}
+
+impl Stated {
+    /// What the page at `place` states of the run in `lab`. What stands behind a task or a check is not among it.
+    pub(super) fn of(lesson: &Lesson, place: &Place, lab: &Lab) -> Self {
+        let texts = before_task(lesson, place).filter_map(|block| match block {
+            Block::Text(text) => Some((text.line, text.with_numbers(lab, &place.kept))),
+            Block::Compare(compare) => Some((compare.line, compared(compare, lesson, place, lab))),
+            _ => None,
+        });
+        Self {
+            texts: texts.collect(),
+        }
+    }
+
+    pub(super) fn text(&self, line: usize) -> Option<&str> {
+        self.texts.get(&line).map(String::as_str)
+    }
+
+    /// Puts the prediction called `name`, which has just been locked, into what is stated about it.
+    pub(super) fn take_in(&mut self, name: &str, lesson: &Lesson, place: &Place, lab: &Lab) {
+        for block in before_task(lesson, place) {
+            if let Block::Compare(compare) = block
+                && compare.prediction == name
+            {
+                let text = compared(compare, lesson, place, lab);
+                self.texts.insert(compare.line, text);
+            }
+        }
+    }
+}
+
+/// The introduction's blocks, and those of the page up to its task or its first check.
+fn before_task<'a>(lesson: &'a Lesson, place: &Place) -> impl Iterator<Item = &'a Block> {
+    let page = lesson.page(place.page);
+    let blocks = page.into_iter().flat_map(|page| &page.blocks);
+    let is_before = |block: &&Block| !matches!(block, Block::Task(_) | Block::Check(_));
+    lesson
+        .introduction
+        .iter()
+        .chain(blocks.take_while(is_before))
+}
+
+fn compared(compare: &Compare, lesson: &Lesson, place: &Place, lab: &Lab) -> String {
+    compare.filled(lesson, &place.predictions, lab, &place.kept)
 }

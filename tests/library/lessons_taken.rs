@@ -198,7 +198,7 @@ fn a_lesson_that_is_gone_leaves_the_lab_and_what_was_predicted() {
     let mut lab = Lab::resumed(&content, view).unwrap();
     let (_, taken) = Class::resumed(&mut lab);
     assert!(taken.unwrap_err().contains("swing.md"));
-    let kept = lab.lessons_kept().unwrap();
+    let kept = lab.lessons.as_ref().unwrap();
     let place = &kept["lessons"][name.as_str()];
     assert_eq!(place["predictions"]["finer"].as_str(), Some("grows"));
 }

@@ -55,11 +55,6 @@ pub(super) fn text_in(value: &Value) -> &str {
     value.as_str().unwrap_or_default()
 }
 
-pub(super) fn chapter(value: &Value) -> Read {
-    let title = checked(Kind::Line, value)?;
-    Ok(Command::Chapter(text_in(title).to_owned()))
-}
-
 /// A finite number of `range`.
 pub(super) fn number(range: Range, value: &Value) -> Result<f64, Vec<Problem>> {
     checked(Kind::Number(range), value).map(number_in)

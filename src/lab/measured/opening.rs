@@ -1,6 +1,5 @@
 //! Putting measured data beside the run, and taking them away.
 
-use super::Beside;
 use crate::export::Destination;
 use crate::lab::Lab;
 use crate::lab::answer::{Answer, Done};

@@ -160,10 +160,6 @@ impl BrowserPane<'_> {
                 Err(problem) => refused(problem, width),
             },
             Some(Preview::Loading) => vec![("reading ...".to_owned(), Role::Quiet)],
-            Some(Preview::Unknown) => vec![(
-                "no preview: the system is out of threads".to_owned(),
-                Role::Quiet,
-            )],
             None if self.browser.choice().is_some_and(|entry| entry.is_folder) => {
                 vec![("a folder: Enter lists its files".to_owned(), Role::Quiet)]
             }

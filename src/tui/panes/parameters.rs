@@ -150,7 +150,7 @@ impl Parameters<'_> {
         };
         let read = match list.name.as_str() {
             "" => read_lines(self.view, self.reading, room),
-            name => self.found(&name, room),
+            name => self.found(name, room),
         };
         let lower = read.len() as u16;
         let upper = Rect {
@@ -178,7 +178,7 @@ impl Parameters<'_> {
                 read.extend(shown(self.view, now_lines(self.reading)));
                 read
             }
-            name => self.found(&name, usize::MAX),
+            name => self.found(name, usize::MAX),
         };
         let edited = edited_lines(list);
         let height = area.height.saturating_sub(1) as usize;
