@@ -17,7 +17,7 @@ pub fn readouts(
     go_on: &dyn Fn() -> bool,
 ) -> Result<Option<Vec<Value>>, String> {
     let scenario = Arc::new(scenario);
-    // Only these need every step held against the exact motion, which may take longer than the run.
+    // Only these need every step compared with the exact motion, which may take longer than the run.
     let is_held = wanted.iter().any(|readout| readout.source == Source::Exact);
     let mut simulation = Simulation::new(Arc::clone(&scenario));
     let mut monitor = Monitor::new(simulation.now());

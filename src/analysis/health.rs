@@ -26,7 +26,7 @@ pub const BELIEVED_WITHIN: f64 = 0.01;
 const SEARCH_STEPS: u64 = 2_000_000;
 /// Where a time step is not to be mended, the first of these is tried that can be true to the scenario's friction.
 const BETTER_SCHEMES: [&str; 2] = ["srkn11b", "strang"];
-/// At about so many steps of a trial, evenly spread, it is seen whether it goes on; and so often at least.
+/// Number of looks at a trial, evenly spread, at which it may be given up; and the most steps between two looks.
 const LOOKS: u64 = 1000;
 const MOST_TOGETHER: u64 = 4096;
 /// A nutation that swings by less than this (degrees) is none.

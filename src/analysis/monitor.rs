@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub struct Monitor {
     pub gauges: Gauges,
     beside: Beside,
-    /// Steps still to be held against the exact motion.
+    /// Steps still to be compared with the exact motion.
     unheld: Vec<State>,
 }
 
@@ -34,7 +34,7 @@ impl Monitor {
         self.beside.go_on_in(scenario);
     }
 
-    /// Takes in `step`; to be shown every step. Every one of them is held against the exact motion: what leaves it and
+    /// Takes in `step`; to be shown every step. Every one of them is compared with the exact motion: what leaves it and
     /// comes back between two looks has left it too.
     #[inline]
     pub fn follow(&mut self, step: &Step) {
@@ -65,7 +65,7 @@ impl Monitor {
         self.unheld.clear();
     }
 
-    /// Whether the run is held against the exact motion.
+    /// Whether the run is compared with the exact motion.
     pub fn has_exact(&self) -> bool {
         self.beside.is_known()
     }
@@ -84,7 +84,7 @@ impl Monitor {
     }
 
     /// How the tilt has swung up to the last [`deviation`](Self::deviation) beside the exact motion's, where they differ most;
-    /// `None` where it is not held against that.
+    /// `None` where it is not compared.
     pub fn swing(&self) -> Option<Swing> {
         self.beside.swing()
     }
@@ -117,7 +117,7 @@ impl Monitor {
     }
 
     /// The largest distance of the traced point from the exact motion up to the last [`deviation`](Self::deviation), m; 0
-    /// where it is not held against that.
+    /// where it is not compared.
     pub fn most_distance_m(&self) -> f64 {
         self.beside.most_distance_m()
     }

@@ -133,7 +133,7 @@ fn mend(health: &Health, advice: &Advice) -> Option<Remark> {
     })
 }
 
-/// A lag of less than so many times the true one is right. The scheme's is never smaller than the true one.
+/// Largest ratio of the scheme's lag to the true lag that is reported as right. The scheme's lag is never the smaller.
 const LAG_IS_RIGHT: f64 = 1.05;
 
 /// How far the axle lags behind L, and what becomes of the nutation, which is the fault of the run where it is changed.

@@ -18,6 +18,7 @@ use crate::lab::view::{Pane, Part};
 use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
 use crate::observe::recording::Curve;
+use crate::scenario::dotted::join;
 use crate::scenario::problem::{Found, nearest};
 use crate::scenario::{Document, Problem, Problems};
 use crate::work::expression::Expression;
@@ -287,20 +288,15 @@ fn one(index: usize, value: &Value) -> Result<Command, Vec<Problem>> {
         return Err(wrong);
     }
     match table.iter().collect::<Vec<_>>()[..] {
-        [(name, value)] => Command::new(name, value).map_err(|problems| {
+        [(name, value)] => {
             let inside = |problem: Problem| Problem {
-                key: if problem.key.is_empty() {
-                    name.clone()
-                } else {
-                    format!("{name}.{}", problem.key)
-                },
+                key: join(name, &problem.key).trim_end_matches('.').to_owned(),
                 ..problem
             };
-            problems
-                .into_iter()
-                .map(|problem| under(inside(problem)))
-                .collect()
-        }),
+            let under_name = |problem| under(inside(problem));
+            Command::new(name, value)
+                .map_err(|problems| problems.into_iter().map(under_name).collect())
+        }
         [] => {
             let rule = "holds no command: there is gyrolab man for their names";
             Err(vec![Problem::at(here, rule)])

@@ -188,7 +188,7 @@ impl Lab {
         self.player.playback.play_on();
     }
 
-    /// Draws at most so many frames a second.
+    /// Draws at most `fps` frames a second.
     pub fn set_fps(&mut self, fps: u32) {
         self.view.fps = fps;
     }

@@ -149,7 +149,7 @@ impl Lab {
         Command::Since(Some(since_s.max(0.0)))
     }
 
-    /// The command that magnifies the values so many times twice, or half.
+    /// The command that doubles the magnification `notches` times, or halves it.
     pub(super) fn magnified(&self, notches: i32) -> Command {
         let times = self.view.magnified * 2_f64.powi(notches);
         Command::Magnify(times.clamp(1.0, MOST_MAGNIFIED))

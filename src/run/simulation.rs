@@ -4,7 +4,7 @@ mod replaced;
 
 use super::pushes::{self, Counting, Stretch};
 use super::step::{Derived, EnergyAccount};
-use super::{Clock, EnergyScale, Sample, Step};
+use super::{Clock, Sample, Step};
 use crate::physics::observables::{self, Azimuth};
 use crate::physics::workings::Part;
 use crate::physics::{Loads, PointForce, Scheme, State, Workings};
@@ -75,13 +75,7 @@ impl Simulation {
         let mut scheme = motion.scheme.make(body);
         scheme.load(&loads);
         scheme.start(&state);
-        let kinetic = observables::kinetic_energy(body, &state);
-        let energy = EnergyAccount {
-            start: kinetic + motion.gravity * observables::weight_height(body, &state),
-            work: 0.0,
-            friction: 0.0,
-            scale: EnergyScale::of(&scenario),
-        };
+        let energy = EnergyAccount::new(&scenario);
         Self {
             scheme,
             pushes: scenario.pushes.iter().copied().collect(),

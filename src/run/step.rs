@@ -49,6 +49,19 @@ pub(super) struct Derived {
     energy: OnceCell<f64>,
 }
 
+impl EnergyAccount {
+    pub fn new(scenario: &Scenario) -> Self {
+        let (body, state) = (&scenario.body.mechanics, &scenario.start);
+        let kinetic = observables::kinetic_energy(body, state);
+        Self {
+            start: kinetic + scenario.motion.gravity * observables::weight_height(body, state),
+            work: 0.0,
+            friction: 0.0,
+            scale: EnergyScale::of(scenario),
+        }
+    }
+}
+
 impl Step {
     pub fn scenario(&self) -> &Arc<Scenario> {
         &self.scenario
@@ -75,7 +88,7 @@ impl Step {
     }
 
     /// How often the forces have changed so far, edits of the time step and the scheme counted in: a period
-    /// or rate that is measured across such a change is that of no motion.
+    /// or rate that is measured across such a change belongs to no motion.
     pub fn changes(&self) -> u64 {
         self.changes
     }
@@ -128,7 +141,7 @@ impl Step {
         *self.derived.tilt_deg.get_or_init(read)
     }
 
-    /// Kinetic energy and that of the weight, from the pivot, J.
+    /// Kinetic and potential energy, from the pivot, J.
     #[inline]
     pub fn energy(&self) -> f64 {
         *self.derived.energy.get_or_init(|| {
@@ -210,7 +223,7 @@ pub struct Sample {
     pub tilt_deg: f64,
     /// Azimuth of the axle, counted on through full turns, degrees.
     pub azimuth_deg: f64,
-    /// Kinetic energy and that of the weight, from the pivot, J.
+    /// Kinetic and potential energy, from the pivot, J.
     pub energy: f64,
     /// The angle about the axle by which a rotor has turned in its frame since the start, rad; 0 where the whole body spins.
     pub rotor_turn: f64,

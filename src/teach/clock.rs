@@ -22,7 +22,7 @@ impl Clock {
         }
     }
 
-    /// What it shows when the lesson was opened `since` ago and should take so many `minutes`.
+    /// What it shows when the lesson was opened `since` ago and should take `minutes`.
     pub fn shown(self, since: Duration, minutes: Option<u32>) -> String {
         let whole = u64::from(minutes.unwrap_or_default()) * 60;
         let gone = since.as_secs();

@@ -103,7 +103,7 @@ impl Names {
     }
 }
 
-/// The number called `name`: what was kept under that name, or that of the run in `lab`; `None` if there is none now.
+/// The kept number called `name`, or else the run's number in `lab`; `None` if there is none now.
 pub fn number(name: &str, lab: &Lab, kept: &Kept) -> Option<f64> {
     match kept.get(name) {
         Some(number) => Some(*number).filter(|number| number.is_finite()),

@@ -36,9 +36,9 @@ pub enum Piece {
 pub enum Format {
     /// With four significant digits.
     Short,
-    /// With so many digits after the point.
+    /// Digits after the point.
     Fixed(usize),
-    /// With an exponent, and so many digits after the point.
+    /// With an exponent; digits after the point.
     Exponent(usize),
 }
 
