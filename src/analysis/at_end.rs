@@ -11,16 +11,13 @@ use std::sync::Arc;
 const BLOCK: u64 = 4096;
 
 /// Plays the run of `scenario` to its end and reads `wanted` off it; `None` where `go_on` said no on the way.
-///
-/// # Errors
-/// Why there is nothing to read: the numbers stop being finite.
 pub fn readouts(
     scenario: Scenario,
     wanted: &[&Readout],
     go_on: &dyn Fn() -> bool,
 ) -> Result<Option<Vec<Value>>, String> {
     let scenario = Arc::new(scenario);
-    // Only these need every step held against the exact motion, which may take longer than the run.
+    // Only these need every step compared with the exact motion, which may take longer than the run.
     let is_held = wanted.iter().any(|readout| readout.source == Source::Exact);
     let mut simulation = Simulation::new(Arc::clone(&scenario));
     let mut monitor = Monitor::new(simulation.now());

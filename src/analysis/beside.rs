@@ -50,12 +50,12 @@ impl Beside {
         self.truth.take_if(|_| !is_affordable(scenario));
     }
 
-    /// Whether the run is held against the exact motion.
+    /// Whether the run is compared with the exact motion.
     pub fn is_known(&self) -> bool {
         self.truth.is_some()
     }
 
-    /// The exact motion, where the run is held against it.
+    /// The exact motion, where the run is compared with it.
     pub fn truth(&mut self) -> Option<&mut Truth> {
         self.settle();
         self.truth.as_mut()
@@ -124,7 +124,7 @@ impl Beside {
         }
     }
 
-    /// How far off the run is in `state`; `None` where it is not held against the exact motion.
+    /// How far off the run is in `state`; `None` where it is not compared with the exact motion.
     pub fn deviation(&mut self, state: &State) -> Option<Deviation> {
         self.settle();
         let deviation = Deviation::of(state, self.truth.as_mut()?);
@@ -133,7 +133,7 @@ impl Beside {
     }
 
     /// The largest distance of the traced point from the exact motion up to the last time that it was [settled](Self::settle),
-    /// m; 0 where it is not held against that.
+    /// m; 0 where it is not compared.
     pub fn most_distance_m(&self) -> f64 {
         self.most_m
     }

@@ -1,15 +1,13 @@
 //! A symmetric top whose time steps are short enough to follow it: its turning points, found between the rows.
 
 mod equations;
-mod rows;
 
 use super::swing::Swing;
 use super::turns::{Measured, ROUNDING, StraightLine, Turns};
 use crate::physics::{LagrangeTop, SchemeInfo, SymmetricTop};
 use crate::run::Step;
-use equations::Equations;
+use equations::{Crossing, Equations, Row};
 use nalgebra::Vector3;
-use rows::{Crossing, Row};
 use std::f64::consts::{PI, TAU};
 
 /// A swing of the height below this part of the squared sine of the tilt is no nutation.
@@ -30,11 +28,10 @@ const HIDES_RAD: f64 = 1.5;
 /// Axles that turn by more than this between two rows (rad) are not followed.
 const TOO_FAR_RAD: f64 = 60.0;
 
-/// The turning points of a nutation that moves the height no faster than so many times the error that a scheme of the first
-/// order has in that rate are not where the rate changes its sign.
+/// Least ratio of the rate at which a nutation moves the height to the error of a first-order scheme in that rate: below
+/// it the turning points are not where the rate changes its sign.
 const BEYOND_ERROR: f64 = 2.0;
 
-/// The instruments for one such top.
 #[derive(Clone, Debug)]
 pub(super) struct Between {
     /// One over the moment across the axle, 1/(kg m²).
@@ -127,7 +124,6 @@ impl Between {
         })
     }
 
-    /// Takes in `step`.
     #[inline]
     pub fn follow(&mut self, step: &Step) {
         // Assigned at once: by way of a copy it would be stored in parts and read whole, for which processors wait.
@@ -200,7 +196,7 @@ impl Between {
         if line.intervals.is_multiple_of(2) {
             return 0.0;
         }
-        // The error of a step is known in the rate of the height; the drift is that of the height, by so many times more.
+        // The error of a step is known for the rate of the height; the drift of the height is larger by this factor.
         let of_ends = line.first.time_error_s.hypot(line.last.time_error_s);
         of_ends / (self.equations.rates[1] * self.equations.time_step_s)
     }

@@ -1,4 +1,4 @@
-//! Schemes and time steps held against the exact motion: a table of errors, drifts, cost and measured order.
+//! Schemes and time steps compared with the exact motion: a table of errors, drifts, cost and measured order.
 
 use super::Trial;
 use crate::cores;
@@ -145,7 +145,7 @@ pub struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// The table as one JSON object: of which run, held against which exact motion, and a row for each scheme and time
+    /// The table as one JSON object: which run, compared with which exact motion, and a row for each scheme and time
     /// step under the names of the CSV's columns. null stands for a number that there is not.
     ///
     /// # Errors

@@ -33,7 +33,6 @@ impl Extremes {
         }
     }
 
-    /// Takes in `step`.
     #[inline]
     pub fn follow(&mut self, step: &Step) {
         let z = step.position().z;

@@ -18,11 +18,11 @@ use std::f64::consts::PI;
 /// What the scheme makes of the run since the forces last changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frozen {
-    /// |w*|, rad; `None` where it is not small enough to be told.
+    /// |w*|, rad; `None` where it is too large for the linear theory.
     lag: Option<f64>,
     /// ln |A|.
     growth: f64,
-    /// Phases of the swing; `None` where it is too large to be told.
+    /// Phases of the swing; `None` where it is too large for the linear theory.
     swing: Option<Swing>,
 }
 
@@ -47,7 +47,7 @@ const WITHIN: f64 = 0.1;
 const NEUTRAL: f64 = 0.05;
 /// A swing that would be less by more than this part if its steps slipped a little is not predicted.
 const SURE: f64 = 0.05;
-/// So many phases of the swing are looked at, so many of them in one turn.
+/// Number of phases of the swing that are looked at, and their number in one turn.
 const PHASES: u64 = 1024;
 const IN_A_TURN: f64 = 256.0;
 /// Parts of the slip that are tried.

@@ -10,18 +10,17 @@ use crate::run::Step;
 /// Follows one run from its start; to be shown every step.
 #[derive(Clone, Debug)]
 pub struct Gauges {
-    instruments: Instruments,
-    extremes: Extremes,
+    pub instruments: Instruments,
+    pub extremes: Extremes,
     /// The change of forces since which the instruments measure.
     changes: u64,
     /// The step from which on they do.
-    since: u64,
+    pub since: u64,
     tilt_swing: TiltSwing,
-    frozen: Option<Frozen>,
+    pub frozen: Option<Frozen>,
 }
 
 impl Gauges {
-    /// Of the run that begins at `step`.
     pub fn new(step: &Step) -> Self {
         Self {
             instruments: Instruments::new(step),
@@ -33,7 +32,6 @@ impl Gauges {
         }
     }
 
-    /// Takes in `step`.
     #[inline]
     pub fn follow(&mut self, step: &Step) {
         self.extremes.follow(step);
@@ -49,29 +47,8 @@ impl Gauges {
         }
     }
 
-    /// The least and the greatest over every step of the run.
-    pub fn extremes(&self) -> &Extremes {
-        &self.extremes
-    }
-
     /// By how much the tilt has swung since the forces last changed, degrees; `None` before it was seen whole.
     pub fn tilt_swing_deg(&self) -> Option<Measured> {
         self.tilt_swing.measured()
-    }
-
-    /// What the linear theory of the report's scheme says of the motion since the forces last changed; `None` where it says
-    /// nothing.
-    pub fn frozen(&self) -> Option<Frozen> {
-        self.frozen
-    }
-
-    /// The step at which the forces last changed.
-    pub fn since(&self) -> u64 {
-        self.since
-    }
-
-    /// What has been measured since the forces last changed.
-    pub fn instruments(&self) -> &Instruments {
-        &self.instruments
     }
 }

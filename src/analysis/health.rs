@@ -26,7 +26,7 @@ pub const BELIEVED_WITHIN: f64 = 0.01;
 const SEARCH_STEPS: u64 = 2_000_000;
 /// Where a time step is not to be mended, the first of these is tried that can be true to the scenario's friction.
 const BETTER_SCHEMES: [&str; 2] = ["srkn11b", "strang"];
-/// At about so many steps of a trial, evenly spread, it is seen whether it goes on; and so often at least.
+/// Number of looks at a trial, evenly spread, at which it may be given up; and the most steps between two looks.
 const LOOKS: u64 = 1000;
 const MOST_TOGETHER: u64 = 4096;
 /// A nutation that swings by less than this (degrees) is none.
@@ -63,7 +63,6 @@ pub struct Health {
     pub most_distance_m: Option<f64>,
     /// Distance of the traced point from the pivot, m.
     pub arm_m: f64,
-    /// Steps taken.
     pub steps: u64,
     /// Whether the whole run can be had at another time step by itself: no edits, no push that counts its own steps.
     pub can_be_rescaled: bool,
@@ -106,9 +105,7 @@ pub enum Advice {
     TimeStep(f64),
     /// Another scheme at this time step, s: the run's own was tried down to `tried_s` without success.
     Scheme {
-        /// The scheme.
         name: &'static str,
-        /// The time step of the other scheme, s.
         time_step_s: f64,
         /// The finest time step tried with the run's own, s.
         tried_s: f64,
@@ -280,7 +277,7 @@ fn tried(scenario: &Scenario, is_wanted: &dyn Fn() -> bool) -> Advice {
         turns_if_believed(&other, is_wanted)
     };
     let holds = |step: f64, scheme| trial(step, scheme).is_some_and(|most_turns| most_turns < 0.5);
-    if !is_affordable(scenario) || duration_s(scenario) / own > most_steps(scenario) {
+    if !is_affordable(scenario) || Clock::end_s(scenario) / own > most_steps(scenario) {
         return Advice::Nothing;
     }
     if trial(own, scheme).is_some() {
@@ -339,10 +336,6 @@ fn length(vector: &Vector3<f64>) -> f64 {
     }
 }
 
-fn duration_s(scenario: &Scenario) -> f64 {
-    Clock::end_s(scenario)
-}
-
 /// How many steps a search may take with this many points.
 fn most_steps(scenario: &Scenario) -> f64 {
     SEARCH_STEPS as f64 * 14.0 / scenario.body.mechanics.points().len().max(14) as f64
@@ -352,7 +345,7 @@ fn most_steps(scenario: &Scenario) -> f64 {
 /// while all of them together take no more steps than the search may.
 fn finer_time_steps(scenario: &Scenario) -> impl Iterator<Item = f64> + use<> {
     let begin = scenario.motion.time_step_s;
-    let (duration, most) = (duration_s(scenario), most_steps(scenario));
+    let (duration, most) = (Clock::end_s(scenario), most_steps(scenario));
     let spin = observables::angular_velocity(&scenario.body.mechanics, &scenario.start).norm();
     let coarsest = begin.min(PI / spin);
     let decade = libm::floor(libm::log10(coarsest)) as i32;

@@ -16,7 +16,7 @@
 //!
 //! A turning point is read by interpolation between two rows, and how far that reading is off is known from the equations
 //! of motion. It is stated in the uncertainty and not taken away from the value. Taken away, the value would no longer be
-//! read off the rows but computed from the equations that it is to be held against: it would agree with theory to rounding
+//! read off the rows but computed from the equations that it is to be compared with: it would agree with theory to rounding
 //! however coarse the rows are, and nothing would be left that the uncertainty could be compared with.
 //!
 //! What is measured is the run as its steps show it: the error of its scheme is not in the uncertainty, and a nutation of
@@ -46,7 +46,6 @@ impl Instruments {
         })
     }
 
-    /// Takes in `step`.
     #[inline]
     pub fn follow(&mut self, step: &Step) {
         match &mut self.0 {

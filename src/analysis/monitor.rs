@@ -1,11 +1,8 @@
 //! What follows a run step by step and can say at any moment how it stands: instruments, theory, health.
 
 use super::beside::Beside;
-use super::extremes::Extremes;
-use super::frozen::Frozen;
 use super::gauges::Gauges;
 use super::health::Health;
-use super::measure::{Instruments, Measured};
 use super::swings::Swing;
 use super::theory::Theory;
 use super::trial::Deviation;
@@ -17,14 +14,13 @@ use std::sync::Arc;
 /// Follows one run from its start.
 #[derive(Clone, Debug)]
 pub struct Monitor {
-    gauges: Gauges,
+    pub gauges: Gauges,
     beside: Beside,
-    /// Steps still to be held against the exact motion.
+    /// Steps still to be compared with the exact motion.
     unheld: Vec<State>,
 }
 
 impl Monitor {
-    /// A monitor for the run that begins at `step`.
     pub fn new(step: &Step) -> Self {
         Self {
             gauges: Gauges::new(step),
@@ -38,7 +34,7 @@ impl Monitor {
         self.beside.go_on_in(scenario);
     }
 
-    /// Takes in `step`; to be shown every step. Every one of them is held against the exact motion: what leaves it and
+    /// Takes in `step`; to be shown every step. Every one of them is compared with the exact motion: what leaves it and
     /// comes back between two looks has left it too.
     #[inline]
     pub fn follow(&mut self, step: &Step) {
@@ -69,7 +65,7 @@ impl Monitor {
         self.unheld.clear();
     }
 
-    /// Whether the run is held against the exact motion.
+    /// Whether the run is compared with the exact motion.
     pub fn has_exact(&self) -> bool {
         self.beside.is_known()
     }
@@ -88,7 +84,7 @@ impl Monitor {
     }
 
     /// How the tilt has swung up to the last [`deviation`](Self::deviation) beside the exact motion's, where they differ most;
-    /// `None` where it is not held against that.
+    /// `None` where it is not compared.
     pub fn swing(&self) -> Option<Swing> {
         self.beside.swing()
     }
@@ -121,34 +117,8 @@ impl Monitor {
     }
 
     /// The largest distance of the traced point from the exact motion up to the last [`deviation`](Self::deviation), m; 0
-    /// where it is not held against that.
+    /// where it is not compared.
     pub fn most_distance_m(&self) -> f64 {
         self.beside.most_distance_m()
-    }
-
-    /// The least and the greatest over every step of the run.
-    pub fn extremes(&self) -> &Extremes {
-        self.gauges.extremes()
-    }
-
-    /// By how much the tilt has swung since the forces last changed, degrees; `None` before it was seen whole.
-    pub fn tilt_swing_deg(&self) -> Option<Measured> {
-        self.gauges.tilt_swing_deg()
-    }
-
-    /// What the linear theory of the report's scheme says of the motion since the forces last changed; `None` where it says
-    /// nothing.
-    pub fn frozen(&self) -> Option<Frozen> {
-        self.gauges.frozen()
-    }
-
-    /// The step at which the forces last changed.
-    pub fn since(&self) -> u64 {
-        self.gauges.since()
-    }
-
-    /// What has been measured since the forces last changed.
-    pub fn instruments(&self) -> &Instruments {
-        self.gauges.instruments()
     }
 }

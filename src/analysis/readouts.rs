@@ -5,10 +5,8 @@
 //! cannot be stated honestly is [`Value::Nothing`], null in JSON: no number of it is ever NaN or infinite.
 
 mod table;
-mod value;
 
 pub use table::{READOUTS, Readout, Source, find, names, nearest};
-pub use value::Value;
 
 use super::frozen::Frozen;
 use super::health::Advice;
@@ -23,15 +21,12 @@ use std::time::Duration;
 /// A run at one step, with what has been measured on it and what theory says of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Readouts {
-    /// The scenario's title.
     pub title: String,
     /// The name of the scheme in force.
     pub scheme: &'static str,
     /// How the scheme went about it, where it has more than one way.
     pub scheme_kind: Option<String>,
-    /// The time step in force, s.
     pub time_step_s: f64,
-    /// The state.
     pub sample: Sample,
     /// L·axle, J s.
     pub spin: f64,
@@ -41,13 +36,11 @@ pub struct Readouts {
     pub has_rotor: bool,
     /// I3/I1 of a symmetric body.
     pub kappa: Option<f64>,
-    /// How it stands.
     pub health: Health,
     /// What would mend it, where that has been sought.
     pub advice: Option<Advice>,
     /// What theory says of the exact motion now, about the axis that it names.
     pub theory: Option<Theory>,
-    /// The least and the greatest so far.
     pub extremes: Extremes,
     /// Precession since the forces last changed, rad/s.
     pub precession: Option<Measured>,
@@ -89,16 +82,16 @@ impl Readouts {
             health: *health,
             advice: advice.copied(),
             theory: monitor.theory(state.time_s),
-            extremes: *monitor.extremes(),
+            extremes: monitor.gauges.extremes,
             precession: is_lasting
-                .then(|| monitor.instruments().precession_rad_per_s())
+                .then(|| monitor.gauges.instruments.precession_rad_per_s())
                 .flatten(),
             nutation: is_lasting
-                .then(|| monitor.instruments().nutation_period_s())
+                .then(|| monitor.gauges.instruments.nutation_period_s())
                 .flatten(),
-            tilt_swing: monitor.tilt_swing_deg(),
-            frozen: monitor.frozen(),
-            since: monitor.since(),
+            tilt_swing: monitor.gauges.tilt_swing_deg(),
+            frozen: monitor.gauges.frozen,
+            since: monitor.gauges.since,
             stepping: None,
         }
     }
@@ -107,13 +100,13 @@ impl Readouts {
     /// reading them as well would cost more.
     pub fn read_again(&mut self, source: Source, simulation: &Simulation, monitor: &mut Monitor) {
         match source {
-            Source::EveryStep => self.extremes = *monitor.extremes(),
+            Source::EveryStep => self.extremes = monitor.gauges.extremes,
             Source::Measured => {
                 if self.health.slowing.is_none() {
-                    self.precession = monitor.instruments().precession_rad_per_s();
-                    self.nutation = monitor.instruments().nutation_period_s();
+                    self.precession = monitor.gauges.instruments.precession_rad_per_s();
+                    self.nutation = monitor.gauges.instruments.nutation_period_s();
                 }
-                self.tilt_swing = monitor.tilt_swing_deg();
+                self.tilt_swing = monitor.gauges.tilt_swing_deg();
             }
             Source::Exact => {
                 let deviation = monitor.deviation(simulation.now());
@@ -199,5 +192,62 @@ impl Serialize for Readouts {
             }
         }
         object.end()
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// A finite number, in the readout's unit.
+    Number(f64),
+    Whole(u64),
+    Flag(bool),
+    Text(String),
+    Nothing,
+}
+
+impl Value {
+    /// As a number: 1 and 0 for yes and no; `None` of a text.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::Whole(count) => Some(*count as f64),
+            Self::Flag(is_so) => Some(f64::from(u8::from(*is_so))),
+            Self::Text(_) | Self::Nothing => None,
+        }
+    }
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        if number.is_finite() {
+            Self::Number(number)
+        } else {
+            Self::Nothing
+        }
+    }
+}
+
+impl From<u64> for Value {
+    fn from(count: u64) -> Self {
+        Self::Whole(count)
+    }
+}
+
+impl From<bool> for Value {
+    fn from(is_so: bool) -> Self {
+        Self::Flag(is_so)
+    }
+}
+
+impl From<String> for Value {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+impl<T: Into<Self>> From<Option<T>> for Value {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Self::Nothing, Into::into)
     }
 }

@@ -42,11 +42,8 @@ fn change(nutation: &Nutation) -> (&'static str, String) {
 /// One thing to say on the screen, at length where there is room, and in short.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
-    /// In full.
     pub long: String,
-    /// In few words.
     pub short: String,
-    /// Whether something is wrong.
     pub warns: bool,
 }
 
@@ -136,7 +133,7 @@ fn mend(health: &Health, advice: &Advice) -> Option<Remark> {
     })
 }
 
-/// A lag of less than so many times the true one is right. The scheme's is never smaller than the true one.
+/// Largest ratio of the scheme's lag to the true lag that is reported as right. The scheme's lag is never the smaller.
 const LAG_IS_RIGHT: f64 = 1.05;
 
 /// How far the axle lags behind L, and what becomes of the nutation, which is the fault of the run where it is changed.
@@ -236,7 +233,6 @@ fn taken(slowing: &Slowing) -> Remark {
     Remark::new(format!("friction took {} J", short(-slowing.work)), false)
 }
 
-/// Why there is no energy drift.
 fn no_drift(health: &Health) -> &'static str {
     match health.energy_unit {
         None => "neither weight nor kinetic energy to measure it by",

@@ -18,12 +18,11 @@ const ROWS_TO_SEE_IT: f64 = 8.0;
 /// Nutations of a lopsided body that differ by more than this factor in length: between two of their highest points lay
 /// one that was too shallow to be seen.
 const MOST_UNLIKE: f64 = 1.5;
-/// By so many rows nutations of the same length differ at most, as the rows show them.
+/// Largest difference of equally long nutations as the rows show them, in rows.
 const ROWS_OF_CHANCE: f64 = 1.5;
-/// How much more the scatter of nutations that differ at random counts than that of single points.
+/// Weight of the scatter of nutations that differ at random, against the scatter of single points.
 const AT_RANDOM: f64 = 1.75;
 
-/// The instruments for such a run.
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
     /// The last three steps, the newest last.
@@ -92,7 +91,6 @@ impl Rows {
         }
     }
 
-    /// Takes in `step`.
     #[inline]
     pub fn follow(&mut self, step: &Step) {
         let look = Look::at(step);

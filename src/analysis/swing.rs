@@ -5,7 +5,6 @@
 
 use nalgebra::Vector3;
 
-/// Order of the series.
 const ORDER: usize = 18;
 /// Size of the last term against the whole.
 const LAST_TERM: f64 = f64::EPSILON / 16.0;
@@ -18,7 +17,6 @@ type Series = [Vector3<f64>; ORDER + 1];
 /// Axle and momentum of a symmetric top at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Swing {
-    /// The axle's direction.
     pub axle: Vector3<f64>,
     /// L over the moment across the axle, rad/s.
     pub momentum: Vector3<f64>,

@@ -85,7 +85,6 @@ fn height_in(state: &State) -> f64 {
     height(axle.z) / axle.norm_squared()
 }
 
-/// The tilt at a [height], degrees.
 fn tilt_deg(height: f64) -> f64 {
     let cosine = height.abs().sqrt().copysign(height);
     libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees()

@@ -43,7 +43,6 @@ pub struct Theory {
     pub sleeping_limit: Option<f64>,
     /// Tilt at which the axle stands still in azimuth, degrees: the height of the cusps; `None` where it never does.
     pub cusp_tilt_deg: Option<f64>,
-    /// The path of the axle.
     pub path: Path,
     /// Whether there is friction: then all this is of the motion that would follow if it ceased now, and no part of the
     /// motion that does follow, but for the rates at this moment.
@@ -85,7 +84,6 @@ impl fmt::Display for Axis {
     }
 }
 
-/// The path of the axle on the sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Path {
     /// No nutation.

@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 /// With fewer turning points there has been no whole swing.
 const LEAST_TURNS: u64 = 3;
 
-/// More than one turning point in so many rows: the run is strobed.
+/// Rows with more than one turning point among them: the run is strobed.
 const STROBED: u64 = 3;
 
 /// What the parabola does not see, in units of its second difference squared over the swing: with it the uncertainty covers
@@ -89,7 +89,7 @@ impl TiltSwing {
         }
     }
 
-    /// Takes in three rows one after the other, of which the middle one is a turning point.
+    /// Takes in three consecutive rows; the middle one is a turning point.
     fn turn(&mut self, is_top: bool, rows: [(Vector3<f64>, f64); 3]) {
         self.turns += 1;
         let sign = if is_top { 1.0 } else { -1.0 };

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// At about so many steps of a trial, evenly spread, energy and turning are read off. The distance is, at every step.
+/// Number of steps of a trial, evenly spread, at which energy and turning are read off. The distance is read at every step.
 const LOOKS: u64 = 1000;
 /// Steps that are taken at once, without a look at the clock, the exact motion or the watcher.
 const BLOCK: u64 = 4096;
@@ -20,7 +20,6 @@ const TIMED: u64 = 1000;
 /// How a run went beside the exact motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
-    /// Steps taken.
     pub steps: u64,
     /// Largest distance of the traced point from where it should have been, m.
     pub most_distance_m: f64,
@@ -129,7 +128,7 @@ impl Trial {
         Some(trial)
     }
 
-    /// Takes in what so many steps took.
+    /// Takes in the time of `steps` steps.
     fn time(&mut self, (steps, duration): (u64, Duration)) {
         self.stepping += duration;
         // What is left at the end may be too few.
@@ -171,7 +170,7 @@ impl Trial {
     }
 }
 
-/// The greater of two numbers, of which one that is no number must not be lost: it is a run that could not be followed.
+/// The greater of two numbers; NaN, of a run that could not be followed, is kept.
 fn greater(most: f64, now: f64) -> f64 {
     if most.is_nan() || now <= most {
         most

@@ -6,7 +6,6 @@ const MOST: usize = 32;
 /// A measured number with its uncertainty, in its own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// The best value.
     pub value: f64,
     /// One standard error.
     pub uncertainty: f64,
@@ -71,7 +70,6 @@ pub(super) struct StraightLine {
     pub time_scatter_s: f64,
     /// The same of the azimuth at their times, rad.
     pub azimuth_scatter: f64,
-    /// How many others there are.
     pub between: usize,
 }
 

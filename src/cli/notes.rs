@@ -9,7 +9,7 @@ use crate::lab::Lab;
 use crate::storage::session::{self, Listed};
 use crate::teach::class::KeptLessons;
 use crate::teach::clock::{self, Clock};
-use crate::teach::place::Place;
+use crate::teach::predictions::Place;
 use crate::teach::{Asked, Lesson, answers, reading};
 use crate::text::printable::{printable, printable_lines};
 use crate::text::wrap::wrapped;

@@ -100,9 +100,9 @@ pub(super) fn go_to(
     let watch = interruption.meter();
     let mut part = 1_u64;
     loop {
-        let (here, begin) = (lab.player().playback().step_number(), Instant::now());
+        let (here, begin) = (lab.player().playback.step_number(), Instant::now());
         let arrived = lab.begin_at(here.saturating_add(part).min(step));
-        let here = lab.player().playback().step_number();
+        let here = lab.player().playback.step_number();
         if arrived.is_err() || here >= step || watch(here, step).is_break() {
             return arrived;
         }

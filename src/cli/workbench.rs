@@ -101,7 +101,7 @@ fn open_at(
     chosen.tell(&mut lab);
     // Without a thread nothing is remembered; the lab needs none for anything else.
     if let Some(keeper) = folder.ok().and_then(|folder| Keeper::new(folder).ok()) {
-        lab.remember_with(keeper);
+        lab.keeper = Some(keeper);
     }
     furnish(&mut lab, args, confined)?;
     if lesson.is_none() && commands.is_none() && args.scenario.is_none() && args.resume.is_none() {
@@ -114,7 +114,7 @@ fn open_at(
     }
     let mut class = class(&mut lab, lesson)?;
     app::run(&mut lab, &mut class, session.as_ref().ok()).context("the terminal cannot be used")?;
-    if let Some(trouble) = lab.take_keeper().and_then(|keeper| keeper.close(PATIENCE)) {
+    if let Some(trouble) = lab.keeper.take().and_then(|keeper| keeper.close(PATIENCE)) {
         tell(format_args!("gyrolab: {}", printable(&trouble)));
     }
     tell_of_exports(&lab)?;
@@ -132,7 +132,7 @@ fn furnish(lab: &mut Lab, args: &WorkbenchArgs, confined: Option<Confined>) -> a
     }
     lab.set_mouse(!args.look.no_mouse);
     lab.set_fps(args.fps.unwrap_or(FPS));
-    lab.set_usual_colour(surroundings::theme(ColourChoice::Auto, variable).colour);
+    lab.usual_colour = Some(surroundings::theme(ColourChoice::Auto, variable).colour);
     Ok(())
 }
 
@@ -177,7 +177,7 @@ fn new(args: &WorkbenchArgs, name: &str) -> anyhow::Result<Lab> {
 /// Says on the shell's screen what was exported: the lab's is gone with its last notice.
 fn tell_of_exports(lab: &Lab) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
-    for written in lab.files().written() {
+    for written in &lab.files().written {
         let path = Shown(&written.path);
         let rows = written.rows.map(|rows| format!(": {rows} rows"));
         let rows = rows.unwrap_or_default();

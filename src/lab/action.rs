@@ -11,7 +11,6 @@ pub enum Action {
     StepBack,
     /// Asks for a step or a time to go to; with a count, goes to the step of that number.
     GoTo,
-    /// Undoes the last act.
     Undo,
     /// Does again what was undone last.
     Redo,
@@ -113,7 +112,6 @@ pub enum Action {
     Help,
     /// Closes what lies on top, or stops what is in progress.
     Close,
-    /// Does something in the lesson.
     Lesson(LessonKey),
     /// Draws the whole screen again.
     Redraw,
@@ -136,7 +134,6 @@ pub enum LessonKey {
     Before,
     /// Begins the page again: the run as the page wants it.
     Again,
-    /// Does the task of the page.
     ShowTask,
     /// Shows or hides the notes for the teacher, the next page and a clock.
     Notes,
@@ -168,4 +165,16 @@ pub enum Direction {
     Right,
     PageUp,
     PageDown,
+}
+
+impl Direction {
+    /// Rows by which a key moves in a list; a page key moves by `page`.
+    pub fn rows(self, page: isize) -> isize {
+        match self {
+            Self::Up | Self::Left => -1,
+            Self::Down | Self::Right => 1,
+            Self::PageUp => -page,
+            Self::PageDown => page,
+        }
+    }
 }

@@ -73,7 +73,7 @@ impl Player {
 
     /// Why there is no advice to take now; `None` where there may be.
     pub(super) fn why_no_advice(&self) -> Option<&'static str> {
-        let is_believed = self.reading().readouts.health.is_believed();
+        let is_believed = self.reading.readouts.health.is_believed();
         match (is_believed, self.is_seeking_advice()) {
             (Some(true), _) => Some("there is nothing to mend: the run keeps to the exact motion"),
             (None, _) => {
@@ -89,7 +89,7 @@ impl Player {
     /// What would mend doubtful numbers, in words, with the key that does it; `None` where no remedy is known, or where
     /// this run cannot be changed so.
     pub fn offer(&self) -> Option<String> {
-        let is_doubted = self.reading().readouts.health.is_believed() == Some(false);
+        let is_doubted = self.reading.readouts.health.is_believed() == Some(false);
         let offer = self.offer.as_ref().filter(|_| is_doubted)?;
         Some(format!("{} mends it: a takes it", offer.what))
     }
@@ -124,7 +124,7 @@ impl Lab {
         let left_at = self.player.step_to_leave_at();
         let replaced = replaced(self.player.run().scenario());
         let replaced = replaced.map_or(String::new(), |edits| format!(", in place of {edits}"));
-        self.work.leave_at(left_at, self.values.next_push());
+        self.work.leave_at(left_at, &self.values.next_push);
         self.work.begin_as_advised(&scenario);
         self.values.suit(&scenario);
         self.player.begin(scenario, false);

@@ -17,23 +17,19 @@ pub struct Done {
 /// An action that takes time; [`Lab::advance`](super::Lab::advance) continues it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnderWay {
-    /// The run is on its way to a step.
     Going,
     /// The run plays until a condition holds.
     Playing,
     /// The script waits until the clock shows this time.
     Waiting(Duration),
-    /// An export is being written.
     Exporting,
 }
 
-/// Why a command was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     /// The file exists and may not be replaced.
     #[error("{0} exists: force = true replaces it, as in {{ path = \"FILE\", force = true }}")]
     Exists(PathBuf),
-    /// Any other reason, in words.
     #[error("{0}")]
     Because(String),
 }
@@ -66,7 +62,6 @@ impl Done {
         }
     }
 
-    /// The same for a command that has started `under_way`.
     pub(super) fn going_on(self, under_way: UnderWay) -> Self {
         Self {
             under_way: Some(under_way),
@@ -75,5 +70,4 @@ impl Done {
     }
 }
 
-/// The result of a command: what it has done, or why it was refused.
 pub type Answer = Result<Done, Refusal>;

@@ -17,9 +17,6 @@ impl Lab {
     }
 
     /// The dialog that asks for the file of an export, a run file or a scenario of the present state.
-    ///
-    /// # Errors
-    /// Why there is nothing to write now.
     pub(super) fn dialog_for_a_file(&self, action: Action) -> Result<Dialog, String> {
         let free_name = |about, extension| self.files.free_name(self.work.name(), about, extension);
         match action {
@@ -57,8 +54,8 @@ impl Lab {
     /// Returns the number that a room above asked for.
     pub(super) fn accept(&mut self) -> Option<Request> {
         let dialog = self.on_top.take_dialog()?;
-        if let Question::Number = dialog.question() {
-            match number_typed(dialog.form().text(0)) {
+        if let Question::Number = &dialog.question {
+            match number_typed(dialog.form.text(0)) {
                 Ok(number) => return Some(Request::Answer(number)),
                 Err(reason) => self.on_top.open_dialog(dialog.refused(reason.into())),
             }
@@ -73,10 +70,10 @@ impl Lab {
     }
 
     fn answer_to(&mut self, dialog: &Dialog) -> Answer {
-        let text = dialog.form().text(0);
+        let text = dialog.form.text(0);
         let path = self.files.path_of(text);
         let force = dialog.may_replace(&path);
-        let command = match dialog.question() {
+        let command = match &dialog.question {
             Question::Value => {
                 let run = self.player.run();
                 let time_step_s = self.player.motion().time_step_s;
@@ -94,7 +91,7 @@ impl Lab {
             }),
             Question::Figure(to_step) => Some(Command::Figure {
                 path: text.to_owned(),
-                kind: dialog.form().text(1).trim().to_owned(),
+                kind: dialog.form.text(1).trim().to_owned(),
                 exact: self.player.run().overlay().is_some(),
                 to_step: Some(*to_step),
                 force,
@@ -115,9 +112,6 @@ impl Lab {
 }
 
 /// The number in `text`; a comma may stand for the decimal point.
-///
-/// # Errors
-/// Why it is none.
 fn number_typed(text: &str) -> Result<f64, String> {
     let text = text.trim().replace(',', ".");
     let number: Option<f64> = text.parse().ok();

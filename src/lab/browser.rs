@@ -1,14 +1,14 @@
 //! The browser: the list of presets and files, the filter, the selected entry and its preview.
 
-mod listing;
-
-use super::preview::{AT_ONCE, Loader, Preview, read};
-use super::sorting::Sorting;
-use super::typing::type_into;
+use super::form::type_into;
+use super::preview::{AT_ONCE, Loader, Preview, in_background, read};
 use crate::scenario::presets::PRESETS;
-use listing::{above, files, folders};
+use std::collections::HashSet;
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
 /// The name of the entry that leads to the folder above.
@@ -19,13 +19,10 @@ const ABOVE: &str = "../";
 pub struct Entry {
     /// The name of the preset or the path of the file, as SCENARIO on the command line; that of a folder ends in `/`.
     pub name: String,
-    /// Whether it is a file.
     pub is_file: bool,
-    /// Whether it is a folder.
     pub is_folder: bool,
 }
 
-/// The state of the browser.
 #[derive(Debug, Default)]
 pub struct Browser {
     entries: Vec<Entry>,
@@ -34,14 +31,13 @@ pub struct Browser {
     first: PathBuf,
     passed: Vec<PathBuf>,
     /// How many files of the folder are left out because they hold no run.
-    others: usize,
+    pub others: usize,
     /// The search for files that hold no run, while it is in progress.
-    sorting: Option<Sorting>,
+    sorting: Option<Receiver<HashSet<String>>>,
     /// The name of the entry that is open in the lab.
     open: String,
-    filter: String,
-    selected: usize,
-    /// The selected entry and its preview.
+    pub filter: String,
+    pub selected: usize,
     preview: Option<(Entry, Preview)>,
     /// Whether the selected entry is to be opened as soon as it has been read.
     is_chosen: bool,
@@ -107,7 +103,11 @@ impl Browser {
         let mut names = files(folder);
         names.retain(|name| may_be_read(Path::new(name)));
         self.others = 0;
-        self.sorting = Some(Sorting::begin(&names));
+        let searched = names.clone();
+        let is_other = |name: &String| !may_hold_run(name);
+        self.sorting = Some(in_background(move || {
+            searched.into_iter().filter(is_other).collect()
+        }));
         let leads_up =
             !self.passed.is_empty() || above(folder).is_some_and(|above| may_be_read(&above));
         let mut folders = folders(folder);
@@ -133,12 +133,10 @@ impl Browser {
     /// Removes the files that hold no run from the list, if the search has found them or finds them within `wait`.
     /// Returns whether it removed any. The selection stays on its entry.
     fn leave_out_others(&mut self, wait: Duration) -> bool {
-        let Some(others) = self
-            .sorting
-            .as_ref()
-            .and_then(|sorting| sorting.others(wait))
-        else {
-            return false;
+        let others = match self.sorting.as_ref().map(|found| found.recv_timeout(wait)) {
+            Some(Ok(others)) => others,
+            Some(Err(RecvTimeoutError::Disconnected)) => HashSet::new(), // there was no thread: every file is listed
+            Some(Err(RecvTimeoutError::Timeout)) | None => return false,
         };
         self.sorting = None;
         self.others = others.len();
@@ -199,22 +197,10 @@ impl Browser {
         self.entries.iter().filter(|entry| entry.is_file).count()
     }
 
-    /// How many TOML and CSV files of the folder are not listed, because they hold no run.
-    pub fn others(&self) -> usize {
-        self.others
-    }
-
-    /// The number of the selected entry among those shown, from 0.
-    pub fn selected(&self) -> usize {
-        self.selected
-    }
-
-    /// The selected entry.
     pub fn choice(&self) -> Option<&Entry> {
         self.shown().get(self.selected).copied()
     }
 
-    /// The preview of the selected entry.
     pub fn preview(&self) -> Option<&Preview> {
         self.preview.as_ref().map(|(_, preview)| preview)
     }
@@ -242,11 +228,6 @@ impl Browser {
             }
             _ => false,
         }
-    }
-
-    /// The filter.
-    pub fn filter(&self) -> &str {
-        &self.filter
     }
 
     /// Moves the selection by `rows`; it stops at both ends.
@@ -308,4 +289,71 @@ impl Browser {
             (entry, preview)
         });
     }
+}
+
+/// Files beyond this many are not listed, nor are folders.
+const MOST_FILES: usize = 1000;
+/// How many bytes of a file are searched for its `[motion]`; a body of many points may stand before it.
+const HEAD: u64 = 1 << 20;
+
+/// The files in `folder` that may hold a scenario, as SCENARIO names them, in the order of their names.
+fn files(folder: &Path) -> Vec<String> {
+    let is_wanted = |name: &str| name.ends_with(".toml") || name.ends_with(".csv");
+    names(folder, Path::is_file, is_wanted)
+}
+
+/// The folders in `folder`, in the order of their names, each with a `/` at its end. Those that the system hides are left
+/// out.
+fn folders(folder: &Path) -> Vec<String> {
+    let mut names = names(folder, Path::is_dir, |name| !name.starts_with('.'));
+    names.iter_mut().for_each(|name| name.push('/'));
+    names
+}
+
+/// The paths of what is in `folder`, is of a kind and has a name that is wanted.
+fn names(
+    folder: &Path,
+    is_kind: fn(&Path) -> bool,
+    is_wanted: impl Fn(&str) -> bool,
+) -> Vec<String> {
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return Vec::new(); // a folder that cannot be read has nothing to offer
+    };
+    let mut names: Vec<_> = entries
+        .flatten()
+        .filter(|entry| is_kind(&entry.path()))
+        .filter_map(|entry| entry.file_name().into_string().ok())
+        .filter(|name| is_wanted(name))
+        .take(MOST_FILES)
+        .map(|name| {
+            if folder == Path::new(".") {
+                name
+            } else {
+                folder.join(name).display().to_string()
+            }
+        })
+        .collect();
+    names.sort_unstable();
+    names
+}
+
+fn above(folder: &Path) -> Option<PathBuf> {
+    let folder = std::fs::canonicalize(folder).ok()?;
+    folder.parent().map(Path::to_owned)
+}
+
+/// Whether the file `name` may hold a run: its first mebibyte names `motion`, as a table or key of a scenario or in the
+/// header of an exported CSV. A file that cannot be read counts too: the preview then says why.
+fn may_hold_run(name: &str) -> bool {
+    let mut head = Vec::new();
+    let read = File::open(name).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+    if read.is_err() {
+        return true;
+    }
+    let text = String::from_utf8_lossy(&head);
+    text.lines().any(|line| {
+        let line = line.trim_start_matches(['#', ' ', '\t', '\u{feff}', '[']);
+        let rest = line.strip_prefix("motion").map(str::trim_start);
+        rest.is_some_and(|rest| rest.starts_with([']', '.', '=']))
+    })
 }

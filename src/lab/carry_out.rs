@@ -76,7 +76,7 @@ impl Lab {
                 let scenario = self.run_up_to(*to_step, "draw")?;
                 let path = self.files.path_of(path);
                 let beside = self.player.measured();
-                let measured = beside.map(|beside| Arc::clone(beside.measured()));
+                let measured = beside.map(|beside| Arc::clone(&beside.measured));
                 let what = (kind.as_str(), *exact);
                 self.files.draw(&scenario, &path, what, measured, *force)
             }
@@ -99,68 +99,49 @@ impl Lab {
                 }
             }
             Command::Speed(speed) => Ok(self.player.set_speed(*speed)),
-            Command::LookAt(text) => {
-                self.view.look_at = Some(text.clone());
-                Ok(Done::SILENT)
-            }
-            Command::Next(text) => {
-                self.view.next = Some(text.clone());
-                Ok(Done::SILENT)
-            }
-            Command::Bare(bare) => {
-                self.view.bare = *bare;
-                Ok(match bare {
-                    true => Done::saying("a bare screen: c brings the rest back"),
-                    false => Done::SILENT,
-                })
-            }
-            Command::Detail(detail_s) => self.set_detail(*detail_s),
-            Command::DetailOf(curve) => {
-                self.view.detail_of = *curve;
-                Ok(Done::saying(match curve {
-                    Some(curve) => format!("the upper strip shows {}", curve.name()),
-                    None => "the upper strip shows what swings: the tilt, or x".to_owned(),
-                }))
-            }
-            Command::Since(since_s) => self.set_since(*since_s),
-            Command::Magnify(times) => self.magnify(*times),
-            Command::Cursor(to) => self.set_cursor(*to),
-            Command::Window(window_s) => self.set_window(*window_s),
             Command::Exact(shown) => Ok(self.player.set_exact(*shown)),
             Command::Measured(name) => self.measure(name.as_deref()),
             Command::Residuals(shown) => self.show_residuals(*shown),
             Command::TakeAdvice => self.follow_advice(),
             Command::Pin(pinned) => Ok(self.player.set_pinned(*pinned)),
-            Command::Show(panes) => {
-                self.view.show(panes);
-                Ok(Done::SILENT)
-            }
-            Command::Hide(parts) => {
-                self.view.hidden.clone_from(parts);
-                Ok(Done::SILENT)
-            }
-            Command::Fill(pane) => {
-                self.view.fill(*pane);
-                Ok(Done::SILENT)
-            }
-            Command::PointAt(pane) => {
-                self.view.pointed_at = *pane;
-                Ok(Done::SILENT)
-            }
-            Command::Phase(page) => self.show_page(*page),
-            Command::SumTo(rows) => {
-                self.view.sum_to = *rows;
-                Ok(Done::SILENT)
-            }
-            Command::Camera(camera) => {
-                self.view.look_from(*camera);
-                Ok(Done::SILENT)
-            }
-            Command::Zoom(zoom) => {
-                self.view.zoom = *zoom;
-                Ok(Done::SILENT)
-            }
+            _ => self.look(command),
         }
+    }
+
+    /// Carries out a command that only changes how the run is shown.
+    fn look(&mut self, command: &Command) -> Answer {
+        match command {
+            Command::LookAt(text) => self.view.look_at = Some(text.clone()),
+            Command::Next(text) => self.view.next = Some(text.clone()),
+            Command::Bare(bare) => {
+                self.view.bare = *bare;
+                if *bare {
+                    return Ok(Done::saying("a bare screen: c brings the rest back"));
+                }
+            }
+            Command::Detail(detail_s) => return self.set_detail(*detail_s),
+            Command::DetailOf(curve) => {
+                self.view.detail_of = *curve;
+                return Ok(Done::saying(match curve {
+                    Some(curve) => format!("the upper strip shows {}", curve.name()),
+                    None => "the upper strip shows what swings: the tilt, or x".to_owned(),
+                }));
+            }
+            Command::Since(since_s) => return self.set_since(*since_s),
+            Command::Magnify(times) => return self.magnify(*times),
+            Command::Cursor(to) => return self.set_cursor(*to),
+            Command::Window(window_s) => return self.set_window(*window_s),
+            Command::Show(panes) => self.view.show(panes),
+            Command::Hide(parts) => self.view.hidden.clone_from(parts),
+            Command::Fill(pane) => self.view.fill(*pane),
+            Command::PointAt(pane) => self.view.pointed_at = *pane,
+            Command::Phase(page) => return self.show_page(*page),
+            Command::SumTo(rows) => self.view.sum_to = *rows,
+            Command::Camera(camera) => self.view.look_from(*camera),
+            Command::Zoom(zoom) => self.view.zoom = *zoom,
+            _ => {}
+        }
+        Ok(Done::SILENT)
     }
 
     fn open_named(&mut self, name: &str) -> Answer {
@@ -196,7 +177,7 @@ impl Lab {
 
     fn nudge(&mut self, key: &str, times: i32) -> Answer {
         let Some(parameter) = self.values.parameter(key).cloned() else {
-            let listed = self.values.list().values().iter();
+            let listed = self.values.list.values.iter();
             let known = listed.filter_map(ListedValue::key);
             return Err(format!(
                 "{key} is no value of this scenario: {}",
@@ -245,9 +226,6 @@ impl Lab {
     }
 
     /// The scenario of the run from step 0 to `to_step`, or to the present step; `to` says what it is for.
-    ///
-    /// # Errors
-    /// Why there is no such run.
     pub(super) fn run_up_to(
         &self,
         to_step: Option<u64>,

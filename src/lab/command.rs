@@ -18,6 +18,7 @@ use crate::lab::view::{Pane, Part};
 use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
 use crate::observe::recording::Curve;
+use crate::scenario::dotted::join;
 use crate::scenario::problem::{Found, nearest};
 use crate::scenario::{Document, Problem, Problems};
 use crate::work::expression::Expression;
@@ -25,14 +26,12 @@ use crate::work::next_push::Toward;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// The most that values are magnified.
 pub const MOST_MAGNIFIED: f64 = 1e6;
 /// What stands for the absence of a choice, and for turns of the tilt, in files.
 const NONE: &str = "none";
 const NEXT_TURN: &str = "next turn";
 const TURN_BEFORE: &str = "turn before";
 
-/// Something a user can do to the lab.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Opens a preset or a file: SCENARIO as on the command line.
@@ -56,23 +55,18 @@ pub enum Command {
     GoTo(Place),
     /// Plays at the present speed until this condition holds, and stops there.
     RunUntil(Expression),
-    /// Lets the run go on.
     Run,
-    /// Pauses the run.
     Pause,
     /// Lets the next command of the script wait for this many seconds.
     Wait(f64),
     /// Begins a part of the script that has this title.
     Chapter(String),
-    /// Undoes this many acts.
     Undo(u32),
     /// Does this many undone acts again.
     Redo(u32),
     /// Writes the run up to here as CSV.
     Export {
-        /// The file.
         path: String,
-        /// Which rows and columns it has.
         layout: Layout,
         /// Up to this step instead of the present one.
         to_step: Option<u64>,
@@ -94,7 +88,6 @@ pub enum Command {
     },
     /// Writes the run up to here as a run file, or the present state as a scenario.
     Save {
-        /// The file.
         path: String,
         /// Whether the file is a scenario that starts from the present state.
         from_here: bool,
@@ -103,9 +96,7 @@ pub enum Command {
         /// Whether an existing file is replaced.
         force: bool,
     },
-    /// The speed at which the run is played.
     Speed(Speed),
-    /// The line about what there is to see.
     LookAt(String),
     /// The line about what to try after the run.
     Next(String),
@@ -133,17 +124,12 @@ pub enum Command {
     Pin(bool),
     /// The panes that share the screen; none: as many as there is room for.
     Show(Vec<Pane>),
-    /// The parts of the screen that are hidden.
     Hide(Vec<Part>),
-    /// The pane that fills the screen, or none.
     Fill(Option<Pane>),
-    /// The page of the step pane.
     Phase(Page),
     /// How many rows of a table the step pane adds up; `None`: all.
     SumTo(Option<usize>),
-    /// The pane that is pointed at, or none.
     PointAt(Option<Pane>),
-    /// Whether the screen is bare.
     Bare(bool),
     /// The direction from which the 3-D view is seen.
     Camera(Camera),
@@ -155,74 +141,57 @@ pub enum Command {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(non_snake_case, reason = "keys carry their unit as it is written")]
 pub struct PushChoice {
-    /// Name of the pushed point.
     pub point: Option<String>,
-    /// The force, N.
     pub force_N: Option<Force>,
     /// Direction of the force, if `force_N` is only a size.
     pub toward: Option<Toward>,
-    /// Duration, s.
     pub for_s: Option<f64>,
 }
 
 /// A force, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Force {
-    /// Its size.
     Size(f64),
     /// The force itself, world frame.
     Vector([f64; 3]),
 }
 
-/// A step of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
-    /// Its number.
     Step(u64),
     /// The one at this time, s.
     Time(f64),
-    /// The first.
     Start,
-    /// The last of the scenario.
     End,
 }
 
-/// Where the cursor on the traces is moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CursorTo {
     /// To a step or a time that the run has reached.
     Place(Place),
     /// To the next step at which the tilt turns up or down.
     NextTurn,
-    /// To the last such step before it.
     TurnBefore,
     /// Off the traces.
     Nowhere,
 }
 
-/// A command of a file, and its line there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed {
-    /// The command.
     pub command: Command,
     /// Its line, from 1; `None` where that is not known.
     pub line: Option<usize>,
 }
 
-/// The commands of a file, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Commands {
     /// The file, as the user named it.
     pub origin: String,
-    /// The commands.
     pub list: Vec<Placed>,
 }
 
 impl Command {
     /// The command called `name` with `value`.
-    ///
-    /// # Errors
-    /// Every rule that is broken, with the nearest right name; keys are those below `name`.
     pub fn new(name: &str, value: &Value) -> Result<Self, Vec<Problem>> {
         match COMMANDS.iter().find(|row| row.name == name) {
             Some(row) => row.read(value),
@@ -237,7 +206,6 @@ impl Command {
     }
 }
 
-/// The text of a file of `commands`.
 pub fn to_toml(commands: &[Command]) -> String {
     let tables = commands
         .iter()
@@ -252,9 +220,6 @@ pub fn is_file_of_commands(document: &Document) -> bool {
 }
 
 /// Reads the file of commands at `path`, or standard input where that is `-`.
-///
-/// # Errors
-/// What is wrong with it: file, line, key, value and rule, and the nearest right name.
 pub fn open(path: &Path) -> Result<Commands, Problems> {
     read(&if path == Path::new("-") {
         Document::read_from("standard input", std::io::stdin().lock())?
@@ -264,9 +229,6 @@ pub fn open(path: &Path) -> Result<Commands, Problems> {
 }
 
 /// The commands in `document`.
-///
-/// # Errors
-/// What is wrong with it, in the order of the file.
 pub fn read(document: &Document) -> Result<Commands, Problems> {
     let mut problems = Found::default();
     let mut list = Vec::new();
@@ -326,20 +288,15 @@ fn one(index: usize, value: &Value) -> Result<Command, Vec<Problem>> {
         return Err(wrong);
     }
     match table.iter().collect::<Vec<_>>()[..] {
-        [(name, value)] => Command::new(name, value).map_err(|problems| {
+        [(name, value)] => {
             let inside = |problem: Problem| Problem {
-                key: if problem.key.is_empty() {
-                    name.clone()
-                } else {
-                    format!("{name}.{}", problem.key)
-                },
+                key: join(name, &problem.key).trim_end_matches('.').to_owned(),
                 ..problem
             };
-            problems
-                .into_iter()
-                .map(|problem| under(inside(problem)))
-                .collect()
-        }),
+            let under_name = |problem| under(inside(problem));
+            Command::new(name, value)
+                .map_err(|problems| problems.into_iter().map(under_name).collect())
+        }
         [] => {
             let rule = "holds no command: there is gyrolab man for their names";
             Err(vec![Problem::at(here, rule)])

@@ -113,7 +113,7 @@ impl Lab {
 
     /// The commands of an arrow key that is pressed `times` times.
     fn moved(&self, direction: Direction, times: i32) -> Result<Option<Vec<Command>>, String> {
-        match (self.on_top.mode(), self.view.focus) {
+        match (self.on_top.mode, self.view.focus) {
             (Mode::Lab, Pane::THREE_D) => {
                 let camera = self.view.turned(direction, times);
                 Ok(Some(vec![Command::Camera(camera)]))
@@ -137,9 +137,8 @@ impl Lab {
         }
     }
 
-    /// The command that nudges the selected value `times` times.
     fn nudged(&self, times: i32) -> Result<Option<Vec<Command>>, String> {
-        Ok(match self.values.list().selected() {
+        Ok(match self.values.list.selected() {
             None => None,
             Some(_) if times == 0 => None,
             Some(ListedValue::OfScenario(parameter)) => Some(vec![Command::Nudge {
@@ -148,7 +147,7 @@ impl Lab {
             }]),
             Some(ListedValue::OfNextPush { field, .. }) => {
                 let scenario = self.player.run().scenario();
-                let next = self.values.next_push().nudged(*field, times, scenario)?;
+                let next = self.values.next_push.nudged(*field, times, scenario)?;
                 Some(vec![Command::NextPush(PushChoice::field(*field, &next))])
             }
         })
@@ -163,7 +162,6 @@ fn signed(direction: Direction, times: i32) -> i32 {
     }
 }
 
-/// How often an action is repeated for `count`.
 pub(super) fn repeated(count: Option<u64>) -> i32 {
     count.unwrap_or(1).min(MOST_REPEATED) as i32
 }

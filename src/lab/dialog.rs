@@ -2,9 +2,9 @@
 
 use super::action::FieldEdit;
 use super::answer::Refusal;
+use super::course::WHERE;
 use super::form::{Field, Form};
 use super::settings::SETTINGS;
-use super::travel::WHERE;
 use super::values::Values;
 use super::values::listed::ListedValue;
 use super::view::View;
@@ -18,29 +18,24 @@ use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The line about the keys in a dialog with one field.
 const KEYS: &str = "Enter takes it, typing replaces it, Esc leaves it";
-/// The same in a dialog with several fields.
 const KEYS_OF_TWO: &str = "Enter writes it, Up and Down the other line, Esc leaves it";
 
-/// The same in the dialog of the settings.
 const KEYS_OF_SETTINGS: &str = "Up and Down choose, Left and Right or Enter change it, Esc closes";
 
 /// A form on top of the panes, and the question that it asks.
 #[derive(Clone, Debug)]
 pub struct Dialog {
-    question: Question,
-    form: Form,
+    pub(super) question: Question,
+    pub form: Form,
     /// The existing file that the user was last asked about: the next Enter replaces it.
     asked_to_replace: Option<PathBuf>,
 }
 
-/// The question of a dialog.
 #[derive(Clone, Debug)]
 pub(super) enum Question {
     /// The value of the selected line of the parameters pane.
     Value,
-    /// A step or a time to go to.
     GoTo,
     /// The CSV file for the rows of this run, and how many of the rows to write.
     Export(Arc<Scenario>),
@@ -66,7 +61,7 @@ impl Dialog {
 
     /// Asks for the selected one of `values`; `None` if none is shown.
     pub(super) fn value(values: &Values) -> Option<Self> {
-        let value = values.list().selected()?;
+        let value = values.list.selected()?;
         let title = match value.key() {
             Some(key) => key.to_owned(),
             None => format!("{} {}", value.group(), value.label()),
@@ -131,7 +126,6 @@ impl Dialog {
         Self::new(question, title, &[("file", path)], &[info])
     }
 
-    /// Asks for a number.
     pub(super) fn number(title: &str, label: &str, about: &str) -> Self {
         let fields = [(label, String::new())];
         Self::new(Question::Number, title, &fields, &[about])
@@ -166,18 +160,8 @@ impl Dialog {
         }
     }
 
-    /// Whether it lists the settings.
     pub fn is_of_settings(&self) -> bool {
         matches!(self.question, Question::Settings)
-    }
-
-    /// The form to draw.
-    pub fn form(&self) -> &Form {
-        &self.form
-    }
-
-    pub(super) fn question(&self) -> &Question {
-        &self.question
     }
 
     /// Whether the user has confirmed that the existing file `path` is to be replaced.
@@ -186,9 +170,6 @@ impl Dialog {
     }
 
     /// The interval of the rows to write, as typed in the second field: 10 stands for each tenth row.
-    ///
-    /// # Errors
-    /// Why the text is no such number.
     pub(super) fn every(&self) -> Result<NonZeroU64, String> {
         let text = self.form.text(1).trim();
         text.parse()
@@ -217,14 +198,8 @@ impl Dialog {
 
     pub(super) fn edit_field(&mut self, edit: FieldEdit) {
         match edit {
-            FieldEdit::Delete => self.edit(Form::delete),
-            FieldEdit::Clear => self.edit(Form::clear),
-            FieldEdit::Left => self.edit(Form::left),
-            FieldEdit::Right => self.edit(Form::right),
-            FieldEdit::Home => self.edit(Form::home),
-            FieldEdit::End => self.edit(Form::end),
-            FieldEdit::Next => self.form.next_field(),
-            FieldEdit::Previous => self.form.previous_field(),
+            FieldEdit::Next | FieldEdit::Previous => self.form.edit_field(edit),
+            _ => self.edit(|form| form.edit_field(edit)),
         }
     }
 
@@ -301,14 +276,14 @@ mod tests {
     #[test]
     fn an_export_shows_its_size_as_it_is_typed() {
         let mut dialog = export();
-        assert!(dialog.form().info[0].starts_with("2,301 rows"));
+        assert!(dialog.form.info[0].starts_with("2,301 rows"));
         dialog.edit_field(FieldEdit::Next);
         dialog.type_char('1');
         dialog.type_char('0');
         assert_eq!(dialog.every().unwrap().get(), 10);
-        assert!(dialog.form().info[0].starts_with("231 rows"));
+        assert!(dialog.form.info[0].starts_with("231 rows"));
         dialog.edit_field(FieldEdit::Clear);
-        assert!(dialog.form().info[0].starts_with("every must be"));
+        assert!(dialog.form.info[0].starts_with("every must be"));
         dialog.paste("5");
         assert_eq!(dialog.every().unwrap().get(), 5);
         dialog.erase();
@@ -324,7 +299,7 @@ mod tests {
         assert!(dialog.may_replace(path) && !dialog.may_replace(other));
         let dialog = dialog.refused(Refusal::Because("no".to_owned()));
         assert!(!dialog.may_replace(path));
-        assert_eq!(dialog.form().complaint.as_deref(), Some("no"));
+        assert_eq!(dialog.form.complaint.as_deref(), Some("no"));
     }
 
     #[test]

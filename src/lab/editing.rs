@@ -15,7 +15,6 @@ use std::sync::Arc;
 use toml::Table;
 
 impl Lab {
-    /// Lists the values that can be edited, as they are now.
     pub(super) fn list_parameters(&mut self) {
         self.values
             .list_again(self.player.run(), self.work.journal());
@@ -43,7 +42,7 @@ impl Lab {
     /// replaces the present run, which began with another value of the same key.
     pub(super) fn begin_with(&mut self, set: &Table, acts: Vec<Act>, is_again: bool) -> Answer {
         let left_at = self.player.step_to_leave_at();
-        self.work.leave_at(left_at, self.values.next_push());
+        self.work.leave_at(left_at, &self.values.next_push);
         let scenario = self.work.begin_with(set, acts, is_again)?;
         self.values.suit(&scenario);
         self.player.begin(scenario, is_again);
@@ -211,7 +210,7 @@ impl Lab {
     /// run is on its way back to, if it is.
     fn leave(&mut self) {
         let step = self.player.step_to_keep();
-        self.work.leave_at(step, self.values.next_push());
+        self.work.leave_at(step, &self.values.next_push);
     }
 
     /// Shows the run of `scenario`, which was opened under another name than the run shown until now.

@@ -16,19 +16,15 @@ use std::sync::Arc;
 /// The most points of a body whose steps are taken apart while the run goes on. The step of a larger body is taken
 /// apart once the run stands still.
 const MOST_POINTS_MOVING: usize = 1000;
-/// Rows of a page of a table.
 const PAGE_ROWS: i64 = 10;
 
 /// A time step with the intermediate results of its scheme.
 #[derive(Clone, Debug)]
 pub struct Explained {
-    /// The number of the step.
     pub step: u64,
-    /// The state before it and after it.
     pub states: (State, State),
     /// The intermediate results: the numbers that made the step itself.
     pub workings: Arc<Workings>,
-    /// The run's scenario.
     pub scenario: Arc<Scenario>,
     /// The sums of the table on the page, if some of its rows are added up.
     sums: Option<(usize, Sums)>,

@@ -15,7 +15,6 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The folder of the lab's files, and the exports.
 #[derive(Default)]
 pub struct Files {
     /// The folder in which files are read and written; `None` for the working directory.
@@ -25,7 +24,7 @@ pub struct Files {
     exporting: Option<Exporting>,
     /// Why the last export failed, until it has been read.
     failure: Option<String>,
-    written: Vec<Written>,
+    pub written: Vec<Written>,
 }
 
 impl Files {
@@ -34,7 +33,6 @@ impl Files {
         self.folder = Some(folder.to_owned());
     }
 
-    /// The folder of the files.
     pub(super) fn folder(&self) -> &Path {
         self.folder.as_deref().unwrap_or(Path::new("."))
     }
@@ -50,19 +48,10 @@ impl Files {
     }
 
     /// Whether the file `path` may be read and written.
-    ///
-    /// # Errors
-    /// Why it may not.
     pub fn admit(&self, path: &Path) -> Result<(), String> {
         self.confined().map_or(Ok(()), |folder| folder.check(path))
     }
 
-    /// What has been exported since the lab was opened.
-    pub fn written(&self) -> &[Written] {
-        &self.written
-    }
-
-    /// Whether an export is under way.
     pub fn is_exporting(&self) -> bool {
         self.exporting.is_some()
     }
@@ -73,9 +62,6 @@ impl Files {
     }
 
     /// Begins to write the rows of `scenario`.
-    ///
-    /// # Errors
-    /// Where one is being written, or the file may not be written or exists.
     pub(super) fn export(
         &mut self,
         scenario: &Arc<Scenario>,
@@ -125,7 +111,6 @@ impl Files {
         Ok(self.admit(path)?)
     }
 
-    /// Asks the export to stop.
     pub(super) fn stop_export(&mut self) {
         if let Some(exporting) = &self.exporting {
             exporting.cancel();
@@ -159,7 +144,6 @@ impl Files {
         self.exporting = None;
     }
 
-    /// The progress of the export, in words.
     pub(super) fn export_in_words(&self) -> Option<String> {
         let (step, steps) = self.exporting.as_ref()?.progress();
         let percent = 100.0 * step as f64 / steps.max(1) as f64;
@@ -175,9 +159,6 @@ impl Files {
     }
 
     /// Writes `content` to the file `path`; `what` names the content in the message.
-    ///
-    /// # Errors
-    /// Where the file may not be written or exists.
     pub(super) fn save(&self, what: &str, content: &str, path: &Path, force: bool) -> Answer {
         is_named(path)?;
         self.admit(path)?;
@@ -296,7 +277,7 @@ mod tests {
     fn nothing_is_under_way_at_first() {
         let mut files = Files::default();
         assert_eq!(files.folder(), Path::new("."));
-        assert!(!files.is_exporting() && files.written().is_empty());
+        assert!(!files.is_exporting() && files.written.is_empty());
         assert_eq!(
             (files.follow_export(), files.export_in_words()),
             (None, None)

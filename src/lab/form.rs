@@ -1,5 +1,6 @@
 //! A form: a few fields to type into.
 
+use super::action::FieldEdit;
 use crate::text::printable::is_steering;
 use tui_input::{Input, InputRequest};
 
@@ -9,9 +10,7 @@ const MOST_TYPED: usize = 1000;
 /// One line to type into. The cursor moves by visible characters, each of which may consist of several code points.
 #[derive(Clone, Debug, Default)]
 pub struct Field {
-    /// Its label.
     pub label: String,
-    /// The text and the cursor.
     input: Input,
     /// Whether the whole text is marked: typing then replaces it.
     is_marked: bool,
@@ -20,7 +19,6 @@ pub struct Field {
 /// A few fields, with a title above and lines of text below.
 #[derive(Clone, Debug, Default)]
 pub struct Form {
-    /// Its title.
     pub title: String,
     /// Its fields, from top to bottom.
     pub fields: Vec<Field>,
@@ -35,7 +33,6 @@ pub struct Form {
 }
 
 impl Field {
-    /// The field of `label` with `text` in it, all of it marked.
     pub fn new(label: &str, text: &str) -> Self {
         Self {
             label: label.to_owned(),
@@ -53,7 +50,6 @@ impl Field {
         }
     }
 
-    /// Its text.
     pub fn text(&self) -> &str {
         self.input.value()
     }
@@ -133,57 +129,27 @@ impl Form {
         self.take(InputRequest::DeletePrevChar);
     }
 
-    /// Removes the character at the cursor, or the marked text.
-    pub fn delete(&mut self) {
-        self.take(InputRequest::DeleteNextChar);
-    }
-
-    /// Removes the whole text of the field.
-    pub fn clear(&mut self) {
-        self.take(InputRequest::DeleteLine);
-    }
-
     /// Marks the whole text of the field: typing then replaces it.
     pub fn mark(&mut self) {
-        self.end();
+        self.move_cursor(InputRequest::GoToEnd);
         if let Some(field) = self.fields.get_mut(self.selected) {
             field.is_marked = !field.text().is_empty();
         }
     }
 
-    /// Moves the cursor one character to the left.
-    pub fn left(&mut self) {
-        self.move_cursor(InputRequest::GoToPrevChar);
-    }
-
-    /// Moves the cursor one character to the right.
-    pub fn right(&mut self) {
-        self.move_cursor(InputRequest::GoToNextChar);
-    }
-
-    /// Moves the cursor to the beginning.
-    pub fn home(&mut self) {
-        self.move_cursor(InputRequest::GoToStart);
-    }
-
-    /// Moves the cursor to the end.
-    pub fn end(&mut self) {
-        self.move_cursor(InputRequest::GoToEnd);
-    }
-
-    /// Selects the field below; after the last, the first.
-    pub fn next_field(&mut self) {
-        self.select(1);
-    }
-
-    /// Selects the field above; before the first, the last.
-    pub fn previous_field(&mut self) {
-        self.select(self.fields.len().saturating_sub(1));
-    }
-
-    fn select(&mut self, further: usize) {
+    /// Changes or moves within the selected field, or selects another: after the last comes the first.
+    pub fn edit_field(&mut self, edit: FieldEdit) {
         let count = self.fields.len().max(1);
-        self.selected = (self.selected + further) % count;
+        match edit {
+            FieldEdit::Delete => self.take(InputRequest::DeleteNextChar),
+            FieldEdit::Clear => self.take(InputRequest::DeleteLine),
+            FieldEdit::Left => self.move_cursor(InputRequest::GoToPrevChar),
+            FieldEdit::Right => self.move_cursor(InputRequest::GoToNextChar),
+            FieldEdit::Home => self.move_cursor(InputRequest::GoToStart),
+            FieldEdit::End => self.move_cursor(InputRequest::GoToEnd),
+            FieldEdit::Next => self.selected = (self.selected + 1) % count,
+            FieldEdit::Previous => self.selected = (self.selected + count - 1) % count,
+        }
     }
 
     fn edit(&mut self, change: impl FnOnce(&mut Field)) {
@@ -209,6 +175,18 @@ impl Form {
     }
 }
 
+/// The most characters of such a line.
+pub(super) const MOST_IN_LINE: usize = 100;
+
+/// Adds `text` to the line `typed`, without line ends and other control characters, up to 100 characters. Returns whether
+/// all of it had room.
+pub(super) fn type_into(typed: &mut String, text: &str) -> bool {
+    let room = MOST_IN_LINE.saturating_sub(typed.chars().count());
+    let mut characters = text.chars().filter(|&c| !is_steering(c));
+    typed.extend(characters.by_ref().take(room));
+    characters.next().is_none()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -225,16 +203,16 @@ mod tests {
     #[test]
     fn typing_goes_where_the_cursor_is() {
         let mut form = form("0.1");
-        form.end();
+        form.edit_field(FieldEdit::End);
         form.type_char('5');
-        form.left();
-        form.left();
+        form.edit_field(FieldEdit::Left);
+        form.edit_field(FieldEdit::Left);
         form.erase();
         assert_eq!(form.text(0), "015");
-        form.home();
-        form.delete();
+        form.edit_field(FieldEdit::Home);
+        form.edit_field(FieldEdit::Delete);
         form.type_char('速');
-        form.end();
+        form.edit_field(FieldEdit::End);
         form.type_char('ü');
         assert_eq!(form.text(0), "速15ü");
         form.erase();
@@ -242,19 +220,19 @@ mod tests {
         form.erase();
         form.erase();
         form.erase();
-        form.delete();
+        form.edit_field(FieldEdit::Delete);
         assert_eq!((form.text(0), form.fields[0].cursor()), ("", 0));
-        form.clear();
+        form.edit_field(FieldEdit::Clear);
         assert_eq!(form.text(7), "");
     }
 
     #[test]
     fn a_character_of_several_code_points_goes_at_once() {
         let mut form = form("e\u{301}x");
-        form.left();
-        form.left();
+        form.edit_field(FieldEdit::Left);
+        form.edit_field(FieldEdit::Left);
         assert_eq!(form.fields[0].cursor(), 0);
-        form.delete();
+        form.edit_field(FieldEdit::Delete);
         assert_eq!(form.text(0), "x");
     }
 
@@ -267,7 +245,7 @@ mod tests {
         erased.erase();
         assert_eq!(erased.text(0), "");
         let mut moved = form("45");
-        moved.left();
+        moved.edit_field(FieldEdit::Left);
         moved.type_char('.');
         assert_eq!(moved.text(0), "4.5");
     }
@@ -275,17 +253,17 @@ mod tests {
     #[test]
     fn fields_follow_one_another_in_a_ring() {
         let mut form = form("x");
-        form.end();
-        form.next_field();
+        form.edit_field(FieldEdit::End);
+        form.edit_field(FieldEdit::Next);
         form.type_char('y');
-        form.next_field();
+        form.edit_field(FieldEdit::Next);
         form.type_char('z');
-        form.previous_field();
+        form.edit_field(FieldEdit::Previous);
         form.type_char('!');
         assert_eq!((form.text(0), form.text(1)), ("xz", "y!"));
         let mut none = Form::default();
-        none.next_field();
-        none.previous_field();
+        none.edit_field(FieldEdit::Next);
+        none.edit_field(FieldEdit::Previous);
         none.type_char('a');
         assert_eq!(none.text(0), "");
     }
@@ -309,8 +287,8 @@ mod tests {
     fn a_complaint_goes_with_the_next_change() {
         let mut form = form("x");
         form.complaint = Some("no".to_owned());
-        form.left();
-        form.next_field();
+        form.edit_field(FieldEdit::Left);
+        form.edit_field(FieldEdit::Next);
         assert!(form.complaint.is_some());
         form.type_char('1');
         assert_eq!(form.complaint, None);
@@ -323,17 +301,28 @@ mod tests {
             for (key, c) in keys {
                 match key {
                     0 => form.erase(),
-                    1 => form.delete(),
-                    2 => form.left(),
-                    3 => form.right(),
-                    4 => form.home(),
-                    5 => form.end(),
-                    6 => form.next_field(),
+                    1 => form.edit_field(FieldEdit::Delete),
+                    2 => form.edit_field(FieldEdit::Left),
+                    3 => form.edit_field(FieldEdit::Right),
+                    4 => form.edit_field(FieldEdit::Home),
+                    5 => form.edit_field(FieldEdit::End),
+                    6 => form.edit_field(FieldEdit::Next),
                     _ => form.type_char(c),
                 }
                 let field = &form.fields[form.selected];
                 prop_assert!(field.cursor() <= field.text().chars().count());
             }
         }
+    }
+
+    #[test]
+    fn a_line_takes_a_hundred_characters_and_none_that_steer() {
+        let mut line = "速".to_owned();
+        assert!(type_into(&mut line, "a\n\u{1b}b"));
+        assert_eq!(line, "速ab");
+        assert!(type_into(&mut line, &"x".repeat(MOST_IN_LINE - 3)));
+        assert!(!type_into(&mut line, "y"));
+        assert!(type_into(&mut line, "\n"), "nothing of it had no room");
+        assert_eq!(line.chars().count(), MOST_IN_LINE);
     }
 }

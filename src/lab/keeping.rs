@@ -16,7 +16,6 @@ use crate::work::journal::Journal;
 use crate::work::next_push::NextPush;
 use serde::{Deserialize, Serialize};
 
-/// The text of the work.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct KeptWork {
@@ -46,9 +45,6 @@ impl KeptPinned {
     }
 
     /// What is to be pinned again.
-    ///
-    /// # Errors
-    /// What is wrong with the run file.
     fn reference(self) -> Result<Reference, Problems> {
         match self.run {
             None => Ok(Reference::Present),
@@ -70,10 +66,8 @@ struct KeptPlace {
     detail_s: Option<f64>,
     /// What that strip shows; `None` where the motion or `[view]` of the scenario tells.
     detail_of: Option<String>,
-    /// The id of the pane in focus.
     focus: String,
     filled: bool,
-    /// The file of the export that was in progress.
     exporting: Option<String>,
     /// The ids of the panes that share the screen; `None` where `[view]` of the scenario tells.
     show: Option<Vec<String>>,
@@ -136,7 +130,6 @@ pub struct Summary {
 pub struct Unreadable(String);
 
 impl Lab {
-    /// The content of the session.
     pub fn content(&mut self) -> Content {
         Content {
             work: self.work.kept(self.player.reference()),
@@ -145,9 +138,6 @@ impl Lab {
     }
 
     /// What a list of sessions shows of `content`.
-    ///
-    /// # Errors
-    /// Why it cannot be read.
     pub fn summary(content: &Content) -> Result<Summary, Unreadable> {
         let work: KeptWork = read("the run", &content.work)?;
         let place: KeptPlace = read("the place in it", &content.place)?;
@@ -164,16 +154,6 @@ impl Lab {
         read::<KeptPlace>("the place in it", &content.place)
             .ok()?
             .lessons
-    }
-
-    /// What the session keeps of the lessons, for the room above that knows what it means.
-    pub fn lessons_kept(&self) -> Option<&toml::Table> {
-        self.lessons.as_ref()
-    }
-
-    /// Makes `lessons` what the session keeps of the lessons.
-    pub fn keep_lessons(&mut self, lessons: Option<toml::Table>) {
-        self.lessons = lessons;
     }
 
     fn place(&mut self) -> KeptPlace {
@@ -203,7 +183,7 @@ impl Lab {
             residuals: self.view.residuals.then_some(true),
             phase: (self.view.page != Page::default()).then(|| self.view.page.choice()),
             sum_to: self.view.sum_to,
-            next_push: self.values.next_push().clone(),
+            next_push: self.values.next_push.clone(),
             camera: self.view.camera_is_chosen.then_some(KeptCamera {
                 yaw_deg: self.view.camera.yaw_deg,
                 pitch_deg: self.view.camera.pitch_deg,
@@ -223,7 +203,7 @@ impl Lab {
             return None;
         }
         let playback = &self.player.playback;
-        let plays_again = self.script.is_held() && self.script.plays_again();
+        let plays_again = self.script.is_held && self.script.plays_again;
         let is_playing = plays_again || playback.is_running() && !playback.is_running_until();
         let under_way = self.script.under_way();
         let again = under_way.and_then(|(command, under_way)| match under_way {
@@ -237,7 +217,7 @@ impl Lab {
         let run = is_playing.then_some(Command::Run);
         let first: Vec<_> = run.into_iter().chain(again).collect();
         Some(KeptScript {
-            origin: self.script.origin().to_owned(),
+            origin: self.script.origin.to_owned(),
             first: command::to_toml(&first),
             left: self.script.left_as_text().to_string(),
         })

@@ -23,24 +23,20 @@ const IN_A_RECORDING: usize = Curve::OF_POINT.len();
 
 /// Measured data, and the run's values for them so far.
 pub struct Beside {
-    name: String,
-    measured: Arc<Measured>,
+    pub name: String,
+    pub measured: Arc<Measured>,
     series: Arc<Series>,
     simulation: Simulation,
     reader: Reader<Arc<Series>>,
     recorded: Vec<Recording>,
-    /// The recording of the run before.
     before: Vec<Recording>,
     /// Whether the run's numbers stopped being finite on the way.
     has_broken: bool,
-    compared: Compared,
+    pub compared: Compared,
 }
 
 impl Beside {
     /// `measured` beside the run of `scenario`, of which nothing has been read yet.
-    ///
-    /// # Errors
-    /// Where they are a table of runs: what to do with it.
     pub(super) fn new(
         name: &str,
         measured: Measured,
@@ -62,29 +58,12 @@ impl Beside {
         Ok(beside)
     }
 
-    /// The data.
-    pub fn measured(&self) -> &Arc<Measured> {
-        &self.measured
-    }
-
-    /// The name of the data or of their file, as the user gave it.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// What was measured, in the order of the file.
     pub fn quantities(&self) -> impl Iterator<Item = &'static Quantity> + Clone + '_ {
         self.series.curves.iter().map(|curve| curve.quantity)
     }
 
-    /// The time of the last value, s.
     pub fn last_s(&self) -> Option<f64> {
         self.series.times_s.last().copied()
-    }
-
-    /// The data against the run, as far as that had come when it was last read.
-    pub fn compared(&self) -> &Compared {
-        &self.compared
     }
 
     /// The recording that has the quantity of this index, and its curve there; `None` where it is not recorded here.
@@ -92,7 +71,6 @@ impl Beside {
         self.place_of(index, &self.recorded)
     }
 
-    /// The same of the run before.
     pub fn recorded_before(&self, index: usize) -> Option<(&Recording, Curve)> {
         self.place_of(index, &self.before)
     }
@@ -185,7 +163,6 @@ impl Beside {
         }
     }
 
-    /// Compares the data with the run up to `now_s`.
     pub(super) fn compare(&mut self, now_s: f64) {
         let scenario = self.simulation.scenario();
         let traced = &scenario.body.mechanics.points()[scenario.trace].at;
@@ -198,15 +175,11 @@ const FOLLOWING: Duration = Duration::from_millis(6);
 const CATCHING_UP: Duration = Duration::from_millis(40);
 
 impl Player {
-    /// The measured data beside the run.
     pub fn measured(&self) -> Option<&Beside> {
         self.measured.as_ref()
     }
 
     /// Puts `measured`, called `name`, beside the run.
-    ///
-    /// # Errors
-    /// Where they are a table of runs.
     pub(super) fn set_measured(&mut self, name: &str, measured: Measured) -> Result<(), Problems> {
         self.measured = Some(Beside::new(name, measured, self.run().scenario())?);
         Ok(())

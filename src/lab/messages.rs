@@ -43,9 +43,7 @@ impl Lab {
             _ => ", u takes the last edit back",
         };
         let text = format!("{text}: ");
-        self.on_top
-            .notice_mut()
-            .keep_seeking([&text, IS_SOUGHT, undo]);
+        self.on_top.notice.keep_seeking([&text, IS_SOUGHT, undo]);
         self.changed = true;
         self.tell_what_was_found();
     }
@@ -58,9 +56,9 @@ impl Lab {
 
     /// Where the message says that advice is looked for, and the search has ended: says what was found instead.
     pub(super) fn tell_what_was_found(&mut self) {
-        if self.on_top.notice().is_seeking() && !self.player.is_seeking_advice() {
+        if self.on_top.notice.is_seeking() && !self.player.is_seeking_advice() {
             let found = self.what_mends();
-            self.on_top.notice_mut().find(&found);
+            self.on_top.notice.find(&found);
             self.changed = true;
         }
     }
@@ -85,41 +83,40 @@ impl Lab {
 
     /// Shows why a key means nothing here, and forgets the count that was typed.
     pub fn refuse(&mut self, text: impl Into<String>) {
-        self.on_top.forget_count();
+        self.on_top.count = None;
         self.say(text);
         self.changed = true;
     }
 
     /// Shows `text` for a few seconds.
     pub(super) fn say(&mut self, text: impl Into<String>) {
-        self.on_top.notice_mut().say(text, self.now);
+        self.on_top.notice.say(text, self.now);
     }
 
     /// Shows `text` until the next key.
     pub fn tell(&mut self, text: impl Into<String>) {
-        self.on_top.notice_mut().keep_saying(text);
+        self.on_top.notice.keep_saying(text);
         self.changed = true;
     }
 
-    /// Removes the present message.
     pub fn take_back_message(&mut self) {
-        self.changed |= self.on_top.notice_mut().take_back();
+        self.changed |= self.on_top.notice.take_back();
     }
 
     /// Shows `text` before the present message, until the next key.
     pub fn tell_first(&mut self, text: &str) {
-        self.on_top.notice_mut().keep_saying_first(text);
+        self.on_top.notice.keep_saying_first(text);
         self.changed = true;
     }
 
     /// Shows why the session cannot be saved, until it can.
     pub fn set_trouble(&mut self, trouble: Option<String>) {
-        self.changed |= self.on_top.notice_mut().set_trouble(trouble);
+        self.changed |= self.on_top.notice.set_trouble(trouble);
     }
 
     /// How long the present message stays; `None` where only a key removes it, or there is none.
     pub fn notice_ends_in(&self) -> Option<Duration> {
-        self.on_top.notice().ends_in(self.now)
+        self.on_top.notice.ends_in(self.now)
     }
 
     /// The line about what there is to see in the run.
@@ -129,7 +126,7 @@ impl Lab {
         }
         let file = || changed::look_at(self.player.run().scenario());
         let told = self.view.look_at.as_deref();
-        let playback = self.player.playback();
+        let playback = &self.player.playback;
         let is_over = playback.is_endless() && playback.step_number() >= playback.end_step();
         if let Some(next) = self.next().filter(|_| is_over) {
             return next;
@@ -148,7 +145,7 @@ impl Lab {
     /// The message at the bottom of the screen: the steps that are being taken, the message, or the export's progress.
     pub fn notice(&self) -> Option<String> {
         let stepping = self.player.in_words();
-        let said = || self.on_top.notice().text().map(str::to_owned);
+        let said = || self.on_top.notice.text().map(str::to_owned);
         stepping
             .or_else(said)
             .or_else(|| self.files.export_in_words())

@@ -28,7 +28,6 @@ mod files;
 #[cfg(test)]
 mod for_tests;
 pub mod form;
-pub mod help_search;
 mod keeping;
 pub mod measured;
 mod messages;
@@ -42,12 +41,8 @@ mod rerun;
 mod script;
 mod settings;
 pub mod sheet;
-mod show_sheet;
-mod sorting;
 mod steering;
 mod traces;
-mod travel;
-mod typing;
 pub mod values;
 pub mod view;
 mod work;
@@ -59,7 +54,6 @@ pub use keeping::{Summary, Unreadable};
 pub use on_top::{MOST_COUNTED, Mode, OnTop};
 pub use player::Player;
 pub use script::Script;
-pub use show_sheet::scrolled_by;
 pub use values::Values;
 pub use work::Work;
 
@@ -82,11 +76,9 @@ pub enum Request {
     Redraw,
     /// Suspend the program until the shell resumes it.
     Suspend,
-    /// End the program.
     Quit,
 }
 
-/// The state of the lab.
 pub struct Lab {
     work: Work,
     player: Player,
@@ -96,11 +88,11 @@ pub struct Lab {
     on_top: OnTop,
     script: Script,
     /// Remembers what dots and colours the user chooses; `None` where nothing is remembered.
-    keeper: Option<Keeper>,
+    pub keeper: Option<Keeper>,
     /// What the session keeps of the lessons.
-    lessons: Option<toml::Table>,
+    pub lessons: Option<toml::Table>,
     /// Whether there are colours where nobody chooses; `None` where that is not known.
-    usual_colour: Option<bool>,
+    pub usual_colour: Option<bool>,
     /// The time since the lab was opened.
     now: Duration,
     /// Whether the picture has changed since it was drawn.
@@ -142,28 +134,12 @@ impl Lab {
         self.read_now(); // a run that stands still is not read again by itself
     }
 
-    /// From now on remembers what dots and colours the user chooses.
-    pub fn remember_with(&mut self, keeper: Keeper) {
-        self.keeper = Some(keeper);
-    }
-
-    /// Tells the lab whether its screen has colours where nobody chooses: that choice is remembered as no choice.
-    pub fn set_usual_colour(&mut self, colour: bool) {
-        self.usual_colour = Some(colour);
-    }
-
-    /// The choice of colours, as it is remembered.
     fn colour_choice(&self) -> &'static str {
         if self.usual_colour == Some(self.view.theme.colour) {
             "auto"
         } else {
             self.view.theme.colour_choice()
         }
-    }
-
-    /// Ends remembering, and returns what remembers: it may have something left to write.
-    pub fn take_keeper(&mut self) -> Option<Keeper> {
-        self.keeper.take()
     }
 
     /// Remembers that the user has chosen `value` for the setting `key`.
@@ -174,9 +150,6 @@ impl Lab {
     }
 
     /// Takes the run to `step` at once.
-    ///
-    /// # Errors
-    /// If the numbers stop being finite on the way.
     pub fn begin_at(&mut self, step: u64) -> Result<(), NotFinite> {
         let arrived = self.player.playback.begin_at(step);
         self.player.playback.catch_up_exact();
@@ -191,14 +164,14 @@ impl Lab {
         let now = clock();
         let wall = now.saturating_sub(self.now);
         self.now = now;
-        self.changed |= self.on_top.notice_mut().expire(now);
+        self.changed |= self.on_top.notice.expire(now);
         let (halt, is_new) = self.player.advance(now, wall, clock);
         self.changed |= is_new;
         if let Some(halt) = halt {
             self.halted(halt);
         }
         self.tell_what_was_found();
-        self.changed |= self.on_top.take_what_was_read();
+        self.changed |= self.on_top.browser.take_what_was_read();
         self.open_what_was_read();
         self.follow_export();
         if let Some(trouble) = self.keeper.as_ref().and_then(Keeper::trouble) {
@@ -215,12 +188,11 @@ impl Lab {
         self.player.playback.play_on();
     }
 
-    /// Draws at most so many frames a second.
+    /// Draws at most `fps` frames a second.
     pub fn set_fps(&mut self, fps: u32) {
         self.view.fps = fps;
     }
 
-    /// Listens to the mouse, or leaves it to the terminal.
     pub fn set_mouse(&mut self, listens: bool) {
         self.view.mouse = listens;
     }
@@ -235,7 +207,7 @@ impl Lab {
 
     /// Takes a pasted text, where text is typed.
     pub fn paste(&mut self, text: &str) {
-        match self.on_top.mode() {
+        match self.on_top.mode {
             Mode::Find => self.values.type_name(text),
             _ => self.on_top.paste(text, self.now),
         }
@@ -258,10 +230,10 @@ impl Lab {
     /// Turns the camera so that the axle is seen aslant, unless its direction was chosen. A moving picture is left
     /// as it is: the motion shows where the axle points.
     fn turn_camera(&mut self) {
-        let playback = self.player.playback();
+        let playback = &self.player.playback;
         let is_still = !playback.is_running() || playback.step_number() == 0;
         if is_still && !self.view.camera_is_chosen {
-            let axle = self.player.reading().state.axle();
+            let axle = self.player.reading.state.axle();
             self.view.camera = self.view.camera.aside_of(&axle);
         }
     }
@@ -284,42 +256,34 @@ impl Lab {
         std::mem::take(&mut self.changed)
     }
 
-    /// What was done to the run.
     pub fn work(&self) -> &Work {
         &self.work
     }
 
-    /// The player of the run.
     pub fn player(&self) -> &Player {
         &self.player
     }
 
-    /// The values that can be edited.
     pub fn values(&self) -> &Values {
         &self.values
     }
 
-    /// The files of the lab.
     pub fn files(&self) -> &Files {
         &self.files
     }
 
-    /// The files of the lab, to say where they are.
     pub fn files_mut(&mut self) -> &mut Files {
         &mut self.files
     }
 
-    /// How the run is shown.
     pub fn view(&self) -> &View {
         &self.view
     }
 
-    /// What lies on top of the panes.
     pub fn on_top(&self) -> &OnTop {
         &self.on_top
     }
 
-    /// The commands that are not carried out yet.
     pub fn script(&self) -> &Script {
         &self.script
     }

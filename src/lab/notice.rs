@@ -14,7 +14,6 @@ pub struct Notice {
     trouble: Option<String>,
 }
 
-/// A message.
 #[derive(Clone, Debug)]
 struct Said {
     text: String,
@@ -27,36 +26,32 @@ struct Said {
 impl Notice {
     /// Shows `text` for five seconds from `now` on.
     pub fn say(&mut self, text: impl Into<String>, now: Duration) {
-        self.said = Some(Said {
-            text: text.into(),
-            until: Some(now + STANDS),
-            unfound: None,
-        });
+        self.show(text.into(), Some(now + STANDS), None);
     }
 
     /// Shows `text` until the next key: for messages that must not be missed.
     pub fn keep_saying(&mut self, text: impl Into<String>) {
-        self.said = Some(Said {
-            text: text.into(),
-            until: None,
-            unfound: None,
-        });
+        self.show(text.into(), None, None);
     }
 
-    /// The same of three texts in a row, of which the one in the middle stands until [something is found](Self::find).
+    /// Shows three texts in a row until the next key; the middle one is replaced once [something is found](Self::find).
     pub fn keep_seeking(&mut self, [before, unfound, after]: [&str; 3]) {
+        let range = before.len()..before.len() + unfound.len();
+        self.show([before, unfound, after].concat(), None, Some(range));
+    }
+
+    fn show(&mut self, text: String, until: Option<Duration>, unfound: Option<Range<usize>>) {
         self.said = Some(Said {
-            text: [before, unfound, after].concat(),
-            until: None,
-            unfound: Some(before.len()..before.len() + unfound.len()),
+            text,
+            until,
+            unfound,
         });
     }
 
     /// Whether a part of the message stands until something is found.
     pub fn is_seeking(&self) -> bool {
-        self.said
-            .as_ref()
-            .is_some_and(|said| said.unfound.is_some())
+        let said = self.said.as_ref();
+        said.is_some_and(|said| said.unfound.is_some())
     }
 
     /// Shows what has been `found` in the place of the part that stood until then.
@@ -96,7 +91,6 @@ impl Notice {
         until.map(|until| until.saturating_sub(now))
     }
 
-    /// The message.
     pub fn text(&self) -> Option<&str> {
         self.said.as_ref().map(|said| said.text.as_str())
     }

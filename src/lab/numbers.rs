@@ -12,23 +12,18 @@ use crate::scenario::problem::nearest;
 use crate::work::parameters::table_at;
 use toml::Value;
 
-/// A number that a condition can name.
 #[derive(Clone, Copy, Debug)]
 pub enum Named<'a> {
-    /// A column of the CSV.
     Column(&'static Column),
     /// A readout that is no column of the CSV.
     Readout(&'static Readout),
-    /// A key of the scenario that holds a number.
     Key(&'a str),
 }
 
-/// The source of a number in one run.
 #[derive(Clone, Copy, Debug)]
 pub enum Source {
     /// The CSV row of the present step.
     Column(&'static Column),
-    /// A readout of the run.
     Readout(&'static Readout),
     /// Gravity in force, m/s².
     Gravity,
@@ -39,9 +34,6 @@ pub enum Source {
 }
 
 /// The number called `name`.
-///
-/// # Errors
-/// Why `name` is no number, with the nearest name of one.
 pub fn find(name: &str) -> Result<Named<'_>, String> {
     if let Some(column) = Column::find(name) {
         return Ok(Named::Column(column));
@@ -73,7 +65,7 @@ impl Lab {
     /// The number called `name`, as the lab has read it last; `None` if there is no such number, or if it has no value
     /// now.
     pub fn number(&self, name: &str) -> Option<f64> {
-        let readouts = &self.player.reading().readouts;
+        let readouts = &self.player.reading.readouts;
         match find(name).ok()?.of(self.player.run()) {
             Source::Column(column) => Some(column.value(&readouts.sample).number()),
             Source::Readout(readout) => readout.of(readouts).number(),
@@ -107,7 +99,6 @@ fn nearest_to(wrong: &str) -> String {
 }
 
 impl Named<'_> {
-    /// Its source in `run`.
     pub fn of(self, run: &LiveRun) -> Source {
         match self {
             Self::Column(column) => Source::Column(column),
@@ -144,7 +135,6 @@ pub struct Now<'a> {
 }
 
 impl Numbers {
-    /// The numbers of `run` at its present step.
     pub fn at<'a>(&'a mut self, run: &'a mut LiveRun) -> Now<'a> {
         self.read.clear();
         Now {
@@ -174,7 +164,6 @@ impl Now<'_> {
         }
     }
 
-    /// The readouts, with those of `source` as they are now.
     fn readouts(&mut self, source: readouts::Source) -> &Readouts {
         let Numbers { readouts, read } = &mut *self.numbers;
         let readouts = readouts.get_or_insert_with(|| self.run.readouts());

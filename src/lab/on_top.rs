@@ -4,22 +4,19 @@
 use super::action::FieldEdit;
 use super::browser::Browser;
 use super::dialog::Dialog;
-use super::help_search::HelpSearch;
+use super::form::MOST_IN_LINE;
+use super::form::type_into;
 use super::notice::Notice;
 use super::preview::Preview;
-use super::typing::MOST_TYPED;
 use std::path::Path;
 use std::time::Duration;
 
-/// The largest count that can be typed.
 pub const MOST_COUNTED: u64 = 999_999_999;
 
-/// What gets the keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// The panes: nothing lies on top of them.
     Lab,
-    /// The browser of presets and files.
     Browser,
     /// The line in which the user types the browser's filter.
     Filter,
@@ -27,12 +24,10 @@ pub enum Mode {
     Find,
     /// The list of keys and words.
     Help,
-    /// A dialog.
     Dialog,
 }
 
 impl Mode {
-    /// Every mode.
     pub const ALL: [Self; 6] = [
         Self::Lab,
         Self::Browser,
@@ -45,15 +40,15 @@ impl Mode {
 
 /// The browser, the help and the dialog, and which of them is open; the count; the message.
 pub struct OnTop {
-    mode: Mode,
+    pub mode: Mode,
     /// The mode to return to when the help is closed.
-    under_help: Mode,
+    pub under_help: Mode,
     /// The open dialog; `Some` exactly in [`Mode::Dialog`].
     dialog: Option<Dialog>,
-    browser: Browser,
-    help: HelpSearch,
-    count: Option<u64>,
-    notice: Notice,
+    pub browser: Browser,
+    pub help: HelpSearch,
+    pub count: Option<u64>,
+    pub notice: Notice,
     /// Whether the last key asked to leave while an export was in progress, and the user was warned.
     was_warned: bool,
 }
@@ -61,7 +56,6 @@ pub struct OnTop {
 /// What was on the screen when a key was pressed; the key has removed it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cleared {
-    /// The count that was typed.
     pub(super) count: Option<u64>,
     /// Whether a message or a count was removed.
     pub(super) anything: bool,
@@ -85,43 +79,8 @@ impl Default for OnTop {
 }
 
 impl OnTop {
-    /// What gets the keys.
-    pub fn mode(&self) -> Mode {
-        self.mode
-    }
-
-    /// The open dialog, if there is one.
     pub fn dialog(&self) -> Option<&Dialog> {
         self.dialog.as_ref()
-    }
-
-    /// The browser of presets and files; it is shown in [`Mode::Browser`] and [`Mode::Filter`].
-    pub fn browser(&self) -> &Browser {
-        &self.browser
-    }
-
-    /// The search in the help, and the selected entry.
-    pub fn help(&self) -> &HelpSearch {
-        &self.help
-    }
-
-    /// The mode that is returned to when the help is closed.
-    pub fn under_help(&self) -> Mode {
-        self.under_help
-    }
-
-    /// The count typed so far.
-    pub fn count(&self) -> Option<u64> {
-        self.count
-    }
-
-    /// The message.
-    pub fn notice(&self) -> &Notice {
-        &self.notice
-    }
-
-    pub(super) fn notice_mut(&mut self) -> &mut Notice {
-        &mut self.notice
     }
 
     /// Removes the message and the count, as every key does.
@@ -140,11 +99,6 @@ impl OnTop {
         self.count = Some(count.min(MOST_COUNTED));
     }
 
-    /// Forgets the count that was typed.
-    pub(super) fn forget_count(&mut self) {
-        self.count = None;
-    }
-
     /// Warns at `now` that leaving stops the export; asked again right after it, the lab ends.
     pub(super) fn warn_of_export(&mut self, now: Duration) {
         self.was_warned = true;
@@ -157,7 +111,6 @@ impl OnTop {
         self.mode = Mode::Dialog;
     }
 
-    /// Closes the dialog and returns it.
     pub(super) fn take_dialog(&mut self) -> Option<Dialog> {
         let dialog = self.dialog.take()?;
         self.mode = Mode::Lab;
@@ -180,41 +133,6 @@ impl OnTop {
     pub(super) fn enter_folder(&mut self, may_be_read: impl Fn(&Path) -> bool) -> bool {
         self.mode = Mode::Browser;
         self.browser.enter(may_be_read)
-    }
-
-    /// Opens the line for the browser's filter.
-    pub(super) fn open_filter(&mut self) {
-        self.mode = Mode::Filter;
-    }
-
-    /// Opens the line for a part of the name of a value.
-    pub(super) fn open_find(&mut self) {
-        self.mode = Mode::Find;
-    }
-
-    /// Closes that line.
-    pub(super) fn close_find(&mut self) {
-        self.mode = Mode::Lab;
-    }
-
-    /// Says that the help has `entries` entries that are found: the selected one is among them.
-    pub(super) fn limit_help(&mut self, entries: usize) {
-        self.help.limit(entries);
-    }
-
-    /// Closes the browser.
-    pub(super) fn close_browser(&mut self) {
-        self.mode = Mode::Lab;
-    }
-
-    /// Updates the browser with what its background thread has read; returns whether that was anything.
-    pub(super) fn take_what_was_read(&mut self) -> bool {
-        self.browser.take_what_was_read()
-    }
-
-    /// Reads the selected file and chooses it to be opened: [`take_chosen`](Self::take_chosen) returns what it holds.
-    pub(super) fn choose(&mut self) {
-        self.browser.choose();
     }
 
     /// The file that was chosen to be opened and what it holds, once it has been read. Where the browser no longer has
@@ -242,15 +160,15 @@ impl OnTop {
     pub(super) fn close(&mut self) -> bool {
         match self.mode {
             Mode::Lab => return false,
-            Mode::Find => self.close_find(),
-            Mode::Help if !self.help.text().is_empty() => self.help.clear(),
+            Mode::Find => self.mode = Mode::Lab,
+            Mode::Help if !self.help.text.is_empty() => self.help.clear(),
             Mode::Help => self.toggle_help(),
             Mode::Filter => {
                 self.browser.clear_filter();
                 self.mode = Mode::Browser;
             }
             Mode::Browser if self.browser.forget_chosen() => {}
-            Mode::Browser => self.close_browser(),
+            Mode::Browser => self.mode = Mode::Lab,
             Mode::Dialog => drop(self.take_dialog()),
         }
         true
@@ -300,7 +218,7 @@ impl OnTop {
             (None, Mode::Filter) => {
                 if !self.browser.paste(text) {
                     let text = format!(
-                        "the filter takes at most {MOST_TYPED} characters: what was pasted is cut"
+                        "the filter takes at most {MOST_IN_LINE} characters: what was pasted is cut"
                     );
                     self.notice.say(text, now);
                 }
@@ -310,6 +228,43 @@ impl OnTop {
                 self.notice.say(text, now);
             }
         }
+    }
+}
+
+/// The text that is searched for, and the selected entry.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HelpSearch {
+    pub text: String,
+    pub selected: usize,
+}
+
+impl HelpSearch {
+    /// Shows every entry; the first is selected.
+    pub(super) fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Adds `text` to the text that is searched for, up to 100 characters; the first entry found is selected. `/` begins a
+    /// search in other panes: at the beginning it means nothing here.
+    pub(super) fn type_text(&mut self, text: &str) {
+        let begun = if self.text.is_empty() { "/" } else { "" };
+        type_into(&mut self.text, text.strip_prefix(begun).unwrap_or(text));
+        self.selected = 0;
+    }
+
+    /// Removes the last character; the first entry found is selected.
+    pub(super) fn erase(&mut self) {
+        self.text.pop();
+        self.selected = 0;
+    }
+
+    pub(super) fn shift(&mut self, rows: isize) {
+        self.selected = self.selected.saturating_add_signed(rows);
+    }
+
+    /// Moves the selection to the last of `entries` entries, if it is beyond it.
+    pub(super) fn limit(&mut self, entries: usize) {
+        self.selected = self.selected.min(entries.saturating_sub(1));
     }
 }
 
@@ -325,24 +280,24 @@ mod tests {
         assert!(!on_top.close());
         on_top.open_browser(Path::new("/nowhere"), "cusps", |_| true);
         on_top.toggle_help();
-        assert_eq!(on_top.mode(), Mode::Help);
+        assert_eq!(on_top.mode, Mode::Help);
         assert!(on_top.close());
-        on_top.open_filter();
+        on_top.mode = Mode::Filter;
         on_top.type_char('x');
         assert_eq!(
-            (on_top.mode(), on_top.browser().filter()),
+            (on_top.mode, on_top.browser.filter.as_str()),
             (Mode::Filter, "x")
         );
         assert!(on_top.close());
         assert_eq!(
-            (on_top.mode(), on_top.browser().filter()),
+            (on_top.mode, on_top.browser.filter.as_str()),
             (Mode::Browser, "")
         );
         assert!(on_top.close());
         on_top.open_dialog(Dialog::go_to());
-        assert_eq!(on_top.mode(), Mode::Dialog);
+        assert_eq!(on_top.mode, Mode::Dialog);
         assert!(on_top.close() && on_top.dialog().is_none());
-        assert_eq!(on_top.mode(), Mode::Lab);
+        assert_eq!(on_top.mode, Mode::Lab);
     }
 
     #[test]
@@ -350,29 +305,29 @@ mod tests {
         let mut on_top = OnTop::default();
         on_top.add_digit(None, 4);
         on_top.add_digit(Some(4), 2);
-        assert_eq!(on_top.count(), Some(42));
+        assert_eq!(on_top.count, Some(42));
         on_top.add_digit(Some(MOST_COUNTED), 9);
-        assert_eq!(on_top.count(), Some(MOST_COUNTED));
+        assert_eq!(on_top.count, Some(MOST_COUNTED));
         on_top.warn_of_export(NOW);
         let cleared = on_top.clear();
         assert_eq!(cleared.count, Some(MOST_COUNTED));
         assert!(cleared.anything && cleared.was_warned);
         let cleared = on_top.clear();
         assert_eq!((cleared.count, cleared.anything), (None, false));
-        assert!(!cleared.was_warned && on_top.notice().text().is_none());
+        assert!(!cleared.was_warned && on_top.notice.text().is_none());
     }
 
     #[test]
     fn pasted_text_goes_where_text_is_typed() {
         let mut on_top = OnTop::default();
         on_top.paste("q", NOW);
-        assert!(on_top.notice().text().unwrap().contains("does nothing"));
+        assert!(on_top.notice.text().unwrap().contains("does nothing"));
         on_top.open_dialog(Dialog::go_to());
         on_top.paste("400", NOW);
-        assert_eq!(on_top.take_dialog().unwrap().form().text(0), "400");
-        on_top.open_filter();
-        on_top.paste(&"x".repeat(MOST_TYPED + 1), NOW);
-        assert!(on_top.notice().text().unwrap().contains("is cut"));
+        assert_eq!(on_top.take_dialog().unwrap().form.text(0), "400");
+        on_top.mode = Mode::Filter;
+        on_top.paste(&"x".repeat(MOST_IN_LINE + 1), NOW);
+        assert!(on_top.notice.text().unwrap().contains("is cut"));
     }
 
     #[test]
@@ -381,15 +336,15 @@ mod tests {
         on_top.toggle_help();
         on_top.shift(10);
         on_top.shift(-3);
-        assert_eq!(on_top.help().selected(), 7);
-        on_top.limit_help(5);
-        assert_eq!(on_top.help().selected(), 4);
+        assert_eq!(on_top.help.selected, 7);
+        on_top.help.limit(5);
+        assert_eq!(on_top.help.selected, 4);
         on_top.shift(-30);
-        assert_eq!(on_top.help().selected(), 0);
+        assert_eq!(on_top.help.selected, 0);
         on_top.shift(1);
         on_top.toggle_help();
         on_top.toggle_help();
-        assert_eq!(on_top.help().selected(), 0);
+        assert_eq!(on_top.help.selected, 0);
     }
 
     #[test]
@@ -399,11 +354,11 @@ mod tests {
         on_top.shift(3);
         on_top.type_char('d');
         on_top.paste("t\n", NOW);
-        assert_eq!((on_top.help().text(), on_top.help().selected()), ("dt", 0));
+        assert_eq!((on_top.help.text.as_str(), on_top.help.selected), ("dt", 0));
         on_top.erase();
-        assert_eq!(on_top.help().text(), "d");
-        assert!(on_top.close() && on_top.mode() == Mode::Help);
-        assert_eq!(on_top.help().text(), "");
-        assert!(on_top.close() && on_top.mode() == Mode::Lab);
+        assert_eq!(on_top.help.text, "d");
+        assert!(on_top.close() && on_top.mode == Mode::Help);
+        assert_eq!(on_top.help.text, "");
+        assert!(on_top.close() && on_top.mode == Mode::Lab);
     }
 }

@@ -3,6 +3,7 @@
 use super::Lab;
 use super::answer::{Answer, Done};
 use super::command::Command;
+use super::on_top::Mode;
 use super::preview::Preview;
 use crate::export::Destination;
 use crate::scenario::{Document, Problem, Problems, presets};
@@ -11,9 +12,6 @@ use std::sync::Arc;
 
 /// Reads the preset or the file called `name`. A FIFO or a device is refused: reading it may wait for any length of time,
 /// which only the command line can do.
-///
-/// # Errors
-/// Why it cannot be read.
 pub(super) fn read(name: &str) -> Result<Document, Problems> {
     if presets::find(name).is_none() && Destination::may_wait(Path::new(name)) {
         let rule = "is not a regular file: it can be opened at the command line only";
@@ -25,7 +23,7 @@ pub(super) fn read(name: &str) -> Result<Document, Problems> {
 impl Lab {
     /// Opens the entry that is selected in the browser: plays its run, or lists what is in the folder.
     pub(super) fn open_chosen(&mut self) {
-        let Some(entry) = self.on_top.browser().choice().cloned() else {
+        let Some(entry) = self.on_top.browser.choice().cloned() else {
             return self.say("nothing is selected: Esc clears the filter");
         };
         if entry.is_folder {
@@ -42,9 +40,9 @@ impl Lab {
             let answer = self.carry_out(&Command::Open(entry.name));
             return self.play_opened(answer);
         }
-        self.on_top.choose();
+        self.on_top.browser.choose();
         self.open_what_was_read();
-        if self.on_top.browser().is_loading() {
+        if self.on_top.browser.is_loading() {
             self.say("reading it: it opens when it has been read, Esc stays here");
         }
     }
@@ -55,9 +53,7 @@ impl Lab {
             return;
         };
         let Preview::Known(known) = preview else {
-            // There is no thread to read it.
-            let answer = self.carry_out(&Command::Open(name));
-            return self.play_opened(answer);
+            return;
         };
         let answer = match known.as_ref() {
             Ok(scenario) => {
@@ -76,7 +72,7 @@ impl Lab {
     fn play_opened(&mut self, answer: Answer) {
         self.changed = true;
         if answer.is_ok() {
-            self.on_top.close_browser();
+            self.on_top.mode = Mode::Lab;
             self.carry_out_all(&[Command::Run]);
         }
         self.tell_answer(answer);

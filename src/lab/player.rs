@@ -30,11 +30,10 @@ const HOLD: Duration = Duration::from_secs(1);
 
 /// The run, its ghost, its latest reading and the advice about it.
 pub struct Player {
-    pub(super) playback: Playback,
+    pub playback: Playback,
     /// The run before, where an edit has begun this one anew.
     pub(super) ghost: Option<Ghost>,
     pub(super) pinned: Option<Pinned>,
-    /// The measured data beside the run.
     pub(super) measured: Option<Beside>,
     /// Whether to look for a scheme or time step that would make doubtful numbers right.
     pub(super) is_advised: bool,
@@ -43,9 +42,9 @@ pub struct Player {
     /// Whether the step pane was shown when the run was last read, and the step that it takes apart.
     pub(super) explains: bool,
     pub(super) explained: Option<Explained>,
-    reading: Reading,
+    pub reading: Reading,
     read_at: Duration,
-    detail: Detail,
+    pub detail: Detail,
     detail_at: Duration,
     /// Whether `detail` is of the run that was opened last.
     has_detail: bool,
@@ -174,7 +173,6 @@ impl Player {
         self.at_cursor = found.map(|sample| (Arc::clone(run.scenario()), sample));
     }
 
-    /// The numbers at the cursor on the traces.
     pub fn cursor(&self) -> Option<&Sample> {
         self.at_cursor.as_ref().map(|(_, sample)| sample)
     }
@@ -210,17 +208,6 @@ impl Player {
         (self.detail_at, self.has_detail) = (now, true);
     }
 
-    /// The time that the strip of the fast motion shows.
-    pub fn detail(&self) -> &Detail {
-        &self.detail
-    }
-
-    /// The run with its speed and its pauses.
-    pub fn playback(&self) -> &Playback {
-        &self.playback
-    }
-
-    /// The run.
     pub fn run(&self) -> &LiveRun {
         self.playback.run()
     }
@@ -228,11 +215,6 @@ impl Player {
     /// The run before, where an edit has begun this one anew.
     pub fn ghost(&self) -> Option<&Ghost> {
         self.ghost.as_ref()
-    }
-
-    /// The latest reading.
-    pub fn reading(&self) -> &Reading {
-        &self.reading
     }
 
     /// The scheme or time step that would make doubtful numbers right, if one has been found.

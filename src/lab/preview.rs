@@ -2,7 +2,8 @@
 //! to check.
 
 use crate::scenario::{Document, Scenario};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
@@ -15,106 +16,50 @@ pub(super) const AT_ONCE: Duration = Duration::from_millis(15);
 pub enum Preview {
     /// It is being read.
     Loading,
-    /// It cannot be read: the system gives no thread.
-    Unknown,
     /// Its scenario, or why it cannot be opened.
     Known(Arc<Result<Scenario, String>>),
 }
 
-/// Reads scenarios on a thread of its own, one after the other. A request that has not begun when the next one comes is
-/// dropped.
+/// Begins `work` on a thread and returns where its result will come. Where the system gives no thread, nothing comes.
+pub(super) fn in_background<T: Send + 'static>(
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Receiver<T> {
+    let (tell, found) = mpsc::channel();
+    let thread = thread::Builder::new().name("browser".to_owned());
+    let _ = thread.spawn(move || {
+        let _ = tell.send(work()); // nobody may wait for it any more
+    });
+    found
+}
+
+/// Reads scenarios in the background. The answer to any earlier request is dropped.
 #[derive(Debug, Default)]
 pub struct Loader {
-    shared: Option<Arc<Shared>>,
-}
-
-#[derive(Debug, Default)]
-struct Shared {
-    task: Mutex<Task>,
-    changed: Condvar,
-}
-
-#[derive(Debug, Default)]
-struct Task {
-    /// The scenario to be read next.
-    wanted: Option<String>,
-    /// The answer to the last request, once there is one.
-    known: Option<Arc<Result<Scenario, String>>>,
-    is_new: bool,
-    is_over: bool,
+    asked: Option<(String, Receiver<Result<Scenario, String>>)>,
 }
 
 impl Loader {
-    /// Requests the scenario `name`. The answer to any earlier request is dropped.
+    /// Requests the scenario `name`.
     pub fn ask(&mut self, name: &str) -> Preview {
-        let Some(shared) = self.started() else {
-            return Preview::Unknown;
-        };
-        let mut task = shared.lock();
-        (task.wanted, task.known) = (Some(name.to_owned()), None);
-        shared.changed.notify_all();
-        let is_waiting = |task: &mut Task| task.known.is_none();
-        let waited = shared.changed.wait_timeout_while(task, AT_ONCE, is_waiting);
-        let (mut task, _) = waited.unwrap_or_else(PoisonError::into_inner);
-        task.is_new = false;
-        task.known.clone().map_or(Preview::Loading, Preview::Known)
+        let (name, wanted) = (name.to_owned(), name.to_owned());
+        self.asked = Some((name, in_background(move || read(&wanted))));
+        self.answer_within(AT_ONCE).unwrap_or(Preview::Loading)
     }
 
     /// The answer to the last request, if it has come since this was last called.
-    pub fn take_answer(&self) -> Option<Preview> {
-        let mut task = self.shared.as_ref()?.lock();
-        let is_new = std::mem::take(&mut task.is_new);
-        task.known.clone().filter(|_| is_new).map(Preview::Known)
+    pub fn take_answer(&mut self) -> Option<Preview> {
+        self.answer_within(Duration::ZERO)
     }
 
-    /// The state that is shared with the thread, which is started if there is none; `None` where the system gives no
-    /// thread.
-    fn started(&mut self) -> Option<Arc<Shared>> {
-        if self.shared.is_none() {
-            let shared = Arc::new(Shared::default());
-            let of_thread = Arc::clone(&shared);
-            let thread = thread::Builder::new().name("preview".to_owned());
-            thread.spawn(move || of_thread.work()).ok()?;
-            self.shared = Some(shared);
-        }
-        self.shared.clone()
-    }
-}
-
-impl Drop for Loader {
-    fn drop(&mut self) {
-        if let Some(shared) = &self.shared {
-            shared.lock().is_over = true;
-            shared.changed.notify_all();
-        }
-    }
-}
-
-impl Shared {
-    fn lock(&self) -> MutexGuard<'_, Task> {
-        self.task.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Reads each requested scenario, until the loader is dropped.
-    fn work(&self) {
-        loop {
-            let is_idle = |task: &mut Task| task.wanted.is_none() && !task.is_over;
-            let waited = self.changed.wait_while(self.lock(), is_idle);
-            let mut task = waited.unwrap_or_else(PoisonError::into_inner);
-            if task.is_over {
-                return;
-            }
-            let Some(name) = task.wanted.take() else {
-                continue;
-            };
-            drop(task);
-            let known = Arc::new(read(&name));
-            let mut task = self.lock();
-            if task.wanted.is_none() {
-                (task.known, task.is_new) = (Some(known), true);
-                self.changed.notify_all();
-            }
-        }
+    fn answer_within(&mut self, wait: Duration) -> Option<Preview> {
+        let (name, answer) = self.asked.as_ref()?;
+        let known = match answer.recv_timeout(wait) {
+            Ok(known) => known,
+            Err(RecvTimeoutError::Timeout) => return None,
+            Err(RecvTimeoutError::Disconnected) => read(name), // there was no thread
+        };
+        self.asked = None;
+        Some(Preview::Known(Arc::new(known)))
     }
 }
 
@@ -129,12 +74,11 @@ pub fn read(name: &str) -> Result<Scenario, String> {
 mod tests {
     use super::*;
 
-    fn answer(loader: &Loader, preview: Preview) -> Arc<Result<Scenario, String>> {
+    fn answer(loader: &mut Loader, preview: Preview) -> Arc<Result<Scenario, String>> {
         let mut preview = preview;
         loop {
             match preview {
                 Preview::Known(known) => return known,
-                Preview::Unknown => panic!("no thread"),
                 Preview::Loading => {
                     thread::yield_now();
                     preview = loader.take_answer().unwrap_or(Preview::Loading);
@@ -151,7 +95,7 @@ mod tests {
                 loader.ask(name);
             }
             let preview = loader.ask("method-2");
-            let known = answer(&loader, preview);
+            let known = answer(&mut loader, preview);
             assert_eq!(
                 known.as_ref().as_ref().unwrap().file.title,
                 read("method-2").unwrap().file.title
@@ -164,7 +108,7 @@ mod tests {
     fn what_cannot_be_opened_says_why() {
         let mut loader = Loader::default();
         let preview = loader.ask("no-such.toml");
-        let known = answer(&loader, preview);
+        let known = answer(&mut loader, preview);
         assert!(
             known
                 .as_ref()

@@ -33,7 +33,6 @@ pub(super) struct Replay {
     is_act_at_start: bool,
 }
 
-/// The run that was pinned as the reference.
 pub(super) enum Pinned {
     /// The present run: nothing has changed it since.
     Present,
@@ -46,7 +45,6 @@ pub(super) enum Pinned {
 /// What a session keeps of a pinned run, to pin it again.
 #[derive(Clone)]
 pub(super) enum Reference {
-    /// It is the present run.
     Present,
     /// The run of a scenario, up to a step.
     Run(Arc<Scenario>, u64),
@@ -261,7 +259,6 @@ impl Player {
         })
     }
 
-    /// Whether a run is pinned.
     pub fn is_pinned(&self) -> bool {
         self.pinned.is_some()
     }

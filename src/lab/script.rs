@@ -22,11 +22,10 @@ pub(super) const GO_ON_WITH_THEM: &str = "space goes on with them, Esc leaves th
 /// How long steps are taken before the caller decides whether to go on.
 const PART: Duration = Duration::from_millis(100);
 
-/// The commands that are not carried out yet.
 #[derive(Clone, Debug, Default)]
 pub struct Script {
     /// The file of the commands, as the user named it.
-    origin: String,
+    pub origin: String,
     left: VecDeque<Placed>,
     /// The command whose action takes time, and that action.
     under_way: Option<(Placed, UnderWay)>,
@@ -35,15 +34,14 @@ pub struct Script {
     /// Titles of the chapters that were begun and not taken yet.
     chapters: Vec<String>,
     /// Whether the script waits until the user lets it go on: it comes from a session, or was paused.
-    is_held: bool,
+    pub is_held: bool,
     /// Whether the run played when the script was paused, and plays again when it goes on.
-    plays_again: bool,
+    pub plays_again: bool,
     /// `left` as a file of commands; `None` where `left` has changed since it was written.
     kept: Option<Arc<str>>,
 }
 
 impl Script {
-    /// The script of `commands`.
     fn new(commands: Commands) -> Self {
         Self {
             origin: commands.origin,
@@ -60,27 +58,11 @@ impl Script {
         }
     }
 
-    /// Whether the script waits until the user lets it go on: it comes from a session, or was paused.
-    pub fn is_held(&self) -> bool {
-        self.is_held
-    }
-
-    /// Whether the run played when the script was paused, and plays again when it goes on.
-    pub(super) fn plays_again(&self) -> bool {
-        self.plays_again
-    }
-
-    /// The file of the commands, as the user named it.
-    pub fn origin(&self) -> &str {
-        &self.origin
-    }
-
     /// The command that was refused, and why.
     pub fn failure(&self) -> Option<&str> {
         self.failed.as_deref()
     }
 
-    /// Begins a chapter.
     pub(super) fn begin_chapter(&mut self, title: &str) {
         self.chapters.push(title.to_owned());
     }
@@ -112,7 +94,6 @@ impl Script {
         self.left.pop_front()
     }
 
-    /// Whether all commands are carried out.
     pub fn is_done(&self) -> bool {
         self.count() == 0
     }
@@ -150,7 +131,7 @@ impl Lab {
     /// Removes what the commands of the script have said, unless one of them was refused.
     pub fn forget_message_of_script(&mut self) {
         if self.script.failed.is_none() {
-            self.on_top.notice_mut().take_back();
+            self.on_top.notice.take_back();
             self.changed = true;
         }
     }
@@ -218,7 +199,7 @@ impl Lab {
         self.read_now();
         match self.script.failed.take() {
             Some(text) => {
-                self.on_top.notice_mut().take_back(); // the caller says it
+                self.on_top.notice.take_back(); // the caller says it
                 Err(text)
             }
             None => Ok(()),
@@ -308,9 +289,6 @@ impl Lab {
     }
 
     /// Whether the action `under_way` is complete.
-    ///
-    /// # Errors
-    /// Why it has failed.
     fn is_complete(&mut self, under_way: UnderWay, halt: Option<Halt>) -> Result<bool, String> {
         let is_on = match under_way {
             UnderWay::Going => self.player.playback.steps_to_go().is_some(),

@@ -68,7 +68,7 @@ pub(super) const SETTINGS: [Setting; 8] = [
 impl Lab {
     /// Changes the setting that is selected in the dialog, which then shows its new value.
     pub(super) fn change_setting(&mut self, forward: bool) {
-        let Some(selected) = self.on_top.dialog().map(|dialog| dialog.form().selected) else {
+        let Some(selected) = self.on_top.dialog().map(|dialog| dialog.form.selected) else {
             return;
         };
         if let Some(setting) = SETTINGS.get(selected) {
@@ -78,7 +78,6 @@ impl Lab {
             .open_dialog(Dialog::settings(&self.view, selected));
     }
 
-    /// Whether the dialog of the settings is open.
     pub fn shows_settings(&self) -> bool {
         self.on_top.dialog().is_some_and(Dialog::is_of_settings)
     }

@@ -11,8 +11,7 @@ use super::script::{GO_ON_WITH_IT, GO_ON_WITH_THEM};
 use super::view::Pane;
 use super::{Lab, Request};
 
-/// Rows of a page in lists.
-const PAGE: isize = 10;
+pub(super) const PAGE: isize = 10;
 
 impl Lab {
     /// Carries out `action`. Returns what only the main loop can do.
@@ -45,7 +44,6 @@ impl Lab {
         self.carry_out_all(std::slice::from_ref(command));
     }
 
-    /// Moves the focus to `pane`.
     pub fn turn_to(&mut self, pane: Pane) {
         self.on_top.clear();
         self.view.turn_to(pane);
@@ -57,10 +55,9 @@ impl Lab {
         self.view.is_touched = true;
     }
 
-    /// Selects the entry of this number in the browser.
     pub fn select_in_browser(&mut self, row: usize) {
         self.on_top.clear();
-        let selected = self.on_top.browser().selected();
+        let selected = self.on_top.browser.selected;
         self.on_top.shift(row as isize - selected as isize);
         self.changed = true;
     }
@@ -98,13 +95,13 @@ impl Lab {
         let times = repeated(cleared.count);
         match action {
             Action::Digit(digit) => self.on_top.add_digit(cleared.count, digit),
-            Action::TogglePause if self.script.is_held() => self.release_script(),
+            Action::TogglePause if self.script.is_held => self.release_script(),
             Action::TogglePause => self.hold_script(),
             Action::GoTo => self.on_top.open_dialog(Dialog::go_to()),
             Action::ChoosePush => self.turn_to_next_push(),
             Action::Parameters | Action::GoToCursor => self.turn_to_parameters(),
             Action::Edit if self.view.focus != Pane::PARAMETERS => self.turn_to_parameters(),
-            Action::Edit if self.values.list().selected().is_none() => {
+            Action::Edit if self.values.list.selected().is_none() => {
                 self.say("no value to set has that in its name: Esc shows all of them");
             }
             Action::Edit => {
@@ -135,16 +132,15 @@ impl Lab {
                 self.on_top.open_browser(files.folder(), name, may_be_read);
             }
             Action::Choose => self.open_chosen(),
-            Action::Filter => self.on_top.open_filter(),
+            Action::Filter => self.on_top.mode = Mode::Filter,
             Action::FindValue => self.find_value(),
-            Action::Type(typed) if self.on_top.mode() == Mode::Find => {
+            Action::Type(typed) if self.on_top.mode == Mode::Find => {
                 self.values.type_name(typed.encode_utf8(&mut [0; 4]));
             }
-            Action::Erase if self.on_top.mode() == Mode::Find => self.values.erase_name(),
+            Action::Erase if self.on_top.mode == Mode::Find => self.values.erase_name(),
             Action::Type(typed) => self.on_top.type_char(typed),
             Action::Erase => self.on_top.erase(),
-            Action::DoEntry => {} // tui does it
-            Action::InField(FieldEdit::Clear) if self.on_top.mode() == Mode::Find => {
+            Action::InField(FieldEdit::Clear) if self.on_top.mode == Mode::Find => {
                 self.values.forget_name();
             }
             Action::InField(edit @ (FieldEdit::Left | FieldEdit::Right))
@@ -167,38 +163,15 @@ impl Lab {
                 self.on_top.warn_of_export(self.now);
             }
             Action::Quit => return Some(Request::Quit),
-            Action::Step
-            | Action::StepBack
-            | Action::NextPhase
-            | Action::PhaseBack
-            | Action::Why
-            | Action::Faster
-            | Action::Slower
-            | Action::Restart
-            | Action::Undo
-            | Action::Redo
-            | Action::Push
-            | Action::ToggleExact
-            | Action::ToggleResiduals
-            | Action::TogglePin
-            | Action::TakeAdvice
-            | Action::FillScreen
-            | Action::StepCursor(_)
-            | Action::ToTurn(_)
-            | Action::Pan(_)
-            | Action::Magnify(_)
-            | Action::WholeView
-            | Action::ZoomIn
-            | Action::ZoomOut
-            | Action::ZoomToWhole => {} // commands
+            _ => {} // a command, or an entry of the help, which tui carries out
         }
         None
     }
 
     /// Moves the selection of what lies on top, or of the values.
     fn shift(&mut self, direction: Direction, times: i32) {
-        let rows = rows(direction) * times as isize;
-        match (self.on_top.mode(), self.view.focus) {
+        let rows = direction.rows(PAGE) * times as isize;
+        match (self.on_top.mode, self.view.focus) {
             (Mode::Lab | Mode::Find, Pane::PARAMETERS) => {
                 self.values.shift(rows.signum() * times as isize);
             }
@@ -210,8 +183,8 @@ impl Lab {
     /// pane that fills the screen, the focus on the parameters, the export, the step pane in focus. If there is none of these,
     /// it says how to leave, unless the key has already removed a message or a count.
     fn close(&mut self, cleared: &Cleared) -> Option<Request> {
-        let is_found = self.on_top.mode() == Mode::Find;
-        let is_filtered = self.on_top.mode() == Mode::Lab && self.view.focus == Pane::PARAMETERS;
+        let is_found = self.on_top.mode == Mode::Find;
+        let is_filtered = self.on_top.mode == Mode::Lab && self.view.focus == Pane::PARAMETERS;
         // From a value that was searched for, one Esc leads back to the page of a lesson, as it does from any other.
         let is_left = is_filtered && self.view.sheet.is_some();
         if (is_found || is_filtered) && self.values.forget_name() && !is_left {
@@ -255,12 +228,12 @@ impl Lab {
     fn find_value(&mut self) {
         self.view.turn_to(Pane::PARAMETERS);
         self.values.forget_name();
-        self.on_top.open_find();
+        self.on_top.mode = Mode::Find;
     }
 
     /// Says that the help has `entries` entries that are found: the selected one is among them.
     pub fn limit_help(&mut self, entries: usize) {
-        self.on_top.limit_help(entries);
+        self.on_top.help.limit(entries);
     }
 
     /// Pauses the run and the commands that are not carried out yet.
@@ -268,7 +241,7 @@ impl Lab {
         let left = self.script.count();
         self.pause_script();
         self.carry_out_all(&[Command::Pause]);
-        let origin = self.script.origin();
+        let origin = &self.script.origin;
         self.tell(match left {
             1 => format!("paused: 1 command of {origin} is left: {GO_ON_WITH_IT}"),
             left => format!("paused: {left} commands of {origin} are left: {GO_ON_WITH_THEM}"),
@@ -283,14 +256,5 @@ impl Lab {
             1 => "stopped: 1 command is left out".to_owned(),
             left => format!("stopped: {left} commands are left out"),
         });
-    }
-}
-
-fn rows(direction: Direction) -> isize {
-    match direction {
-        Direction::Up | Direction::Left => -1,
-        Direction::Down | Direction::Right => 1,
-        Direction::PageUp => -PAGE,
-        Direction::PageDown => PAGE,
     }
 }

@@ -44,7 +44,7 @@ impl Lab {
 
     /// The command that shows another curve in the strip of the fast motion than it shows now.
     pub(super) fn other_detail(&self, direction: Direction, times: i32) -> Command {
-        let shown = self.view.detail_of.unwrap_or(self.player.detail().curve);
+        let shown = self.view.detail_of.unwrap_or(self.player.detail.curve);
         let curves = [Curve::X, Curve::Y, Curve::Z, Curve::Tilt];
         let now = curves.iter().position(|curve| *curve == shown).unwrap_or(0) as i32;
         let by = match direction {
@@ -96,7 +96,6 @@ impl Lab {
         Ok(Done::SILENT)
     }
 
-    /// Moves the traces where they do not show `time_s`.
     fn show_time(&mut self, time_s: f64) {
         let window_s = self.view.window_s;
         let now_s = self.player.run().now().time_s;
@@ -110,7 +109,6 @@ impl Lab {
         }
     }
 
-    /// The command that moves the cursor by so many fiftieths of the window.
     pub(super) fn moved_cursor(&self, fiftieths: i32) -> Command {
         let run = self.player.run();
         let here = self
@@ -126,7 +124,6 @@ impl Lab {
         Command::Cursor(CursorTo::Place(Place::Step(step)))
     }
 
-    /// The command that moves the cursor by so many steps.
     pub(super) fn stepped_cursor(&self, steps: i32) -> Command {
         let here = self
             .view
@@ -152,17 +149,10 @@ impl Lab {
         Command::Since(Some(since_s.max(0.0)))
     }
 
-    /// The command that magnifies the values so many times twice, or half.
+    /// The command that doubles the magnification `notches` times, or halves it.
     pub(super) fn magnified(&self, notches: i32) -> Command {
         let times = self.view.magnified * 2_f64.powi(notches);
         Command::Magnify(times.clamp(1.0, MOST_MAGNIFIED))
-    }
-
-    /// Whether the traces follow the run with all its values and without a cursor. The length of the time does not count:
-    /// a scenario may ask for any.
-    pub fn shows_whole_view(&self) -> bool {
-        let view = &self.view;
-        (view.cursor, view.since_s) == (None, None) && view.magnified <= 1.0
     }
 
     /// The commands that show the run again, after the time or the values were chosen by hand.

@@ -5,7 +5,7 @@ pub mod list;
 pub mod listed;
 
 use super::command::{Command, Force, PushChoice};
-use super::typing::type_into;
+use super::form::type_into;
 use crate::observe::live::LiveRun;
 use crate::scenario::Scenario;
 use crate::work::journal::{Journal, number_of_push};
@@ -29,8 +29,8 @@ const ORDER: [&str; 6] = ["motion", "start", NEXT_PUSH, "body", "view", "scenari
 /// The list of values, the push to come, and the value that was nudged last.
 #[derive(Clone)]
 pub struct Values {
-    list: ValueList,
-    next_push: NextPush,
+    pub list: ValueList,
+    pub next_push: NextPush,
     /// How many entries of the journal had acted when the list was made.
     entries_listed: usize,
     /// The key that was nudged last, and when; `None` if something else was done since.
@@ -73,33 +73,26 @@ impl Values {
         journal.count_by(step) != self.entries_listed
     }
 
-    /// The list, and the selected value.
-    pub fn list(&self) -> &ValueList {
-        &self.list
-    }
-
-    /// Adds `text` to what is searched for.
     pub(super) fn type_name(&mut self, text: &str) {
-        let mut name = self.list.name().to_owned();
+        let mut name = self.list.name.to_owned();
         type_into(&mut name, text);
         self.list.filter(name);
     }
 
     /// Removes the last character of what is searched for.
     pub(super) fn erase_name(&mut self) {
-        let mut name = self.list.name().to_owned();
+        let mut name = self.list.name.to_owned();
         name.pop();
         self.list.filter(name);
     }
 
     /// Shows all values again; returns whether some were left out.
     pub(super) fn forget_name(&mut self) -> bool {
-        let was_filtered = !self.list.name().is_empty();
+        let was_filtered = !self.list.name.is_empty();
         self.list.filter(String::new());
         was_filtered
     }
 
-    /// Moves the selection by `rows` values.
     pub(super) fn shift(&mut self, rows: isize) {
         self.list.shift(rows);
     }
@@ -112,7 +105,7 @@ impl Values {
 
     /// The listed value of the scenario with the dotted `key`.
     pub(super) fn parameter(&self, key: &str) -> Option<&Parameter> {
-        self.list.values().iter().find_map(|value| match value {
+        self.list.values.iter().find_map(|value| match value {
             ListedValue::OfScenario(parameter) if parameter.key == key => Some(&**parameter),
             _ => None,
         })
@@ -120,7 +113,7 @@ impl Values {
 
     /// The value of `key` with its label and unit; the key alone where it is not listed.
     pub(super) fn in_words(&self, key: &str) -> String {
-        let mut values = self.list.values().iter();
+        let mut values = self.list.values.iter();
         let words = match values.find(|value| value.key() == Some(key)) {
             Some(value) => format!("{} {} {}", value.label(), value.text(), value.unit()),
             None => key.to_owned(),
@@ -135,7 +128,6 @@ impl Values {
         self.last_nudged.as_ref().is_some_and(belongs)
     }
 
-    /// Records that `key` was nudged at `now`.
     pub(super) fn note_nudge(&mut self, key: &str, now: Duration) {
         self.last_nudged = Some((key.to_owned(), now));
     }
@@ -143,11 +135,6 @@ impl Values {
     /// Records that something else was done: the next nudge is an act of its own.
     pub(super) fn forget_nudge(&mut self) {
         self.last_nudged = None;
-    }
-
-    /// The push to come.
-    pub(super) fn next_push(&self) -> &NextPush {
-        &self.next_push
     }
 
     /// Sets the push to come. The list shows it after the next [`list_again`](Self::list_again).
@@ -161,9 +148,6 @@ impl Values {
     }
 
     /// The push to come, with the values that `choice` has in place of its own. `time_step_s` is the time step in force, s.
-    ///
-    /// # Errors
-    /// Why a value is refused.
     pub(super) fn chosen(
         &self,
         choice: &PushChoice,
@@ -188,9 +172,6 @@ impl Values {
     }
 
     /// The command that gives the selected value what `text` says; `None` if it already has that value.
-    ///
-    /// # Errors
-    /// Why `text` is refused.
     pub(super) fn value_typed(
         &self,
         text: &str,
@@ -217,7 +198,6 @@ impl Values {
 }
 
 impl PushChoice {
-    /// A choice of the `field` of `push` only.
     pub(super) fn field(field: Field, push: &NextPush) -> Self {
         let mut choice = Self::default();
         match field {
@@ -261,7 +241,7 @@ mod tests {
     #[test]
     fn groups_stand_in_their_order() {
         let (values, _) = listed();
-        let listed = values.list().values().iter();
+        let listed = values.list.values.iter();
         let ranks: Vec<_> = listed.map(|value| rank(value.group())).collect();
         assert!(ranks.is_sorted() && !ranks.is_empty());
     }
@@ -299,7 +279,7 @@ mod tests {
         let push = values.chosen(&choice, &scenario, 0.1).unwrap();
         assert_eq!((push.size_N, push.for_s), (5.0, 0.5));
         assert_eq!(push.toward, Toward::Along([3.0, 0.0, 4.0]));
-        assert_eq!(push.point, values.next_push().point);
+        assert_eq!(push.point, values.next_push.point);
         let nobody = PushChoice {
             point: Some("nobody".to_owned()),
             ..PushChoice::default()

@@ -30,9 +30,7 @@ pub struct Work {
 /// The direction in the history: back with undo, on with redo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Way {
-    /// Undo.
     Back,
-    /// Redo.
     On,
 }
 
@@ -40,18 +38,14 @@ pub(super) enum Way {
 pub(super) enum Turned {
     /// The present run has changed after `step`.
     SameRun {
-        /// The step at which the act was done.
         step: u64,
-        /// The act that was undone or redone.
         act: Act,
-        /// The run's new scenario.
         scenario: Arc<Scenario>,
     },
     /// Another run is now the present one.
     OtherRun {
         /// Whether both runs were opened under the same name.
         is_of_same_name: bool,
-        /// The scenario of the present run.
         scenario: Arc<Scenario>,
     },
 }
@@ -78,7 +72,6 @@ impl Work {
         &self.present().name
     }
 
-    /// The present run.
     pub fn present(&self) -> &RunRecord {
         self.history.present()
     }
@@ -119,7 +112,6 @@ impl Work {
         self.kept.get_or_insert_with(written).clone()
     }
 
-    /// The history, to be changed.
     fn change(&mut self) -> &mut History {
         self.kept = None;
         &mut self.history
@@ -228,9 +220,6 @@ impl Work {
 
     /// Undoes the last act, or does it again; `steps` is the length of the present run until now. `None` where there is no
     /// such act.
-    ///
-    /// # Errors
-    /// Why the scenario afterwards is refused.
     pub(super) fn turn(&mut self, way: Way, steps: u64) -> Result<Option<Turned>, String> {
         let name = self.name().to_owned();
         let history = self.change();
@@ -272,9 +261,6 @@ impl Work {
     }
 
     /// The scenario of the run from step 0 to `step`, with all that was done up to there; `to` says what it is for.
-    ///
-    /// # Errors
-    /// Why there is no such run.
     pub(super) fn run_up_to(&self, step: u64, to: &str) -> Result<Arc<Scenario>, String> {
         if step == 0 {
             return Err(format!(

@@ -339,7 +339,7 @@ impl LiveRun {
 
     /// What has been measured on its steps.
     pub fn instruments(&self) -> &Instruments {
-        self.monitor.instruments()
+        &self.monitor.gauges.instruments
     }
 
     /// Whether the workings of every step to come are kept, as whoever shows them wants it while the run goes on.

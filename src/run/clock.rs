@@ -8,7 +8,7 @@ use crate::scenario::{Edit, Scenario};
 pub struct Clock {
     anchor_step: u64,
     anchor_s: f64,
-    time_step_s: f64,
+    pub time_step_s: f64,
 }
 
 impl Clock {
@@ -52,11 +52,6 @@ impl Clock {
     pub fn time_s(&self, step: u64) -> f64 {
         // As i64: for u64 there is no instruction.
         self.anchor_s + (step - self.anchor_step) as i64 as f64 * self.time_step_s
-    }
-
-    /// The time step in force, s.
-    pub fn time_step_s(&self) -> f64 {
-        self.time_step_s
     }
 
     /// From `step` on, the time step is `time_step_s`.

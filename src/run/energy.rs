@@ -9,7 +9,6 @@ const LEAST_PART: f64 = 1e-9;
 /// A centre of mass nearer to the pivot than this part of the body's size is at the pivot but for rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The unit of an energy drift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EnergyUnit {
     /// M g |c|, c the centre of mass seen from the pivot.
@@ -32,7 +31,6 @@ impl fmt::Display for EnergyUnit {
 pub struct EnergyScale {
     /// Its size, J; above 0 and finite.
     pub size: f64,
-    /// What it is.
     pub unit: EnergyUnit,
 }
 

@@ -2,21 +2,19 @@
 //!
 //! [`Simulation`] alone takes a run forward in time; the command line, exports, tests and the screen all use it.
 //! [`step`] is what it publishes of each time step. [`clock`] says what time a step has, [`pushes`] which
-//! forces act on it, [`sample`] what of it leaves the program, [`energy`] what its drift is measured in. [`truth`] is the
+//! forces act on it, [`Sample`] what of it leaves the program, [`energy`] what its drift is measured in. [`truth`] is the
 //! exact motion beside it, and [`resample`] the same run at another time step.
 
 pub mod clock;
 pub mod energy;
 pub mod pushes;
 pub mod resample;
-pub mod sample;
 pub mod simulation;
 pub mod step;
 pub mod truth;
 
 pub use clock::Clock;
 pub use energy::{EnergyScale, EnergyUnit};
-pub use sample::Sample;
 pub use simulation::{NotFinite, Simulation};
-pub use step::Step;
+pub use step::{Sample, Step};
 pub use truth::Truth;

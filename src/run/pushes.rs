@@ -15,7 +15,6 @@ const ROUNDING: f64 = 1e-9;
 /// How the windows of pushes that are given in steps are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Counting {
-    /// As steps.
     Steps,
     /// As seconds, because the time step has been edited: each step stands for the time step of the scenario as written.
     Seconds {

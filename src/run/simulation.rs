@@ -1,11 +1,10 @@
 //! Steps a scenario forward in time.
 
-mod between;
 mod replaced;
 
 use super::pushes::{self, Counting, Stretch};
 use super::step::{Derived, EnergyAccount};
-use super::{Clock, EnergyScale, Sample, Step};
+use super::{Clock, Sample, Step};
 use crate::physics::observables::{self, Azimuth};
 use crate::physics::workings::Part;
 use crate::physics::{Loads, PointForce, Scheme, State, Workings};
@@ -76,13 +75,7 @@ impl Simulation {
         let mut scheme = motion.scheme.make(body);
         scheme.load(&loads);
         scheme.start(&state);
-        let kinetic = observables::kinetic_energy(body, &state);
-        let energy = EnergyAccount {
-            start: kinetic + motion.gravity * observables::weight_height(body, &state),
-            work: 0.0,
-            friction: 0.0,
-            scale: EnergyScale::of(&scenario),
-        };
+        let energy = EnergyAccount::new(&scenario);
         Self {
             scheme,
             pushes: scenario.pushes.iter().copied().collect(),
@@ -183,9 +176,6 @@ impl Simulation {
     }
 
     /// Steps until the run stands at `step`.
-    ///
-    /// # Errors
-    /// When the numbers stop being finite before that.
     pub fn step_to(&mut self, step: u64) -> Result<(), NotFinite> {
         while self.now.number < step {
             self.step()?;
@@ -332,17 +322,14 @@ impl Simulation {
         self.scheme.load(&now.loads);
     }
 
-    /// The scenario that is being run.
     pub fn scenario(&self) -> &Arc<Scenario> {
         &self.now.scenario
     }
 
-    /// The number of the step it stands at.
     pub fn step_number(&self) -> u64 {
         self.now.number
     }
 
-    /// The state it stands at.
     pub fn state(&self) -> &State {
         &self.now.after
     }
@@ -402,5 +389,41 @@ fn safe_below(scenario: &Scenario, gravity: f64) -> f64 {
         EDGE / body.inverse_inertia().trace().max(1.0)
     } else {
         0.0
+    }
+}
+
+impl Simulation {
+    /// When the next step ends, s.
+    pub fn next_time_s(&self) -> f64 {
+        let number = self.now.number;
+        let mut clock = self.clock;
+        let due = self.now.scenario.edits[self.edits_made..].iter();
+        for edit in due.take_while(|edit| edit.step == number) {
+            if edit.touches.time_step {
+                clock.change(number, edit.motion.time_step_s);
+            }
+        }
+        clock.time_s(number + 1)
+    }
+
+    /// Takes one step of the scheme that ends at `time_s`, s, instead of the run's own. Up to the time at which that would
+    /// have ended, this is the run between its steps: it begins where the step begins and leads to where it leads, and is as
+    /// accurate. A time that is not after the present one changes nothing.
+    ///
+    /// From there on its steps end at other times than those of the run: where the run is still needed, call this on a
+    /// clone.
+    pub fn step_to_time(&mut self, time_s: f64) -> Result<(), NotFinite> {
+        if self.next_edit == self.now.number {
+            self.make_due_edits();
+        }
+        let length_s = time_s - self.now.after.time_s;
+        if length_s <= 0.0 {
+            return Ok(());
+        }
+        self.clock.change(self.now.number, length_s);
+        self.now.motion.time_step_s = length_s;
+        self.take_step()?;
+        self.now.after.time_s = time_s; // and not the sum, whose last digit may differ
+        Ok(())
     }
 }

@@ -1,10 +1,10 @@
 //! One time step of a run, whole: everything that shows, measures, explains or exports a step reads this.
 
-use super::{EnergyScale, EnergyUnit, Sample};
+use super::{EnergyScale, EnergyUnit};
 use crate::physics::observables::{self, Azimuth};
 use crate::physics::{Loads, State, Workings};
 use crate::scenario::{Motion, Scenario};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use std::cell::OnceCell;
 use std::sync::Arc;
 
@@ -49,8 +49,20 @@ pub(super) struct Derived {
     energy: OnceCell<f64>,
 }
 
+impl EnergyAccount {
+    pub fn new(scenario: &Scenario) -> Self {
+        let (body, state) = (&scenario.body.mechanics, &scenario.start);
+        let kinetic = observables::kinetic_energy(body, state);
+        Self {
+            start: kinetic + scenario.motion.gravity * observables::weight_height(body, state),
+            work: 0.0,
+            friction: 0.0,
+            scale: EnergyScale::of(scenario),
+        }
+    }
+}
+
 impl Step {
-    /// The scenario whose step it is.
     pub fn scenario(&self) -> &Arc<Scenario> {
         &self.scenario
     }
@@ -76,7 +88,7 @@ impl Step {
     }
 
     /// How often the forces have changed so far, edits of the time step and the scheme counted in: a period
-    /// or rate that is measured across such a change is that of no motion.
+    /// or rate that is measured across such a change belongs to no motion.
     pub fn changes(&self) -> u64 {
         self.changes
     }
@@ -86,7 +98,6 @@ impl Step {
         (self.number > 0).then_some(&self.before)
     }
 
-    /// The state after it.
     pub fn after(&self) -> &State {
         &self.after
     }
@@ -130,7 +141,7 @@ impl Step {
         *self.derived.tilt_deg.get_or_init(read)
     }
 
-    /// Kinetic energy and that of the weight, from the pivot, J.
+    /// Kinetic and potential energy, from the pivot, J.
     #[inline]
     pub fn energy(&self) -> f64 {
         *self.derived.energy.get_or_init(|| {
@@ -192,4 +203,30 @@ impl Step {
     pub(super) fn can_be_read(&self) -> bool {
         self.energy().is_finite() && self.position().iter().all(|c| c.is_finite())
     }
+}
+
+/// The state at one step as it leaves the program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Number of the step, 0 at the start.
+    pub step: u64,
+    pub time_s: f64,
+    /// Orientation: turns body-frame vectors into world-frame ones.
+    pub orientation: Matrix3<f64>,
+    /// The traced point, world frame, m.
+    pub position: Vector3<f64>,
+    /// Angular momentum about the pivot, world frame, J s.
+    pub momentum: Vector3<f64>,
+    /// ω = I⁻¹L at this state, world frame, rad/s.
+    pub angular_velocity: Vector3<f64>,
+    /// Angle of the axle from +z, degrees.
+    pub tilt_deg: f64,
+    /// Azimuth of the axle, counted on through full turns, degrees.
+    pub azimuth_deg: f64,
+    /// Kinetic and potential energy, from the pivot, J.
+    pub energy: f64,
+    /// The angle about the axle by which a rotor has turned in its frame since the start, rad; 0 where the whole body spins.
+    pub rotor_turn: f64,
+    /// The number of edits of time step, scheme or gravity before this step.
+    pub segment: u64,
 }

@@ -40,7 +40,6 @@ impl Era {
 }
 
 impl Truth {
-    /// The exact motion of `scenario`.
     pub fn new(scenario: Arc<Scenario>) -> Self {
         let mut truth = Self {
             eras: eras(&scenario),

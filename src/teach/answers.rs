@@ -1,15 +1,12 @@
 //! What a student predicted in a lesson beside what came out, to hand in.
 
 use super::lesson::{Block, Compare, Lesson, Page, Predict};
-use super::place::Place;
 use super::play::{GoOn, Walk};
+use super::predictions::Place;
 use crate::lab::Lab;
 use crate::scenario::Problem;
 
 /// The predictions of `place` beside what came out of `lesson`, which is played in a new `lab`; as Markdown.
-///
-/// # Errors
-/// Which command was refused, and why.
 pub fn answers(
     lesson: &Lesson,
     place: &Place,
@@ -47,7 +44,7 @@ fn of_page(lesson: &Lesson, page: &Page, place: &Place, walk: &Walk<'_>) -> Vec<
 
 /// The question with what was predicted; nothing where nothing was.
 fn predicted(predict: &Predict, place: &Place, walk: &Walk<'_>) -> Option<String> {
-    let ask = predict.ask.with_numbers(walk.lab(), walk.kept());
+    let ask = predict.ask.with_numbers(&walk.lab, &walk.kept);
     let answer = place.predictions.answer(&predict.name)?;
     let answer = answer.in_words(predict);
     Some(format!("**Question.** {ask}\n\n**Predicted.** {answer}"))
@@ -56,6 +53,6 @@ fn predicted(predict: &Predict, place: &Place, walk: &Walk<'_>) -> Option<String
 /// What came out; nothing where nothing was predicted: it would give the answer away.
 fn came_out(lesson: &Lesson, compare: &Compare, place: &Place, walk: &Walk<'_>) -> Option<String> {
     place.predictions.answer(&compare.prediction)?;
-    let text = compare.filled(lesson, &place.predictions, walk.lab(), walk.kept());
+    let text = compare.filled(lesson, &place.predictions, &walk.lab, &walk.kept);
     Some(format!("**Came out.** {text}"))
 }

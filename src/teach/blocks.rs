@@ -43,12 +43,10 @@ const RUN_UNTIL: &str = "run_until";
 const KEEP: &str = "keep";
 /// The most choices of a prediction.
 const MOST_CHOICES: usize = 9;
-/// The longest lesson, minutes.
 const LONGEST_LESSON: i64 = 600;
 
 type Found<T> = Result<T, Vec<Problem>>;
 
-/// Reads the keys of one block.
 pub(super) struct Reader<'a> {
     origin: &'a str,
     word: &'a str,
@@ -155,7 +153,6 @@ pub(super) fn setup(
     })
 }
 
-/// Whether the expression in `value` names a number that is kept.
 fn names_kept(value: &Value, names: &Names) -> bool {
     let read = value.as_str().and_then(|text| Expression::parse(text).ok());
     read.is_some_and(|expression| expression.names().any(|name| names.is_kept(name)))
@@ -192,7 +189,6 @@ fn keep(content: &mut Content, names: &mut Names, page: usize, known_from: usize
     kept
 }
 
-/// A prediction that is asked for.
 pub(super) fn predict(
     reader: &Reader<'_>,
     find: impl Fn(&str) -> Result<(), String>,

@@ -1,6 +1,6 @@
 //! The lessons of a lab: the list of them, the one that is taken, and where the others were left.
 
-use super::place::Place;
+use super::predictions::Place;
 use super::taken::Taken;
 use super::{page, reading, shipped};
 use crate::lab::Lab;
@@ -12,7 +12,6 @@ use std::path::Path;
 use std::time::Duration;
 use toml::Table;
 
-/// The lessons of a lab.
 #[derive(Debug, Default)]
 pub struct Class {
     shown: Shown,
@@ -26,7 +25,6 @@ pub struct Class {
     has_changed: bool,
 }
 
-/// What is shown beside the panes.
 #[derive(Debug, Default)]
 enum Shown {
     #[default]
@@ -41,22 +39,16 @@ enum Shown {
     Lesson(Box<Taken>),
 }
 
-/// What a session keeps of the lessons.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct KeptLessons {
-    /// The one that is taken.
     pub open: Option<String>,
-    /// Where each stands, by its name.
     #[serde(default)]
     pub lessons: BTreeMap<String, Place>,
 }
 
 impl KeptLessons {
     /// What `kept`, a table of a session, says.
-    ///
-    /// # Errors
-    /// When it is no such table.
     pub fn read(kept: &Table) -> Result<Self, toml::de::Error> {
         kept.clone().try_into()
     }
@@ -70,7 +62,7 @@ impl Class {
     /// Why the lesson that was taken cannot be taken again; where it was left is kept.
     pub fn resumed(lab: &mut Lab) -> (Self, Result<(), String>) {
         let mut class = Self::default();
-        let kept = lab.lessons_kept().map(KeptLessons::read);
+        let kept = lab.lessons.as_ref().map(KeptLessons::read);
         let Some(Ok(kept)) = kept else {
             return (class, Ok(()));
         };
@@ -82,9 +74,6 @@ impl Class {
     }
 
     /// Opens the lesson that NAME names, on the page `page` (from 1) or where it was left, and makes the lab stand there.
-    ///
-    /// # Errors
-    /// When there is no such lesson or page, or everything that is wrong with its file.
     pub fn open(&mut self, name: &str, page: Option<usize>, lab: &mut Lab) -> Result<(), String> {
         self.take(name, lab)?;
         if let Shown::Lesson(taken) = &mut self.shown {
@@ -95,7 +84,6 @@ impl Class {
         Ok(())
     }
 
-    /// The lesson that is taken.
     pub fn taken(&self) -> Option<&Taken> {
         match &self.shown {
             Shown::Lesson(taken) => Some(taken),
@@ -124,7 +112,7 @@ impl Class {
     /// Keeps where the lesson stands, and takes it no longer.
     fn leave(&mut self) {
         if let Shown::Lesson(taken) = std::mem::take(&mut self.shown) {
-            let name = taken.lesson().name.clone();
+            let name = taken.lesson.name.clone();
             self.left.insert(name, taken.into_place());
         }
         self.has_changed = true;
@@ -154,7 +142,7 @@ impl Class {
                 lab.refuse("nothing to close: L lists the lessons, Esc there leaves them; q quits");
             }
             (Shown::List { selected, .. }, LessonKey::Move(direction)) => {
-                *selected = selected.saturating_add_signed(rows(direction));
+                *selected = selected.saturating_add_signed(direction.rows(10));
             }
             (Shown::List { selected, .. }, LessonKey::Take) => {
                 let selected = *selected;
@@ -179,7 +167,7 @@ impl Class {
 
     /// Leaves the lesson for the list; it is selected there.
     fn open_list(&mut self) {
-        let here = self.taken().map(|taken| taken.lesson().name.clone());
+        let here = self.taken().map(|taken| taken.lesson.name.clone());
         self.leave();
         let names = self.names();
         let selected = here
@@ -227,7 +215,7 @@ impl Class {
             return;
         };
         let is_new = taken.advance(now, lab);
-        if is_new || self.has_changed || lab.has_changed() || (second && taken.clock().is_some()) {
+        if is_new || self.has_changed || lab.has_changed() || (second && taken.clock.is_some()) {
             self.show(lab);
         }
     }
@@ -243,7 +231,7 @@ impl Class {
         let sheet = self.sheet(lab);
         lab.set_sheet(sheet);
         let kept = Table::try_from(self.kept()).unwrap_or_default();
-        lab.keep_lessons(Some(kept).filter(|kept| !kept.is_empty()));
+        lab.lessons = Some(kept).filter(|kept| !kept.is_empty());
     }
 
     fn sheet(&mut self, lab: &Lab) -> Option<Sheet> {
@@ -255,24 +243,13 @@ impl Class {
         }
     }
 
-    /// What the session keeps.
     fn kept(&self) -> KeptLessons {
         let mut lessons = self.left.clone();
         let open = self.taken().map(|taken| {
-            let name = taken.lesson().name.clone();
-            lessons.insert(name.clone(), taken.place().clone());
+            let name = taken.lesson.name.clone();
+            lessons.insert(name.clone(), taken.place.clone());
             name
         });
         KeptLessons { open, lessons }
-    }
-}
-
-/// Entries by which a key moves in the list.
-fn rows(direction: Direction) -> isize {
-    match direction {
-        Direction::Up | Direction::Left => -1,
-        Direction::Down | Direction::Right => 1,
-        Direction::PageUp => -10,
-        Direction::PageDown => 10,
     }
 }

@@ -3,14 +3,12 @@
 use chrono::Local;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// What the clock shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
     /// The time since the lesson was opened.
     Up,
     /// What is left of the lesson's minutes.
     Down,
-    /// The time of the day.
     Day,
 }
 
@@ -24,7 +22,7 @@ impl Clock {
         }
     }
 
-    /// What it shows when the lesson was opened `since` ago and should take so many `minutes`.
+    /// What it shows when the lesson was opened `since` ago and should take `minutes`.
     pub fn shown(self, since: Duration, minutes: Option<u32>) -> String {
         let whole = u64::from(minutes.unwrap_or_default()) * 60;
         let gone = since.as_secs();

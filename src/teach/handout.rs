@@ -14,9 +14,6 @@ use crate::scenario::Problem;
 const BLANK: &str = "____________";
 
 /// The handout of `lesson`, played in a new `lab`; `picture` is the lab's picture as text.
-///
-/// # Errors
-/// Which command was refused, and why.
 pub fn handout(
     lesson: &Lesson,
     lab: Lab,
@@ -40,7 +37,7 @@ pub fn handout(
 pub fn page(page: &Page, walk: &Walk<'_>, picture: &dyn Fn(&Lab) -> String) -> String {
     let mut parts = paper(page, walk, picture);
     if page.lab().is_none() {
-        parts.insert(1, fenced("text", &picture(walk.lab())));
+        parts.insert(1, fenced("text", &picture(&walk.lab)));
     }
     joined(&parts)
 }
@@ -72,7 +69,7 @@ fn paper(page: &Page, walk: &Walk<'_>, picture: &dyn Fn(&Lab) -> String) -> Vec<
     let mut parts = vec![format!("## {}", page.heading)];
     for block in &page.blocks {
         match block {
-            Block::Lab(_) => parts.push(fenced("text", &picture(walk.lab()))),
+            Block::Lab(_) => parts.push(fenced("text", &picture(&walk.lab))),
             other => parts.extend(on_paper(other, walk)),
         }
     }
@@ -80,7 +77,7 @@ fn paper(page: &Page, walk: &Walk<'_>, picture: &dyn Fn(&Lab) -> String) -> Vec<
 }
 
 fn on_paper(block: &Block, walk: &Walk<'_>) -> Option<String> {
-    let (lab, kept) = (walk.lab(), walk.kept());
+    let (lab, kept) = (&walk.lab, &walk.kept);
     match block {
         Block::Text(text) => Some(text.with_numbers(lab, kept)),
         Block::Predict(predict) => Some(room_for(predict, lab, kept)),

@@ -6,7 +6,6 @@ use crate::lab::view::Part;
 use crate::work::expression::Expression;
 use serde::{Deserialize, Serialize};
 
-/// A lesson.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lesson {
     /// The name of a shipped lesson, or the file as the user named it.
@@ -17,7 +16,6 @@ pub struct Lesson {
     pub title: String,
     /// What it is about, one line; empty where the file does not say it.
     pub about: String,
-    /// About how long it takes, minutes.
     pub minutes: Option<u32>,
     /// The blocks before the first page: text, code that is shown as it is, and notes.
     pub introduction: Vec<Block>,
@@ -30,39 +28,32 @@ pub struct Lesson {
 pub struct Page {
     /// Its number, from 1.
     pub number: usize,
-    /// The heading.
     pub heading: String,
     /// The heading's line in the file, from 1.
     pub line: usize,
-    /// The blocks, in the order of the file.
     pub blocks: Vec<Block>,
 }
 
 /// A part of a page.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Block {
-    /// Text in Markdown.
     Text(Text),
     /// What the lab does when the page is opened; at most one on a page.
     Lab(Setup),
     /// What the student is to do; the lab does it only when it is asked to show it. At most one on a page.
     Task(Setup),
-    /// A prediction that is asked for.
     Predict(Predict),
     /// A prediction beside what happened.
     Compare(Compare),
     /// What holds once the student has done the task.
     Check(Check),
-    /// Notes for the teacher, in Markdown.
     Notes(Text),
-    /// Code that is shown as it is.
     Shown(Shown),
 }
 
 /// What a `lab` or `task` block makes the lab do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
-    /// The line of its fence in the file.
     pub line: usize,
     /// The commands in the order in which they are carried out, with their lines in the file: `open`, `set`, `push`, how
     /// the run is shown, then `go_to` or `run_until`.
@@ -74,55 +65,39 @@ pub struct Setup {
 /// A number that is remembered for later pages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keep {
-    /// Its name.
     pub name: String,
-    /// What it is.
     pub expression: Expression,
 }
 
-/// A prediction that is asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Predict {
-    /// The line of its fence in the file.
     pub line: usize,
     /// Its name; no other prediction of the lesson has it.
     pub name: String,
-    /// The question, in Markdown.
     pub ask: Text,
-    /// What may be answered.
     pub asked: Asked,
 }
 
-/// What may be answered to a question.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Asked {
     /// One of these; at least two.
     Choice(Vec<String>),
     /// A number in this unit, which is empty for a pure number.
-    Number {
-        /// The unit.
-        unit: String,
-    },
+    Number { unit: String },
 }
 
-/// What was answered to a question.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Answer {
-    /// A number in the unit that was asked for.
     Number(f64),
-    /// The words of a choice.
     Choice(String),
 }
 
 /// A prediction beside what happened.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compare {
-    /// The line of its fence in the file.
     pub line: usize,
-    /// The name of the prediction.
     pub prediction: String,
-    /// The number that it is compared with.
     pub with: Option<Expression>,
     /// What is said, in Markdown; `{with}` stands for that number and `{prediction}` for the prediction.
     pub text: Text,
@@ -131,9 +106,7 @@ pub struct Compare {
 /// What holds once the student has done the task; where the page has no task, once its `lab` block is carried out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// The line of its fence in the file.
     pub line: usize,
-    /// The condition.
     pub that: Expression,
     /// What is to be reached, in words; empty where the file does not say it.
     pub goal: String,
@@ -141,7 +114,6 @@ pub struct Check {
     pub hint: String,
 }
 
-/// Code that is shown as it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shown {
     /// The word behind its fence (`text`, `sh`, `toml`, `csv`, `python`, `matlab`), or none.
@@ -156,7 +128,6 @@ impl Lesson {
         self.pages.get(number.checked_sub(1)?)
     }
 
-    /// The prediction of this name.
     pub fn predict(&self, name: &str) -> Option<&Predict> {
         let mut all = self.pages.iter().flat_map(Page::predicts);
         all.find(|predict| predict.name == name)
@@ -180,7 +151,6 @@ impl Page {
         })
     }
 
-    /// The predictions that the page asks for.
     pub fn predicts(&self) -> impl Iterator<Item = &Predict> {
         self.blocks.iter().filter_map(|block| match block {
             Block::Predict(predict) => Some(predict),
@@ -196,7 +166,6 @@ impl Page {
         })
     }
 
-    /// The notes for the teacher.
     pub fn notes(&self) -> impl Iterator<Item = &Text> {
         self.blocks.iter().filter_map(|block| match block {
             Block::Notes(text) => Some(text),
@@ -226,7 +195,6 @@ impl Setup {
 }
 
 impl Asked {
-    /// Whether `answer` answers it.
     pub fn takes(&self, answer: &Answer) -> bool {
         match (self, answer) {
             (Self::Choice(choices), Answer::Choice(choice)) => choices.contains(choice),

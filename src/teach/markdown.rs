@@ -30,7 +30,6 @@ struct Pen<'a> {
     look: Look,
     /// The lists that are open, each with the number of its next entry where it is numbered.
     lists: Vec<Option<u64>>,
-    /// The mark of the entry that begins.
     mark: Option<String>,
     is_code: bool,
     is_heading: bool,

@@ -63,7 +63,6 @@ impl Names {
         self.open_from.get_or_insert(page);
     }
 
-    /// Whether a number is kept as `name` somewhere.
     pub(super) fn is_kept(&self, name: &str) -> bool {
         self.kept.iter().any(|(known, _)| known == name)
     }
@@ -104,7 +103,7 @@ impl Names {
     }
 }
 
-/// The number called `name`: what was kept under that name, or that of the run in `lab`; `None` if there is none now.
+/// The kept number called `name`, or else the run's number in `lab`; `None` if there is none now.
 pub fn number(name: &str, lab: &Lab, kept: &Kept) -> Option<f64> {
     match kept.get(name) {
         Some(number) => Some(*number).filter(|number| number.is_finite()),

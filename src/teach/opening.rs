@@ -17,9 +17,6 @@ use std::path::Path;
 pub const LONGEST: u64 = 1 << 20;
 
 /// Opens what NAME names: a shipped lesson, or else a file: one whose name holds a `/` or ends in `.md`.
-///
-/// # Errors
-/// When there is no such lesson, or everything that is wrong with it.
 pub fn open(name: &str) -> Result<Lesson, Problems> {
     if is_file_name(name) {
         return read_file(Path::new(name));
@@ -57,9 +54,6 @@ pub fn full_name(name: &str) -> String {
 }
 
 /// Reads the lesson in the file at `path`. The files that it opens are looked for in its folder.
-///
-/// # Errors
-/// When it cannot be read, is longer than [`LONGEST`], or everything that is wrong with it.
 pub fn read_file(path: &Path) -> Result<Lesson, Problems> {
     let origin = path.display().to_string();
     let text = text_of(path).map_err(|problem| Problems::one(origin.clone(), problem))?;
@@ -71,9 +65,6 @@ pub fn read_file(path: &Path) -> Result<Lesson, Problems> {
 }
 
 /// As [`read_file`], while the lab waits: a file that could keep it waiting is refused.
-///
-/// # Errors
-/// As [`read_file`], and where the file is a FIFO or a device.
 pub fn read_again(path: &Path) -> Result<Lesson, Problems> {
     if Destination::may_wait(path) {
         let rule = "is not a regular file, which a lesson in the lab must be: it is read again whenever it changes";

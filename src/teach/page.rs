@@ -2,7 +2,7 @@
 
 use super::lesson::{Asked, Block, Compare, Page, Predict};
 use super::markdown::paragraphs;
-use super::place::Place;
+use super::predictions::Place;
 use super::taken::Taken;
 use super::{reading, shipped};
 use crate::lab::Lab;
@@ -62,8 +62,8 @@ pub(super) fn list(names: &[String], selected: usize, left: &BTreeMap<String, Pl
 
 /// The page that is open in `taken`; `now` is the time since the lab was opened.
 pub(super) fn sheet(taken: &Taken, now: Duration, lab: &Lab) -> Sheet {
-    let lesson = taken.lesson();
-    let (page, pages) = (taken.place().page, lesson.pages.len());
+    let lesson = &taken.lesson;
+    let (page, pages) = (taken.place.page, lesson.pages.len());
     let mut writer = Writer {
         taken,
         lab,
@@ -76,13 +76,12 @@ pub(super) fn sheet(taken: &Taken, now: Duration, lab: &Lab) -> Sheet {
     writer.notes(now);
     writer.page();
     // The page begins at its top, until the student has come to the question at its end.
-    if taken.has_come_to_question() {
+    if taken.has_come_to_question {
         writer.sheet.seen = writer.sheet.paragraphs.len().checked_sub(1);
     }
     writer.sheet
 }
 
-/// Writes the sheet of a page.
 struct Writer<'a> {
     taken: &'a Taken,
     lab: &'a Lab,
@@ -96,7 +95,7 @@ impl Writer<'_> {
         };
         self.add(Paragraph::new(Kind::Heading, page.heading.clone()));
         if page.number == 1 {
-            self.blocks(&self.taken.lesson().introduction);
+            self.blocks(&self.taken.lesson.introduction);
         }
         let is_open = self.blocks(&page.blocks);
         if !is_open {
@@ -112,13 +111,13 @@ impl Writer<'_> {
                     let source = match self.taken.stated(text.line) {
                         Some(source) => source.to_owned(),
                         None if self.taken.is_under_way() => text.filled(|_, _| SOON.to_owned()),
-                        None => text.with_numbers(self.lab, &self.taken.place().kept),
+                        None => text.with_numbers(self.lab, &self.taken.place.kept),
                     };
                     self.extend(paragraphs(&source, &Kind::Text));
                 }
                 Block::Predict(predict) => {
                     self.question(predict);
-                    if !self.taken.place().predictions.is_locked(predict) {
+                    if !self.taken.place.predictions.is_locked(predict) {
                         return true;
                     }
                 }
@@ -132,7 +131,7 @@ impl Writer<'_> {
                         format!("{state}: {}", check.goal)
                     };
                     self.add(Paragraph::new(Kind::Goal { is_reached }, text));
-                    if !is_reached && self.taken.shows_hints() && !check.hint.is_empty() {
+                    if !is_reached && self.taken.shows_hints && !check.hint.is_empty() {
                         self.add(Paragraph::new(Kind::Hint, format!("Hint: {}", check.hint)));
                     }
                 }
@@ -146,7 +145,7 @@ impl Writer<'_> {
     }
 
     fn comparison(&mut self, compare: &Compare) {
-        let (lesson, place) = (self.taken.lesson(), self.taken.place());
+        let (lesson, place) = (&self.taken.lesson, &self.taken.place);
         if self.taken.is_under_way() {
             self.add(Paragraph::new(Kind::Result, SOON));
             return;
@@ -170,7 +169,7 @@ impl Writer<'_> {
     }
 
     fn question(&mut self, predict: &Predict) {
-        let place = self.taken.place();
+        let place = &self.taken.place;
         let kept = &place.kept;
         let ask = predict.ask.with_numbers(self.lab, kept);
         self.extend(paragraphs(&ask, &Kind::Question));
@@ -181,7 +180,7 @@ impl Writer<'_> {
             Asked::Choice(choices) => {
                 for (index, choice) in choices.iter().enumerate() {
                     let kind = Kind::Choice {
-                        is_selected: is_open && index == self.taken.selected(),
+                        is_selected: is_open && index == self.taken.selected,
                         is_given: !is_open && given.as_deref() == Some(choice),
                     };
                     self.add(Paragraph::new(kind, choice.clone()));
@@ -203,13 +202,12 @@ impl Writer<'_> {
         }
     }
 
-    /// What to do next.
     fn next(&mut self, page: usize) {
         let has_task = self.taken.page().is_some_and(|page| page.task().is_some());
-        let is_last = page == self.taken.lesson().pages.len();
+        let is_last = page == self.taken.lesson.pages.len();
         let text = match (self.taken.is_under_way(), has_task, is_last) {
             (true, ..) => "The run is on its way; space pauses it.",
-            (false, true, _) if !self.taken.shows_hints() => {
+            (false, true, _) if !self.taken.shows_hints => {
                 "h: a hint; b: the page again; n: next page."
             }
             (false, true, false) => "h shows how it is done; b: the page again; n: next page.",
@@ -229,13 +227,13 @@ impl Writer<'_> {
             Kind::Heading,
             format!("For the class: {time}"),
         ));
-        let lesson = self.taken.lesson();
+        let lesson = &self.taken.lesson;
         let page = self.taken.page();
         for notes in page.into_iter().flat_map(Page::notes) {
-            let source = notes.with_numbers(self.lab, &self.taken.place().kept);
+            let source = notes.with_numbers(self.lab, &self.taken.place.kept);
             self.extend(paragraphs(&source, &Kind::Note));
         }
-        let next = lesson.page(self.taken.place().page + 1);
+        let next = lesson.page(self.taken.place.page + 1);
         let next = next.map_or("This is the last page.".to_owned(), |page| {
             format!("Next page: {}", page.heading)
         });

@@ -20,8 +20,8 @@ pub type GoOn<'a> = &'a mut dyn FnMut(u64, u64) -> ControlFlow<()>;
 /// A lab that goes through a lesson.
 pub struct Walk<'a> {
     lesson: &'a Lesson,
-    lab: Lab,
-    kept: Kept,
+    pub lab: Lab,
+    pub kept: Kept,
     /// Nothing is predicted: what a page hides until then is hidden as long as the page is open.
     predictions: Predictions,
     /// Whether a run of the lesson is open.
@@ -40,20 +40,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The lab as it stands.
-    pub fn lab(&self) -> &Lab {
-        &self.lab
-    }
-
-    /// The numbers that were kept so far.
-    pub fn kept(&self) -> &Kept {
-        &self.kept
-    }
-
     /// Stands on `page` from nothing, without the pages before it that make no difference to it.
-    ///
-    /// # Errors
-    /// Which command was refused, and why.
     pub fn jump(&mut self, page: &'a Page, go_on: GoOn<'_>) -> Result<(), Problem> {
         let stages = self
             .lesson
@@ -65,9 +52,6 @@ impl<'a> Walk<'a> {
     }
 
     /// Turns to `page` from the page before: carries out its `lab` block.
-    ///
-    /// # Errors
-    /// Which command was refused, and why.
     pub fn enter(&mut self, page: &'a Page, go_on: GoOn<'_>) -> Result<(), Problem> {
         match self.lesson.stage_of(page.number, &self.predictions) {
             Some(stage) => self.carry_out(&stage, go_on),
@@ -76,9 +60,6 @@ impl<'a> Walk<'a> {
     }
 
     /// Leaves `page`: does its task, and shows again what it hides until its prediction.
-    ///
-    /// # Errors
-    /// Which command was refused, and why.
     pub fn leave(&mut self, page: &'a Page, go_on: GoOn<'_>) -> Result<(), Problem> {
         if let Some(stage) = self.lesson.task_of(page.number, &self.predictions) {
             self.carry_out(&stage, go_on)?;
@@ -148,7 +129,6 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// What was found by playing a lesson.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Played {
     /// The numbers of its text that cannot be stated where they stand, and are shown as "n/a".

@@ -32,12 +32,10 @@ impl Predictions {
         Ok(())
     }
 
-    /// Whether nothing is locked.
     pub fn is_empty(&self) -> bool {
         self.locked.is_empty()
     }
 
-    /// The answer that is locked under this name.
     pub fn answer(&self, name: &str) -> Option<&Answer> {
         self.locked.get(name)
     }
@@ -89,7 +87,6 @@ impl Compare {
         Some(predictions.answer(&self.prediction)?.in_words(predict))
     }
 
-    /// The number that came out, in `lab`.
     pub fn came_out(&self, lab: &Lab, kept: &Kept) -> Option<f64> {
         value(self.with.as_ref()?, lab, kept)
     }
@@ -153,3 +150,20 @@ pub(super) const PREDICTION: &str = "prediction";
 /// Stands for a prediction that was not made.
 const NOTHING: &str = "…";
 pub(super) const WITH: &str = "with";
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Place {
+    /// The number of the page, from 1.
+    pub page: usize,
+    #[serde(default)]
+    pub predictions: Predictions,
+    #[serde(default)]
+    pub kept: Kept,
+    /// Whether its last page was opened.
+    #[serde(default)]
+    pub has_ended: bool,
+    /// When it was opened first: seconds since 1970 (UTC).
+    #[serde(default)]
+    pub began_unix_s: u64,
+}

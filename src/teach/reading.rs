@@ -17,15 +17,11 @@ use crate::scenario::{Problem, Problems};
 use crate::text::printable::is_steering;
 use std::collections::BTreeSet;
 
-/// The most lines of a lesson.
 const MOST_LINES: usize = 20_000;
 /// The most blocks of a lesson, its pages included.
 const MOST_BLOCKS: usize = 1000;
 
 /// Reads `text`, the content of the file `origin`, as a lesson.
-///
-/// # Errors
-/// Everything that is wrong with it, in the order of the file.
 pub fn read(origin: &str, text: &str) -> Result<Lesson, Problems> {
     let text = text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
     let text = text.replace('\t', "    ");

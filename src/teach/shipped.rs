@@ -20,7 +20,6 @@ pub const LESSONS: &[Shipped] = shipped!["lessons", "md":
     "a-real-gyroscope"
 ];
 
-/// The lesson of that name.
 pub fn find(name: &str) -> Option<&'static Shipped> {
     Shipped::find(LESSONS, name)
 }

@@ -12,14 +12,10 @@ use crate::lab::command::{Command, Commands, Placed};
 use crate::observe::camera::{Camera, Zoom};
 use std::ops::ControlFlow;
 
-/// One block to be carried out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage<'a> {
-    /// The lesson.
     pub lesson: &'a Lesson,
-    /// The page of the block.
     pub page: &'a Page,
-    /// The block.
     pub setup: &'a Setup,
     /// Whether what its `hide` names is hidden.
     pub is_hiding: bool,
@@ -134,9 +130,6 @@ impl Stage<'_> {
 
     /// Carries the block out to its end at once, without a clock, and keeps its numbers. `go_on` is called several times a
     /// second with the step that the run is at and the one at which it stops; the rest is dropped when that breaks.
-    ///
-    /// # Errors
-    /// Which command was refused, with file and line, and why.
     pub fn carry_out(
         &self,
         lab: &mut Lab,

@@ -11,7 +11,6 @@ pub(super) const WORDS: [&str; 7] = [
 /// The words behind a fence whose block is shown as it is.
 pub(super) const LANGUAGES: [&str; 6] = ["text", "sh", "toml", "csv", "python", "matlab"];
 
-/// A part of the file.
 #[derive(Debug)]
 pub(super) struct Element<'a> {
     pub(super) kind: Kind<'a>,
@@ -22,14 +21,12 @@ pub(super) struct Element<'a> {
 #[derive(Debug)]
 pub(super) enum Kind<'a> {
     Title(String),
-    /// The heading of a page.
     Heading(String),
     /// A fenced block: the word behind the fence, and what stands between the fences.
     Fenced(&'a str, &'a str),
     Text(&'a str),
 }
 
-/// The lines of a file.
 pub(super) struct Lines(Vec<usize>);
 
 impl Lines {
@@ -43,16 +40,12 @@ impl Lines {
     }
 }
 
-/// A problem that stands on `line`.
 pub(super) fn on_line(line: usize, mut problem: Problem) -> Problem {
     problem.place = Some(format!("line {line}"));
     problem
 }
 
 /// The parts of `text` in order.
-///
-/// # Errors
-/// A fence that is not closed, or a block or heading where none can be.
 pub(super) fn structure<'a>(text: &'a str, lines: &Lines) -> Result<Vec<Element<'a>>, Problem> {
     let mut walk = Walk {
         text,
@@ -104,7 +97,6 @@ struct Walk<'a, 'b> {
     text: &'a str,
     lines: &'b Lines,
     elements: Vec<Element<'a>>,
-    /// Where the last element ends.
     end: usize,
 }
 

@@ -3,14 +3,14 @@
 mod keys;
 
 use super::clock::{self, Clock};
-use super::lesson::{Lesson, Page, Predict};
+use super::lesson::{Block, Compare, Lesson, Page, Predict};
 use super::names::value;
-use super::place::Place;
+use super::predictions::Place;
 use super::stage::Stage;
-use super::stated::Stated;
 use super::watch::Watch;
 use super::{reading, shipped};
 use crate::lab::Lab;
+use std::collections::BTreeMap;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -22,30 +22,28 @@ const LONGEST: Duration = Duration::from_secs(5);
 const TOO_LONG: &str =
     "the pages before this one take too long: its lab block should open a run of its own";
 
-/// A lesson that is taken.
 #[derive(Debug)]
 pub struct Taken {
-    lesson: Arc<Lesson>,
+    pub lesson: Arc<Lesson>,
     /// Its file, where it does not come with the program.
     watch: Option<Watch>,
-    place: Place,
+    pub place: Place,
     /// The selected answer of the open question, from 0.
-    selected: usize,
+    pub selected: usize,
     /// Whether an answer on this page was selected or given.
-    has_come_to_question: bool,
+    pub has_come_to_question: bool,
     /// The lines of the checks of this page that have held.
     reached: BTreeSet<usize>,
     /// The texts of this page that the student's own run does not change, with their numbers, by their lines in the file;
     /// `None` until the run has arrived where the page wants it.
     stated: Option<Stated>,
     /// Whether the hints of the page's checks are shown.
-    shows_hints: bool,
-    /// The block that the lab is carrying out.
-    under_way: Option<Block>,
+    pub shows_hints: bool,
+    under_way: Option<UnderWay>,
     /// Whether turning the page was refused once, because a prediction is open.
     was_asked: bool,
     /// The clock, where the teacher's notes are shown.
-    clock: Option<Clock>,
+    pub clock: Option<Clock>,
     /// When the lesson was opened in this lab, on the clock of the lab.
     since: Duration,
     /// How long before that it was opened first.
@@ -54,10 +52,8 @@ pub struct Taken {
 
 /// A block of a page that the lab carries out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Block {
-    /// The `lab` block of the page with this number.
+enum UnderWay {
     Lab(usize),
-    /// Its `task` block.
     Task(usize),
 }
 
@@ -91,21 +87,10 @@ impl Taken {
         }
     }
 
-    /// The lesson.
-    pub fn lesson(&self) -> &Lesson {
-        &self.lesson
-    }
-
-    /// Where it stands.
-    pub fn place(&self) -> &Place {
-        &self.place
-    }
-
     pub(super) fn into_place(self) -> Place {
         self.place
     }
 
-    /// The page that is open.
     pub fn page(&self) -> Option<&Page> {
         self.lesson.page(self.place.page)
     }
@@ -113,16 +98,6 @@ impl Taken {
     /// The question of the page that is not answered yet; the first of them.
     pub fn asked(&self) -> Option<&Predict> {
         self.place.predictions.open_on(self.page()?).next()
-    }
-
-    /// The selected answer of the open question, from 0.
-    pub fn selected(&self) -> usize {
-        self.selected
-    }
-
-    /// Whether an answer on this page was selected or given.
-    pub fn has_come_to_question(&self) -> bool {
-        self.has_come_to_question
     }
 
     /// Whether the check at this line of the file has held since the page was opened.
@@ -140,17 +115,6 @@ impl Taken {
         self.stated.as_ref()?.text(line)
     }
 
-    /// Whether the hints of the page's checks are shown.
-    pub fn shows_hints(&self) -> bool {
-        self.shows_hints
-    }
-
-    /// The clock, where the teacher's notes are shown.
-    pub fn clock(&self) -> Option<Clock> {
-        self.clock
-    }
-
-    /// What that clock shows.
     pub fn time(&self, now: Duration) -> Option<String> {
         let since = now.saturating_sub(self.since) + self.gone_before;
         self.clock
@@ -198,12 +162,12 @@ impl Taken {
             }
         }
         if let Some(stage) = last {
-            self.begin(stage, Block::Lab(page), lab);
+            self.begin(stage, UnderWay::Lab(page), lab);
         }
         Ok(())
     }
 
-    fn begin(&mut self, stage: &Stage<'_>, block: Block, lab: &mut Lab) {
+    fn begin(&mut self, stage: &Stage<'_>, block: UnderWay, lab: &mut Lab) {
         let commands = stage.commands(lab);
         self.under_way = Some(block);
         lab.take_commands(commands);
@@ -224,8 +188,8 @@ impl Taken {
         lab.forget_message_of_script();
         let lesson = Arc::clone(&self.lesson);
         let stage = match block {
-            Block::Lab(page) => lesson.stage_of(page, &self.place.predictions),
-            Block::Task(page) => lesson.task_of(page, &self.place.predictions),
+            UnderWay::Lab(page) => lesson.stage_of(page, &self.place.predictions),
+            UnderWay::Task(page) => lesson.task_of(page, &self.place.predictions),
         };
         if let Some(stage) = stage {
             stage.keep(lab, &mut self.place.kept);
@@ -253,7 +217,7 @@ impl Taken {
             && watch.has_changed(now)
         {
             is_new = true;
-            match reading::read_again(watch.path()) {
+            match reading::read_again(&watch.path) {
                 Ok(lesson) => self.take_file(lesson, lab),
                 Err(problems) => {
                     let text = problems.to_string();
@@ -269,7 +233,7 @@ impl Taken {
     fn state(&mut self, lab: &Lab) -> bool {
         let has_arrived = self.under_way.is_none()
             && lab.script().is_done()
-            && lab.player().playback().steps_to_go().is_none();
+            && lab.player().playback.steps_to_go().is_none();
         if self.stated.is_some() || !has_arrived {
             return false;
         }
@@ -302,7 +266,57 @@ impl Taken {
     }
 }
 
-/// Whether `check` holds in `lab`.
 fn holds(check: &super::Check, lab: &Lab, kept: &super::Kept) -> bool {
     value(&check.that, lab, kept).is_some_and(|held| held != 0.0)
+}
+
+/// The texts of a page that the student's own run does not change, by their lines in the file.
+#[derive(Clone, Debug)]
+pub(super) struct Stated {
+    texts: BTreeMap<usize, String>,
+}
+
+impl Stated {
+    /// What the page at `place` states of the run in `lab`. What stands behind a task or a check is not among it.
+    pub(super) fn of(lesson: &Lesson, place: &Place, lab: &Lab) -> Self {
+        let texts = before_task(lesson, place).filter_map(|block| match block {
+            Block::Text(text) => Some((text.line, text.with_numbers(lab, &place.kept))),
+            Block::Compare(compare) => Some((compare.line, compared(compare, lesson, place, lab))),
+            _ => None,
+        });
+        Self {
+            texts: texts.collect(),
+        }
+    }
+
+    pub(super) fn text(&self, line: usize) -> Option<&str> {
+        self.texts.get(&line).map(String::as_str)
+    }
+
+    /// Puts the prediction called `name`, which has just been locked, into what is stated about it.
+    pub(super) fn take_in(&mut self, name: &str, lesson: &Lesson, place: &Place, lab: &Lab) {
+        for block in before_task(lesson, place) {
+            if let Block::Compare(compare) = block
+                && compare.prediction == name
+            {
+                let text = compared(compare, lesson, place, lab);
+                self.texts.insert(compare.line, text);
+            }
+        }
+    }
+}
+
+/// The introduction's blocks, and those of the page up to its task or its first check.
+fn before_task<'a>(lesson: &'a Lesson, place: &Place) -> impl Iterator<Item = &'a Block> {
+    let page = lesson.page(place.page);
+    let blocks = page.into_iter().flat_map(|page| &page.blocks);
+    let is_before = |block: &&Block| !matches!(block, Block::Task(_) | Block::Check(_));
+    lesson
+        .introduction
+        .iter()
+        .chain(blocks.take_while(is_before))
+}
+
+fn compared(compare: &Compare, lesson: &Lesson, place: &Place, lab: &Lab) -> String {
+    compare.filled(lesson, &place.predictions, lab, &place.kept)
 }

@@ -17,10 +17,8 @@ use std::ops::Range;
 const DIGITS: usize = 4;
 /// The most digits after the point.
 const MOST_DIGITS: usize = 12;
-/// The most problems of one text that are told.
 const MOST_TOLD: usize = 100;
 
-/// Text with places for numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
     /// The line at which it begins in the file, from 1.
@@ -28,23 +26,19 @@ pub struct Text {
     parts: Vec<Piece>,
 }
 
-/// A piece of a text.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Piece {
-    /// Markdown.
     Plain(String),
-    /// The place for a number.
     Number(Expression, Format),
 }
 
-/// How a number is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// With four significant digits.
     Short,
-    /// With so many digits after the point.
+    /// Digits after the point.
     Fixed(usize),
-    /// With an exponent, and so many digits after the point.
+    /// With an exponent; digits after the point.
     Exponent(usize),
 }
 
@@ -84,9 +78,6 @@ impl Format {
 
 impl Text {
     /// Reads `source`, which begins at `line`. `find` says why a name in it stands for no number.
-    ///
-    /// # Errors
-    /// Every place that cannot be read, with its line in the file as the problem's place.
     pub(super) fn read(
         source: &str,
         line: usize,
@@ -132,7 +123,6 @@ impl Text {
         }
     }
 
-    /// No text.
     pub(super) fn empty(line: usize) -> Self {
         Self {
             line,
@@ -156,11 +146,6 @@ impl Text {
             }
             Piece::Number(expression, _) => Some((line, expression)),
         })
-    }
-
-    /// Its pieces, in order.
-    pub fn pieces(&self) -> &[Piece] {
-        &self.parts
     }
 
     /// The text in Markdown, with what `written` makes of each place for a number.
@@ -202,7 +187,6 @@ fn place(
     Ok((expression, format, end + 1))
 }
 
-/// Where code stands in `source`.
 fn code_in(source: &str) -> Vec<Range<usize>> {
     let events = Parser::new(source).into_offset_iter();
     let code = events.filter_map(|(event, range)| match event {

@@ -8,27 +8,20 @@ use std::time::{Duration, SystemTime};
 /// The time between two looks.
 const EVERY: Duration = Duration::from_secs(1);
 
-/// A file that may change.
 #[derive(Clone, Debug)]
 pub struct Watch {
-    path: PathBuf,
+    pub path: PathBuf,
     seen: Option<(SystemTime, u64)>,
     next: Duration,
 }
 
 impl Watch {
-    /// Watches the file at `path` as it is now.
     pub fn new(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
             seen: state(path),
             next: Duration::ZERO,
         }
-    }
-
-    /// The file.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// Whether the file has changed since it was last looked at; `now` is the time since the lab was opened. A file that

@@ -39,9 +39,9 @@ pub fn run(lab: &mut Lab, class: &mut Class, session: Option<&Session>) -> io::R
         }
         #[cfg(debug_assertions)]
         panic_if_asked(begin.elapsed());
-        let was_on_its_way = lab.player().playback().steps_to_go().is_some();
+        let was_on_its_way = lab.player().playback.steps_to_go().is_some();
         lab.advance(&mut || begin.elapsed());
-        let has_arrived = was_on_its_way && lab.player().playback().steps_to_go().is_none();
+        let has_arrived = was_on_its_way && lab.player().playback.steps_to_go().is_none();
         class.advance(begin.elapsed(), lab);
         if lab.has_changed() {
             screen::refit(lab, screen.size()?);
@@ -85,14 +85,14 @@ fn panic_if_asked(elapsed: Duration) {
 
 /// How long to wait for events, if the next frame is due in `to_frame`.
 fn wait(lab: &Lab, class: &Class, to_frame: Duration) -> Duration {
-    if lab.player().playback().is_flat_out() {
+    if lab.player().playback.is_flat_out() {
         Duration::ZERO
-    } else if lab.player().playback().is_busy() || lab.has_changed() {
+    } else if lab.player().playback.is_busy() || lab.has_changed() {
         // Wait at least a little: a run too slow to change anything by the next frame must not keep the processor busy.
         to_frame.max(Duration::from_millis(1))
     } else {
         let is_attentive = lab.files().is_exporting()
-            || lab.on_top().browser().is_loading()
+            || lab.on_top().browser.is_loading()
             || lab.player().is_seeking_advice()
             || !lab.script().is_done();
         let rest = if is_attentive { ATTENTIVE } else { IDLE };

@@ -79,7 +79,7 @@ impl Pointer {
             let key = chrome::key_at(lab, layout.keys, at.x)?;
             return press(key, lab);
         }
-        match lab.on_top().mode() {
+        match lab.on_top().mode {
             Mode::Lab => {}
             Mode::Browser | Mode::Filter => return press_in_browser(layout, at, lab),
             Mode::Help | Mode::Find | Mode::Dialog => return None,
@@ -102,7 +102,7 @@ impl Pointer {
     }
 
     fn drag(&mut self, layout: &Layout, at: Position, lab: &mut Lab) {
-        if lab.on_top().mode() != Mode::Lab {
+        if lab.on_top().mode != Mode::Lab {
             return;
         }
         match self.held {
@@ -150,12 +150,8 @@ fn read_off(place: Rect, at: Position, lab: &mut Lab) {
 
 /// Selects the entry at `at`, or opens it if it is selected already.
 fn press_in_browser(layout: &Layout, at: Position, lab: &mut Lab) -> Option<Request> {
-    let row = browser::row_at(
-        lab.on_top().browser(),
-        screen::place_on_top(lab, layout),
-        at,
-    )?;
-    if lab.on_top().browser().selected() == row {
+    let row = browser::row_at(&lab.on_top().browser, screen::place_on_top(lab, layout), at)?;
+    if lab.on_top().browser.selected == row {
         return lab.update(Action::Choose);
     }
     lab.select_in_browser(row);
@@ -165,7 +161,7 @@ fn press_in_browser(layout: &Layout, at: Position, lab: &mut Lab) -> Option<Requ
 fn wheel(layout: &Layout, at: Position, up: bool, lab: &mut Lab) -> Option<Request> {
     let choose = |if_up, if_down| if up { if_up } else { if_down };
     let lines = choose(Action::Move(Direction::Up), Action::Move(Direction::Down));
-    if lab.on_top().mode() != Mode::Lab {
+    if lab.on_top().mode != Mode::Lab {
         for _ in 0..LINES {
             lab.update(lines);
         }

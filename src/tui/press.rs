@@ -7,7 +7,7 @@ use crate::lab::{Lab, Request};
 
 /// Carries out the action of `key`, or shows a message that it has none.
 pub fn press(key: Key, lab: &mut Lab) -> Option<Request> {
-    let mode = lab.on_top().mode();
+    let mode = lab.on_top().mode;
     let mut own = panes::keys(lab.view().focus).iter();
     if own.any(|row| row.modes.contains(&mode) && row.keys.contains(&key)) {
         lab.touch_pane();

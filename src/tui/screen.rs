@@ -107,11 +107,11 @@ pub fn draw_pane(lab: &Lab, pane: Pane, area: Rect, buf: &mut Buffer) {
 
 fn draw_on_top(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    match lab.on_top().mode() {
+    match lab.on_top().mode {
         Mode::Lab | Mode::Find => {}
         Mode::Dialog => {
             if let Some(dialog) = lab.on_top().dialog() {
-                let form = dialog.form();
+                let form = &dialog.form;
                 FormPane { form, theme }.render(area, buf);
             }
         }

@@ -100,7 +100,7 @@ fn nudges_of_a_running_lab_come_back_to_the_first_ones_time_and_go_on() {
     for _ in 0..3 {
         stage.commands("nudge = { key = 'start.tilt_deg', times = 1 }");
         assert_eq!(stage.step(), stood);
-        assert!(stage.lab.player().playback().is_running());
+        assert!(stage.lab.player().playback.is_running());
         stage.wait(0.3);
         assert!(stage.step() > stood);
     }
@@ -124,7 +124,7 @@ fn a_hundred_thousand_steps_are_played_before_the_next_frame() {
 fn a_longer_way_is_gone_in_parts_while_keys_are_answered() {
     let mut stage = Stage::open("method-2", &[], SMALL);
     stage.commands("speed = 'top'\ngo_to = 600000").wait(1.0);
-    while stage.lab.player().playback().steps_to_go().is_some() {
+    while stage.lab.player().playback.steps_to_go().is_some() {
         stage.wait(1.0);
     }
     stage.commands("run = true");
@@ -139,10 +139,10 @@ fn a_longer_way_is_gone_in_parts_while_keys_are_answered() {
     // One more nudge under way goes to the same time.
     stage.commands("nudge = { key = 'start.tilt_deg', times = 1 }");
     assert_eq!(ghost_s(&stage.lab), Some(stood as f64 * 0.1));
-    while stage.lab.player().playback().steps_to_go().is_some() {
+    while stage.lab.player().playback.steps_to_go().is_some() {
         stage.wait(0.0);
     }
-    assert!(stage.lab.player().playback().is_running());
+    assert!(stage.lab.player().playback.is_running());
     assert!((stood..stood + 200_000).contains(&stage.step()));
     // Esc stops on the way.
     stage.commands("pause = true\nset = { 'start.tilt_deg' = 20 }");
@@ -152,7 +152,7 @@ fn a_longer_way_is_gone_in_parts_while_keys_are_answered() {
     assert_eq!(stage.step(), stopped);
     // The run that was left on its way is one undo away.
     stage.commands("undo = 1");
-    let bound_for = stage.step() + stage.lab.player().playback().steps_to_go().unwrap_or(0);
+    let bound_for = stage.step() + stage.lab.player().playback.steps_to_go().unwrap_or(0);
     assert!(bound_for >= stood);
 }
 
@@ -287,7 +287,7 @@ fn advice_is_taken_by_a_command_and_holds() {
     let mut desk = Desk::open("wobble-push");
     desk.commands("go_to = '10 s'\ntake_advice = true");
     assert_eq!(time_s(&desk), 10.0);
-    let health = &desk.lab.player().reading().readouts.health;
+    let health = &desk.lab.player().reading.readouts.health;
     assert_ne!(health.is_believed(), Some(false));
     let again = &crate::support::desk::commands("take_advice = true")[0];
     let refusal = desk.carry_out(again).unwrap_err().to_string();
@@ -316,7 +316,7 @@ fn the_line_about_the_numbers_is_right_as_soon_as_an_edit_is_made() {
     stage.lab.take_advice();
     stage.commands("pause = true\ngo_to = '40 s'");
     let is_doubted = |stage: &Stage| {
-        let health = &stage.lab.player().reading().readouts.health;
+        let health = &stage.lab.player().reading.readouts.health;
         health.is_believed() == Some(false)
     };
     for (edit, turns) in [
@@ -349,11 +349,11 @@ fn advice_on_an_edited_time_step_is_for_the_whole_run() {
     desk.commands("set = { 'body.rim.height_m' = 1.0 }\ngo_to = '0.2 s'");
     // From step 0 on: the scenario's number of steps then makes a hundredth of its seconds.
     desk.commands("go_to = 0\nset = { 'motion.time_step_s' = 1e-5 }\ngo_to = '0.2 s'");
-    let health = &desk.lab.player().reading().readouts.health;
+    let health = &desk.lab.player().reading.readouts.health;
     assert_eq!(health.is_believed(), Some(false));
     desk.commands("take_advice = true");
     assert_eq!(time_s(&desk), 0.2);
-    let health = &desk.lab.player().reading().readouts.health;
+    let health = &desk.lab.player().reading.readouts.health;
     assert_ne!(health.is_believed(), Some(false));
 }
 

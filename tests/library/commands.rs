@@ -436,9 +436,9 @@ fn a_push_has_the_force_that_was_written() {
         (push.force_N, push.from_s, push.for_s),
         ([1.0, -2.0, 0.3], Some(10.0), Some(2.0))
     );
-    let before = desk.lab.values().list().values().to_vec();
+    let before = desk.lab.values().list.values.to_vec();
     desk.commands("next_push = { force_N = 70, toward = 'around' }\npush = true");
-    assert_ne!(desk.lab.values().list().values(), before);
+    assert_ne!(desk.lab.values().list.values, before);
     let [x, y, z] = desk.scenario().file.push[1].force_N;
     assert!((x.hypot(y) - 70.0).abs() < 1e-9 && z == 0.0, "{x} {y} {z}");
     let nobody = commands("push = { point = 'nobody' }").remove(0);

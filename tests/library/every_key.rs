@@ -197,7 +197,7 @@ fn press_everything(size: (u16, u16)) {
                 stage.key(key);
                 stage.wait(0.0);
                 check(&stage, &done);
-                let mode = stage.lab.on_top().mode();
+                let mode = stage.lab.on_top().mode;
                 if mode != Mode::Lab {
                     if time == 1 {
                         press_all(&mut stage, mode, &done);
@@ -217,7 +217,7 @@ fn press_everything(size: (u16, u16)) {
 /// Presses the keys of what has been opened on top of the panes.
 fn press_all(stage: &mut Stage, mode: Mode, done: &str) {
     for key in keys(mode, Pane::TRACES) {
-        if stage.lab.on_top().mode() != mode {
+        if stage.lab.on_top().mode != mode {
             return;
         }
         stage.key(key);

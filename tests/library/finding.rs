@@ -24,7 +24,7 @@ fn the_help_does_the_entry_that_is_found() {
         .press("\n")
         .wait(0.1);
     assert_eq!(
-        (stage.lab.on_top().mode(), stage.step()),
+        (stage.lab.on_top().mode, stage.step()),
         (Mode::Lab, step + 1)
     );
     stage
@@ -32,7 +32,7 @@ fn the_help_does_the_entry_that_is_found() {
         .shows("export steps 0 to")
         .press(ESC);
     stage.press("?\u{1b}");
-    assert_eq!(stage.lab.on_top().mode(), Mode::Lab);
+    assert_eq!(stage.lab.on_top().mode, Mode::Lab);
     for key in "?quit".chars() {
         stage.key(Key::Char(key));
     }
@@ -113,21 +113,21 @@ fn a_key_of_another_place_is_not_done_but_says_where_it_works() {
     stage
         .press("?take what is typed\n")
         .shows("in a dialog: this key works there");
-    assert_eq!(stage.lab.on_top().mode(), Mode::Help);
+    assert_eq!(stage.lab.on_top().mode, Mode::Help);
     // Opened from the list, the help does the list's keys.
     stage.press(ESC).press(ESC).press("o?type a part\n");
-    assert_eq!(stage.lab.on_top().mode(), Mode::Filter);
+    assert_eq!(stage.lab.on_top().mode, Mode::Filter);
 }
 
 #[test]
 fn the_selection_stops_at_both_ends_of_the_help() {
     let mut stage = open(Rect::new(0, 0, 40, 12));
     stage.press("?").press(&"↓".repeat(500)).press("↑");
-    let at = stage.lab.on_top().help().selected();
+    let at = stage.lab.on_top().help.selected;
     stage.press("↓");
-    assert_eq!(stage.lab.on_top().help().selected(), at + 1);
+    assert_eq!(stage.lab.on_top().help.selected, at + 1);
     stage.press("cusps").press(ESC).press("↑");
-    assert_eq!(stage.lab.on_top().help().selected(), 0);
+    assert_eq!(stage.lab.on_top().help.selected, 0);
 }
 
 #[test]
@@ -153,7 +153,7 @@ fn values_are_found_by_their_names() {
         .shows_no("/grav")
         .shows("parameters ");
     assert_eq!(stage.focus(), "parameters");
-    let selected = stage.lab.values().list().selected().unwrap();
+    let selected = stage.lab.values().list.selected().unwrap();
     assert_eq!(selected.label(), "gravity");
     stage.press(ESC);
     assert_eq!(stage.focus(), "traces");
@@ -192,10 +192,10 @@ fn a_name_that_no_value_has_is_said_and_cleared() {
     stage.shows("/qzx_");
     stage.key(Key::Backspace);
     stage.shows("/qz_").press(ESC);
-    assert_eq!(stage.lab.on_top().mode(), Mode::Lab);
+    assert_eq!(stage.lab.on_top().mode, Mode::Lab);
     stage.shows("parameters ").press("/").press(ESC);
     assert_eq!(
-        (stage.focus(), stage.lab.on_top().mode()),
+        (stage.focus(), stage.lab.on_top().mode),
         ("parameters", Mode::Lab)
     );
     // The push to come is found whatever was searched for.
@@ -260,7 +260,7 @@ fn the_frame_of_l_stands_beside_it_and_is_kept() {
 fn the_words_that_begin_with_what_is_searched_for_come_first() {
     let mut stage = open(SMALL);
     stage.press("/L");
-    let selected = stage.lab.values().list().selected().unwrap();
+    let selected = stage.lab.values().list.selected().unwrap();
     assert_eq!(selected.label(), "Lx body");
     let mut stage = open(SMALL);
     stage.press("/Lz").shows("read only:").shows("Lz body");

@@ -723,9 +723,9 @@ fn set_beside_open_holds_the_seconds_of_the_run_and_its_pushes() {
     for _ in 0..steps {
         whole.step().unwrap();
     }
-    let (played, known) = (walk.lab().player().run().now(), whole.sample());
-    assert_eq!(walk.lab().player().playback().step_number(), steps);
-    assert_eq!(walk.lab().player().playback().end_s(), end_s);
+    let (played, known) = (walk.lab.player().run().now(), whole.sample());
+    assert_eq!(walk.lab.player().playback.step_number(), steps);
+    assert_eq!(walk.lab.player().playback.end_s(), end_s);
     assert!((played.time_s - known.time_s).abs() < 1e-9);
     assert!((played.position - known.position).norm() < 1e-9);
 }
@@ -733,17 +733,17 @@ fn set_beside_open_holds_the_seconds_of_the_run_and_its_pushes() {
 #[test]
 fn start_and_time_step_set_together_hold_the_seconds_too() {
     let mut desk = Desk::open("method-2");
-    let end_s = desk.lab.player().playback().end_s();
+    let end_s = desk.lab.player().playback.end_s();
     desk.commands("set = { 'start.tilt_deg' = 30, 'motion.time_step_s' = 0.01 }");
-    assert_eq!(desk.lab.player().playback().end_s(), end_s);
+    assert_eq!(desk.lab.player().playback.end_s(), end_s);
     desk.commands("go_to = 100\nset = { 'motion.time_step_s' = 0.05, 'start.tilt_deg' = 20 }");
-    assert_eq!(desk.lab.player().playback().end_s(), end_s);
+    assert_eq!(desk.lab.player().playback.end_s(), end_s);
     desk.commands(
         "set = { 'start.tilt_deg' = 30, 'motion.time_step_s' = 0.1, 'motion.steps' = 40 }",
     );
-    assert_eq!(desk.lab.player().playback().end_s(), 4.0);
+    assert_eq!(desk.lab.player().playback.end_s(), 4.0);
     desk.commands("undo = 1");
-    assert_eq!(desk.lab.player().playback().end_s(), end_s);
+    assert_eq!(desk.lab.player().playback.end_s(), end_s);
 }
 
 #[test]
@@ -760,7 +760,7 @@ fn a_file_that_a_lesson_opens_is_looked_for_beside_the_lesson() {
     for (page, title) in lesson.pages.iter().zip(["Mine", "Cusps"]) {
         walk.enter(page, &mut on)
             .unwrap_or_else(|problem| panic!("{problem}"));
-        assert_eq!(walk.lab().player().run().scenario().file.title, title);
+        assert_eq!(walk.lab.player().run().scenario().file.title, title);
     }
 }
 
@@ -836,13 +836,13 @@ fn a_page_is_the_same_whether_turned_to_or_jumped_to() {
             ) {
                 used.carry_out(&command).unwrap();
             }
-            let focus = |walk: &Walk<'_>| walk.lab().view().focus;
+            let focus = |walk: &Walk<'_>| walk.lab.view().focus;
             for lab in [lab(), used] {
                 let mut jumped = Walk::new(&lesson, lab);
                 jumped.jump(page, &mut on).unwrap();
                 let place = format!("{}, page {}", lesson.name, page.number);
                 if focus(&jumped) == focus(&walk) {
-                    assert_eq!(picture(jumped.lab()), picture(walk.lab()), "{place}");
+                    assert_eq!(picture(&jumped.lab), picture(&walk.lab), "{place}");
                 }
                 let numbers = |walk: &Walk<'_>| {
                     let names = [
@@ -852,14 +852,10 @@ fn a_page_is_the_same_whether_turned_to_or_jumped_to() {
                         "measured_highest_tilt_deg",
                         "motion.time_step_s",
                     ];
-                    names.map(|name| names::number(name, walk.lab(), walk.kept()))
+                    names.map(|name| names::number(name, &walk.lab, &walk.kept))
                 };
                 assert_eq!(numbers(&jumped), numbers(&walk), "{place}");
-                assert_eq!(
-                    jumped.lab().view().hidden,
-                    walk.lab().view().hidden,
-                    "{place}"
-                );
+                assert_eq!(jumped.lab.view().hidden, walk.lab.view().hidden, "{place}");
             }
             walk.leave(page, &mut on).unwrap();
         }
@@ -895,7 +891,7 @@ fn what_a_page_hides_is_shown_once_its_predictions_are_locked() {
     assert_eq!(predictions.open_on(page).count(), 1);
     let mut walk = Walk::new(&lesson, lab());
     walk.jump(page, &mut on).unwrap();
-    let hidden = walk.lab().view().hidden.clone();
+    let hidden = walk.lab.view().hidden.clone();
     assert_eq!(hidden, [Part::Health, Part::Predicted]);
     assert!(predictions.lock(finer, Answer::Number(3.0)).is_err());
     assert!(
@@ -938,9 +934,9 @@ fn the_comparison_has_the_prediction_and_what_came_out() {
     };
     let mut predictions = Predictions::default();
     let said =
-        |predictions: &Predictions| compare.filled(&lesson, predictions, walk.lab(), walk.kept());
-    let with = compare.came_out(walk.lab(), walk.kept()).unwrap();
-    let coarse = walk.kept()["coarse"];
+        |predictions: &Predictions| compare.filled(&lesson, predictions, &walk.lab, &walk.kept);
+    let with = compare.came_out(&walk.lab, &walk.kept).unwrap();
+    let coarse = walk.kept["coarse"];
     assert!(coarse > 10.0 * with && with > 0.0, "{coarse} {with}");
     let words = format!("It was {coarse:.2} degrees and is {with:.2}.");
     assert_eq!(said(&predictions), words, "nothing was said yet");

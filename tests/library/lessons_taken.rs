@@ -122,7 +122,7 @@ fn predictions_are_asked_for_once_locked_and_then_shown_beside_what_happened() {
     assert_eq!(stage.lab.player().motion().gravity, 5.0);
     stage.press("N").arrive().shows("1 of 4").shows("[x] grows");
     stage.shows("you said: 3.5 deg");
-    let place = stage.class.taken().unwrap().place();
+    let place = &stage.class.taken().unwrap().place;
     let answer = place.predictions.answer("finer").cloned();
     assert_eq!(answer, Some(Answer::Choice("grows".to_owned())));
 }
@@ -163,7 +163,7 @@ fn a_task_is_done_by_hand_or_shown() {
     stage.press("g3.95 s\n").arrive();
     stage.shows("[x] done").shows_no("Hint");
     stage.press("n").shows("You were at 4.0 s");
-    let kept = &stage.class.taken().unwrap().place().kept;
+    let kept = &stage.class.taken().unwrap().place.kept;
     assert!((kept["mine"] - 3.95).abs() < 0.01, "{kept:?}");
     let (mut stage, _folder, _) = taken(3);
     stage.press("hh").arrive().shows("[x] done");
@@ -180,7 +180,7 @@ fn the_session_keeps_page_and_predictions() {
     let mut lab = Lab::resumed(&content, view).unwrap();
     let (class, taken) = Class::resumed(&mut lab);
     taken.unwrap();
-    let place = class.taken().unwrap().place();
+    let place = &class.taken().unwrap().place;
     assert_eq!(place.page, 2);
     let answer = Answer::Choice("grows".to_owned());
     assert_eq!(place.predictions.answer("finer"), Some(&answer));
@@ -198,7 +198,7 @@ fn a_lesson_that_is_gone_leaves_the_lab_and_what_was_predicted() {
     let mut lab = Lab::resumed(&content, view).unwrap();
     let (_, taken) = Class::resumed(&mut lab);
     assert!(taken.unwrap_err().contains("swing.md"));
-    let kept = lab.lessons_kept().unwrap();
+    let kept = lab.lessons.as_ref().unwrap();
     let place = &kept["lessons"][name.as_str()];
     assert_eq!(place["predictions"]["finer"].as_str(), Some("grows"));
 }
@@ -284,7 +284,7 @@ fn lessons_are_chosen_from_a_list_and_left_where_they_stand() {
     stage.press("L").shows(&format!("> [ ] {}", title(0)));
     stage.press("↓↓↑↓\n").arrive();
     let words: Vec<_> = stage.class.taken().into_iter().collect();
-    assert_eq!(words[0].lesson().title, title(2));
+    assert_eq!(words[0].lesson.title, title(2));
     stage.press("nn").arrive().shows("2 of ");
     stage.press("L").shows("(page 2 of ");
     stage.press("\n").arrive().shows("2 of ");
@@ -341,7 +341,7 @@ fn what_a_page_has_stated_stays_while_the_run_goes_on() {
     let (mut open, _folder, _) = taken(2);
     open.shows("= It is 5.0.").press("g4 s\n").arrive();
     open.shows("= It is 5.0.").shows_no("tilt 30 to 36.69");
-    assert_eq!(stage.lab.player().reading().readouts.sample.time_s, 2.0);
+    assert_eq!(stage.lab.player().reading.readouts.sample.time_s, 2.0);
 }
 
 #[test]

@@ -52,7 +52,7 @@ fn file(text: &str) -> (tempfile::TempDir, PathBuf) {
 }
 
 fn sum(lab: &Lab) -> Sum {
-    lab.player().measured().unwrap().compared().sum.clone()
+    lab.player().measured().unwrap().compared.sum.clone()
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn what_a_run_says_is_what_it_is_compared_with() {
     assert_eq!(sum(&desk.lab).chi_squared, 0.0);
     // The run goes on from the present step with an act; what came before stays as it was.
     desk.commands("go_to = 95\nset = { 'motion.gravity_m_per_s2' = 20 }\ngo_to = 200");
-    let edited = desk.lab.player().measured().unwrap().compared().clone();
+    let edited = desk.lab.player().measured().unwrap().compared.clone();
     let shown = &edited.curves[0];
     assert!(
         shown[..10]

@@ -1,6 +1,7 @@
 //! Pictures of single panes: the previous run, pushes, edits, parameters and forms.
 
 use crate::support::scenarios::{preset, view as seen};
+use gyrolab::lab::action::FieldEdit;
 use gyrolab::lab::form::{Field, Form};
 use gyrolab::lab::values::list::ValueList;
 use gyrolab::lab::values::listed::ListedValue;
@@ -707,7 +708,7 @@ fn a_form_asks_at_the_bottom() {
     );
     insta::assert_snapshot!("form_refuses", asked(&form, (40, 12)));
     insta::assert_snapshot!("form_20x4", asked(&form, (20, 4)));
-    form.next_field();
+    form.edit_field(FieldEdit::Next);
     insta::assert_snapshot!("form_20x3", asked(&form, (20, 3)));
     insta::assert_snapshot!("form_20x2", asked(&form, (20, 2)));
 }
@@ -725,9 +726,9 @@ fn a_long_text_scrolls_in_its_field() {
     };
     // A wide character has two cells, of which the second is blank here.
     assert_eq!(field(&form), "title 独 楽 abcdef_ ");
-    form.home();
+    form.edit_field(FieldEdit::Home);
     assert_eq!(field(&form), "title 0123456789速 ");
-    (0..11).for_each(|_| form.right());
+    (0..11).for_each(|_| form.edit_field(FieldEdit::Right));
     assert_eq!(field(&form), "title 23456789速 い ");
 }
 
@@ -786,7 +787,7 @@ proptest! {
         let inside = Rect::new(3, 3, width, height);
         let mut form = Form::new(&typed, vec![Field::new(&typed, ""); fields], "Esc");
         typed.chars().for_each(|c| form.type_char(c));
-        (0..left).for_each(|_| form.left());
+        (0..left).for_each(|_| form.edit_field(FieldEdit::Left));
         (form.complaint, form.info) = (complaint, vec![typed.clone(); infos]);
         let theme = &Theme { colour: false, background: Background::Dark };
         let mut values = list("motion.time_step_s");

@@ -156,7 +156,7 @@ fn the_extremes_outlive_going_back_and_forth() {
         desk.press(&[Key::Char('r')]);
         desk.type_text(&format!("{step}g"));
         desk.wait(2);
-        let readouts = &desk.lab.player().reading().readouts;
+        let readouts = &desk.lab.player().reading.readouts;
         assert_eq!(readouts.sample.step, step);
         let told = EXTREMES.map(|name| readouts.number(name).unwrap());
         let known = expected_extremes(&rows[..=step as usize]);

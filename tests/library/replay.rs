@@ -122,7 +122,7 @@ proptest! {
             let simulation = desk.simulation();
             let reached = simulation.step_number();
             let here = bits(simulation);
-            let health = desk.lab.player().reading().readouts.health;
+            let health = desk.lab.player().reading.readouts.health;
             prop_assert!(health.energy_drift.is_none_or(|drift| !drift.is_nan()));
             prop_assert_eq!(seen.entry(reached).or_insert_with(|| here.clone()), &here, "step {}", reached);
             let (recording, path) = (desk.lab.player().run().recording(), desk.lab.player().run().path());

@@ -64,7 +64,7 @@ fn numbers_of_theory_of_the_exact_motion_and_of_measuring() {
         let (mut desk, end) = played(name, condition);
         assert_eq!(end, Ok(()), "{condition}");
         let holds = |desk: &Desk| {
-            let readouts = &desk.lab.player().reading().readouts;
+            let readouts = &desk.lab.player().reading.readouts;
             let expression = gyrolab::work::expression::Expression::parse(condition).unwrap();
             let motion = desk.lab.player().motion();
             let value = |name: &str| match name {

@@ -84,7 +84,7 @@ fn after_a_scheme_broke_down_the_last_whole_body_is_shown() {
     stage
         .shows("from above at step 29: then the scheme broke down")
         .shows("3-D at step 29: then the scheme broke down");
-    let state = stage.lab.player().reading().state;
+    let state = stage.lab.player().reading.state;
     assert!(state.is_a_rotation() && (state.time_s - 0.87).abs() < 1e-9);
     assert!(
         !stage
@@ -101,7 +101,7 @@ fn after_a_scheme_broke_down_the_last_whole_body_is_shown() {
         .shows("3-D at step 29: then the scheme broke down");
     stage.commands("go_to = 3").shows_no("broke down");
     assert_eq!(
-        stage.lab.player().reading().state,
+        stage.lab.player().reading.state,
         *stage.lab.player().run().simulation().state()
     );
     // In a narrow pane the title is shorter, and whole.

@@ -12,7 +12,7 @@ use std::time::Duration;
 #[test]
 fn a_length_taken_back_is_in_seconds_what_it_was() {
     let mut desk = Desk::open("method-2");
-    let end = |desk: &Desk| desk.lab.player().playback().end_step();
+    let end = |desk: &Desk| desk.lab.player().playback.end_step();
     desk.commands("go_to = 1000\nset = { 'motion.time_step_s' = 0.05 }");
     let before = end(&desk);
     desk.commands("set = { 'motion.steps' = 4000 }");
@@ -49,8 +49,8 @@ fn a_push_that_an_edit_of_the_file_adds_is_listed() {
         !desk
             .lab
             .values()
-            .list()
-            .values()
+            .list
+            .values
             .iter()
             .any(|value| value.group() == "push 0")
     );
@@ -58,8 +58,8 @@ fn a_push_that_an_edit_of_the_file_adds_is_listed() {
     assert!(
         desk.lab
             .values()
-            .list()
-            .values()
+            .list
+            .values
             .iter()
             .any(|value| value.group() == "push 0")
     );
@@ -73,7 +73,7 @@ fn steps_of_a_push_to_come_are_those_of_now() {
     desk.press(&[Key::Char('P'), Key::Down, Key::Down, Key::Enter]);
     desk.type_text("20 steps");
     desk.press(&[Key::Enter]);
-    let value = desk.lab.values().list().selected().unwrap();
+    let value = desk.lab.values().list.selected().unwrap();
     assert_eq!((&*value.label(), &*value.text()), ("for", "1"));
 }
 
@@ -157,7 +157,7 @@ fn a_time_with_a_sign_counts_from_here() {
         desk.type_text("g"); // a command has no sign before a step or time
         desk.type_text(to);
         desk.press(&[Key::Enter]);
-        assert_eq!(desk.lab.on_top().mode(), Mode::Lab, "{to}");
+        assert_eq!(desk.lab.on_top().mode, Mode::Lab, "{to}");
         assert_eq!(desk.step(), step, "{to}");
     }
 }

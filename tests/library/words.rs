@@ -212,7 +212,7 @@ fn the_list_of_files_has_those_that_hold_a_run() {
     write("run.csv", &format!("{header}step,t_s\n0,0\n"));
     write("table.csv", "a,b\n1,2\n");
     let mut browser = gyrolab::lab::browser::Browser::new(folder.path(), "method-2");
-    while browser.others() == 0 {
+    while browser.others == 0 {
         browser.take_what_was_read();
         thread::sleep(Duration::from_millis(5));
     }
@@ -224,7 +224,7 @@ fn the_list_of_files_has_those_that_hold_a_run() {
         names,
         ["broken.toml", "dotted.toml", "mine.toml", "run.csv"]
     );
-    assert_eq!((browser.files(), browser.others()), (4, 2));
+    assert_eq!((browser.files(), browser.others), (4, 2));
 }
 
 #[test]

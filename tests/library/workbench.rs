@@ -335,7 +335,7 @@ fn the_exact_motion_and_the_distance_from_it() {
     let distance = stage
         .lab
         .player()
-        .reading()
+        .reading
         .readouts
         .health
         .deviation
@@ -403,7 +403,7 @@ fn esc_closes_one_thing_at_a_time_and_never_leaves() {
     for _ in 0..5 {
         assert_eq!(stage.key(Key::Esc), None);
     }
-    assert_eq!(stage.lab.on_top().mode(), Mode::Lab);
+    assert_eq!(stage.lab.on_top().mode, Mode::Lab);
     stage.shows("q leaves");
     assert_eq!(stage.key(Key::Char('q')), Some(Request::Quit));
 }
@@ -496,7 +496,7 @@ fn at_speed_numbers_and_pictures_are_of_one_moment() {
         for _ in 0..7 {
             stage.wait(0.1);
             assert_eq!(
-                stage.lab.player().reading().readouts.sample.step,
+                stage.lab.player().reading.readouts.sample.step,
                 stage.step(),
                 "{command}"
             );

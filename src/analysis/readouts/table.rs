@@ -5,16 +5,13 @@ use crate::analysis::{Measured, Theory};
 use crate::scenario::{problem, start};
 use std::time::Duration;
 
-/// One row of the table.
 #[derive(Debug)]
 pub struct Readout {
     /// The name, with the unit as it is written.
     pub name: &'static str,
     /// The unit; empty for a pure number and for a text.
     pub unit: &'static str,
-    /// What it is, in one line.
     pub meaning: &'static str,
-    /// How it is obtained.
     pub source: Source,
     /// Whether it is a text, never a number.
     pub is_text: bool,
@@ -26,7 +23,6 @@ pub struct Readout {
 /// In the name of a readout that is the standard error of another.
 const ERROR: &str = "_uncertainty";
 
-/// How a readout is obtained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// From the scenario and its edits.
@@ -48,7 +44,6 @@ pub enum Source {
 }
 
 impl Source {
-    /// In words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Scenario => "the scenario",
@@ -89,18 +84,15 @@ impl Readout {
         find(&format!("predicted_{what}"))
     }
 
-    /// What `readouts` has under this name.
     pub fn of(&self, readouts: &Readouts) -> Value {
         (self.get)(readouts)
     }
 }
 
-/// The readout of that name.
 pub fn find(name: &str) -> Option<&'static Readout> {
     READOUTS.iter().find(|readout| readout.name == name)
 }
 
-/// Every name, in the table's order.
 pub fn names() -> impl Iterator<Item = &'static str> + Clone {
     READOUTS.iter().map(|readout| readout.name)
 }
@@ -153,7 +145,6 @@ const fn is_text<T: Given>(_: &impl Fn(&Readouts) -> T) -> bool {
 /// Makes a row of each line: name, unit, source, meaning, how it is got of the readouts `r`, and the symbol where it has one.
 macro_rules! readouts {
     ($($name:literal, $unit:literal, $source:ident, $meaning:literal, |$r:ident| $get:expr $(, $symbol:literal)?;)*) => {
-        /// Every readout.
         pub const READOUTS: &[Readout] = &[
             $(Readout {
                 name: $name,

@@ -60,7 +60,6 @@ pub(super) fn figure(value: &Value) -> Read {
     })
 }
 
-/// A list of names.
 fn names(value: &Value) -> Result<Vec<String>, Vec<Problem>> {
     let Some(list) = value.as_array() else {
         let rule = "must be a list of names in brackets";

@@ -1,54 +1,35 @@
 //! Reads the values of the commands that choose how the run is shown.
 
-use super::reading::{
-    Read, checked, field, fields, number, number_in, of_view, place, text_in, wrong,
-};
+use super::reading::{Read, field, fields, number, number_in, of_view, place, text_in, wrong};
 use super::{Command, CursorTo, MOST_MAGNIFIED, NEXT_TURN, NONE, TURN_BEFORE};
 use crate::lab::view::step::Page;
 use crate::lab::view::{Pane, Part};
 use crate::observe::camera::{Camera, Zoom};
 use crate::observe::pace::Speed;
-use crate::observe::recording::Curve;
+use crate::scenario::Problem;
 use crate::scenario::file::Choice;
-use crate::scenario::keys::{Kind, PITCH_DEG, Range, ZOOM};
+use crate::scenario::keys::{PITCH_DEG, Range, ZOOM};
 use toml::Value;
+
+/// The text that `value` is as the key `view.name`.
+pub(super) fn text_of(name: &str, value: &Value) -> Result<String, Vec<Problem>> {
+    Ok(text_in(of_view(name, value)?).to_owned())
+}
+
+pub(super) fn flag_of(name: &str, value: &Value) -> Result<bool, Vec<Problem>> {
+    Ok(of_view(name, value)?.as_bool().unwrap_or_default())
+}
+
+pub(super) fn number_of(name: &str, value: &Value) -> Result<f64, Vec<Problem>> {
+    of_view(name, value).map(number_in)
+}
 
 pub(super) fn speed(value: &Value) -> Read {
     match value {
         Value::String(word) if word == "top" => Ok(Command::Speed(Speed::Top)),
         Value::String(_) => wrong(value, "must be a number greater than zero, or \"top\""),
-        _ => Ok(Command::Speed(Speed::Times(number_in(of_view(
-            "speed", value,
-        )?)))),
+        _ => Ok(Command::Speed(Speed::Times(number_of("speed", value)?))),
     }
-}
-
-pub(super) fn look_at(value: &Value) -> Read {
-    let text = text_in(of_view("look_at", value)?);
-    Ok(Command::LookAt(text.to_owned()))
-}
-
-pub(super) fn next(value: &Value) -> Read {
-    let text = text_in(of_view("next", value)?);
-    Ok(Command::Next(text.to_owned()))
-}
-
-pub(super) fn bare(value: &Value) -> Read {
-    let bare = of_view("bare", value)?.as_bool().unwrap_or_default();
-    Ok(Command::Bare(bare))
-}
-
-pub(super) fn window(value: &Value) -> Read {
-    Ok(Command::Window(number_in(of_view("window_s", value)?)))
-}
-
-pub(super) fn detail(value: &Value) -> Read {
-    Ok(Command::Detail(number_in(of_view("detail_s", value)?)))
-}
-
-pub(super) fn detail_of(value: &Value) -> Read {
-    let name = text_in(of_view("detail_of", value)?);
-    Ok(Command::DetailOf(Curve::of_name(name)))
 }
 
 pub(super) fn since(value: &Value) -> Read {
@@ -83,26 +64,6 @@ pub(super) fn cursor(value: &Value) -> Read {
     }
 }
 
-pub(super) fn exact(value: &Value) -> Read {
-    let shown = of_view("exact", value)?.as_bool().unwrap_or_default();
-    Ok(Command::Exact(shown))
-}
-
-pub(super) fn measured(value: &Value) -> Read {
-    let name = text_in(of_view("measured", value)?);
-    Ok(Command::Measured((name != NONE).then(|| name.to_owned())))
-}
-
-pub(super) fn residuals(value: &Value) -> Read {
-    let shown = of_view("residuals", value)?.as_bool();
-    Ok(Command::Residuals(shown.unwrap_or_default()))
-}
-
-pub(super) fn pin(value: &Value) -> Read {
-    let pinned = checked(Kind::Flag, value)?.as_bool().unwrap_or_default();
-    Ok(Command::Pin(pinned))
-}
-
 pub(super) fn show(value: &Value) -> Read {
     let list = of_view("show", value)?.as_array();
     let ids = list.into_iter().flatten().map(text_in);
@@ -113,16 +74,6 @@ pub(super) fn hide(value: &Value) -> Read {
     let list = of_view("hide", value)?.as_array();
     let ids = list.into_iter().flatten().map(text_in);
     Ok(Command::Hide(ids.filter_map(Part::named).collect()))
-}
-
-pub(super) fn fill(value: &Value) -> Read {
-    let id = text_in(of_view("fill", value)?);
-    Ok(Command::Fill(Pane::named(id)))
-}
-
-pub(super) fn point_at(value: &Value) -> Read {
-    let id = text_in(of_view("fill", value)?); // the same words
-    Ok(Command::PointAt(Pane::named(id)))
 }
 
 pub(super) fn phase(value: &Value) -> Read {

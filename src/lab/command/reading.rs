@@ -55,11 +55,6 @@ pub(super) fn text_in(value: &Value) -> &str {
     value.as_str().unwrap_or_default()
 }
 
-pub(super) fn chapter(value: &Value) -> Read {
-    let title = checked(Kind::Line, value)?;
-    Ok(Command::Chapter(text_in(title).to_owned()))
-}
-
 /// A finite number of `range`.
 pub(super) fn number(range: Range, value: &Value) -> Result<f64, Vec<Problem>> {
     checked(Kind::Number(range), value).map(number_in)
@@ -312,7 +307,6 @@ pub(super) fn flag(table: &Table, name: &str) -> Result<bool, Vec<Problem>> {
     Ok(field(table, name, read)?.flatten().unwrap_or(false))
 }
 
-/// A whole number of `least` or more.
 pub(super) fn whole(table: &Table, name: &str, least: i64) -> Result<Option<u64>, Vec<Problem>> {
     let read = |value: &Value| Ok(checked(Kind::Whole(least, i64::MAX), value)?.as_integer());
     let number = field(table, name, read)?.flatten();

@@ -1,34 +1,32 @@
 //! The one table of commands: the name of each, its value, and what it does.
 
-use super::Command;
 use super::exporting::{export, figure};
 use super::looking::{
-    bare, camera, cursor, detail, detail_of, exact, fill, hide, look_at, magnify, measured, next,
-    phase, pin, point_at, residuals, show, since, speed, sum_to, window, zoom,
+    camera, cursor, flag_of, hide, magnify, number_of, phase, show, since, speed, sum_to, text_of,
+    zoom,
 };
 use super::reading::{
-    Read, chapter, count, go_to, if_true, next_push, nudge, open, push, run_until, save, set, step,
-    wait,
+    Read, checked, count, go_to, if_true, line, next_push, nudge, open, push, run_until, save, set,
+    step, wait,
 };
+use super::{Command, NONE};
+use crate::lab::view::Pane;
+use crate::observe::recording::Curve;
 use crate::scenario::Problem;
+use crate::scenario::keys::Kind;
 use toml::Value;
 
-/// One command: its row in the table.
 pub struct CommandRow {
     /// Its name in a `[[do]]` table.
     pub name: &'static str,
     /// Examples of its value, as TOML.
     pub value: &'static str,
-    /// What it does.
     pub about: &'static str,
     read: fn(&Value) -> Read,
 }
 
 impl CommandRow {
     /// The command with this value.
-    ///
-    /// # Errors
-    /// Every rule that is broken, with keys below the command's name.
     pub fn read(&self, value: &Value) -> Result<Command, Vec<Problem>> {
         (self.read)(value)
     }
@@ -48,7 +46,6 @@ const fn row(
     }
 }
 
-/// Every command there is.
 #[rustfmt::skip]
 pub static COMMANDS: &[CommandRow] = &[
     row("open", "\"wobble-push\"", "open a preset or a file, SCENARIO as on the command line; it stands still at step 0", open),
@@ -62,33 +59,33 @@ pub static COMMANDS: &[CommandRow] = &[
     row("run", "true", "let the run go on", |value| if_true(value, Command::Run)),
     row("pause", "true", "stop the run", |value| if_true(value, Command::Pause)),
     row("wait_s", "2.5", "let so many seconds pass on the clock before the next command", wait),
-    row("chapter", "\"one line\"", "say this line; a recording (gyrolab cast) has a marker there", chapter),
+    row("chapter", "\"one line\"", "say this line; a recording (gyrolab cast) has a marker there", |value| Ok(Command::Chapter(line(value)?.to_owned()))),
     row("undo", "1", "take back so many of the things done last", |value| Ok(Command::Undo(count(value)?))),
     row("redo", "1", "bring so many of them again", |value| Ok(Command::Redo(count(value)?))),
     row("export", "\"run.csv\", or { path = \"run.csv\", every = 10, force = true }", "write the run up to here, or to_step, as CSV; force replaces a file; columns, from_s, to_s, points and excel are those of gyrolab run", export),
     row("figure", "\"run.pdf\", or { path = \"run.svg\", kind = \"above\", exact = true, force = true }", "draw the run up to here, or to_step; kind as in gyrolab figure, and the file's end says .svg, .pdf or .png", figure),
     row("save", "\"run.toml\", or { path = \"run.toml\", from_here = true, force = true }", "write the run up to here, or to_step, as a run file; from_here: the present state as a scenario", save),
     row("speed", "20 or \"top\"", "how fast the run is played, simulated seconds a second", speed),
-    row("look_at", "\"one line\"", "what the lab says of what there is to see", look_at),
-    row("next", "\"one line\"", "what the lab says at the end of the run of what to try next", next),
-    row("window_s", "60", "length of time that the traces show, s", window),
-    row("detail_s", "0.5", "length of time that the strip of the fast motion shows, s", detail),
-    row("detail_of", "\"z\"", "what that strip shows: x, y, z, tilt or auto, the tilt, or x where the tilt does not swing", detail_of),
+    row("look_at", "\"one line\"", "what the lab says of what there is to see", |value| Ok(Command::LookAt(text_of("look_at", value)?))),
+    row("next", "\"one line\"", "what the lab says at the end of the run of what to try next", |value| Ok(Command::Next(text_of("next", value)?))),
+    row("window_s", "60", "length of time that the traces show, s", |value| Ok(Command::Window(number_of("window_s", value)?))),
+    row("detail_s", "0.5", "length of time that the strip of the fast motion shows, s", |value| Ok(Command::Detail(number_of("detail_s", value)?))),
+    row("detail_of", "\"z\"", "what that strip shows: x, y, z, tilt or auto, the tilt, or x where the tilt does not swing", |value| Ok(Command::DetailOf(Curve::of_name(&text_of("detail_of", value)?)))),
     row("since_s", "12.5, or \"none\"", "time at the left edge of the traces, s; none: they follow the run", since),
     row("magnify", "4", "how many times the values of the traces are magnified, 1 to 1000000", magnify),
     row("cursor", "400, \"60 s\", \"next turn\", \"turn before\" or \"none\"", "the step at which the traces are read off; turns are those of the tilt", cursor),
-    row("exact", "true or false", "whether the exact motion is drawn beside the run", exact),
-    row("measured", "\"heidelberg-spin-decay\", \"data.csv\" or \"none\"", "put measured data beside the run: data that come with gyrolab, or a CSV file with a column t_s", measured),
-    row("residuals", "true or false", "whether measured data are shown less what the run says", residuals),
-    row("pin", "true or false", "pin the present run as the reference, which stays in view; false: none is pinned", pin),
+    row("exact", "true or false", "whether the exact motion is drawn beside the run", |value| Ok(Command::Exact(flag_of("exact", value)?))),
+    row("measured", "\"heidelberg-spin-decay\", \"data.csv\" or \"none\"", "put measured data beside the run: data that come with gyrolab, or a CSV file with a column t_s", |value| Ok(Command::Measured(Some(text_of("measured", value)?).filter(|name| name != NONE)))),
+    row("residuals", "true or false", "whether measured data are shown less what the run says", |value| Ok(Command::Residuals(flag_of("residuals", value)?))),
+    row("pin", "true or false", "pin the present run as the reference, which stays in view; false: none is pinned", |value| Ok(Command::Pin(checked(Kind::Flag, value)?.as_bool().unwrap_or_default()))),
     row("take_advice", "true", "begin the run anew at the time step, or by the scheme, that mends doubtful numbers, up to the same time", |value| if_true(value, Command::TakeAdvice)),
     row("show", "[\"traces\", \"3d\"]", "the panes that share the screen, of traces, above, 3d, parameters, step; none: as many as there is room for, without step", show),
     row("hide", "[\"health\"]", "what is not shown: panes, health, predicted, look_at", hide),
-    row("fill", "\"above\"", "the pane that fills the screen, or \"none\"", fill),
+    row("fill", "\"above\"", "the pane that fills the screen, or \"none\"", |value| Ok(Command::Fill(Pane::named(&text_of("fill", value)?)))),
     row("phase", "3, \"torque\", \"last\" or \"why\"", "the phase of the time step that the pane step shows; why: why sideways, not down?", phase),
     row("sum_to", "4, or \"all\"", "how many rows of a phase's table the pane step adds up", sum_to),
-    row("point_at", "\"above\"", "the pane that is pointed at, by a heavy frame, or \"none\"", point_at),
-    row("bare", "true or false", "whether the screen is bare: two panes, or one, with title and time, and nothing else", bare),
+    row("point_at", "\"above\"", "the pane that is pointed at, by a heavy frame, or \"none\"", |value| Ok(Command::PointAt(Pane::named(&text_of("fill", value)?)))),
+    row("bare", "true or false", "whether the screen is bare: two panes, or one, with title and time, and nothing else", |value| Ok(Command::Bare(flag_of("bare", value)?))),
     row("camera", "{ yaw_deg = 30, pitch_deg = 20 }", "from where the 3-D view is seen", camera),
     row("zoom", "{ above = 4, 3d = 2 }", "how much larger than the whole the path from above and the 3-D view are shown", zoom),
 ];

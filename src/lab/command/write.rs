@@ -8,7 +8,6 @@ use crate::scenario::file::Choice;
 use crate::scenario::screen::{ALL_ROWS, AUTO, TRACES};
 use toml::{Table, Value};
 
-/// Name and value of `command`.
 pub(super) fn written(command: &Command) -> (&'static str, Value) {
     match command {
         Command::Open(name) => ("open", name.clone().into()),
@@ -111,7 +110,6 @@ pub(super) fn written(command: &Command) -> (&'static str, Value) {
     }
 }
 
-/// A table of `entries`.
 pub(super) fn map<const N: usize>(entries: [(&str, Value); N]) -> Value {
     let entries = entries
         .into_iter()

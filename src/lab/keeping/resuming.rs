@@ -18,9 +18,6 @@ use std::sync::Arc;
 impl Lab {
     /// The lab with `content`: on its way to the step where it stood, and paused there. `view` returns how its run is
     /// shown on this screen.
-    ///
-    /// # Errors
-    /// Why it cannot be read.
     pub fn resumed(
         content: &Content,
         view: impl FnOnce(&Scenario) -> View,
@@ -29,9 +26,6 @@ impl Lab {
     }
 
     /// As [`resumed`](Self::resumed), for a lab that reads and writes in the folder `confined` only, if one is given.
-    ///
-    /// # Errors
-    /// Why it cannot be read.
     pub fn resumed_in(
         content: &Content,
         confined: Option<&Confined>,
@@ -108,9 +102,6 @@ impl Lab {
 impl KeptPlace {
     /// Shows in `view` what the session showed. A number of it that makes no sense is passed over; `time_step_s` is the
     /// run's, s.
-    ///
-    /// # Errors
-    /// Where the pane in focus is none.
     fn restore(&self, view: &mut View, time_step_s: f64) -> Result<(), Unreadable> {
         view.focus = view
             .kept_as(&self.focus)
@@ -159,9 +150,6 @@ fn left_of(commands: &Commands) -> String {
 
 impl KeptScript {
     /// The commands to be carried out.
-    ///
-    /// # Errors
-    /// What is wrong with them.
     fn commands(&self) -> Result<Commands, Problems> {
         let read = |text: &str| {
             let document = Document::parse(&self.origin, text)?;

@@ -1,6 +1,5 @@
 //! Putting measured data beside the run, and taking them away.
 
-use super::Beside;
 use crate::export::Destination;
 use crate::lab::Lab;
 use crate::lab::answer::{Answer, Done};
@@ -13,9 +12,6 @@ use std::path::Path;
 impl Files {
     /// Reads the measured data `name`: those that come with the program, or a file. `may_wait` says whether it may be a
     /// FIFO or a device, which is read for any length of time.
-    ///
-    /// # Errors
-    /// Why it may not be read, or what is wrong with it.
     fn open_measured(&self, name: &str, may_wait: bool) -> Result<Measured, Problems> {
         if shipped::find(name).is_none() {
             let refused = |rule: String| Problems::one(name, Problem::at("", rule));
@@ -33,9 +29,6 @@ impl Files {
 impl Lab {
     /// Puts the measured data `name` beside the run, as the command line wants it, or else those that the scenario's
     /// `[view]` names.
-    ///
-    /// # Errors
-    /// Why they cannot be read, or have no place beside a run.
     pub fn begin_with_measured(&mut self, name: Option<&str>) -> Result<(), Problems> {
         let file = self.player.run().scenario().file.view.as_ref();
         let of_file = file.and_then(|view| view.measured.clone());
@@ -90,10 +83,7 @@ impl Lab {
     pub(in crate::lab) fn measure_as_opened(&mut self, before: &Scenario) {
         let named = |scenario: &Scenario| scenario.file.view.as_ref()?.measured.clone();
         let scenario = self.player.run().scenario();
-        let shown = self
-            .player
-            .measured()
-            .map(|beside| beside.name().to_owned());
+        let shown = self.player.measured().map(|beside| beside.name.to_owned());
         match named(scenario) {
             Some(name) if Some(&name) == shown.as_ref() => {}
             Some(name) => {
@@ -115,11 +105,11 @@ impl Lab {
     /// The name of the measured data beside the run, for a session. A file has its full path, unless the lab is
     /// confined to a folder.
     pub(in crate::lab) fn measured_to_keep(&self) -> Option<String> {
-        let name = self.player.measured().map(Beside::name)?;
+        let name = &self.player.measured()?.name;
         let is_whole = shipped::find(name).is_some() || self.files.confined().is_some();
         let whole = std::path::absolute(name).ok().filter(|_| !is_whole);
         let whole = whole.and_then(|path| path.to_str().map(str::to_owned));
-        Some(whole.unwrap_or_else(|| name.to_owned()))
+        Some(whole.unwrap_or_else(|| name.clone()))
     }
 
     /// Puts the measured data of a session beside the run again. Returns a message where that is not possible.

@@ -6,10 +6,10 @@ use super::listed::{ListedValue, Match};
 /// names are shown: those of which a word begins with it, or where there are none, those that have it anywhere.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ValueList {
-    values: Vec<ListedValue>,
+    pub values: Vec<ListedValue>,
     /// The number of the selected value among all, from 0.
     selected: usize,
-    name: String,
+    pub name: String,
     /// How well the values that are shown answer the search.
     shows: Option<Match>,
 }
@@ -35,11 +35,6 @@ impl ValueList {
         self.name = name;
         self.search();
         self.keep_shown();
-    }
-
-    /// What is searched for: the part of a name that all values shown have. Empty where every value is shown.
-    pub fn name(&self) -> &str {
-        &self.name
     }
 
     /// Moves the selection by `rows` of the values that are shown; it stops at both ends.
@@ -68,11 +63,6 @@ impl ValueList {
     /// The number of the selected value among all, from 0.
     pub fn selected_index(&self) -> usize {
         self.selected
-    }
-
-    /// All values, in order.
-    pub fn values(&self) -> &[ListedValue] {
-        &self.values
     }
 
     /// The values that are shown, in order, each with its number among all.

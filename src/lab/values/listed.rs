@@ -5,14 +5,10 @@ use crate::work::next_push::{Field, NextPush};
 use crate::work::parameters::Parameter;
 use std::borrow::Cow;
 
-/// A value that the user can edit.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ListedValue {
-    /// A value of the scenario.
     OfScenario(Box<Parameter>),
-    /// A value of the push to come.
     OfNextPush {
-        /// Which of its values.
         field: Field,
         /// The value as text.
         text: String,
@@ -20,7 +16,6 @@ pub enum ListedValue {
 }
 
 impl ListedValue {
-    /// The values of `push`.
     pub(super) fn of(push: &NextPush) -> [Self; 4] {
         Field::ALL.map(|field| Self::OfNextPush {
             field,
@@ -44,7 +39,6 @@ impl ListedValue {
         }
     }
 
-    /// Short name.
     pub fn label(&self) -> Cow<'_, str> {
         match self {
             Self::OfScenario(parameter) => match parameter.frame {
@@ -63,7 +57,6 @@ impl ListedValue {
         }
     }
 
-    /// Its unit, or empty.
     pub fn unit(&self) -> &'static str {
         match self {
             Self::OfScenario(parameter) => parameter.unit(),

@@ -10,7 +10,6 @@ impl View {
         self.is_touched |= self.filled;
     }
 
-    /// Whether `pane` fills the screen.
     pub fn is_filled_by(&self, pane: Pane) -> bool {
         self.filled && self.focus == pane
     }

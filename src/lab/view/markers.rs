@@ -1,6 +1,5 @@
 //! The kinds of dots. `tui` draws them.
 
-/// A kind of dots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Marker {
     /// Two by four dots in a cell.
@@ -27,7 +26,6 @@ impl Marker {
         need(self) <= need(other)
     }
 
-    /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Braille => "braille",

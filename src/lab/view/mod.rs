@@ -31,20 +31,15 @@ pub const FPS: u32 = 15;
 /// Degrees by which one press of an arrow turns the camera.
 const TURN_DEG: f64 = 10.0;
 
-/// Options of the view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     /// Every pane there is, in the order in which the focus goes through them.
     pub panes: &'static [Pane],
-    /// The pane in focus.
     pub focus: Pane,
     /// Whether the user turned to it, or pressed a key of its own: the footer then names those.
     pub is_touched: bool,
-    /// Whether it fills the screen.
     pub filled: bool,
-    /// What dots are made of.
     pub marker: Marker,
-    /// Colours.
     pub theme: Theme,
     /// Length of time the traces show, s.
     pub window_s: f64,
@@ -74,7 +69,6 @@ pub struct View {
     pub page_before: Page,
     /// How many rows of a table the step pane adds up; `None`: all.
     pub sum_to: Option<usize>,
-    /// The hidden parts.
     pub hidden: Vec<Part>,
     /// The line about what there is to see, if a command has set it; otherwise the scenario's line is shown.
     pub look_at: Option<String>,
@@ -82,7 +76,6 @@ pub struct View {
     pub next: Option<String>,
     /// Whether the screen is bare: few panes, and nothing around them but title and time.
     pub bare: bool,
-    /// The pane that is pointed at.
     pub pointed_at: Option<Pane>,
     /// The pane beside the text where there is room for one: the last that had the focus, or the first that was chosen.
     pub beside: Option<Pane>,
@@ -189,12 +182,10 @@ impl View {
         chosen.unwrap_or_else(|| first_window_s(scenario))
     }
 
-    /// Whether `part` is hidden.
     pub fn hides(&self, part: Part) -> bool {
         self.hidden.contains(&part)
     }
 
-    /// Whether `pane` may be on the screen.
     pub fn may_show(&self, pane: Pane) -> bool {
         if pane == Pane::LESSON {
             return self.sheet.is_some() && !self.hides(Part::Pane(pane));
@@ -213,7 +204,6 @@ impl View {
         panes.filter(|pane| self.may_show(*pane)).collect()
     }
 
-    /// The pane with this id in a session.
     pub fn kept_as(&self, id: &str) -> Option<Pane> {
         self.panes.iter().copied().find(|pane| pane.id() == id)
     }

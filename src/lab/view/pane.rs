@@ -7,14 +7,10 @@ use crate::scenario::screen::{self, PANES};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pane(&'static str);
 
-/// A part of the screen that can be hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// A pane.
     Pane(Pane),
-    /// The line about the numbers' health.
     Health,
-    /// The numbers that theory predicts.
     Predicted,
     /// The line that says what there is to see.
     LookAt,
@@ -23,7 +19,6 @@ pub enum Part {
 impl Pane {
     /// x, y, z and tilt over time.
     pub const TRACES: Self = Self(screen::TRACES);
-    /// The path from above.
     pub const FROM_ABOVE: Self = Self(screen::ABOVE);
     /// The scene in space.
     pub const THREE_D: Self = Self(screen::THREE_D);
@@ -35,7 +30,6 @@ impl Pane {
     /// The page of a lesson. It is shown as long as there is one.
     pub const LESSON: Self = Self("lesson");
 
-    /// The pane of this id.
     pub const fn new(id: &'static str) -> Self {
         Self(id)
     }
@@ -62,7 +56,6 @@ impl Part {
         }
     }
 
-    /// The part of that name.
     pub fn named(id: &str) -> Option<Self> {
         let others = [Self::Health, Self::Predicted, Self::LookAt];
         let other = others.into_iter().find(|part| part.id() == id);

@@ -6,14 +6,12 @@ use crate::physics::workings::NAMES;
 use crate::scenario::file::{Choice, ViewFile};
 use crate::scenario::screen::{LAST, WHY};
 
-/// The page of the step pane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Page {
     /// The phase of this number, from 1; the last one where there are fewer.
     Number(usize),
     /// The first phase of this name; the first phase of all if no phase has it.
     Named(&'static str),
-    /// The last phase.
     Last,
     /// Why sideways, not down?
     Why,
@@ -26,7 +24,6 @@ impl Default for Page {
 }
 
 impl Page {
-    /// The page of that name in files and commands.
     pub fn named(name: &str) -> Option<Self> {
         match name {
             LAST => Some(Self::Last),
@@ -38,7 +35,6 @@ impl Page {
         }
     }
 
-    /// The page that `choice` of a file stands for.
     pub fn of(choice: &Choice) -> Option<Self> {
         match choice {
             Choice::Number(number) => usize::try_from(*number).ok().map(Self::Number),

@@ -4,7 +4,6 @@ use crate::physics::Loads;
 use crate::run::step::{EnergyAccount, Step};
 use crate::scenario::Motion;
 
-/// What was replaced last.
 #[derive(Clone, Default)]
 pub(super) struct Replaced {
     /// The step at which the run stood then; `None` while nothing has been replaced.

@@ -12,10 +12,8 @@ use toml::Value;
 
 /// The longest line of text in a block, characters.
 const LONGEST_LINE: usize = 500;
-/// The most problems of one block that are told.
 const MOST_TOLD: usize = 20;
 
-/// The TOML of a block.
 pub(super) struct Content {
     document: Document,
     word: String,
@@ -78,7 +76,6 @@ impl Content {
         self.document.table().get(key).cloned()
     }
 
-    /// The line of `key` in the file.
     pub(super) fn line_of(&self, key: &str) -> usize {
         let lines = self.document.lines_of(std::iter::once(key.to_owned()));
         lines.into_iter().flatten().next().unwrap_or(self.line)
@@ -111,7 +108,6 @@ impl Content {
         self.line(key, may_wrap)
     }
 
-    /// The Markdown at `key`.
     pub(super) fn text(
         &mut self,
         key: &str,
@@ -131,7 +127,6 @@ impl Content {
         })
     }
 
-    /// The expression at `key`.
     pub(super) fn expression(
         &mut self,
         key: &str,

@@ -1,6 +1,6 @@
 //! The keys of a lesson: turning its pages, predicting, and asking for help.
 
-use super::{Block, Taken, holds};
+use super::{Taken, UnderWay, holds};
 use crate::lab::Lab;
 use crate::lab::action::{Direction, LessonKey};
 use crate::lab::command::Command;
@@ -95,7 +95,7 @@ impl Taken {
         let lesson = Arc::clone(&self.lesson);
         let page = self.place.page;
         match lesson.task_of(page, &self.place.predictions) {
-            Some(stage) => self.begin(&stage, Block::Task(page), lab),
+            Some(stage) => self.begin(&stage, UnderWay::Task(page), lab),
             None => lab.refuse("this page has no task"),
         }
         None

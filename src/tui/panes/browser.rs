@@ -44,7 +44,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
 }
 
 fn first_shown(browser: &Browser, height: usize) -> usize {
-    let selected = browser.selected();
+    let selected = browser.selected;
     selected.saturating_sub(height.saturating_sub(1))
 }
 

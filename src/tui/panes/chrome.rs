@@ -29,7 +29,7 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let motion = lab.player().motion();
     let step = significant(motion.time_step_s, 7);
     let clock = clock(
-        lab.player().reading(),
+        &lab.player().reading,
         lab.player().run().scenario().least_time_step_s(),
         area.width as usize,
     );
@@ -60,7 +60,7 @@ pub fn title(lab: &Lab, area: Rect, buf: &mut Buffer) {
 fn bare_title(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
     let digits = digits(lab.player().run().scenario().least_time_step_s());
-    let time_s = lab.player().reading().readouts.sample.time_s;
+    let time_s = lab.player().reading.readouts.sample.time_s;
     let time = format!("t {:>8} s ", fixed(time_s, digits));
     let x = area.width.saturating_sub(time.len() as u16);
     write(area, (x, 0), &time, theme.style(Role::Text), buf);
@@ -95,7 +95,7 @@ fn clock(reading: &Reading, time_step_s: f64, width: usize) -> String {
 /// What the time step makes of the numbers, in words: at length if all of it fits, else in short, as much as fits.
 pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let mut remarks = remarks(&lab.player().reading().readouts.health, None);
+    let mut remarks = remarks(&lab.player().reading.readouts.health, None);
     let player = lab.player();
     if let (Some(long), Some(short)) = (player.offer(), player.offer_in_short()) {
         let offer = Remark {
@@ -131,7 +131,7 @@ pub fn health(lab: &Lab, area: Rect, buf: &mut Buffer) {
 
 /// Whether the line about the numbers' health warns of something.
 pub fn warns(lab: &Lab) -> bool {
-    let remarks = remarks(&lab.player().reading().readouts.health, None);
+    let remarks = remarks(&lab.player().reading.readouts.health, None);
     remarks.iter().any(|remark| remark.warns) && !lab.view().hides(Part::Health)
 }
 
@@ -226,7 +226,7 @@ fn footer(lab: &Lab) -> Vec<Item> {
     let esc = match mode {
         Mode::Lab if lab.view().filled && lab.view().sheet.is_some() => Some("to the page"),
         Mode::Lab => None,
-        Mode::Help if lab.on_top().help().text().is_empty() => Some("close"),
+        Mode::Help if lab.on_top().help.text.is_empty() => Some("close"),
         Mode::Help | Mode::Filter | Mode::Find => Some("clear"),
         Mode::Browser | Mode::Dialog => Some("close"),
     };

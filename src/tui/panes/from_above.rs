@@ -71,7 +71,7 @@ pub const ROW: PaneRow = PaneRow {
             pinned: lab.player().pinned(),
             measured: lab.player().measured(),
             view: lab.view(),
-            reading: Some(lab.player().reading()),
+            reading: Some(&lab.player().reading),
         }
         .render(area, buf);
     },

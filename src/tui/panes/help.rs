@@ -21,14 +21,14 @@ const LEAST_TEXT: usize = 40;
 const SELECTED: &str = "►";
 
 fn selected(lab: &Lab) -> Option<Entry> {
-    let found = found(lab.on_top().help().text());
-    found.get(lab.on_top().help().selected()).copied()
+    let found = found(&lab.on_top().help.text);
+    found.get(lab.on_top().help.selected).copied()
 }
 
 /// Keeps the selection of the help among the entries that are found.
 pub fn limit(lab: &mut Lab) {
-    if lab.on_top().mode() == Mode::Help {
-        lab.limit_help(found(lab.on_top().help().text()).len());
+    if lab.on_top().mode == Mode::Help {
+        lab.limit_help(found(&lab.on_top().help.text).len());
     }
 }
 
@@ -44,11 +44,11 @@ pub fn do_entry(lab: &mut Lab) -> Option<Request> {
         lab.refuse("a word to read: Enter does nothing with it, Esc closes");
         return None;
     };
-    if !binding.modes.contains(&lab.on_top().under_help()) {
+    if !binding.modes.contains(&lab.on_top().under_help) {
         lab.refuse(format!("{}: this key works there", entry.group));
         return None;
     }
-    while lab.on_top().mode() == Mode::Help {
+    while lab.on_top().mode == Mode::Help {
         lab.update(Action::Help);
     }
     if let Some(pane) = entry.pane

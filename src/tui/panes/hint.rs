@@ -80,7 +80,7 @@ pub fn draw(lab: &Lab, is_cramped: bool, area: Rect, buf: &mut Buffer) {
 /// Whether there is something to be said now, besides what there is to see.
 pub fn has_message(lab: &Lab) -> bool {
     let on_top = lab.on_top();
-    on_top.count().is_some() || lab.notice().is_some() || on_top.notice().trouble().is_some()
+    on_top.count.is_some() || lab.notice().is_some() || on_top.notice.trouble().is_some()
 }
 
 /// Before whatever is said while the session is not kept.
@@ -88,9 +88,9 @@ const NOT_KEPT: &str = "session not kept";
 
 /// What stands in the line of hints. That the session is not kept stands there as long as it is so.
 fn said(lab: &Lab) -> (String, Role) {
-    let is_quiet = lab.on_top().count().is_none() && lab.notice().is_none();
+    let is_quiet = lab.on_top().count.is_none() && lab.notice().is_none();
     let (text, role) = said_of_run(lab);
-    match lab.on_top().notice().trouble() {
+    match lab.on_top().notice.trouble() {
         None => (text, role),
         Some(trouble) if is_quiet => (trouble.to_owned(), Role::Warning),
         Some(_) => (format!("{NOT_KEPT}{SEPARATOR}{text}"), role),
@@ -98,7 +98,7 @@ fn said(lab: &Lab) -> (String, Role) {
 }
 
 fn said_of_run(lab: &Lab) -> (String, Role) {
-    match (lab.on_top().count(), lab.notice()) {
+    match (lab.on_top().count, lab.notice()) {
         (Some(MOST_COUNTED), _) => (
             format!("{MOST_COUNTED} is the most that is counted: now the key; Esc forgets it"),
             Role::Focus,

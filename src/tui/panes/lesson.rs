@@ -1,11 +1,11 @@
 //! The page of a lesson beside the run: its text, the question with its answers, what is to be reached, and the keys.
 
 use super::{PaneRow, Width, frame, write};
+use crate::lab::Lab;
 use crate::lab::action::{Action, Direction, LessonKey};
 use crate::lab::sheet::{Kind, Look, Paragraph, Sheet};
 use crate::lab::view::Pane;
 use crate::lab::view::theme::Theme;
-use crate::lab::{Lab, scrolled_by};
 use crate::text::wrap::{columns, wrapped};
 use crate::tui::keymap::{Binding, Key, Mode, row};
 use crate::tui::theme::Role;
@@ -93,7 +93,8 @@ pub fn scroll(lab: &mut Lab, direction: Direction, place: Rect) {
     let shown = inside.height as usize;
     let page = Page::new(&sheet, inside, lab.view().sheet_scrolled, &lab.view().theme);
     let (first, all) = (page.first, page.lines.len());
-    lab.scroll_sheet(scrolled_by(direction, shown), first, shown, all);
+    let page = shown.saturating_sub(1).max(1) as isize;
+    lab.scroll_sheet(direction.rows(page), first, shown, all);
 }
 
 struct Page {

@@ -49,9 +49,9 @@ pub const ROW: PaneRow = PaneRow {
         Parameters {
             scenario: lab.player().run().scenario(),
             motion: &lab.player().motion(),
-            reading: lab.player().reading(),
-            list: lab.values().list(),
-            is_searched: lab.on_top().mode() == Mode::Find,
+            reading: &lab.player().reading,
+            list: &lab.values().list,
+            is_searched: lab.on_top().mode == Mode::Find,
             view: lab.view(),
         }
         .render(area, buf);
@@ -134,7 +134,7 @@ impl Parameters<'_> {
             WATCHED_FROM.. => spare.max(height * 2 / 5),
             _ => 0,
         };
-        let read = match list.name() {
+        let read = match list.name.as_str() {
             "" => read_lines(self.view, self.reading, room),
             name => self.found(name, room),
         };
@@ -149,7 +149,7 @@ impl Parameters<'_> {
         if count == 0 {
             return self.edited_above_read(list, area, buf);
         }
-        let read = match list.name() {
+        let read = match list.name.as_str() {
             "" => {
                 let mut read = derived_lines(self.scenario);
                 read.extend(shown(self.view, now_lines(self.reading)));

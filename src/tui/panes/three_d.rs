@@ -68,7 +68,7 @@ pub const ROW: PaneRow = PaneRow {
         ThreeD {
             run: lab.player().run(),
             view: lab.view(),
-            reading: Some(lab.player().reading()),
+            reading: Some(&lab.player().reading),
             explained: lab.player().explained(),
             ghost: lab.player().ghost(),
             pinned: lab.player().pinned(),

@@ -46,7 +46,7 @@ impl Timeline {
         let (scenario, furthest) = (run.scenario(), run.furthest());
         let now_s = run.now().time_s;
         Self {
-            end_s: lab.player().playback().end_s(),
+            end_s: lab.player().playback.end_s(),
             now_s,
             furthest_s: Clock::at(scenario, furthest).time_s(furthest).max(now_s),
             pinned_s: lab.player().pinned_end_s(),

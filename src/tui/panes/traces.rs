@@ -114,7 +114,7 @@ impl<'a> Traces<'a> {
             pinned: lab.player().pinned(),
             measured: lab.player().measured(),
             view: lab.view(),
-            detail: lab.player().detail(),
+            detail: &lab.player().detail,
             cursor: lab.player().cursor(),
         }
     }

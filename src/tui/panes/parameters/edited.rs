@@ -19,7 +19,7 @@ pub(super) fn title(list: Option<&ValueList>, is_searched: bool) -> String {
         .iter()
         .position(|(index, _)| *index == list.selected_index());
     let at = at.map_or(0, |at| at + 1);
-    match (list.name(), is_searched, shown.len()) {
+    match (list.name.as_str(), is_searched, shown.len()) {
         (name, true, count) => format!("/{name}_ {at} of {count}"),
         ("", false, 0) => ROW.title.to_owned(),
         ("", false, count) => format!("{} {at} of {count}", ROW.title),
@@ -38,7 +38,7 @@ pub(super) fn edited_lines(list: &ValueList) -> Vec<Line> {
             lines.push(edited_line(value, *index == list.selected_index()));
         }
     }
-    if lines.is_empty() && !list.name().is_empty() {
+    if lines.is_empty() && !list.name.is_empty() {
         lines.push(heading("no value to set has it"));
     }
     lines

@@ -52,7 +52,7 @@ impl Traces<'_> {
     /// The measured values of what `content` shows; `None` where it was not measured.
     pub(super) fn points(&self, content: Content) -> Option<&[Shown]> {
         let index = self.index(content)?;
-        let curves = &self.measured?.compared().curves;
+        let curves = &self.measured?.compared.curves;
         curves.get(index).map(Vec::as_slice)
     }
 
