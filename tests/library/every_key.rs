@@ -78,7 +78,7 @@ impl Picture {
 /// What is wrong with the picture of `stage`.
 fn trouble(stage: &Stage) -> Option<String> {
     let picture = Picture::of(stage);
-    let is_plain = stage.lab.on_top().mode() == Mode::Lab && !hint::has_message(&stage.lab);
+    let is_plain = stage.lab.on_top().mode == Mode::Lab && !hint::has_message(&stage.lab);
     if is_plain {
         let title = picture.rows.first();
         if title.is_none_or(|row| row.iter().all(|sign| *sign == ' ')) {

@@ -83,7 +83,9 @@ fn the_keys_of_zoom_pan_and_whole_are_named_where_they_act() {
         }
         stage.key(Key::Home);
     }
-    assert!(stage.lab.shows_whole_view());
+    let view = stage.lab.view();
+    assert_eq!((view.cursor, view.since_s), (None, None));
+    assert!(view.magnified <= 1.0);
     assert_eq!(keys(&stage), first);
 }
 

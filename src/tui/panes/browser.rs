@@ -21,7 +21,7 @@ const LIST: u16 = 30;
 
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let browser = lab.on_top().browser();
+    let browser = &lab.on_top().browser;
     let title = match browser.folder() {
         None => TITLE.to_owned(),
         Some(folder) => format!("{TITLE} of {}", folder.display()),
@@ -37,7 +37,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         below.width
     };
     let [places, rest] = split_columns(below, width);
-    let is_typed = lab.on_top().mode() == Mode::Filter;
+    let is_typed = lab.on_top().mode == Mode::Filter;
     filter_line(browser, is_typed, theme, top, buf);
     list(browser, theme, places, buf);
     preview(browser, theme, rest, buf);
@@ -83,10 +83,10 @@ fn keys(files: usize, others: usize, width: usize) -> String {
 
 fn filter_line(browser: &Browser, is_typed: bool, theme: &Theme, area: Rect, buf: &mut Buffer) {
     let shown = browser.shown().len();
-    let (text, role) = match (is_typed, browser.filter()) {
+    let (text, role) = match (is_typed, browser.filter.as_str()) {
         (true, filter) => (format!("/{filter}_  ({shown})"), Role::Focus),
         (_, "") => {
-            let (files, others) = (browser.files(), browser.others());
+            let (files, others) = (browser.files(), browser.others);
             let room = area.width.saturating_sub(2) as usize;
             (keys(files, others, room), Role::Quiet)
         }
@@ -106,7 +106,7 @@ fn list(browser: &Browser, theme: &Theme, area: Rect, buf: &mut Buffer) {
     let [places, _] = split_columns(area, LIST - 1);
     let entries = shown.iter().enumerate().skip(first);
     for ((index, entry), place) in entries.zip(places.rows()) {
-        let (role, mark) = if index == browser.selected() {
+        let (role, mark) = if index == browser.selected {
             (Role::Selected, ">")
         } else {
             (Role::Text, " ")
@@ -128,10 +128,6 @@ fn preview(browser: &Browser, theme: &Theme, area: Rect, buf: &mut Buffer) {
             Err(problem) => refused(problem, width),
         },
         Some(Preview::Loading) => vec![("reading ...".to_owned(), Role::Quiet)],
-        Some(Preview::Unknown) => vec![(
-            "no preview: the system is out of threads".to_owned(),
-            Role::Quiet,
-        )],
         None if browser.choice().is_some_and(|entry| entry.is_folder) => {
             vec![("a folder: Enter lists its files".to_owned(), Role::Quiet)]
         }

@@ -207,7 +207,7 @@ fn fitted(mut items: Vec<Item>, width: u16) -> (Vec<Item>, u16) {
 
 /// The keys that the footer names where there is room for all.
 fn footer(lab: &Lab) -> Vec<Item> {
-    let mode = lab.on_top().mode();
+    let mode = lab.on_top().mode;
     let of_pane = super::keys_of(lab);
     let of_mode = of_pane.clone().filter(|row| row.modes.contains(&mode));
     let is_new = |row: &&Binding| of_mode.clone().all(|other| other.keys[0] != row.keys[0]);
@@ -253,7 +253,7 @@ fn word(lab: &Lab, row: &Binding) -> Option<&'static str> {
         _ => true,
     };
     let word = match row.action {
-        Action::TogglePause if !lab.player().playback().is_running() => "go on",
+        Action::TogglePause if !lab.player().playback.is_running() => "go on",
         Action::Lesson(LessonKey::Take) => enter,
         Action::NextPhase if is_why => "next step",
         Action::Why if is_why => "phases",

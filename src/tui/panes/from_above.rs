@@ -233,8 +233,7 @@ impl FromAbove<'_> {
 
     /// The measured places; none where the columns of the data do not say them.
     fn places(&self) -> &[Place] {
-        self.measured
-            .map_or(&[], |beside| &beside.compared().places)
+        self.measured.map_or(&[], |beside| &beside.compared.places)
     }
 
     /// The measured places: those at times that the run has not reached are faint.

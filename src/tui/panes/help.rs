@@ -64,7 +64,7 @@ pub fn do_entry(lab: &mut Lab) -> Option<Request> {
 
 pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     let theme = &lab.view().theme;
-    let search = lab.on_top().help().text();
+    let search = lab.on_top().help.text.as_str();
     let found = found(search);
     let title = match search {
         "" => "help: type to search, Enter does it".to_owned(),
@@ -75,7 +75,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
         let text = "nothing has that in it: Esc clears the search";
         write(inside, (1, 0), text, theme.style(Role::Text), buf);
     }
-    let selected = lab.on_top().help().selected();
+    let selected = lab.on_top().help.selected;
     let selected = selected.min(found.len().saturating_sub(1));
     let lines = lines(&found, search.is_empty(), inside.width as usize);
     let first = first_shown(&lines, selected, inside.height as usize);

@@ -29,7 +29,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     };
     let room = area.width.saturating_sub(1) as usize;
     let room = room.saturating_sub(columns(&mark) + columns(what) + 1);
-    let end_s = lab.player().playback().end_s();
+    let end_s = lab.player().playback.end_s();
     let (name, counts, parts) = fitting(beside, end_s, room);
     let quiet = theme.style(Role::Quiet);
     let mut x = write(area, (1, 0), &mark, theme.style(Role::Measured), buf);
@@ -45,8 +45,8 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
 /// The name of the data, their counts and the parts of the line that fit in `room` columns: short forms make room for the
 /// rest, then a shorter name, then the last parts give way.
 fn fitting(beside: &Beside, end_s: f64, room: usize) -> (String, String, Vec<String>) {
-    let sum = &beside.compared().sum;
-    let name = file_name(beside.name());
+    let sum = &beside.compared.sum;
+    let name = file_name(&beside.name);
     let [long, short] = counted(beside, sum, end_s);
     let [all, mut short_parts] = [parts(sum, false), parts(sum, true)];
     let mut forms = vec![(long.clone(), all), (long, short_parts.clone())];

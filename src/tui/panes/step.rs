@@ -98,7 +98,7 @@ fn title(lab: &Lab) -> String {
 
 /// What is to be done where there is no step to take apart.
 fn nothing_yet(lab: &Lab, area: Rect, buf: &mut Buffer) {
-    let playback = lab.player().playback();
+    let playback = &lab.player().playback;
     let texts: [&str; 2] = match playback.step_number() {
         0 => [
             "No time step has been taken yet.",

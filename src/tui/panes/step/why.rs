@@ -55,7 +55,7 @@ pub fn draw(lab: &Lab, area: Rect, buf: &mut Buffer) {
     }
     let [left, right] = split_columns(below, below.width / 2);
     from_above(explained, view, left, buf);
-    let is_seen = lab.player().reading().readouts.nutation_is_resolved() != Some(false);
+    let is_seen = lab.player().reading.readouts.nutation_is_resolved() != Some(false);
     dip(explained, is_seen, view, right, buf);
 }
 
