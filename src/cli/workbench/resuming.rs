@@ -8,7 +8,7 @@ use crate::lab::view::View;
 use crate::lab::{Lab, Summary};
 use crate::scenario::Scenario;
 use crate::storage::confined::Confined;
-use crate::storage::session::{self, KeptAside, Session};
+use crate::storage::session::{self, LeftAlone, Session};
 use crate::text::printable::{Shown, printable};
 use crate::tui::panes;
 use anyhow::Context;
@@ -71,18 +71,14 @@ pub(super) fn come_back_to(
 ) -> anyhow::Result<(Lab, Result<Session, String>)> {
     let folder = folder.map_err(anyhow::Error::msg)?;
     let shown = printable(name);
-    let found = session::resume_named(&folder, name, |content| {
+    let found = session::resume(&folder, Some(name), |content| {
         resumed(content, args.look, confined)
     })
     .with_context(|| format!("--resume {shown} (gyrolab sessions lists what there is)"))?;
-    let aside = put_aside(&found.kept_aside) + &left_alone(&found.left_alone);
-    if let Some(resumed) = found.resumed {
-        let mut lab = resumed.what;
-        if !aside.is_empty() {
-            lab.tell_first(&aside);
-        }
-        return Ok((lab, Ok(resumed.session)));
+    if let Some((session, lab)) = found.resumed {
+        return Ok((lab, Ok(session)));
     }
+    let aside = left_alone(&found.left_alone);
     if aside.is_empty() {
         anyhow::bail!(
             "--resume {shown}: it is open in another lab{}",
@@ -109,18 +105,15 @@ pub(super) fn come_back(
     let read = |content: &session::Content| resumed(content, args.look, confined);
     let found = folder
         .clone()
-        .and_then(|folder| session::resume(&folder, read).map_err(told));
+        .and_then(|folder| session::resume(&folder, None, read).map_err(told));
     let (aside, none) = match found {
         Ok(found) => {
-            let passed_over = put_aside(&found.kept_aside)
-                + &left_alone(&found.left_alone)
-                + &in_use(&found.in_use_by);
-            if let Some(resumed) = found.resumed {
-                let (mut lab, session) = (resumed.what, Ok(resumed.session));
+            let passed_over = left_alone(&found.left_alone) + &in_use(&found.in_use_by);
+            if let Some((session, mut lab)) = found.resumed {
                 if !passed_over.is_empty() {
                     lab.tell_first(&(passed_over + "this is an older one, "));
                 }
-                return Ok((lab, session));
+                return Ok((lab, Ok(session)));
             }
             let none = if found.in_use_by.is_empty() {
                 "no session to come back to: this is a new one"
@@ -163,18 +156,7 @@ fn told(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
 
-fn put_aside(damaged: &[KeptAside]) -> String {
-    let names = damaged.iter().map(|one| {
-        format!(
-            "a damaged session is put aside as {} ({}); ",
-            Shown(&one.path),
-            one.reason
-        )
-    });
-    names.collect()
-}
-
-fn left_alone(sessions: &[KeptAside]) -> String {
+fn left_alone(sessions: &[LeftAlone]) -> String {
     let names = sessions
         .iter()
         .map(|one| format!("{} is left alone ({}); ", Shown(&one.path), one.reason));
