@@ -1,7 +1,5 @@
 //! `gyrolab sweep`: a grid of runs, a row each.
 
-mod empty_rows;
-
 use super::args::Changes;
 use super::progress::{self, Interruption, Meter};
 use super::scenario::change;
@@ -11,12 +9,11 @@ use crate::scenario::problem::nearest;
 use crate::scenario::{Document, Problem, Problems};
 use crate::study::sweep::in_order::in_order;
 use crate::study::sweep::join::join;
-use crate::study::sweep::part::{Opened, PartError, PartFile};
+use crate::study::sweep::part::{Opened, PartFile, SweepFileError};
 use crate::study::sweep::shipped::{self, SWEEPS};
-use crate::study::sweep::{Shard, Sweep, SweepFile, axis};
-use crate::text::printable::Shown;
+use crate::study::sweep::{EmptyRows, Shard, Sweep, SweepFile, axis};
+use crate::text::printable::{Shown, printable_lines};
 use clap::Args;
-use empty_rows::EmptyRows;
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -67,8 +64,8 @@ pub(super) fn sweep(args: &SweepArgs) -> anyhow::Result<ExitCode> {
     match (&args.scenario, &args.output) {
         (Some(name), Some(output)) => run(&sweep_of(name, args)?, output, args.force),
         (None, Some(output)) if !args.join.is_empty() => {
-            let (sweep, rows) = join(&args.join, output, args.force)?;
-            EmptyRows::of_file(rows).tell(&sweep, &progress::interruption()?);
+            let (sweep, empty) = join(&args.join, output, args.force)?;
+            tell_of_empty(&empty, &sweep, &progress::interruption()?);
             tell_of_rows(&sweep, output);
             Ok(ExitCode::SUCCESS)
         }
@@ -188,8 +185,8 @@ fn argument_behind<'a>(
 fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCode> {
     let interruption = progress::interruption()?;
     let mut part = match PartFile::open(output, sweep, may_replace)? {
-        Opened::Whole(there) => {
-            EmptyRows::of_file(there).tell(sweep, &interruption);
+        Opened::Whole(empty) => {
+            tell_of_empty(&empty, sweep, &interruption);
             let rows = plural(sweep.rows(), "row");
             tell(format_args!(
                 "gyrolab: {} is whole, {rows} of this very sweep",
@@ -201,7 +198,7 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
     };
     let begin = part.rows();
     if begin > 0 {
-        let empty = match part.found().empty() {
+        let empty = match part.empty().count() {
             0 => String::new(),
             empty => format!(", {empty} of them without readouts"),
         };
@@ -211,7 +208,7 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
             Shown(there)
         ));
     }
-    let mut empty = EmptyRows::of_file(part.found().clone());
+    let mut empty = part.empty().clone();
     let mut failed = None;
     add_rows(sweep, &mut part, &interruption, &mut empty, &mut failed);
     let (rows, all) = (part.rows(), sweep.rows());
@@ -220,7 +217,7 @@ fn run(sweep: &Sweep, output: &Path, may_replace: bool) -> anyhow::Result<ExitCo
         plural(all, "row"),
         Shown(part.path())
     );
-    empty.tell(sweep, &interruption);
+    tell_of_empty(&empty, sweep, &interruption);
     if let Some(error) = failed {
         tell(format_args!("gyrolab: {kept}"));
         return Err(error.into());
@@ -240,13 +237,33 @@ fn tell_of_rows(sweep: &Sweep, output: &Path) {
     tell(format_args!("gyrolab: {rows} in {}", Shown(output)));
 }
 
+/// Says how many rows hold no readouts, and of the first few which points they are, and why.
+fn tell_of_empty(empty: &EmptyRows, sweep: &Sweep, interruption: &Interruption) {
+    let count = empty.count();
+    if count == 0 {
+        return;
+    }
+    let all = sweep.rows();
+    tell(format_args!(
+        "gyrolab: rows without readouts: {count} of {all}"
+    ));
+    let lines = empty.in_words(sweep, || !interruption.has_come());
+    for line in &lines {
+        tell(format_args!("  {}", printable_lines(line)));
+    }
+    match count - lines.len() as u64 {
+        0 => {}
+        more => tell(format_args!("  and {more} more")),
+    }
+}
+
 /// Computes the rows that are not there yet and adds them to `part`.
 fn add_rows(
     sweep: &Sweep,
     part: &mut PartFile,
     interruption: &Interruption,
     empty: &mut EmptyRows,
-    failed: &mut Option<PartError>,
+    failed: &mut Option<SweepFileError>,
 ) {
     let (begin, all) = (part.rows(), sweep.rows());
     let mut meter = Meter::counting("row");
@@ -260,7 +277,9 @@ fn add_rows(
         let count = rows.len() as u64;
         for (index, row) in (first..).zip(rows) {
             lines += &row.line;
-            empty.add(sweep, index, &row);
+            if row.empty.is_some() {
+                empty.add(index, row.empty);
+            }
         }
         if let Err(error) = part.add(&lines, count) {
             *failed = Some(error);
