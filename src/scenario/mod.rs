@@ -6,6 +6,7 @@
 //! with place, key, value and rule.
 
 mod checks;
+pub mod csv;
 pub mod document;
 pub mod dotted;
 mod edits;
