@@ -5,7 +5,7 @@ use crate::analysis::readouts::{self, Readout, Source};
 use crate::scenario::Problem;
 use crate::scenario::csv::{Csv, at_line};
 use crate::scenario::keys::{self, Kind};
-use crate::scenario::problem::nearest;
+use crate::scenario::problem::{listed, nearest};
 use crate::text::number::significant;
 use crate::text::unit::{Unit, with_word};
 
@@ -53,34 +53,27 @@ pub(super) struct Named {
 pub(super) fn named(cells: &Csv) -> Result<Vec<Named>, Vec<Problem>> {
     let mut problems = Vec::new();
     let names = &cells.names;
+    let is_series = names.iter().any(|name| name == TIME);
+    let of = if is_series { of_series } else { of_table };
+    let mut columns = Vec::new();
     for (place, name) in names.iter().enumerate() {
         if names[..place].contains(name) {
-            problems.push(Problem::at(
-                shown(name, place),
-                "names two columns: leave one of them out",
-            ));
+            let rule = "names two columns: leave one of them out";
+            problems.push(Problem::at(shown(name, place), rule));
         }
-    }
-    let is_series = names.iter().any(|name| name == TIME);
-    let values = names
-        .iter()
-        .enumerate()
-        .filter(|(_, name)| !is_uncertainty(name));
-    let mut columns = Vec::new();
-    for (place, name) in values {
-        let is = if is_series {
-            of_series(name)
-        } else {
-            of_table(name)
-        };
+        if is_uncertainty(name) {
+            continue;
+        }
         let uncertainty = with_word(name, UNCERTAINTY);
-        match is {
+        let of_it = |is: &Is| {
+            is.may_be_off()
+                .then(|| names.iter().position(|other| *other == uncertainty))?
+        };
+        match of(name) {
             Ok(is) => columns.push(Named {
                 place,
                 name: name.clone(),
-                uncertainty: names
-                    .iter()
-                    .position(|other| *other == uncertainty && is.may_be_off()),
+                uncertainty: of_it(&is),
                 is,
             }),
             Err(rule) => problems.push(Problem::at(shown(name, place), rule)),
@@ -235,8 +228,8 @@ fn uncertainties_alone(names: &[String], columns: &[Named]) -> Vec<Problem> {
                 "is not taken: make what was measured the more uncertain, by its change in that time ({TIME} is without error)"
             );
         }
-        let near = nearest(name, wanted.iter().map(String::as_str));
-        format!("is the uncertainty of no measured column: {near}")
+        let known = listed(wanted.iter().map(String::as_str));
+        format!("is the uncertainty of no measured column: there is {known}")
     };
     let alone = alone.map(|(_, name)| Problem::at(name.clone(), rule(name)));
     alone.collect()

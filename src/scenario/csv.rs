@@ -86,7 +86,9 @@ impl Csv {
             separator,
             rows: Vec::new(),
         };
-        csv.read_rows(&text[head.begin_of_names()..], most)?;
+        let lines = text.splitn(csv.line_of_names as usize, '\n').last();
+        let lines = lines.unwrap_or_default().trim_start_matches('\u{feff}');
+        csv.read_rows(lines, most)?;
         if csv.names.is_empty() {
             let rule = "has no columns: the first line after its comments must name them, such as t_s,tilt_deg";
             return Err(one(rule.to_owned()));
@@ -124,8 +126,8 @@ impl Csv {
                     self.names = names.map(str::to_owned).collect();
                 }
                 _ if filled == 0 => {} // as spreadsheet programs write empty rows
-                // Nor do empty cells behind the last column count.
-                count if record.len() == count || filled <= count && record.len() > count => {
+                // Empty cells behind the last column do not count.
+                count if filled <= count && record.len() >= count => {
                     let cells = record.iter().take(count).map(str::to_owned);
                     self.rows.push((line, cells.collect()));
                 }

@@ -55,12 +55,6 @@ impl Head {
         without_mark(&self.bytes[self.names..]).trim_ascii_end()
     }
 
-    /// The byte at which the line of names begins.
-    pub(super) fn begin_of_names(&self) -> usize {
-        let mark = self.bytes.len() - self.names - without_mark(&self.bytes[self.names..]).len();
-        self.names + mark
-    }
-
     /// The line of names, counted from 1.
     pub fn line_of_names(&self) -> u64 {
         let above = &self.bytes[..self.names];

@@ -170,29 +170,7 @@ pub fn remember(folder: &Path, key: &str, value: Value) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::os::unix::fs::{PermissionsExt, symlink};
-
-    #[test]
-    fn what_is_kept_is_read_again_and_is_the_users_alone() {
-        let home = tempfile::tempdir().unwrap();
-        let folder = home.path().join("gyrolab");
-        assert_eq!(read(&folder), Read::default());
-        for (key, value) in [
-            ("marker", "dot".into()),
-            ("mouse", false.into()),
-            ("marker", "ascii".into()),
-        ] {
-            remember(&folder, key, value).unwrap();
-        }
-        let found = read(&folder);
-        assert_eq!(found.problems, None);
-        assert_eq!(found.settings.marker.as_deref(), Some("ascii"));
-        assert_eq!(found.settings.mouse, Some(false));
-        let file = folder.join(FILE);
-        let mode = fs::metadata(&file).unwrap().permissions().mode();
-        assert_eq!(mode & 0o777, 0o600);
-        assert!(!folder.join("settings.toml.new").exists());
-    }
+    use std::os::unix::fs::symlink;
 
     #[test]
     fn a_link_is_neither_read_nor_written_through() {

@@ -124,19 +124,15 @@ impl Report<'_> {
             "residual",
             "in sigmas",
         ];
-        let rows: Vec<_> = std::iter::once(head.map(str::to_owned))
-            .chain(rows)
-            .collect();
-        if all.len() > MOST {
-            writeln!(
+        let head = std::iter::once(head.map(str::to_owned));
+        match all.len() {
+            0..=MOST => writeln!(f, "\nResiduals:")?,
+            count => writeln!(
                 f,
-                "\nThe {MOST} of {} residuals that are furthest off:",
-                all.len()
-            )?;
-        } else {
-            writeln!(f, "\nResiduals:")?;
+                "\nThe {MOST} of {count} residuals that are furthest off:"
+            )?,
         }
-        write_table(f, &rows)
+        write_table(f, &head.chain(rows).collect::<Vec<_>>())
     }
 
     fn json(&self) -> Value {

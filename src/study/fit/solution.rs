@@ -77,16 +77,13 @@ impl Solution {
             let parts = places.map(|place| (moving[place], parts[place] / largest));
             solution.alike.push(parts.collect());
         }
-        let is_known = |place: usize| {
-            let in_unseen = |k: &usize| v_t[(*k, place)].abs() > PART;
-            !unseen.iter().any(in_unseen)
-        };
-        for i in (0..moving.len()).filter(|&place| is_known(place)) {
-            for j in (0..moving.len()).filter(|&place| is_known(place)) {
-                let terms = seen
-                    .iter()
-                    .map(|&k| v_t[(k, i)] * v_t[(k, j)] / singular(k).powi(2));
-                let covariance = terms.sum::<f64>() / (norms[moving[i]] * norms[moving[j]]);
+        let is_known = |place: &usize| unseen.iter().all(|&k| v_t[(k, *place)].abs() <= PART);
+        let known: Vec<usize> = (0..moving.len()).filter(is_known).collect();
+        for &i in &known {
+            for &j in &known {
+                let term = |&k: &usize| v_t[(k, i)] * v_t[(k, j)] / singular(k).powi(2);
+                let covariance = seen.iter().map(term).sum::<f64>();
+                let covariance = covariance / (norms[moving[i]] * norms[moving[j]]);
                 solution.covariance[moving[i]][moving[j]] =
                     Some(covariance).filter(|covariance| covariance.is_finite());
             }

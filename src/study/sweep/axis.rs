@@ -40,22 +40,16 @@ impl Axis {
             }
         };
         if values.is_empty() {
-            return Err(vec![Problem::at(
-                at("values"),
-                "must hold at least one value",
-            )]);
+            let rule = "must hold at least one value";
+            return Err(vec![Problem::at(at("values"), rule)]);
         }
-        let values: Vec<_> = values
-            .into_iter()
-            .map(|value| as_kind(kind, value))
-            .collect();
-        let problems: Vec<_> = values
-            .iter()
-            .filter_map(|value| {
-                let rule = fits(kind, value).err()?;
-                Some(Problem::with_value(vary.key.clone(), value, rule))
-            })
-            .collect();
+        let values = values.into_iter().map(|value| as_kind(kind, value));
+        let values: Vec<_> = values.collect();
+        let problem = |value| {
+            let rule = fits(kind, value).err()?;
+            Some(Problem::with_value(vary.key.clone(), value, rule))
+        };
+        let problems: Vec<_> = values.iter().filter_map(problem).collect();
         if problems.is_empty() {
             Ok(Self {
                 key: vary.key.clone(),

@@ -67,14 +67,11 @@ impl Sweep {
         let mut problems = Vec::new();
         let axes = axes(&file.vary, &mut problems);
         let measure = measured(file.measure.as_deref(), &axes, &mut problems);
-        let shard = match file.shard.as_deref().map(str::parse) {
-            None => Shard::WHOLE,
-            Some(Ok(shard)) => shard,
-            Some(Err(rule)) => {
-                problems.push(Problem::at("shard", rule));
-                Shard::WHOLE
-            }
-        };
+        let shard = file.shard.as_deref().map_or(Ok(Shard::WHOLE), str::parse);
+        let shard = shard.unwrap_or_else(|rule| {
+            problems.push(Problem::at("shard", rule));
+            Shard::WHOLE
+        });
         let counts = axes.iter().map(|axis| axis.values.len() as u64);
         let points = counts.fold(1, u64::saturating_mul);
         if points > MOST_POINTS {
@@ -91,23 +88,18 @@ impl Sweep {
             view: None,
             ..base.file.clone()
         };
-        let document = Document::from_file("", &base_file)?;
+        let base = Document::from_file("", &base_file)?;
+        let names = measure.iter().map(|readout| readout.name.to_owned());
         let sweep = Self {
             file: SweepFile {
-                scenario: Base::Checked(Box::new(base_file.clone())),
                 gyrolab: Some(env!("CARGO_PKG_VERSION").to_owned()),
                 title: Some(file.title.unwrap_or_else(|| base_file.title.clone())),
                 shard: (shard != Shard::WHOLE).then(|| shard.to_string()),
-                measure: Some(
-                    measure
-                        .iter()
-                        .map(|readout| readout.name.to_owned())
-                        .collect(),
-                ),
-                vary: file.vary,
+                measure: Some(names.collect()),
+                scenario: Base::Checked(Box::new(base_file)),
                 ..file
             },
-            base: document,
+            base,
             axes,
             measure,
             shard,
@@ -221,23 +213,11 @@ impl Sweep {
         self.points
     }
 
-    /// The sweep file in `# ` lines, as its CSV begins.
-    pub fn file_lines(&self) -> String {
-        commented(&self.file.to_toml())
-    }
-
     /// The sweep file in `# ` lines, and the line of the columns' names.
     pub fn header(&self) -> String {
-        self.file_lines() + &self.names()
-    }
-
-    /// The line of the columns' names, with its end.
-    pub fn names(&self) -> String {
         let keys = self.axes.iter().map(|axis| axis.key.as_str());
-        let names: Vec<_> = keys
-            .chain(self.measure.iter().map(|readout| readout.name))
-            .collect();
-        line(&names)
+        let readouts = self.measure.iter().map(|readout| readout.name);
+        commented(&self.file.to_toml()) + &line(&keys.chain(readouts).collect::<Vec<_>>())
     }
 
     /// The values of the point behind the `row`-th row, from 0, one of each axis.

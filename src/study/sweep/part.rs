@@ -7,7 +7,7 @@
 use super::empty_rows::EmptyRows;
 use super::grid::Sweep;
 use crate::export::Destination;
-use crate::export::destination::DestinationError;
+use crate::export::destination::{DestinationError, is_workbook};
 use crate::scenario::Problems;
 use crate::text::printable::{Shown, brief};
 use crate::text::{unread, unwritten};
@@ -163,6 +163,10 @@ fn is_writable(path: &Path) -> Result<(), SweepFileError> {
     if Destination::is_for_stdout(path) {
         let why =
             "a sweep is not written to stdout, but to a file, in which it can be gone on with";
+        return Err(refused(path, why));
+    }
+    if is_workbook(path) {
+        let why = "a sweep is written as CSV: let the name end in .csv";
         return Err(refused(path, why));
     }
     Destination::open_file(path, true)?;

@@ -82,11 +82,11 @@ fn data_that_come_with_the_program_go_by_their_name() {
 fn uncertainties_without_values() {
     is_refused(
         "t_s,tilt_deg,azimuth_uncertainty_deg\n0,1,2\n",
-        "lab.csv:1: azimuth_uncertainty_deg: is the uncertainty of no measured column: did you mean tilt_uncertainty_deg?",
+        "lab.csv:1: azimuth_uncertainty_deg: is the uncertainty of no measured column: there is tilt_uncertainty_deg",
     );
     is_refused(
         "t_s,tilt_deg,tilt_deg_uncertainty\n0,1,2\n",
-        "lab.csv:1: tilt_deg_uncertainty: is the uncertainty of no measured column: did you mean tilt_uncertainty_deg?",
+        "lab.csv:1: tilt_deg_uncertainty: is the uncertainty of no measured column: there is tilt_uncertainty_deg",
     );
     is_refused(
         "t_s,t_uncertainty_s,tilt_deg\n0,1,2\n",
