@@ -65,8 +65,9 @@ pub use work::Work;
 
 use crate::run::NotFinite;
 use crate::scenario::Scenario;
-use crate::storage::settings::Keeper;
+use crate::storage::settings::remember;
 use action::LessonKey;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 use view::{Pane, View};
@@ -95,8 +96,8 @@ pub struct Lab {
     view: View,
     on_top: OnTop,
     script: Script,
-    /// Remembers what dots and colours the user chooses; `None` where nothing is remembered.
-    keeper: Option<Keeper>,
+    /// The folder in which the settings that the user chooses are remembered; `None` where nothing is.
+    settings: Option<PathBuf>,
     /// What the session keeps of the lessons.
     lessons: Option<toml::Table>,
     /// Whether there are colours where nobody chooses; `None` where that is not known.
@@ -118,7 +119,7 @@ impl Lab {
             view,
             on_top: OnTop::default(),
             script: Script::default(),
-            keeper: None,
+            settings: None,
             lessons: None,
             usual_colour: None,
             now: Duration::ZERO,
@@ -142,9 +143,9 @@ impl Lab {
         self.read_now(); // a run that stands still is not read again by itself
     }
 
-    /// From now on remembers what dots and colours the user chooses.
-    pub fn remember_with(&mut self, keeper: Keeper) {
-        self.keeper = Some(keeper);
+    /// From now on the settings that the user chooses are remembered in `folder`.
+    pub fn remember_in(&mut self, folder: PathBuf) {
+        self.settings = Some(folder);
     }
 
     /// Tells the lab whether its screen has colours where nobody chooses: that choice is remembered as no choice.
@@ -161,15 +162,12 @@ impl Lab {
         }
     }
 
-    /// Ends remembering, and returns what remembers: it may have something left to write.
-    pub fn take_keeper(&mut self) -> Option<Keeper> {
-        self.keeper.take()
-    }
-
     /// Remembers that the user has chosen `value` for the setting `key`.
-    fn remember(&self, key: &'static str, value: impl Into<toml::Value>) {
-        if let Some(keeper) = &self.keeper {
-            keeper.keep(key, value);
+    fn remember(&mut self, key: &'static str, value: impl Into<toml::Value>) {
+        if let Some(folder) = &self.settings
+            && let Err(trouble) = remember(folder, key, value.into())
+        {
+            self.tell(trouble);
         }
     }
 
@@ -201,9 +199,6 @@ impl Lab {
         self.changed |= self.on_top.take_what_was_read();
         self.open_what_was_read();
         self.follow_export();
-        if let Some(trouble) = self.keeper.as_ref().and_then(Keeper::trouble) {
-            self.tell(trouble);
-        }
         self.go_on_with_script(halt);
         if self.changed && self.player.is_due(now, self.view.window_s) {
             self.read_now();
